@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The device module `haply_service`: an Inverse3 behind Haply's Inverse Service. Messages are those of its public
-/// documentation (docs.haply.co, "WebSocket protocol" and "Basis permutation" of 3.5): metres, newtons; x to the right,
-/// y away from the user, z up.
+/// The device module `haply_service`: an Inverse3 behind Haply's Inverse Service. The messages are those of the
+/// service's public documentation (docs.haply.co, "WebSocket protocol" and "Basis permutation" of 3.5). They have
+/// metres and newtons, with x to the right, y away from the user, z up.
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -19,9 +19,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kPatienceMs = 500;  ///< how long an answer may take; the service answers each message once
+constexpr int kPatienceMs = 500;  ///< longest time until an answer; the service answers each message once
 
-/// Reads a vector where there is one; components that are left out keep their values.
+/// Reads a vector if the message has it. Components that are left out keep their values.
 bool readVector(const Json& json, double v[3]) {
   const char* axes[] = {"x", "y", "z"};
   double read[3];
@@ -42,7 +42,7 @@ const Json& childOf(const Json& json, const char* key) {
   return it != json.end() ? *it : nothing;
 }
 
-/// The value of a yes-or-no key of a status; true where the key is missing.
+/// Returns the boolean value of a key of a status, or true if the key is missing.
 bool says(const Json& status, const char* key) {
   const Json& value = childOf(status, key);
   return !value.is_boolean() || value.get<bool>();
@@ -59,14 +59,14 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
   static constexpr auto fields() {
     using F = Fields<HaplyArm>;
     return std::array{
-        F::text("host", &HaplyArm::host, "127.0.0.1", "Where the service runs."),
-        F::integer("port", &HaplyArm::port, "", 1, 65535, 10001, "Port of its simulation channel."),
+        F::text("host", &HaplyArm::host, "127.0.0.1", "Address of the machine on which the service runs."),
+        F::integer("port", &HaplyArm::port, "", 1, 65535, 10001, "Port of the service's simulation channel."),
         F::text("device_id", &HaplyArm::device_id, "",
-                "Which Inverse3, as the service names it; the first unless given."),
+                "The service's id of the Inverse3. Without it, the first Inverse3 is used."),
         F::real("force", &HaplyArm::force, "N", 0.1, 100, 5, "Largest force."),
         F::real("reach", &HaplyArm::reach, "m", 0.01, 2, 0.3,
-                "The tip is nowhere farther from the origin on any axis."),
-        F::integer("rate", &HaplyArm::rate, "Hz", 100, 8000, 2000, "Exchanges with the service per second, at most."),
+                "Largest distance of the tip from the origin, on each axis."),
+        F::integer("rate", &HaplyArm::rate, "Hz", 100, 8000, 2000, "Most exchanges with the service per second."),
     };
   }
 
@@ -97,10 +97,10 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
     exchange_.reset(force);
     end_ = false;
     if (const auto failed = thread_.start("hapticd-haply", [this] { run(); }))
-      throw std::runtime_error("no thread can be had: " + failed.message());
+      throw std::runtime_error("cannot start a thread for the Inverse Service: " + failed.message());
     if (exchange_.awaitFirst()) return;
     stop();
-    throw std::runtime_error("the Inverse Service gave no position for 2 s");
+    throw std::runtime_error("the Inverse Service has sent no position for 2 s");
   }
 
   void stop() {
@@ -113,7 +113,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
   void close() { channel_.reset(); }
 
  private:
-  /// The arm's entry in a message; nullptr: the message has none.
+  /// Returns the arm's entry in a message, or nullptr if the message has none.
   const Json* find(const Json& message) const {
     const std::string& wanted = id_.empty() ? device_id : id_;
     for (const Json& arm : childOf(message, "inverse3")) {
@@ -130,7 +130,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
     return all.empty() ? "none" : all;
   }
 
-  /// A message with this force [N], in the axes of the daemon.
+  /// Returns a message with this force [N], which is given in the daemon's axes.
   std::string command(const double wanted[3]) {
     Json message = {
         {"inverse3",
@@ -180,7 +180,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
     ++seen.sequence;
   }
 
-  /// The buttons of the first handle that the message names.
+  /// Returns the buttons of the first handle in the message.
   static uint32_t buttonsOf(const Json& message) {
     const char* names[] = {"a", "b", "c"};
     for (const char* kind : {"wireless_verse_grip", "verse_grip"})

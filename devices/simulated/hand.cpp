@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// SplitMix64 (Steele, Lea & Flood 2014): the same numbers on every machine and library.
+/// Random numbers by SplitMix64 (Steele, Lea & Flood 2014): the same on every machine and with every library.
 class Random {
  public:
   explicit Random(uint64_t seed) : state_(seed) {}
@@ -40,7 +40,7 @@ Unrest::Unrest(double rms, double low_hz, double high_hz, uint64_t seed)
   Random random(seed);
   for (size_t axis = 0; axis < 3; ++axis)
     for (size_t tone = 0; tone < kTones; ++tone) {
-      // One tone in each part of the band: no two beat slowly against each other.
+      // One tone in each part of the band, so that no two tones are close and beat slowly.
       const double place = (static_cast<double>(tone) + random.uniform()) / static_cast<double>(kTones);
       rate_[axis][tone] = 2 * M_PI * (low_hz + place * (high_hz - low_hz));
       phase_[axis][tone] = 2 * M_PI * random.uniform();
@@ -65,7 +65,7 @@ Hand::Hand(const HandSettings& settings, HandPath path)
   settings_.axis = unit(settings.axis, "hand.axis");
   side_ = settings_.axis.cross(settings_.normal);
   if (!(side_.norm() > 1e-3))
-    throw std::invalid_argument("hand.axis is parallel to hand.normal, expected two different directions");
+    throw std::invalid_argument("hand.axis is parallel to hand.normal; expected two different directions");
   side_.normalize();
   settings_.axis = settings_.normal.cross(side_);
   guided_.position = settings_.center + settings_.radius * settings_.normal;
@@ -80,7 +80,7 @@ void Hand::script(double t, Vector3d& position, Vector3d& velocity) const noexce
   position = s.center + s.radius * s.normal;
   switch (s.script) {
     case Script::kStroke: {
-      constexpr double kRiseRatio = 0.31;  // irrational enough that the strokes cover an area instead of one line
+      constexpr double kRiseRatio = 0.31;  // no simple fraction, so that the strokes cover an area instead of one line
       const double angle = s.sweep * std::sin(phase), angle_rate = s.sweep * rate * std::cos(phase);
       position = s.center + s.radius * onArc(angle) + s.rise * std::sin(kRiseRatio * phase) * s.axis;
       velocity = s.radius * angle_rate * onArc(angle + M_PI / 2) +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The simulated hand: a mass on a spring and damper whose other end follows a script, with a seeded tremor. Everything
-/// it wants is a function of time alone, so that a run does not depend on how time was cut into steps; but for the
+/// The simulated hand: a mass on a spring and damper whose other end follows a script, with a seeded tremor. Its wanted
+/// position and force depend only on time, so that a run does not depend on the size of the steps. The exception is the
 /// guided hand, which a program leads.
 #pragma once
 #include <Eigen/Core>
@@ -17,22 +17,22 @@ enum class Script { kHold, kStroke, kPress, kTap, kCircle, kPath, kNone, kGuided
 struct HandSettings {
   Script script = Script::kStroke;
   double mass = 0.2, stiffness = 500, damping = 5;    ///< [kg], [N/m], [N s/m]
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< centre of the object to be touched
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< [m] centre of the object to be touched
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< direction from the centre to the hand
   Eigen::Vector3d axis = Eigen::Vector3d::UnitY();    ///< axis about which strokes and circles turn
   double radius = 0.045, sweep = 0.9, rise = 0.008;   ///< [m], [rad], [m]
   double rate = 0.3;                                  ///< [Hz]
   double approach = 0.02, lead_in = 0.5;              ///< [m], [s]
-  double tremor = 0.05, wander = 0.1;                 ///< [N] rms at 8 to 12 Hz, at 0.2 to 1 Hz
+  double tremor = 0.05, wander = 0.1;                 ///< [N] rms of the forces at 8 to 12 Hz and at 0.2 to 1 Hz
   uint64_t seed = 1;
 };
 
 struct HandTarget {
   Eigen::Vector3d position = Eigen::Vector3d::Zero(), velocity = Eigen::Vector3d::Zero();  ///< [m], [m/s]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();                                         ///< [N] tremor and wander
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N] sum of tremor and wander
 };
 
-/// A narrow-band random force of given rms: a sum of sinusoids whose frequencies and phases are drawn once.
+/// A narrow-band random force of given rms: a sum of sinusoids with random frequencies and phases, drawn once.
 class Unrest {
  public:
   Unrest(double rms, double low_hz, double high_hz, uint64_t seed);
@@ -46,13 +46,13 @@ class Unrest {
 
 class Hand {
  public:
-  /// Throws std::invalid_argument with a message for the user.
+  /// [main] Throws std::invalid_argument with a message for the user.
   Hand(const HandSettings& settings, HandPath path);
 
-  /// [rt] Where the hand wants to be `t` seconds after the start.
+  /// [rt] Returns where the hand wants to be `t` seconds after the start.
   HandTarget at(double t) const noexcept;
 
-  /// [rt] Tells a guided hand where it wants to be from now on.
+  /// [rt] Sets where a guided hand wants to be from now on.
   void guide(const HandTarget& target) noexcept { guided_ = target; }
 
   bool holds() const noexcept { return settings_.script != Script::kNone; }
@@ -66,7 +66,7 @@ class Hand {
 
   HandSettings settings_;
   HandPath path_;
-  Eigen::Vector3d side_;  ///< completes axis and normal
+  Eigen::Vector3d side_;  ///< unit vector, perpendicular to axis and normal
   HandTarget guided_;
   Unrest tremor_, wander_;
 };

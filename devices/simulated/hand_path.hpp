@@ -12,12 +12,13 @@ namespace hapticd::simulated {
 class HandPath {
  public:
   HandPath() = default;
-  /// [main] Reads a file. Throws std::runtime_error that names file, line and what was expected.
+  /// [main] Reads a file. Throws std::runtime_error whose text names the file, the line and what was expected.
   static HandPath read(const std::string& file);
-  /// [main] Reads the same from text; messages call it `name`.
+  /// [main] Reads the same columns from a text. Messages call the text `name`.
   static HandPath parse(const std::string& text, const std::string& name);
 
-  /// [rt] The path is straight between the rows; before the first and after the last row the hand rests there.
+  /// [rt] Position and velocity at time `t`. The path is straight between two rows; before the first row and after the
+  /// last row the hand rests at that row.
   void at(double t, Eigen::Vector3d& position, Eigen::Vector3d& velocity) const noexcept;
   bool empty() const noexcept { return times_.empty(); }
 

@@ -11,7 +11,7 @@ using kinematics::ChainGeometry;
 using kinematics::ChainLink;
 
 void PhantomMechanism::evaluate(const Vector& q, const Vector& qd) noexcept {
-  const kinematics::PhantomAngles at(q);  // computing sines is a third of the work
+  const kinematics::PhantomAngles at(q);  // computed once, because sines are a third of the work
   dynamics_.evaluate(at, qd, M, bias);
   tip = arm_.position(at);
   J = arm_.positionJacobian(at);
@@ -30,7 +30,7 @@ void PhantomMechanism::evaluate(const Vector& q, const Vector& qd) noexcept {
 
 namespace {
 
-/// The chain with a point mass held at its tip.
+/// Returns the chain with the hand's mass as a point mass at its tip.
 ChainGeometry loaded(ChainGeometry geometry, double mass) {
   if (geometry.links.empty() || mass <= 0) return geometry;
   ChainLink& last = geometry.links.back();
@@ -61,7 +61,7 @@ void ChainMechanism::evaluate(const Vector& q, const Vector& qd) noexcept {
   chainDynamics(loaded_, at, qd, M, bias);
   M.diagonal() += rotor_;
   Vector weight;
-  arm_.gravity(q, gravity_, weight);  // the hand carries its own weight
+  arm_.gravity(q, gravity_, weight);  // without the hand's mass, because the hand carries its own weight
   bias += weight;
   const auto last = static_cast<size_t>(arm_.jointCount());
   tip = at.o[last] + at.R[last] * tool_;

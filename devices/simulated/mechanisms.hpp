@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// The mechanisms that the simulation knows: the PHANToM's parallelogram and serial chains.
+/// The mechanisms of simulated arms: the PHANToM's parallelogram, and serial chains.
 #pragma once
 #include "kinematics/chain_dynamics.hpp"
 #include "kinematics/phantom_dynamics.hpp"
 
 namespace hapticd::simulated {
 
-/// A PHANToM with a hand's mass at the tip.
+/// A PHANToM with the mass of a hand at its tip.
 class PhantomMechanism {
  public:
   using Vector = Eigen::Vector3d;
@@ -40,7 +40,7 @@ class PhantomMechanism {
   Eigen::Vector3d gravity_;
 };
 
-/// A serial chain; the hand's mass is a part of its last link.
+/// A serial chain. The hand's mass is part of its last link.
 class ChainMechanism {
  public:
   using Vector = kinematics::JointVector;
@@ -66,7 +66,7 @@ class ChainMechanism {
   Eigen::Vector3d tip;
 
  private:
-  kinematics::Chain arm_, loaded_;  ///< the arm without and with the hand
+  kinematics::Chain arm_, loaded_;  ///< the arm without the hand's mass, and with it
   Vector rotor_;
   Eigen::Vector3d gravity_, tool_;
 };

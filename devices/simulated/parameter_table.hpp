@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The parameter table of the simulated arm: what device files may say, with unit, range, default and documentation.
+/// The parameter table of the simulated arm: the keys of its device files, with unit, range, default and documentation.
 #pragma once
 #include "hapticd/device.hpp"
 #include "simulated/parameters.hpp"
@@ -10,7 +10,7 @@ inline constexpr const char* kKinds[] = {"premium15", "chain", "phantom"};
 inline constexpr const char* kScripts[] = {"hold", "stroke", "press", "tap", "circle", "path", "none", "guided"};
 inline constexpr int kMaxDelay = 16;
 
-/// The parameter table's lines for a device class T that derives from Parameters.
+/// The lines of the parameter table, for a device class T that derives from Parameters.
 template <class T>
 struct ParameterTable {
   using F = Fields<T>;
@@ -18,56 +18,55 @@ struct ParameterTable {
   static constexpr auto arm() {
     return std::array{
         F::choice("arm.kind", &T::kind, kKinds, 0,
-                  "The mechanism: a PHANToM Premium 1.5, the chain of arm.dh, or an arm built as the PHANToM, with the "
-                  "lengths "
-                  "of its own (as arm.kind of the arm that it is a twin of)."),
+                  "The mechanism: a PHANToM Premium 1.5, the serial chain of arm.dh, or an arm built like the PHANToM "
+                  "with other lengths (arm.lengths)."),
         F::vector3("arm.origin", &T::origin, "m", -1, 1, "[0, 0, 0]",
-                   "premium15, phantom: where the tip of the neutral pose lies in the device frame; chain: added to "
-                   "arm.base_position."),
+                   "premium15, phantom: position of the tip in the neutral pose, in the device frame. chain: an offset "
+                   "that is added to arm.base_position."),
         F::array("arm.dh", &T::dh, "m, rad, m, rad", 4, 0, 64, -10, 10, "[]",
-                 "chain: a row a, alpha, d, theta per joint (standard Denavit-Hartenberg)."),
+                 "chain: one row a, alpha, d, theta for each joint (standard Denavit-Hartenberg)."),
         F::array("arm.limits", &T::limits, "rad", 2, 0, 32, -100, 100, "[]",
-                 "chain, phantom: a row least, greatest angle a joint; left out: half a turn to either side, the stops "
-                 "of the "
-                 "Premium."),
+                 "chain, phantom: one row [least, greatest angle] for each joint. Default: half a turn to either side "
+                 "for a chain, the stops of the Premium 1.5 for a phantom."),
         F::array("arm.masses", &T::masses, "kg", 1, 0, 16, 0, 1000, "[]",
-                 "chain: mass of each link; phantom: ma mc mbe mdf, left out: those of the Premium."),
+                 "chain: mass of each link. phantom: ma mc mbe mdf; default: those of the Premium 1.5."),
         F::array("arm.centers", &T::centers, "m", 3, 0, 48, -10, 10, "[]",
                  "chain: centre of mass of each link, in the frame after its joint."),
         F::array("arm.inertias", &T::inertias, "kg m^2", 3, 0, 48, 0, 1000, "[]",
-                 "chain: inertia of each link about the axes of that frame through its centre; phantom: rows a, c, be, "
-                 "df and "
-                 "base, left out: those of the Premium."),
+                 "chain: principal inertias of each link about its centre of mass, along the axes of the frame after "
+                 "its joint. phantom: rows a, c, be, df and base; default: those of the Premium 1.5."),
         F::vector3("arm.base_position", &T::base_position, "m", -10, 10, "[0, 0, 0]",
-                   "chain: where its first frame lies in the device frame."),
+                   "chain: position of its first frame in the device frame."),
         F::array("arm.base_orientation", &T::base_orientation, "", 4, 0, 4, -1.001, 1.001, "[]",
-                 "chain: how its first frame is turned in the device frame, a unit quaternion w, x, y, z."),
+                 "chain: orientation of its first frame in the device frame, a unit quaternion w, x, y, z."),
         F::vector3("arm.tool_position", &T::tool_position, "m", -10, 10, "[0, 0, 0]",
-                   "chain: the tip in the frame of the last link."),
+                   "chain: position of the tip in the frame of the last link."),
         F::array("arm.lengths", &T::lengths, "m", 1, 0, 5, -10, 10, "[]",
-                 "phantom: l1 l2 l3 l5 l6; left out: those of the Premium."),
+                 "phantom: l1 l2 l3 l5 l6; default: those of the Premium 1.5."),
         F::array("arm.max_torque", &T::arm_torque, "N m", 1, 0, 16, 0, 1e5, "[]",
-                 "Largest torque of each joint behind its gear, as the file of a real arm says it; in the place of "
+                 "Largest torque of each joint, behind its gear, as in the device file of a real arm. It replaces "
                  "joint.max_torque."),
         F::real("device.rate", &T::rate, "Hz", 1, 100000, 1000,
-                "Natural rate: what it reports, and of its samples where they drive the loop."),
+                "Sample rate that the arm reports. With servo.pace: device, its samples come at this rate."),
         F::real("device.max_force", &T::max_force, "N", 0, 10000, 8.5, "Largest force that the arm reports."),
         F::real("device.continuous_force", &T::continuous_force, "N", 0, 10000, 1.4,
-                "Force that it reports for any length of time."),
-        F::real("device.max_stiffness", &T::max_stiffness, "N/m", 0, 1e6, 3500, "Stiffness that it reports as stable."),
-        F::real("device.mass", &T::felt_mass, "kg", 0, 1000, 0.075, "Mass felt at the tip that it reports."),
-        F::integer("delay", &T::delay, "", 0, kMaxDelay, 0, "Commands act this many reads late."),
+                "Largest lasting force that the arm reports."),
+        F::real("device.max_stiffness", &T::max_stiffness, "N/m", 0, 1e6, 3500,
+                "Largest stable stiffness that the arm reports."),
+        F::real("device.mass", &T::felt_mass, "kg", 0, 1000, 0.075, "Mass felt at the tip that the arm reports."),
+        F::integer("delay", &T::delay, "", 0, kMaxDelay, 0, "Delay of the commands, in number of reads."),
         F::real("substep", &T::substep, "s", 1e-6, 1e-2, 2e-4, "Longest step of the integration.", HSP_P_ACCURACY),
-        F::integer("seed", &T::seed, "", 0, 1000000000, 1, "Seed of tremor and noise: same seed, same bits.")};
+        F::integer("seed", &T::seed, "", 0, 1000000000, 1,
+                   "Seed of tremor and noise: the same seed gives the same numbers.")};
   }
 
   static constexpr auto joint() {
     return std::array{
         F::array("joint.gear", &T::gear, "", 1, 0, 16, 0.001, 1e4, "[]",
-                 "Motor turns a joint turn. All joint lists: one number for all joints or a number each; left out: "
-                 "published numbers for premium15."),
+                 "Gear ratio: motor turns per joint turn. Each list of joint.* has one number for all joints, or one "
+                 "number for each joint; the default for premium15 is its published numbers."),
         F::array("joint.counts", &T::counts, "", 1, 0, 16, 0, 1e9, "[]",
-                 "Encoder counts a motor turn; 0: positions are exact."),
+                 "Encoder counts per motor turn; 0 for exact positions."),
         F::array("joint.damping", &T::damping, "N m s/rad", 1, 0, 16, 0, 1e4, "[]", "Viscous friction."),
         F::array("joint.friction", &T::friction, "N m", 1, 0, 16, 0, 1e4, "[]", "Coulomb friction."),
         F::real("joint.friction_speed", &T::friction_speed, "rad/s", 1e-4, 100, 0.1,
@@ -78,38 +77,42 @@ struct ParameterTable {
         F::real("joint.motor_lag", &T::motor_lag, "s", 0, 1, 1.09e-4,
                 "Electrical time constant of the motors (RE25: 0.238 mH / 2.18 ohm)."),
         F::array("joint.stiffness", &T::stiffness, "N m/rad", 1, 0, 16, 0, 1e6, "[]",
-                 "Stiffness of the arm's own position loop; left out: it takes torques alone."),
+                 "Stiffness of the arm's own position loop. Without it the arm takes only torques."),
         F::array("joint.rate_damping", &T::rate_damping, "N m s/rad", 1, 0, 16, 0, 1e5, "[]",
-                 "Damping of the arm's own position loop, on the difference of the rates of joint and reference."),
+                 "Damping of the arm's own position loop, on the velocity of the joint relative to its reference."),
         F::boolean("joint.torque_sensors", &T::torque_sensors, false,
-                   "Samples carry the torque that passes from motor to link, friction taken off."),
+                   "If true, samples carry the torque from motor to link, minus friction."),
         F::real("joint.torque_noise", &T::torque_noise, "N m", 0, 100, 0, "White noise of the torque sensors, rms.")};
   }
 
   static constexpr auto hand() {
     return std::array{
         F::choice("hand.script", &T::script, kScripts, 1,
-                  "What the hand wants: hold still, stroke round the object, press into it and out again, tap on it, "
-                  "circle round it, follow a path file, none: the hand is away, or guided by a program (`hapticd ctl "
-                  "lead`)."),
+                  "Motion of the hand. hold: rests; stroke: strokes over the object; press: presses into it and comes "
+                  "out again; tap: taps on it; circle: circles round it; path: follows a path file; none: there is no "
+                  "hand; guided: a program leads the hand (`hapticd ctl lead`)."),
         F::real("hand.mass", &T::mass, "kg", 0, 100, 0.2, "Mass of the hand at the tip."),
         F::real("hand.stiffness", &T::hand_stiffness, "N/m", 0, 1e5, 500,
-                "Spring from the tip to where the hand wants it."),
-        F::real("hand.damping", &T::hand_damping, "N s/m", 0, 1e4, 5, "Damper beside that spring."),
+                "Stiffness of the spring from the tip to the wanted position of the hand."),
+        F::real("hand.damping", &T::hand_damping, "N s/m", 0, 1e4, 5, "Damper parallel to hand.stiffness."),
         F::vector3("hand.center", &T::center, "m", -10, 10, "[0, 0, 0]",
                    "Centre of the object to touch, device frame."),
         F::vector3("hand.normal", &T::normal, "", -1, 1, "[0, 0, 1]", "Direction from the centre to the hand."),
         F::vector3("hand.axis", &T::axis, "", -1, 1, "[0, 1, 0]", "Axis that strokes and circles turn about."),
         F::real("hand.radius", &T::radius, "m", 0, 10, 0.045,
-                "Distance of the wanted point from the centre or axis: less than the object's, for the hand to press."),
+                "Distance from the centre or axis to the point that the hand aims for. To press, it must be smaller "
+                "than the object's radius."),
         F::real("hand.sweep", &T::sweep, "rad", 0, 100, 0.9, "Angle of a stroke to either side."),
         F::real("hand.rise", &T::rise, "m", 0, 1, 0.008,
-                "Stroke: rise and fall along the axis. Press, tap: depth beyond the radius."),
+                "stroke: height of the rise along the axis. press, tap: depth that the hand goes further in than "
+                "hand.radius."),
         F::real("hand.rate", &T::hand_rate, "Hz", 0, 100, 0.3, "Strokes, presses, taps or circles per second."),
-        F::real("hand.approach", &T::approach, "m", 0, 1, 0.02, "How far outside its script the hand starts."),
-        F::real("hand.lead_in", &T::lead_in, "s", 0.001, 100, 0.5, "Time in which it comes in from there."),
-        F::real("hand.tremor", &T::tremor, "N", 0, 100, 0.05, "Tremor of 8 to 12 Hz, rms a direction."),
-        F::real("hand.wander", &T::wander, "N", 0, 100, 0.1, "Slow unrest of 0.2 to 1 Hz, rms a direction."),
+        F::real("hand.approach", &T::approach, "m", 0, 1, 0.02, "Distance from the script at which the hand starts."),
+        F::real("hand.lead_in", &T::lead_in, "s", 0.001, 100, 0.5,
+                "Time that the hand takes from there to the script."),
+        F::real("hand.tremor", &T::tremor, "N", 0, 100, 0.05, "Tremor of 8 to 12 Hz: rms force in each direction."),
+        F::real("hand.wander", &T::wander, "N", 0, 100, 0.1,
+                "Slow unrest of 0.2 to 1 Hz: rms force in each direction."),
         F::path("hand.path", &T::path, "CSV file t,x,y,z (s, m, device frame) for script path.")};
   }
 };

@@ -22,7 +22,8 @@ Vector3d vector(const std::array<double, 3>& from) {
   return {from[0], from[1], from[2]};
 }
 
-/// One number for all joints, or one number per joint; `fallback` where there is none at all.
+/// Expands a list to one number per joint. The list has one number per joint, or one number for all joints; if it is
+/// empty, `fallback` is used.
 JointVector perJoint(const std::vector<double>& from, int count, double fallback, const char* id) {
   if (from.empty()) return JointVector::Constant(count, fallback);
   if (from.size() == 1) return JointVector::Constant(count, from[0]);
@@ -32,7 +33,7 @@ JointVector perJoint(const std::vector<double>& from, int count, double fallback
   return Eigen::Map<const JointVector>(from.data(), count);
 }
 
-/// Row `joint` of a list with `columns` numbers per joint; nothing if the list is left out.
+/// Returns row `joint` of a list with `columns` numbers per joint, or nothing if the list is left out.
 const double* rowOf(const std::vector<double>& from, size_t columns, size_t joint, size_t joints, const char* id) {
   if (from.empty()) return nullptr;
   if (from.size() != columns * joints)
@@ -54,12 +55,12 @@ Eigen::Quaterniond baseOrientation(const std::vector<double>& q) {
 
 kinematics::ChainGeometry chainOf(const Parameters& p) {
   kinematics::ChainGeometry geometry;
-  geometry.base.position = vector(p.base_position) + vector(p.origin);  // origin: where a real chain's file puts it
+  geometry.base.position = vector(p.base_position) + vector(p.origin);  // files of real chains use origin
   geometry.base.orientation = baseOrientation(p.base_orientation);
   geometry.tool.position = vector(p.tool_position);
   const size_t count = p.dh.size() / 4;
   if (count == 0)
-    throw std::invalid_argument("arm.dh is empty, expected a row a, alpha, d, theta for each joint of a chain");
+    throw std::invalid_argument("arm.dh is empty; expected a row a, alpha, d, theta for each joint of a chain");
   for (size_t i = 0; i < count; ++i) {
     kinematics::ChainLink link;
     link.a = p.dh[4 * i], link.alpha = p.dh[4 * i + 1], link.d = p.dh[4 * i + 2], link.theta = p.dh[4 * i + 3];
@@ -88,7 +89,7 @@ JointSettings jointsOf(const Parameters& p, int count) {
   const JointVector rotor = perJoint(p.rotor, count, premium ? kPremiumRotor : 0, "joint.rotor");
   const JointVector torque = perJoint(p.max_torque, count, premium ? kPremiumStall : 100, "joint.max_torque");
   if (!p.arm_torque.empty() && !p.max_torque.empty())
-    throw std::invalid_argument("arm.max_torque and joint.max_torque are both given, expected one of them");
+    throw std::invalid_argument("arm.max_torque and joint.max_torque are both given; remove one of the two");
   joints.step = joints.rotor = joints.max_torque = JointVector::Zero(count);
   for (int i = 0; i < count; ++i) {
     joints.step[i] = counts[i] > 0 ? 2 * M_PI / (counts[i] * gear[i]) : 0;
@@ -121,7 +122,7 @@ HandSettings handOf(const Parameters& p) {
 
 namespace {
 
-/// The links of a PHANToM with the stops and inertias of the file.
+/// Returns a PHANToM with the lengths and joint limits of the file.
 kinematics::Phantom makePhantom(const Parameters& p) {
   kinematics::Phantom arm(phantomOf(p));
   if (p.arm() == Kind::kPremium15 || p.limits.empty()) return arm;
@@ -154,9 +155,10 @@ kinematics::PhantomInertia inertiaOf(const Parameters& p, const JointVector& rot
 
 std::unique_ptr<kinematics::Arm> makeArm(const Parameters& p) {
   if (!p.lengths.empty() && p.arm() != Kind::kPhantom)
-    throw std::invalid_argument(p.arm() == Kind::kChain
-                                    ? "arm.lengths: given, and a chain has its lengths in arm.dh"
-                                    : "arm.lengths: given, and a premium15 has its own; expected arm.kind phantom");
+    throw std::invalid_argument(
+        p.arm() == Kind::kChain
+            ? "arm.lengths: a chain has its lengths in arm.dh; remove arm.lengths"
+            : "arm.lengths: a premium15 has fixed lengths; expected arm.kind phantom, or no arm.lengths");
   if (p.arm() == Kind::kChain) return std::make_unique<kinematics::Chain>(chainOf(p));
   return std::make_unique<kinematics::Phantom>(makePhantom(p));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The parameters of a simulated arm as the device file gives them, and what they are worked out to.
+/// The parameters of a simulated arm as the device file gives them, and functions that make settings and models of
+/// them.
 #pragma once
 #include <array>
 #include <memory>
@@ -37,15 +38,16 @@ struct Parameters {
   Kind arm() const { return static_cast<Kind>(kind); }
 };
 
-/// The chain of arm.dh and the lists beside it. Throws std::invalid_argument with a message for the user.
+/// Returns the chain that arm.dh and the other arm lists describe. Throws std::invalid_argument with a message for the
+/// user.
 kinematics::ChainGeometry chainOf(const Parameters& p);
 kinematics::PhantomGeometry phantomOf(const Parameters& p);
 JointSettings jointsOf(const Parameters& p, int count);
 HandSettings handOf(const Parameters& p);
 
-/// [main] The kinematics, made from the parameters alone.
+/// [main] Makes the kinematics of the arm from its parameters.
 std::unique_ptr<kinematics::Arm> makeArm(const Parameters& p);
-/// [main] The dynamics. @param gravity [m/s^2] device frame
+/// [main] Makes the dynamics of the arm. @param gravity [m/s^2] device frame
 std::unique_ptr<Plant> makePlant(const Parameters& p, const JointSettings& joints, const Eigen::Vector3d& gravity);
 
 }  // namespace hapticd::simulated

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// A rigid arm that is driven by its motors and pulled by a hand, integrated in small steps.
+/// A rigid arm that its motors drive and a hand pulls, integrated in small steps.
 ///
-/// The integrator is linearly implicit Euler: springs, dampers, friction and end stops enter with their derivatives, so
-/// a step is stable however stiff the hand or hard the stop; mass, Coriolis and motor torques enter explicitly. Its
-/// error is of the order of the step, and what error there is takes energy away.
+/// The integrator is linearly implicit Euler. Springs, dampers, friction and end stops enter with their derivatives, so
+/// a step is stable for any stiffness of the hand and of the stops. Mass, Coriolis and motor torques enter explicitly.
+/// The error is of the order of the step, and it removes energy.
 #pragma once
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -13,15 +13,15 @@
 
 namespace hapticd::simulated {
 
-inline constexpr double kMaxJointRate = 500;  ///< [rad/s] no motor reaches this rate; it keeps every state finite
+inline constexpr double kMaxJointRate = 500;  ///< [rad/s] bound that keeps every state finite; no motor reaches it
 
-/// The state of any arm and how it steps, whatever its mechanism.
+/// The state of a simulated arm with any mechanism, and its steps.
 class Plant {
  public:
   explicit Plant(const JointSettings& joints) : joints_(joints) {}
   virtual ~Plant() = default;
 
-  /// [main] The arm rests at q, with its motors off.
+  /// [main] Puts the arm to rest at q, with its motors off.
   virtual void reset(const JointVector& q) = 0;
   /// [rt] Advances by h seconds.
   virtual void step(double h, const Drive& drive, const Pull& pull) noexcept = 0;
@@ -29,19 +29,19 @@ class Plant {
   virtual JointVector velocity() const noexcept = 0;         ///< [rt] [rad/s]
   virtual Eigen::Vector3d tip() const noexcept = 0;          ///< [rt] [m] device frame, at most one step old
   virtual Eigen::Vector3d tipVelocity() const noexcept = 0;  ///< [rt] [m/s]
-  virtual Eigen::Vector3d handForce() const noexcept = 0;    ///< [rt] [N] of the hand's spring and damper on the tip
-  /// [rt] Torque [N m] that passes from motors to links, less the friction: what a load cell behind the gear reads.
+  virtual Eigen::Vector3d handForce() const noexcept = 0;    ///< [rt] [N] force of the hand on the tip
+  /// [rt] Torque [N m] from the motors to the links, minus friction: the reading of a load cell behind the gear.
   virtual JointVector transmitted() const noexcept = 0;
 
  protected:
   JointSettings joints_;
 };
 
-/// Mechanism has: Vector, Matrix (n, n x n), TipJacobian (3 x n);
-///   void evaluate(q, qd)                      fills the members below
-///   Matrix M; Vector bias;                    mass with the hand's at the tip; torques of velocity and weight
-///   TipJacobian J; Eigen::Vector3d tip;       of the hand's grip
-///   template <class Add> void stops(q, Add)   Add(row, excess): joints beyond a limit, row a unit of that limit
+/// A simulated arm with one kind of mechanism. A class Mechanism has the types Vector (n) and Matrix (n x n), and
+///   void evaluate(q, qd)                      computes the members below
+///   Matrix M; Vector bias;                    mass matrix with the hand's mass; torques of velocity and weight
+///   TipJacobian J; Eigen::Vector3d tip;       Jacobian (3 x n) and position of the point that the hand holds
+///   template <class Add> void stops(q, Add)   calls Add(row, excess) if row * q exceeds a limit by excess
 template <class Mechanism>
 class PlantOf final : public Plant {
  public:
@@ -80,7 +80,7 @@ class PlantOf final : public Plant {
     const Vector before = qd_;
     qd_ += h * A_.ldlt().solve(tau_);
     qd_ = qd_.cwiseMax(-kMaxJointRate).cwiseMin(kMaxJointRate);
-    // The links feel the torque at the end of the step, as the step itself took it.
+    // The torque on the links at the end of the step, with the derivatives that the step used.
     transmitted_ -= drive_damping_.cwiseProduct(qd_ - before) + h * drive_stiffness_.cwiseProduct(qd_);
     q_ += h * qd_;
   }
@@ -100,7 +100,7 @@ class PlantOf final : public Plant {
       if (drive.position_mode && joints_.stiffness.size() > 0) {
         wanted += joints_.stiffness[i] * (drive.reference[i] - q_[i]) +
                   joints_.rate_damping[i] * (drive.reference_rate[i] - qd_[i]);
-        if (std::abs(wanted) < joints_.max_torque[i]) {  // a saturated motor opens the loop, so it adds nothing
+        if (std::abs(wanted) < joints_.max_torque[i]) {  // a saturated motor has constant torque: no derivatives
           drive_stiffness_[i] += joints_.stiffness[i];
           drive_damping_[i] += joints_.rate_damping[i];
           K_(i, i) += joints_.stiffness[i];
@@ -137,7 +137,7 @@ class PlantOf final : public Plant {
 
   Mechanism mechanism_;
   Vector q_, qd_, motor_, transmitted_, tau_;
-  Vector drive_stiffness_, drive_damping_;  ///< what motors and friction added to K_ and D_
+  Vector drive_stiffness_, drive_damping_;  ///< parts of K_ and D_ due to motors and friction
   Matrix A_, K_, D_;
   Eigen::Vector3d hand_force_{0, 0, 0};
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The device module `simulated`: an arm at torque level and the hand that holds it, driven by the time it is given.
+/// The device module `simulated`: an arm simulated at torque level, and the hand that holds it. Time is the argument of
+/// its functions, so it reads no clock.
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -15,14 +16,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMaxSubsteps = 5000;  ///< most in a read: one second at the default substep. A longer gap is skipped.
+constexpr int kMaxSubsteps = 5000;  ///< most substeps in one read (1 s at the default substep); a longer gap is cut
 
 class SimulatedArm : public Device, public Parameters {
  public:
   static constexpr DeviceInfo kInfo{"org.hapticd.device.simulated", "simulated", "1.0.0", "MIT",
-                                    "An arm simulated at torque level (PHANToM Premium 1.5, one built like it, or any "
-                                    "serial chain), and the hand that "
-                                    "holds it."};
+                                    "An arm simulated at torque level (PHANToM Premium 1.5, an arm built like it, or "
+                                    "any serial chain), and the hand that holds it."};
   static constexpr auto fields() {
     using Table = ParameterTable<SimulatedArm>;
     return join(Table::arm(), Table::joint(), Table::hand());
@@ -31,7 +31,7 @@ class SimulatedArm : public Device, public Parameters {
   void open(hdv_info& info) {
     arm_ = makeArm(*this);
     joints_ = jointsOf(*this, arm_->jointCount());
-    makePlant(*this, joints_, Vector3d::Zero());  // so that the plant's objections are reported now, not at the start
+    makePlant(*this, joints_, Vector3d::Zero());  // only to report wrong parameters now instead of in start()
     hand_ = std::make_unique<Hand>(handOf(*this), path.empty() ? HandPath{} : HandPath::read(path));
     describe(info);
   }
@@ -71,7 +71,7 @@ class SimulatedArm : public Device, public Parameters {
   hsp_status write(uint64_t now_ns, const hdv_command& command) noexcept HSP_RT {
     const Drive& last = drives_[written_ % drives_.size()];
     Drive& drive = drives_[++written_ % drives_.size()];
-    const bool follows = last.position_mode && now_ns > written_ns_;  // otherwise the reference has no rate yet
+    const bool follows = last.position_mode && now_ns > written_ns_;  // if not, the reference has no velocity yet
     const double since = static_cast<double>(now_ns - written_ns_) * 1e-9;
     written_ns_ = now_ns;
     if (command.mode == HDV_OFF) cut_.store(false);
@@ -137,14 +137,15 @@ class SimulatedArm : public Device, public Parameters {
     if (arm.sequence_ == 0) return std::min(until_ns, arm.now_ns_);
     const auto period = static_cast<uint64_t>(std::llround(1e9 / arm.rate));
     const uint64_t samples =
-        (arm.now_ns_ - arm.start_ns_) / period + 1;  // from the start, so that a late read delays no other
+        (arm.now_ns_ - arm.start_ns_) / period + 1;  // from the start: a late read does not delay the next
     return std::min(until_ns, arm.start_ns_ + samples * period);
   }
   static constexpr hdv_ext_pace kPace = {sizeof(hdv_ext_pace), 0, &nextSample};
   static constexpr hdv_ext_cut kCut = {sizeof(hdv_ext_cut), 0, &cut};
   static constexpr hdv_ext_hand kHand = {sizeof(hdv_ext_hand), 0, &guide, &truth, &guided};
 
-  /// What the arm says about itself; what it does not publish follows from its own kinematics at the neutral pose.
+  /// Fills in what the arm says about itself. Numbers that it does not publish follow from its kinematics at the
+  /// neutral pose.
   void describe(hdv_info& info) const {
     const int count = arm_->jointCount();
     info.joint_count = static_cast<uint32_t>(count);
@@ -182,7 +183,7 @@ class SimulatedArm : public Device, public Parameters {
     char text[256];
     std::snprintf(text, sizeof text,
                   "the hand starts at (%.3f, %.3f, %.3f) m in the device frame, which the arm cannot reach; expected a "
-                  "script within its workspace: see hand.center, arm.limits, and the mount from which a twin has it",
+                  "script within its workspace: see hand.center, arm.limits and the mount of the device file",
                   p.x(), p.y(), p.z());
     return text;
   }
@@ -214,7 +215,7 @@ class SimulatedArm : public Device, public Parameters {
     }
   }
 
-  /// Noise of unit variance; the sum of uniform numbers is near enough to a normal one for a sensor.
+  /// Noise of unit variance. A sum of uniform random numbers is close enough to a normal distribution for a sensor.
   double noise() noexcept {
     double sum = 0;
     for (int i = 0; i < 4; ++i) {
@@ -231,8 +232,8 @@ class SimulatedArm : public Device, public Parameters {
   hdv_ext_links links_{};
   JointSettings joints_;
   HandTarget target_;
-  std::array<Drive, kMaxDelay + 1> drives_;  ///< the newest one is at written_
-  std::atomic<bool> cut_{false};             ///< the watchdog cut the motors; a write of HDV_OFF ends that
+  std::array<Drive, kMaxDelay + 1> drives_;  ///< the newest drive is at index written_
+  std::atomic<bool> cut_{false};             ///< the watchdog cut the motors; a write of HDV_OFF ends the cut
   uint64_t written_ = 0, written_ns_ = 0, start_ns_ = 0, now_ns_ = 0, sequence_ = 0, noise_ = 1;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The hardware behind the module: replace this file by what talks to yours. Here it is a gantry with three motors that
-/// push one carriage along x, y and z, and a hand that holds the carriage and moves it up and down.
+/// The hardware behind the module: replace this file with code that talks to your hardware. Here the hardware is
+/// simulated: a gantry with three motors that push one carriage along x, y and z, and a hand that holds the carriage
+/// and moves it up and down.
 #pragma once
 #include <array>
 #include <cmath>
@@ -10,8 +11,8 @@ namespace template_arm {
 
 using Vec3 = std::array<double, 3>;
 
-/// What a board must offer. A transfer that may block (USB, serial line, network) belongs in a thread of its own;
-/// receive() and send() then exchange the newest record with that thread and never wait for it.
+/// The functions that a board must have. A transfer that may block (USB, serial line, network) belongs in a separate
+/// thread (see io_thread.hpp). Then receive() and send() exchange the newest record with that thread, and never wait.
 class Board {
  public:
   static constexpr double kEncoderStep = 1e-5;   ///< [m]
@@ -19,10 +20,10 @@ class Board {
   static constexpr double kHandStiffness = 300;  ///< [N/m]
   static constexpr double kHandDamping = 4;      ///< [N s/m]
   static constexpr double kSubstep = 1e-4;       ///< [s]
-  static constexpr int kMaxSubsteps = 10000;     ///< most steps per second; a longer gap is cut short
-  static constexpr double kTop = 0.08, kBottom = 0.04, kStroke = 2;  ///< [m], [m], [s] of the hand's motion
+  static constexpr int kMaxSubsteps = 10000;     ///< most substeps in one call; the rest of a longer gap is left out
+  static constexpr double kTop = 0.08, kBottom = 0.04, kStroke = 2;  ///< [m], [m], [s] motion of the hand
 
-  /// [main] The carriage rests in the hand at time `now_ns`; gravity is in m/s^2.
+  /// [main] Begins with the carriage at rest in the hand at time `now_ns`. @param gravity [m/s^2]
   void start(uint64_t now_ns, double mass, const Vec3& gravity) {
     mass_ = mass;
     gravity_ = gravity;
@@ -30,7 +31,7 @@ class Board {
     position_ = hand(0);
     velocity_ = force_ = {};
   }
-  /// [rt] Encoder positions at time `now_ns`.
+  /// [rt] Returns the encoder positions [m] at time `now_ns`.
   Vec3 receive(uint64_t now_ns) noexcept {
     advance(now_ns);
     Vec3 counted;

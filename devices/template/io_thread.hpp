@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// For hardware whose transfers may block (a serial line, USB, a network): a thread of the module speaks with the arm,
-/// and the servo thread exchanges only the newest values with it. It shows what such a thread owes the hand: an arm
-/// that falls silent is sent "off" by the clock, not by its next report. The gantry of this template needs none of it.
+/// For hardware whose transfers may block (a serial line, USB, a network): a thread of the module talks to the arm, and
+/// the servo thread only exchanges the newest values with this thread. For safety, the thread sends "off" to an arm
+/// that falls silent after a fixed time, without waiting for its next report. The simulated gantry does not use this
+/// file.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,7 +15,8 @@
 
 namespace template_arm {
 
-/// Passes the newest value from one thread to one other. Neither waits, and a value that nobody took is replaced.
+/// Passes the newest value from one thread to another. No thread waits, and a newer value replaces one that was not
+/// taken yet.
 template <class T>
 class Newest {
  public:
@@ -23,7 +25,7 @@ class Newest {
     values_[writers_] = value;
     writers_ = between_.exchange(static_cast<uint8_t>(writers_ | kNew), std::memory_order_acq_rel) & kWhich;
   }
-  /// [rt] @return false if `value` is still that of the last call
+  /// [rt] Takes the newest value. @return false if there is no newer one than at the last call
   bool take(T& value) noexcept {
     const bool fresh = (between_.load(std::memory_order_relaxed) & kNew) != 0;
     if (fresh) readers_ = between_.exchange(readers_, std::memory_order_acq_rel) & kWhich;
@@ -51,7 +53,7 @@ struct Report {
 
 struct Order {
   uint64_t time_ns = 0;
-  Vec3 force{};  ///< all 0: off
+  Vec3 force{};  ///< [N] zero means off
 };
 
 /// `Port` is your hardware: bool receive(Vec3& position) noexcept waits for a report, but never longer than kWait, and
@@ -59,38 +61,38 @@ struct Order {
 template <class Port, class Clock = MonotonicClock>
 class IoThread {
  public:
-  static constexpr uint64_t kWait = 5'000'000;   ///< [ns] longest time in receive()
-  static constexpr uint64_t kOld = 20'000'000;   ///< [ns] a report or a command that is older moves no motor
-  static constexpr uint64_t kRamp = 50'000'000;  ///< [ns] the force returns over this time after a silence
+  static constexpr uint64_t kWait = 5'000'000;   ///< [ns] longest time that receive() may wait
+  static constexpr uint64_t kOld = 20'000'000;   ///< [ns] if the report or the command is older, the motors are off
+  static constexpr uint64_t kRamp = 50'000'000;  ///< [ns] time in which the force rises again after a silence
 
   explicit IoThread(Port& port) : port_(port) {}
   ~IoThread() { stop(); }
   IoThread(const IoThread&) = delete;
   IoThread& operator=(const IoThread&) = delete;
 
-  /// [main] The caller gives the thread its priority (pthread_setschedparam), one above that of the servo.
+  /// [main] Starts the thread. The caller sets its priority (pthread_setschedparam) to one above the servo's priority.
   void start() {
     stop_ = false;
     thread_ = std::thread([this] {
       while (!stop_) exchange();
     });
   }
-  /// [main] Returns when "off" has been sent.
+  /// [main] Ends the thread. Returns when "off" has been sent.
   void stop() {
     if (!thread_.joinable()) return;
     stop_ = true;
     thread_.join();
     port_.send({});
   }
-  /// [rt] For read(). @return false: no newer one has come
+  /// [rt] For read(). @return false if no newer report has come
   bool newest(Report& report) noexcept { return reports_.take(report); }
-  /// [rt] For write(), with the time that write() names.
+  /// [rt] For write(). The order has the time that write() was given.
   void leave(const Order& order) noexcept { orders_.put(order); }
-  /// [any] For hdv.cut/1; a write() with HDV_OFF ends it.
+  /// [any] For hdv.cut/1, with `free` true. A write() with HDV_OFF calls it with `free` false.
   void cut(bool free) noexcept { cut_.store(free, std::memory_order_relaxed); }
 
-  /// [io] One round takes a report, or none, and always sends a command. So the motors of an arm that falls silent are
-  /// off after kOld + kWait, and an arm that missed a command gets it again.
+  /// [io] One round takes a report if one comes, and always sends a command. So the motors of an arm that falls silent
+  /// are off after at most kOld + kWait, and an arm that missed a command gets it again.
   void exchange() noexcept {
     Vec3 position{};
     const bool came = port_.receive(position);
@@ -102,7 +104,7 @@ class IoThread {
 
  private:
   void take(const Vec3& position, uint64_t now) noexcept {
-    if (isOld(heard_ns_, now)) back_ns_ = now;  // the first one, or one after a silence
+    if (isOld(heard_ns_, now)) back_ns_ = now;  // the first report, or the first after a silence
     heard_ns_ = now;
     reports_.put({now, ++sequence_, position});
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A gantry: the smallest whole device module. Copy the folder, give it a name, and replace board.hpp by your hardware.
+/// A gantry: the smallest complete device module. Copy the folder, give it a name, and replace board.hpp with code for
+/// your hardware.
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
@@ -13,24 +14,25 @@ namespace {
 
 class TemplateArm : public hapticd::Device {
  public:
-  static constexpr hapticd::DeviceInfo kInfo{"org.hapticd.device.template_arm", "template_arm", "0.1.0", "MIT",
-                                             "A simulated gantry with three motors; the module to start from."};
+  static constexpr hapticd::DeviceInfo kInfo{
+      "org.hapticd.device.template_arm", "template_arm", "0.1.0", "MIT",
+      "A simulated gantry with three motors: a template for new device modules."};
   double reach = 0, force = 0, mass = 0;
 
   static constexpr auto fields() {
     using F = hapticd::Fields<TemplateArm>;
     return std::array{
-        F::real("reach", &TemplateArm::reach, "m", 0.01, 1, 0.15, "Way of each axis to either side of the middle."),
+        F::real("reach", &TemplateArm::reach, "m", 0.01, 1, 0.15, "Travel of each axis to either side of its middle."),
         F::real("force", &TemplateArm::force, "N", 0.1, 100, 10, "Largest force of each motor."),
         F::real("mass", &TemplateArm::mass, "kg", 0.01, 10, 0.15, "Mass of the carriage."),
     };
   }
 
-  /// Finds the hardware and describes it. May block, and throw std::exception with a message for the user.
+  /// Finds the hardware and describes it. It may block, and may throw a std::exception with a message for the user.
   void open(hdv_info& info) {
     info.joint_count = 3;
-    // A real arm leaves HDV_C_SIMULATED out. It claims HDV_C_UNVERIFIED until somebody has tried it, HDV_C_WATCHDOG if
-    // its hardware cuts the motors when commands stop, HDV_C_CALIBRATION if its encoders count from an unknown place.
+    // A real arm does not claim HDV_C_SIMULATED. It claims HDV_C_UNVERIFIED until somebody has tried it, HDV_C_WATCHDOG
+    // if its hardware cuts the motors when commands stop, and HDV_C_CALIBRATION if the zero of its encoders is unknown.
     info.capabilities = HDV_C_SIMULATED;
     info.rate_hz = 1000;
     info.max_force = info.continuous_force = force;
@@ -46,15 +48,16 @@ class TemplateArm : public hapticd::Device {
     std::snprintf(info.product, sizeof info.product, "template gantry");
   }
 
-  /// May allocate. A module with an I/O thread starts it here and waits for the first sample.
+  /// May allocate. A module with an I/O thread starts the thread here and waits for the first sample.
   void start(const hdv_start& how) {
     board_.start(how.time_ns, mass, {how.gravity[0], how.gravity[1], how.gravity[2]});
     cut_ = false;
     now_ns_ = 0;
   }
 
-  /// Called in every tick: gives the newest sample and never waits. A real module gives HDV_S_LOST while the hardware
-  /// is gone, HDV_S_FAULT while it reports a fault, and the same sequence number again while there is no new sample.
+  /// Called in every tick: returns the newest sample and never waits. A real module sets HDV_S_LOST while the hardware
+  /// is gone, and HDV_S_FAULT while it reports a fault. It returns the same sequence number while there is no new
+  /// sample.
   hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
     if (cut_.load(std::memory_order_relaxed)) board_.send({});
     if (now_ns > now_ns_) ++sequence_;
@@ -68,7 +71,7 @@ class TemplateArm : public hapticd::Device {
     return HSP_OK;
   }
 
-  /// Called in every tick: takes the newest command. It bounds the command again, whatever the host has done already.
+  /// Called in every tick: takes the newest command. It limits the command again, although the host has limited it.
   hsp_status write(uint64_t, const hdv_command& command) noexcept HSP_RT {
     if (command.mode == HDV_OFF) cut_.store(false, std::memory_order_relaxed);
     const bool off = command.mode != HDV_TORQUE || cut_.load(std::memory_order_relaxed);
@@ -105,7 +108,7 @@ class TemplateArm : public hapticd::Device {
     for (int i = 0; i < 3; ++i) J[i * 3 + i] = 1;
     return HSP_OK;
   }
-  /// Motor forces that carry the carriage.
+  /// Motor forces that carry the carriage's weight.
   static hsp_status weight(const hdv_device* device, const double*, const double gravity[3],
                            double* tau) noexcept HSP_RT {
     for (int i = 0; i < 3; ++i) tau[i] = -self(device).mass * gravity[i];
@@ -117,7 +120,8 @@ class TemplateArm : public hapticd::Device {
     std::copy(position, position + 3, q);
     return HSP_OK;
   }
-  /// The watchdog calls it from any thread, even in a signal handler. Motors stay free until a command says HDV_OFF.
+  /// May be called from any thread, even in a signal handler, for example by the watchdog. The motors stay off until a
+  /// command says HDV_OFF.
   static void cut(hdv_device* device) noexcept HSP_RT { self(device).cut_.store(true, std::memory_order_relaxed); }
 
   static constexpr hdv_ext_kinematics kKinematics = {

@@ -13,11 +13,11 @@
 namespace hapticd::wire_arm {
 namespace {
 
-constexpr size_t kReads = 4;                     ///< so many transfers always wait for the device
-constexpr size_t kBuffer = 512;                  ///< bytes of each transfer: one high-speed packet
-constexpr Nanoseconds kWriteHangs = 15'000'000;  ///< a command that nobody takes in this time is as good as a stall
+constexpr size_t kReads = 4;                     ///< number of read transfers that wait for the device at any time
+constexpr size_t kBuffer = 512;                  ///< [bytes] size of a transfer: one high-speed packet
+constexpr Nanoseconds kWriteHangs = 15'000'000;  ///< [ns] a command that is not taken in this time counts as a stall
 constexpr unsigned kControlTimeout = 1000;       ///< [ms]
-constexpr Nanoseconds kCancelled = 500'000'000;  ///< the kernel gives a cancelled transfer back long before this
+constexpr Nanoseconds kCancelled = 500'000'000;  ///< [ns] bound; the kernel returns a cancelled transfer earlier
 
 std::string idText(const Address& address) {
   char text[16];
@@ -44,7 +44,8 @@ Status statusOf(int error) {
   return error == LIBUSB_ERROR_PIPE ? Status::kStalled : Status::kFailed;
 }
 
-/// Each device has its own context and event loop, because libusb's locks have no priority inheritance.
+/// The libusb transport of one device. Each device has its own context and event loop, because libusb's locks have no
+/// priority inheritance.
 class BulkTransport final : public Transport {
  public:
   BulkTransport() {
@@ -60,7 +61,7 @@ class BulkTransport final : public Transport {
   }
 
   Result<Identity> open(const Address& address, const codec::Wire& wire) override {
-    if (context_ == nullptr) return Error{"libusb does not start\n  the arm stays off\n  fix: hapticd doctor"};
+    if (context_ == nullptr) return Error{"libusb cannot be started\n  the arm stays off\n  fix: hapticd doctor"};
     Identity identity;
     std::string trouble;
     libusb_device** all = nullptr;
@@ -68,13 +69,14 @@ class BulkTransport final : public Transport {
     for (ssize_t i = 0; i < count && handle_ == nullptr; ++i) tryOne(all[i], address, identity, trouble);
     if (count >= 0) libusb_free_device_list(all, 1);
     if (handle_ == nullptr) return Error{missing(address, trouble)};
-    // A halt outlasts closing, so the host must lift it; but only then, since that resets the packets' toggles too.
+    // A halted endpoint stays halted after close(), so the host must clear the halt. It does so only after a halt,
+    // because clearing also resets the data toggles.
     for (const uint8_t endpoint : {wire.endpoint_in, wire.endpoint_out})
       if (halted_) (void)libusb_clear_halt(handle_, endpoint);
     halted_ = false;
     if (const Status status = submitReads(wire); status != Status::kOk) {
       close();
-      return Error{"USB device " + idText(address) + " takes no transfers; unplug it and plug it in again"};
+      return Error{"USB device " + idText(address) + " accepts no transfers; unplug it and plug it in again"};
     }
     endpoint_out_ = wire.endpoint_out;
     return identity;
@@ -117,7 +119,7 @@ class BulkTransport final : public Transport {
     return Status::kNothing;
   }
 
-  /// The newest command wins: if the last one is still on its way, the newest replaces the one that waits.
+  /// The newest command wins: while a command is being sent, at most one waits, and a newer one replaces it.
   Status send(std::span<const uint8_t> bytes) noexcept override {
     if (bytes.size() > out_.size()) return Status::kFailed;
     if (broken_ != Status::kOk) return broken_;
@@ -133,7 +135,7 @@ class BulkTransport final : public Transport {
                                             0, kControlTimeout));
   }
 
-  /// Opens the same usbfs node: the interface can be claimed once this process has gone.
+  /// Opens the same usbfs node again: another process can claim the interface after this process has ended.
   Descriptor wayIn(hdv_silence& how) noexcept override {
     libusb_device* device = libusb_get_device(handle_);
     char node[40];
@@ -193,15 +195,14 @@ class BulkTransport final : public Transport {
         "USB device " + idText(address) + (address.serial.empty() ? "" : " serial " + address.serial);
     if (trouble.empty())
       return who +
-             " not found\n  nothing is plugged in that answers to this id\n  the arm stays off\n  fix: plug it in "
-             "and switch it on; hapticd device list";
+             " not found\n  no device with this id is plugged in\n  the arm stays off\n  fix: plug it in and switch it "
+             "on; hapticd device list shows what is there";
     return who + " " + trouble +
            "\n  the arm stays off\n  fix: install the udev rules (udev/70-hapticd.rules), join the group haptic, plug "
-           "it in "
-           "again; hapticd doctor tells more";
+           "it in again; hapticd doctor says what is missing";
   }
 
-  /// True for interrupt endpoints; what a gadget calls its endpoints is in its descriptors.
+  /// True for an interrupt endpoint, according to the descriptors of the device.
   bool isInterrupt(uint8_t endpoint) {
     libusb_config_descriptor* config = nullptr;
     bool interrupt = false;
@@ -219,7 +220,7 @@ class BulkTransport final : public Transport {
   Status submitReads(const codec::Wire& wire) {
     const bool in_interrupt = isInterrupt(wire.endpoint_in);
     out_interrupt_ = isInterrupt(wire.endpoint_out);
-    // A packet of exactly the largest size ends no transfer: ask for whole packets only.
+    // A packet of exactly the largest size does not end a transfer, so each transfer is one packet.
     const int packet = libusb_get_max_packet_size(libusb_get_device(handle_), wire.endpoint_in);
     const int length = packet > 0 ? std::min(packet, static_cast<int>(kBuffer)) : 64;
     for (size_t i = 0; i < kReads; ++i) {
@@ -247,7 +248,7 @@ class BulkTransport final : public Transport {
     (void)libusb_handle_events_timeout_completed(context_, &time, nullptr);
   }
 
-  /// Transfers that the kernel keeps belong to it: neither they nor their handle are used or freed again.
+  /// If the kernel does not return a transfer, neither the transfer nor its handle is used or freed again.
   void orphan() noexcept {
     for (libusb_transfer*& read : reads_) {
       read->user_data = nullptr;
@@ -286,7 +287,7 @@ class BulkTransport final : public Transport {
 
   void keep(const libusb_transfer* transfer) noexcept {
     if (transfer->actual_length <= 0) return;
-    if (filled_ == packets_.size()) first_ = (first_ + 1) % packets_.size(), --filled_;  // the oldest is worth least
+    if (filled_ == packets_.size()) first_ = (first_ + 1) % packets_.size(), --filled_;  // full: drops the oldest
     Packet& packet = packets_[(first_ + filled_) % packets_.size()];
     packet.size = std::min(static_cast<size_t>(transfer->actual_length), packet.bytes.size());
     std::memcpy(packet.bytes.data(), transfer->buffer, packet.size);
@@ -304,7 +305,7 @@ class BulkTransport final : public Transport {
   Nanoseconds written_at_ = 0;
   int interface_ = 0;
   uint8_t endpoint_out_ = 0;
-  bool halted_ = false;  ///< the endpoint had stalled when it was closed
+  bool halted_ = false;  ///< an endpoint had stalled when the device was closed
   bool writing_ = false, waiting_ = false, closing_ = false, out_interrupt_ = false;
   Status broken_ = Status::kOk;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Arms with bulk or interrupt endpoints of their own, through libusb.
+/// The transport for arms with bulk or interrupt endpoints, through libusb.
 #pragma once
 #include <memory>
 
@@ -7,7 +7,7 @@
 
 namespace hapticd::wire_arm {
 
-/// [main] A transport over libusb; nothing is opened yet.
+/// [main] Makes a transport over libusb, without opening a device.
 std::unique_ptr<Transport> makeBulkTransport();
 
 }  // namespace hapticd::wire_arm

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The device module `usb_bulk`: any arm with bulk or interrupt endpoints, described by its device file.
+/// The device module `usb_bulk`: any arm with bulk or interrupt endpoints whose reports a device file describes.
 #include "usb_bulk/bulk_transport.hpp"
 #include "wire_arm/arm.hpp"
 
@@ -8,8 +8,9 @@ namespace {
 
 class BulkArm final : public Arm<BulkArm> {
  public:
-  static constexpr DeviceInfo kInfo = {"org.hapticd.device.usb_bulk", "usb_bulk", "0.1.0", "MIT",
-                                       "An arm on USB with bulk or interrupt endpoints; its device file says which."};
+  static constexpr DeviceInfo kInfo = {
+      "org.hapticd.device.usb_bulk", "usb_bulk", "0.1.0", "MIT",
+      "An arm on USB with bulk or interrupt endpoints, which its device file describes."};
   static constexpr auto fields() {
     return join(ParameterTable<BulkArm>::usb(), ParameterTable<BulkArm>::device(), ParameterTable<BulkArm>::arm());
   }

@@ -16,7 +16,8 @@
 namespace hapticd::wire_arm {
 namespace {
 
-/// hidapi keeps its start-up and its last message in process-wide variables, so one thread at a time may call these.
+/// hidapi has process-wide variables (its initialisation, its last error text), so only one thread at a time may call
+/// it.
 std::mutex& libraryMutex() {
   static std::mutex mutex;
   return mutex;
@@ -34,7 +35,8 @@ std::string idText(const Address& address) {
   return text;
 }
 
-/// The kernel numbers HID devices as they come: the number in "0003:1234:0006.0007" changes with each plugging-in.
+/// Returns the kernel's number of a HID device, such as "0003:1234:0006.0007". Its last part is new each time the
+/// device is plugged in.
 std::string epochOf(const std::string& node) {
   std::error_code error;
   const auto link = std::filesystem::read_symlink(
@@ -90,11 +92,11 @@ class HidTransport final : public Transport {
         hid_read_timeout(handle_, to.data(), to.size(), static_cast<int>((wait + kMillisecond - 1) / kMillisecond));
     size = got > 0 ? static_cast<size_t>(got) : 0;
     if (got > 0) return Status::kOk;
-    return got == 0 ? Status::kNothing : Status::kGone;  // hidapi has no words for any other error
+    return got == 0 ? Status::kNothing : Status::kGone;  // for hidapi, any error means that the device is gone
   }
 
   Status send(std::span<const uint8_t> bytes) noexcept override {
-    const size_t shift = numbered_ ? 0 : 1;  // hidapi wants a report id in any case
+    const size_t shift = numbered_ ? 0 : 1;  // hidapi needs a report id in front of each report
     if (bytes.size() + shift > out_.size()) return Status::kFailed;
     out_[0] = 0;
     std::memcpy(out_.data() + shift, bytes.data(), bytes.size());
@@ -105,15 +107,16 @@ class HidTransport final : public Transport {
 
   Status control(const codec::StartStep&) noexcept override { return Status::kFailed; }
 
-  /// Opens it anew, without the lock: whoever holds that keeps this program from opening the device again.
+  /// Opens the node again without the lock. A process that held the lock would keep this program from opening the
+  /// device.
   Descriptor wayIn(hdv_silence& how) noexcept override {
     how.kind = HDV_BY_WRITE;
-    how.size = numbered_ ? 0 : 1;  // hidraw wants a report id in any case
+    how.size = numbered_ ? 0 : 1;  // hidraw needs a report id in front of each report
     return Descriptor(::open(node_.c_str(), O_RDWR | O_CLOEXEC | O_NOCTTY));
   }
 
  private:
-  /// Two programs that write torques to one arm would fight: an advisory lock keeps a second hapticd away.
+  /// Opens the node and takes an advisory lock, so that a second hapticd cannot write torques to the same arm.
   bool takeAlone(const char* node, std::string& refused) {
     lock_ = ::open(node, O_RDWR | O_CLOEXEC | O_NOCTTY);
     const bool mine = lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) == 0;
@@ -134,13 +137,13 @@ class HidTransport final : public Transport {
       return who + " cannot be opened: " + refused +
              "\n  the arm stays off\n  fix: install the udev rules (udev/70-hapticd.rules), join the group haptic, "
              "plug "
-             "it in again; hapticd doctor tells more";
+             "it in again; hapticd doctor says what is missing";
     if (!serials.empty())
-      return who + " not found: other ones have the serial numbers " + serials +
+      return who + " not found: the devices with this id have the serial numbers " + serials +
              "\n  the arm stays off\n  fix: correct usb.serial in the device file";
     return who +
-           " not found\n  nothing is plugged in that answers to this id\n  the arm stays off\n  fix: plug it in and "
-           "switch it on; hapticd device list";
+           " not found\n  no device with this id is plugged in\n  the arm stays off\n  fix: plug it in and switch it "
+           "on; hapticd device list shows what is there";
   }
 
   hid_device* handle_ = nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// HID arms through hidapi and the kernel's hidraw.
+/// The transport for HID arms, through hidapi and the kernel's hidraw.
 #pragma once
 #include <memory>
 
@@ -7,7 +7,7 @@
 
 namespace hapticd::wire_arm {
 
-/// [main] A transport over hidraw; nothing is opened yet.
+/// [main] Makes a transport over hidraw, without opening a device.
 std::unique_ptr<Transport> makeHidTransport();
 
 }  // namespace hapticd::wire_arm

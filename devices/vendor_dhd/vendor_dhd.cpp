@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The device module `vendor_dhd`: an arm behind its vendor's DHD library. Names, arguments and frames of its functions
-/// are those of the vendor's public documentation: metres and newtons; x to the user, y to the right, z up.
+/// The device module `vendor_dhd`: an arm behind its vendor's DHD library. Names, arguments and frames of the library's
+/// functions are those of the vendor's public documentation: metres and newtons; x to the user, y to the right, z up.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -37,11 +37,14 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
   static constexpr auto fields() {
     using F = Fields<DhdArm>;
     return std::array{
-        F::text("library", &DhdArm::library, "libdhd.so.3", "The vendor's library: a name for the loader, or a file."),
-        F::integer("index", &DhdArm::index, "", 0, 15, 0, "Which of the arms that the library finds, from 0."),
+        F::text("library", &DhdArm::library, "libdhd.so.3",
+                "The vendor's library: a name that the loader finds, or a file."),
+        F::integer("index", &DhdArm::index, "", 0, 15, 0,
+                   "Number of the arm, counted from 0, among those that the library finds."),
         F::real("force", &DhdArm::force, "N", 0.1, 100, 5, "Largest force."),
-        F::real("reach", &DhdArm::reach, "m", 0.01, 2, 0.3, "The tip is nowhere farther from the origin on any axis."),
-        F::integer("rate", &DhdArm::rate, "Hz", 100, 8000, 2000, "Exchanges with the library per second, at most."),
+        F::real("reach", &DhdArm::reach, "m", 0.01, 2, 0.3,
+                "Largest distance of the tip from the origin, on each axis."),
+        F::integer("rate", &DhdArm::rate, "Hz", 100, 8000, 2000, "Most exchanges with the library per second."),
     };
   }
 
@@ -49,7 +52,7 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
     load();
     id_ = dhd_.open_id(static_cast<char>(index));
     if (id_ < 0)
-      throw std::runtime_error("the vendor's library opens no arm " + std::to_string(index) + ": " + why() +
+      throw std::runtime_error("the vendor's library cannot open arm " + std::to_string(index) + ": " + why() +
                                "\n  fix: try the vendor's own test program first");
     describe(info, force);
     info.capabilities = HDV_C_UNVERIFIED;  // the vendor's own program finds the zero before the daemon runs
@@ -63,12 +66,13 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
   void start(const hdv_start&) {
     exchange_.reset(force);
     end_ = false;
-    if (dhd_.enable_force(1, id()) < 0) throw std::runtime_error("the vendor's library gives no force: " + why());
+    if (dhd_.enable_force(1, id()) < 0)
+      throw std::runtime_error("the vendor's library cannot switch the forces on: " + why());
     if (const auto failed = thread_.start("hapticd-dhd", [this] { run(); }))
-      throw std::runtime_error("no thread can be had: " + failed.message());
+      throw std::runtime_error("cannot start a thread for the vendor's library: " + failed.message());
     if (exchange_.awaitFirst()) return;
     stop();
-    throw std::runtime_error("the vendor's library gave no position for 2 s: " + why());
+    throw std::runtime_error("the vendor's library has given no position for 2 s: " + why());
   }
 
   void stop() {
@@ -89,7 +93,7 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
   char id() const { return static_cast<char>(id_); }
   std::string why() const {
     const char* text = dhd_.last_error();
-    return text != nullptr ? text : "it does not say why";
+    return text != nullptr ? text : "the library does not say why";
   }
 
   void load() {
@@ -105,7 +109,7 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
     loaded_.find(dhd_.last_error, "dhdErrorGetLastStr", kExpected);
   }
 
-  /// The thread that may block in the library. A lost arm stays lost until the next start.
+  /// The thread that calls the library, which may block. A lost arm stays lost until the next start.
   void run() {
     (void)os::setFifo(os::kServoPriority + 1);  // this thread waits for the hardware, so that the servo need not
     const auto period = std::chrono::nanoseconds(kNanosecondsPerSecond) / rate;

@@ -44,7 +44,7 @@ HDCallbackCode HDCALLBACK Servo::callback(void* self) {
   return servo.end_ ? HD_CALLBACK_DONE : HD_CALLBACK_CONTINUE;
 }
 
-/// The position comes first and the force last, so that the daemon has the time between for its own tick.
+/// Reads the position first and sets the force last, so that the daemon's tick can run in between.
 void Servo::tick() {
   vendor_.begin_frame(device_);
   Seen seen = last_;
@@ -68,11 +68,11 @@ void Servo::look(Seen& seen) {
   seen.buttons = static_cast<uint32_t>(buttons);
   seen.time_ns = monotonicNow();
   ++seen.sequence;
-  constexpr uint64_t kEvery = 100;  // ticks between two checks, because a check may call the hardware
+  constexpr uint64_t kEvery = 100;  // ticks between two checks: not every tick, because a check may call the hardware
   if (ticks_++ % kEvery == 0) seen.calibrated = vendor_.check_calibration() == HD_CALIBRATION_OK;
 }
 
-/// A lost arm stays lost: what the library reports of it afterwards may be stale for ever.
+/// A lost arm stays lost, because the library may report old positions for ever.
 void Servo::notice(Seen& seen) {
   constexpr int kMost = 64;
   for (int i = 0; i < kMost; ++i) {
@@ -88,7 +88,7 @@ void Servo::notice(Seen& seen) {
         seen.fault = true;
         break;
       default:
-        break;  // an error of forces: the frame pushed with none
+        break;  // an error about forces: this frame had zero force
     }
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The callback in the vendor's own servo loop.
+/// The callback that runs in the vendor's servo loop.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -29,7 +29,7 @@ class Servo {
   HDSchedulerHandle handle_ = 0;
   bool scheduled_ = false;
   std::atomic<bool> end_{false};
-  vendor_arm::Seen last_;  ///< the callback's
+  vendor_arm::Seen last_;  ///< used only by the callback
   uint64_t ticks_ = 0;
 };
 

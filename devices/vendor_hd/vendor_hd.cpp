@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The device module `vendor_hd`: an arm that only its vendor's driver can talk to, by the HDAPI. Its joints are the
-/// coordinates of its tip; gravity is the vendor's affair.
+/// The device module `vendor_hd`: an arm that only its vendor's driver can control, through the HDAPI. Its joints are
+/// the coordinates of its tip. The vendor's driver compensates gravity.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -27,17 +27,20 @@ class VendorArm : public vendor_arm::CartesianArm<VendorArm> {
   static constexpr auto fields() {
     using F = Fields<VendorArm>;
     return std::array{
-        F::text("library", &VendorArm::library, "libHD.so", "The vendor's library: a name for the loader, or a file."),
-        F::text("device", &VendorArm::device, "", "Name that the vendor's setup gave the arm; empty: its default."),
-        F::real("force", &VendorArm::force, "N", 0, 100, 0, "Largest force; 0: what the vendor names for the arm."),
+        F::text("library", &VendorArm::library, "libHD.so",
+                "The vendor's library: a name that the loader finds, or a file."),
+        F::text("device", &VendorArm::device, "",
+                "Name that the vendor's setup gave the arm. Without it, the default arm is used."),
+        F::real("force", &VendorArm::force, "N", 0, 100, 0,
+                "Largest force; 0 means the one that the vendor's library gives."),
         F::real("reach", &VendorArm::reach, "m", 0.01, 2, 0.4,
-                "The tip is nowhere farther from the origin on any axis."),
+                "Largest distance of the tip from the origin, on each axis."),
     };
   }
 
   void open(hdv_info& info) {
     vendor_.load(library);
-    (void)vendor_.errors();  // drops errors of others in this process
+    (void)vendor_.errors();  // drops earlier errors of other arms in this process
     handle_ = vendor_.init(device.empty() ? HD_DEFAULT_DEVICE : device.c_str());
     const std::string wrong = vendor_.errors();
     if (handle_ == HD_INVALID_HANDLE || !wrong.empty())
@@ -51,11 +54,12 @@ class VendorArm : public vendor_arm::CartesianArm<VendorArm> {
     exchange_.reset(max_force_);
     if (!servo_.start(handle_) || !vendor_.errors().empty()) {
       servo_.stop();
-      throw std::runtime_error("the vendor's library does not start its servo loop");
+      throw std::runtime_error(
+          "the vendor's library cannot start its servo loop; try the vendor's own diagnostic program");
     }
     if (exchange_.awaitFirst()) return;
     servo_.stop();
-    throw std::runtime_error("the vendor's servo loop gave no position for 2 s");
+    throw std::runtime_error("the vendor's servo loop has given no position for 2 s");
   }
 
   void stop() { servo_.stop(); }
@@ -82,7 +86,8 @@ class VendorArm : public vendor_arm::CartesianArm<VendorArm> {
     max_force_ = force > 0 && most > 0 ? std::min(force, most) : std::max(force, most);
     if (max_force_ == 0)
       throw std::runtime_error(
-          "the vendor's library does not say how strong the arm is\n  fix: parameters: {force: ...}");
+          "the vendor's library does not give the arm's largest force\n  fix: give it in N as parameters: {force: "
+          "...}");
     CartesianArm::describe(info, max_force_);
     info.rate_hz = std::max(number(HD_UPDATE_RATE), 1.0);
     info.continuous_force = std::min(number(HD_NOMINAL_MAX_CONTINUOUS_FORCE), max_force_);
@@ -94,7 +99,7 @@ class VendorArm : public vendor_arm::CartesianArm<VendorArm> {
     };
     std::snprintf(info.serial, sizeof info.serial, "%s", text(HD_DEVICE_SERIAL_NUMBER));
     std::snprintf(info.product, sizeof info.product, "%s", text(HD_DEVICE_MODEL_TYPE));
-    (void)vendor_.errors();  // drops errors about what this arm does not have
+    (void)vendor_.errors();  // drops errors about values that this arm does not have
   }
 
   static hsp_status calibrate(hdv_device* arm) {

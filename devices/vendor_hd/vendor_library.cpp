@@ -31,7 +31,7 @@ void VendorLibrary::load(const std::string& file) {
 
 std::string VendorLibrary::errors() const {
   std::string text;
-  constexpr int kMost = 64;  // do not wait for a library that never runs out of errors
+  constexpr int kMost = 64;  // bound, in case a library always returns one more error
   for (int i = 0; i < kMost; ++i) {
     const HDErrorInfo error = get_error();
     if (error.errorCode == HD_SUCCESS) break;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The functions of a libHD.so that is found at run time.
+/// The functions of a libHD.so that is loaded at run time.
 #pragma once
 #include <string>
 
@@ -11,9 +11,9 @@ namespace hapticd::vendor_hd {
 /// [main] Each arm has one; the library itself is loaded once per process.
 class VendorLibrary {
  public:
-  /// Throws std::runtime_error that names what is missing and how to get it.
+  /// Throws std::runtime_error whose text says what is missing and how to get it.
   void load(const std::string& file);
-  /// The pending errors in words; empty if there are none.
+  /// Takes all pending errors and returns them as text, which is empty if there are none.
   std::string errors() const;
 
   decltype(&::hdInitDevice) init = nullptr;

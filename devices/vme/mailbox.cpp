@@ -12,7 +12,8 @@ namespace {
 using wire_arm::Status;
 constexpr int kTries = 3;  ///< attempts to read a block while the board writes it
 
-/// A bus reads so where nobody answers: all lines stay high, and vme_user reports no error.
+/// True if all bytes are 0xff, as a bus reads them if no board answers: all lines stay high, and vme_user reports no
+/// error.
 bool nobody(std::span<const uint8_t> bytes) noexcept {
   return std::all_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte == 0xff; });
 }
@@ -27,16 +28,15 @@ Result<void> check(const MailboxPlace& place, const codec::Wire& wire) {
   };
   if (outside(place.state, in) || outside(place.command, out))
     return Error{"vme.state, vme.command: the blocks end beyond the window's " + std::to_string(place.window.size) +
-                 " bytes, expected them inside"};
+                 " bytes; correct the offsets, or make vme.size larger"};
   if (place.state < place.command + out && place.command < place.state + in)
-    return Error{"vme.command: the block of " + std::to_string(out) + " bytes lies in the state block of " +
-                 std::to_string(in) + ", expected them apart"};
+    return Error{"vme.command: the block of " + std::to_string(out) + " bytes overlaps the state block of " +
+                 std::to_string(in) + " bytes; correct vme.state or vme.command"};
   if (place.state % width != 0 || place.command % width != 0 || in % width != 0 || out % width != 0)
-    return Error{"vme.state, vme.command: an offset or size is no multiple of " + std::to_string(width) +
-                 " bytes, expected whole words of vme.width"};
+    return Error{"vme.state, vme.command: an offset or size is not a multiple of " + std::to_string(width) +
+                 " bytes; expected whole words of vme.width"};
   if (wire.framing.used || wire.input.id >= 0 || wire.output.id >= 0 || !wire.startup.empty())
-    return Error{
-        "wire: has framing, startup or a report id, which a mailbox on a bus has no use for\n  fix: remove them"};
+    return Error{"wire: has framing, startup or a report id, which a mailbox on a bus cannot use\n  fix: remove them"};
   return {};
 }
 
@@ -48,7 +48,7 @@ void Mailbox::findNumbers(const codec::Report& report) {
     if (first_.bytes == 0 || number.at < first_.at) first_ = number;
     if (last_.bytes == 0 || number.at > last_.at) last_ = number;
   }
-  if (first_.bytes != last_.bytes) first_ = last_;  // the codec compares them then
+  if (first_.bytes != last_.bytes) first_ = last_;  // then the codec compares the two numbers
   block_bytes_ = report.size;
 }
 
@@ -60,7 +60,7 @@ Result<wire_arm::Identity> Mailbox::open(const wire_arm::Address&, const codec::
   const std::string where = describe(place_.window);
   std::string wrong;
   if (got < 0) wrong = "cannot be read: " + std::string(std::strerror(errno));
-  if (got == 0) wrong = "is not there: its window reads nothing";
+  if (got == 0) wrong = "is not there: the window returns no bytes";
   if (got > 0 && got < static_cast<long>(block_bytes_)) wrong = "ends after " + std::to_string(got) + " bytes";
   if (got == static_cast<long>(block_bytes_) && nobody({block.data(), block_bytes_}))
     wrong = "reads ff everywhere: nobody answers on the bus";
@@ -71,7 +71,7 @@ Result<wire_arm::Identity> Mailbox::open(const wire_arm::Address&, const codec::
         "\n  the arm stays off\n  fix: switch the rack and its controller board on, or correct the vme keys of "
         "the device file"};
   }
-  // A board that died may have left what stands there now: only a newer block counts.
+  // The block may be left from a board that has stopped, so only a newer block counts.
   std::memcpy(seen_.data(), block.data() + last_.at, last_.bytes);
   have_seen_ = last_.bytes > 0;
   alive_ = !have_seen_;
@@ -117,7 +117,7 @@ Status Mailbox::look(std::span<uint8_t> block) noexcept {
     alive_ |= !old;
     return old ? Status::kNothing : Status::kOk;
   }
-  return Status::kOk;  // this is half a block: the codec sees that its numbers differ, and the session reports it
+  return Status::kOk;  // incomplete block: the codec sees that its numbers differ, and the session reports this
 }
 
 Status Mailbox::take(std::span<uint8_t> block) noexcept {
@@ -125,7 +125,8 @@ Status Mailbox::take(std::span<uint8_t> block) noexcept {
   return nobody(block) ? Status::kAbsent : Status::kOk;
 }
 
-/// No bytes are sent to a board that was never heard: a wrong address may be memory of another board.
+/// Opens the window a second time. Link::silence() uses it only after the board has sent a report, because a wrong
+/// address may be memory of another board.
 Descriptor Mailbox::wayIn(hdv_silence& how) noexcept {
   how.kind = HDV_BY_PWRITE;
   how.offset = place_.command;
@@ -133,7 +134,7 @@ Descriptor Mailbox::wayIn(hdv_silence& how) noexcept {
 }
 
 Status Mailbox::send(std::span<const uint8_t> bytes) noexcept {
-  if (!alive_) return Status::kOk;  // a wrong address may be another board's memory: write only where a board counts
+  if (!alive_) return Status::kOk;  // a wrong address may be memory of another board
   return window_.write(place_.command, bytes) == static_cast<long>(bytes.size()) ? Status::kOk : Status::kFailed;
 }
 

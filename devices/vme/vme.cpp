@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// The device module `vme`: an arm behind a controller board on a VME bus, such as the Sarcos Dextrous Arm Master,
-/// through Linux' vme_user. The board runs the torque loop; its device file says what its mailbox holds.
+/// through Linux' vme_user. The board runs the torque loop. The device file describes the content of the mailbox.
 #include "vme/mailbox.hpp"
 #include "vme/vme_user.hpp"
 #include "wire_arm/arm.hpp"
@@ -14,29 +14,33 @@ constexpr const char* kCycles[] = {"user_data", "super_data", "user_program", "s
 
 class VmeArm final : public wire_arm::Arm<VmeArm> {
  public:
-  static constexpr DeviceInfo kInfo = {"org.hapticd.device.vme", "vme", "0.1.0", "MIT",
-                                       "An arm behind a controller board on a VME bus; its device file says which."};
+  static constexpr DeviceInfo kInfo = {
+      "org.hapticd.device.vme", "vme", "0.1.0", "MIT",
+      "An arm behind a controller board on a VME bus, which its device file describes."};
   static constexpr auto bus() {
     using F = Fields<VmeArm>;
     return std::array{
         F::path("vme.window", &VmeArm::node,
-                "Master window of vme_user, /dev/bus/vme/m0 to m3; a plain file for tests.", HSP_P_REQUIRED),
-        F::text("vme.address", &VmeArm::base, "", "First address on the bus, a multiple of 64 KiB, \"0x100000\".",
+                "Device node of the vme_user master window, /dev/bus/vme/m0 to m3, or a plain file for tests.",
                 HSP_P_REQUIRED),
-        F::text("vme.size", &VmeArm::extent, "0x10000", "Bytes of the window, a multiple of 64 KiB."),
-        F::choice("vme.space", &VmeArm::space, kSpaces, 1, "Address space of the board."),
-        F::choice("vme.width", &VmeArm::width, kWidths, 0, "Bits of one transfer."),
-        F::choice("vme.cycle", &VmeArm::cycle, kCycles, 0, "Kind of single cycles that the board answers."),
-        F::text("vme.state", &VmeArm::state, "0x0", "Offset in the window of the block that the board writes."),
-        F::text("vme.command", &VmeArm::command, "0x100", "Offset in the window of the block that the host writes."),
-        F::real("vme.poll", &VmeArm::poll, "s", 1e-5, 0.005, 1e-4, "Between two looks at the board's block.",
+        F::text("vme.address", &VmeArm::base, "",
+                "First address of the window on the bus, a multiple of 64 KiB, such as \"0x100000\".", HSP_P_REQUIRED),
+        F::text("vme.size", &VmeArm::extent, "0x10000", "Size of the window in bytes, a multiple of 64 KiB."),
+        F::choice("vme.space", &VmeArm::space, kSpaces, 1, "Address space of the board on the bus."),
+        F::choice("vme.width", &VmeArm::width, kWidths, 0, "Number of bits of one transfer."),
+        F::choice("vme.cycle", &VmeArm::cycle, kCycles, 0, "Kind of single bus cycles that the board answers."),
+        F::text("vme.state", &VmeArm::state, "0x0", "Offset, within the window, of the block that the board writes."),
+        F::text("vme.command", &VmeArm::command, "0x100",
+                "Offset, within the window, of the block that the host writes."),
+        F::real("vme.poll", &VmeArm::poll, "s", 1e-5, 0.005, 1e-4, "Time between two reads of the board's block.",
                 HSP_P_ACCURACY)};
   }
   static constexpr auto fields() {
     return join(bus(), wire_arm::ParameterTable<VmeArm>::device(), wire_arm::ParameterTable<VmeArm>::arm());
   }
 
-  /// This needs nothing of USB: the window is the address. Throws std::invalid_argument where it makes no sense.
+  /// The address of the device is its window; the USB keys are not used. Throws std::invalid_argument if a number is
+  /// wrong.
   wire_arm::Address address() const {
     if (auto fits = check(place(), format()); !fits) throw std::invalid_argument(fits.error());
     return {};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The ioctl interface of Linux' vme_user driver (drivers/staging/vme_user). The kernel does not export its header, so
-/// that every client carries the structures itself. Kernels since 3.18 pack them; older ones left them to the compiler,
-/// which shows in the number of the request: the wrong one is answered with ENOTTY.
+/// each program must define the structures. Kernels since 3.18 pack the structures, older kernels do not. The size is
+/// part of the request number, so a kernel answers a wrong structure with ENOTTY.
 #pragma once
 #include <sys/ioctl.h>
 
@@ -36,6 +36,6 @@ inline constexpr uint32_t kA16 = 1, kA24 = 2, kA32 = 4;  // address spaces
 inline constexpr uint32_t kD8 = 1, kD16 = 2, kD32 = 4;   // data widths
 inline constexpr uint32_t kSingle = 1;                   // cycles of one datum
 inline constexpr uint32_t kSuper = 0x1000, kUser = 0x2000, kProgram = 0x4000, kData = 0x8000;
-inline constexpr uint64_t kGranule = 0x10000;  // granularity of base and size: the bridge decodes no finer
+inline constexpr uint64_t kGranule = 0x10000;  // base and size are multiples of this, because of the bridge
 
 }  // namespace hapticd::vme

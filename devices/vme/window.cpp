@@ -25,7 +25,7 @@ int bitsOf(uint32_t space) {
   return space == kA16 ? 16 : space == kA24 ? 24 : 32;
 }
 
-/// Asks the driver for a window and reads back what it made of it. @return 0, or an errno
+/// Sets a window with the driver, and reads back the window that the driver has set. @return 0, or an errno
 template <class Master>
 int setAndGet(int fd, unsigned long set, unsigned long get, const Place& place, Master& got) {
   Master wanted{};
@@ -40,7 +40,7 @@ std::string reasonOf(int error) {
   if (error == EINVAL)
     return "the bridge does not know this space, cycle or width, or the base is not a multiple of 64 KiB";
   if (error == EFAULT) return "the window ends beyond the address space";
-  if (error == EBUSY || error == ENOMEM) return "the bridge has no room for it: another window may take the place";
+  if (error == EBUSY || error == ENOMEM) return "the bridge has no room for the window: another one may use the place";
   return std::strerror(error);
 }
 
@@ -53,9 +53,9 @@ std::string describe(const Place& place) {
 
 Result<void> check(const Place& place) {
   if (place.address % kGranule != 0)
-    return Error{"vme.address: " + hex(place.address) + ", expected a multiple of 64 KiB: the bridge decodes no finer"};
+    return Error{"vme.address: " + hex(place.address) + ", expected a multiple of 64 KiB, as the bridge needs it"};
   if (place.size == 0 || place.size % kGranule != 0)
-    return Error{"vme.size: " + hex(place.size) + ", expected a multiple of 64 KiB, at least one"};
+    return Error{"vme.size: " + hex(place.size) + ", expected a multiple of 64 KiB, and 64 KiB at least"};
   const uint64_t end = uint64_t{1} << bitsOf(place.space);
   if (place.address >= end || place.size > end - place.address)
     return Error{"vme.address: the window of " + hex(place.size) + " bytes at " + hex(place.address) +
@@ -71,9 +71,9 @@ Result<void> Window::open(const Place& place) {
     return Error{place.node + ": " + std::strerror(errno) + "\n  the arm stays off\n  fix: " +
                  (errno == ENOENT ? "modprobe vme_user bus=0, with the bridge's own driver (vme_tsi148) before it"
                                   : "install the udev rules (udev/70-hapticd.rules) and join the group haptic") +
-                 "; hapticd doctor tells more"};
+                 "; hapticd doctor says what is missing"};
   if (::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    close();  // two programs that write torques to one arm would fight
+    close();  // two programs must not write torques to one arm
     return Error{place.node +
                  ": in use by another program\n  the arm stays off\n  fix: end that program, or name "
                  "another window in vme.window"};
@@ -97,9 +97,9 @@ Result<void> Window::point(const Place& place) {
   if (file_) return {};
   const std::string who = place.node + ": cannot be set to " + describe(place) + ": ";
   const char* fix = "\n  the arm stays off\n  fix: correct the vme keys of the device file";
-  if (error == ENOTTY) return Error{who + "it is no window of vme_user" + fix};
+  if (error == ENOTTY) return Error{who + "it is not a window of vme_user" + fix};
   if (error != 0) return Error{who + reasonOf(error) + fix};
-  if (!same) return Error{who + "the bridge made it " + hex(got.address) + ", size " + hex(got.size) + fix};
+  if (!same) return Error{who + "the bridge set it to " + hex(got.address) + ", size " + hex(got.size) + fix};
   return {};
 }
 

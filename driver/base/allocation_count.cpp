@@ -20,8 +20,8 @@ __thread void (*look)() __attribute__((tls_model("initial-exec"))) = nullptr;
   look = asked;
 }
 
-[[maybe_unused]] constexpr size_t kPlain = alignof(max_align_t);  ///< of what malloc gives
-const hapticd::OtherAllocator* other = nullptr;  ///< the only one there was: its blocks may be freed at any time
+[[maybe_unused]] constexpr size_t kPlain = alignof(max_align_t);  ///< [bytes] alignment of the blocks of malloc
+const hapticd::OtherAllocator* other = nullptr;  ///< kept after its use ended: its blocks may be freed at any time
 __thread bool from_other __attribute__((tls_model("initial-exec"))) = false;
 
 [[maybe_unused]] void* takeOther(size_t size, size_t alignment) {
@@ -51,7 +51,7 @@ bool allocateFrom([[maybe_unused]] const OtherAllocator* from) noexcept {
 }  // namespace hapticd
 
 #if defined(__GLIBC__) && !defined(HAPTICD_SANITIZED)
-// The sanitizers bring an allocator of their own, and catch more than these counters do.
+// The sanitizers replace malloc themselves, and find more errors than these counters do.
 extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): these names are the C library's
 void* __libc_malloc(size_t);

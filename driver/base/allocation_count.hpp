@@ -1,29 +1,30 @@
 // SPDX-License-Identifier: MIT
 /// Counts the allocations of each thread, so that a run can say how many its servo thread made (the answer must be 0).
-/// Linked into the daemon alone: it replaces malloc and its kind by wrappers of glibc's own.
+/// It replaces malloc and the related functions by wrappers of glibc's own, so only the daemon is linked with it.
 #pragma once
 #include <cstddef>
 #include <cstdint>
 
 namespace hapticd {
 
-/// [any] Calls of malloc, calloc, realloc and the aligned kinds by this thread so far; C++ new ends there too.
+/// [any] Returns how often this thread has called malloc, calloc, realloc or an aligned variant so far. C++ new calls
+/// them too.
 uint64_t allocationsOfThread() noexcept;
 
-/// [any] From now on each allocation of this thread calls `look` first. `look` may allocate: it is not called for that.
-/// nullptr: nothing is called.
+/// [any] From now on each allocation of this thread calls `look` first. `look` may allocate: its own allocations do not
+/// call it again. nullptr ends the calls.
 void onAllocation(void (*look)()) noexcept;
 
-/// An allocator beside the C library's. Whoever frees a block, the address tells which allocator it belongs to.
+/// An allocator in addition to the C library's. The address of a block shows which allocator must free it.
 struct OtherAllocator {
-  const char *begin, *end;                       ///< all of its blocks lie between
-  void* (*take)(size_t size, size_t alignment);  ///< nullptr: the C library's allocator gives this block
+  const char *begin, *end;                       ///< range of addresses that contains all its blocks
+  void* (*take)(size_t size, size_t alignment);  ///< if it returns nullptr, the block comes from the C library
   void (*give_back)(void* block);
   size_t (*size)(const void* block);
 };
 
-/// [any] From now on this thread's blocks come from `other`, which lives to the end of the process; nullptr ends that.
-/// False means that the C library's functions are not replaced in this build, and nothing has changed.
+/// [any] From now on this thread's blocks come from `other`, which must live to the end of the process; nullptr ends
+/// that. Returns false, and changes nothing, if this build does not replace the C library's functions.
 bool allocateFrom(const OtherAllocator* other) noexcept;
 
 }  // namespace hapticd

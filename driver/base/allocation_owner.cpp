@@ -9,7 +9,7 @@
 namespace hapticd {
 namespace {
 
-/// Owners beyond this number are counted together: it is enough to name one.
+/// Allocations of further owners are not counted: it is enough to name one owner.
 constexpr size_t kOwners = 16;
 
 struct Noted {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Whose code allocates where nothing may: the servo thread notes it, and the end of a run names the module.
+/// Finds out which module allocates memory on the servo thread, where nothing may be allocated. The summary at the end
+/// of a run names the module.
 #pragma once
 #include <cstdint>
 
@@ -9,15 +10,15 @@ namespace hapticd {
 
 /// How many allocations the code of one owner made.
 struct AllocationShare {
-  const Owner* owner = nullptr;  ///< nullptr: the daemon's own code, or nobody's
+  const Owner* owner = nullptr;  ///< nullptr if the code is the daemon's own, or its owner is unknown
   uint64_t count = 0;
 };
 
-/// [any] From now on the owners of this thread's allocations are noted; false ends that. It costs nothing where nothing
-/// is allocated.
+/// [any] If `on` is true, the owners of this thread's allocations are noted from now on; false ends that. It costs no
+/// time as long as the thread allocates nothing.
 void noteAllocations(bool on) noexcept;
 
-/// [any] The owner that made most of the allocations noted in this process.
+/// [any] Returns the owner with the most allocations noted in this process, and their number.
 AllocationShare mostAllocations() noexcept;
 
 }  // namespace hapticd

@@ -11,18 +11,19 @@ namespace hapticd {
 /// Wakes one waiting thread. Strikes are counted, so a thread that remembers the count misses none.
 class Bell {
  public:
-  /// [rt] Strikes so far.
+  /// [rt] Returns the number of strikes so far.
   uint32_t strikes() const noexcept HSP_RT { return strikes_.load(); }
   /// [rt] Counts a strike and wakes nobody, so it makes no system call.
   void strike() noexcept HSP_RT { strikes_.fetch_add(1); }
   /// [any] Counts a strike and wakes the waiting thread; it makes a system call only if one waits.
   void wake() noexcept;
-  /// [any] Both.
+  /// [any] Calls strike() and wake().
   void ring() noexcept {
     strike();
     wake();
   }
-  /// [any] Sleeps until the count of strikes is not `heard`, or until `until` (CLOCK_MONOTONIC) at the latest.
+  /// [any] Sleeps until the count of strikes differs from `heard`, and at the latest until the time `until`
+  /// (CLOCK_MONOTONIC).
   void wait(uint32_t heard, Nanoseconds until) noexcept;
 
  private:

@@ -19,7 +19,7 @@ void Bell::wake() noexcept {
 void Bell::wait(uint32_t heard, Nanoseconds until) noexcept {
   const timespec end{static_cast<time_t>(until / kNanosecondsPerSecond),
                      static_cast<long>(until % kNanosecondsPerSecond)};
-  sleeps_.store(1);  // set before it looks at the count: a later strike sees that somebody must be woken
+  sleeps_.store(1);  // set before the count is read, so that any later strike knows that this thread must be woken
   while (strikes_.load() == heard)
     if (syscall(SYS_futex, &strikes_, FUTEX_WAIT_BITSET_PRIVATE, heard, &end, nullptr, FUTEX_BITSET_MATCH_ANY) != 0 &&
         errno == ETIMEDOUT)

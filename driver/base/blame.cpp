@@ -13,14 +13,14 @@ namespace {
 
 thread_local bool t_works = false;
 
-/// Where each worker keeps whose code it runs.
+/// For each worker, a pointer to the variable that names the owner of the code it runs; nullptr if there is no worker.
 std::atomic<std::atomic<const Owner*>*> workers[kWorkerCount];
 
 struct Code {
   std::atomic<const void*> begin{nullptr}, end{nullptr};
   std::atomic<const Owner*> owner{nullptr};
 };
-constexpr size_t kMostLibraries = 256;  // the code of more owners is blamed on nobody
+constexpr size_t kMostLibraries = 256;  // code of further libraries has no known owner
 std::array<Code, kMostLibraries> libraries;
 std::atomic<size_t> library_count{0};
 

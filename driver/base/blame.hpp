@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Who is to blame when the process is ended: each thread knows whose code it has called, and each library that was
-/// loaded knows whose it is. Every call into a shape plugin or a device module is marked with a `Calling`.
+/// Says which plugin or module is to blame if the process crashes. Each thread keeps the owner of the code that it has
+/// called, and the owner of each loaded library is known. Every call into a shape plugin or a device module is marked
+/// with a `Calling`.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -17,14 +18,15 @@ struct Owner {
   bool device = false;
 };
 
-/// [main] The owner of that name; it lives until the process ends, because threads of a plugin may do so too.
+/// [main] Returns the owner with that module and name. It lives until the process ends, because threads that a plugin
+/// started may live that long.
 const Owner* ownerOf(const std::string& module, const std::string& name, bool device = false);
 
 namespace detail {
 inline thread_local std::atomic<const Owner*> t_called{nullptr};
 }
 
-/// Marks the calling thread as one that runs the owner's code while the object lives; such objects may nest.
+/// Marks the calling thread as one that runs the owner's code, as long as the object lives. Such objects may nest.
 class Calling {
  public:
   explicit Calling(const Owner* owner) noexcept HSP_RT : before_(detail::t_called.load(std::memory_order_relaxed)) {
@@ -38,16 +40,17 @@ class Calling {
   const Owner* before_;
 };
 
-/// [any] Whose code the calling thread runs; nullptr: the daemon's own. Async-signal-safe.
+/// [any] Returns the owner of the code that the calling thread runs; nullptr for the daemon's own code.
+/// Async-signal-safe.
 inline const Owner* calledHere() noexcept {
   return detail::t_called.load(std::memory_order_relaxed);
 }
 
-/// The daemon's own threads that call plugins; others can ask what these threads are doing.
+/// The daemon's own threads that call plugins. Other threads can ask whose code these threads run.
 enum class Worker : int { kMain, kServo, kSearch, kControl };
 constexpr int kWorkerCount = 4;
 
-/// [any] The calling thread is that worker while the object lives.
+/// [any] Makes the calling thread that worker as long as the object lives.
 class Working {
  public:
   explicit Working(Worker worker) noexcept;
@@ -59,23 +62,26 @@ class Working {
   Worker worker_;
 };
 
-/// [any] Whose code that worker runs now; nullptr: the daemon's own, or nobody is that worker. Async-signal-safe.
+/// [any] Returns the owner of the code that this worker runs now; nullptr if it is the daemon's own code, or if no
+/// thread is this worker. Async-signal-safe.
 const Owner* calledBy(Worker worker) noexcept;
-/// [any] The calling thread is one of the daemon's own. Async-signal-safe.
+/// [any] True if the calling thread is one of the workers above. Async-signal-safe.
 bool isWorker() noexcept;
 
-/// [main] The code from `begin` up to `end` belongs to a library. Its owner is given later; the last one given counts.
+/// [main] Notes that the code from `begin` up to `end` belongs to one library. ownCode() names its owner later; if it
+/// is called more than once, the last owner counts.
 void keepCode(const void* begin, const void* end);
-/// [main] `address` lies in code that was kept; that code belongs to this owner.
+/// [main] Sets the owner of the library that contains `address`. keepCode() must have noted this library.
 void ownCode(const void* address, const Owner* owner);
-/// [any] Whose code lies at this address; nullptr: no owner was given. Async-signal-safe.
+/// [any] Returns the owner of the code at this address; nullptr if no owner was given. Async-signal-safe.
 const Owner* ownerOfCode(const void* address) noexcept;
 
-/// [any] The owner of the code that a signal interrupted, or of code that called it: the first owner found at the
-/// context's instruction and then on its stack. @param context as a handler with SA_SIGINFO gets it. Async-signal-safe.
+/// [any] Returns the owner of the code that a signal interrupted, or of the code that had called it. It takes the first
+/// owner found at the interrupted instruction and then up the stack. @param context the third argument of a handler
+/// with SA_SIGINFO. Async-signal-safe.
 const Owner* ownerInterrupted(const void* context) noexcept;
-/// [any] The first owner of code whose address stands on the stack above `from`, so that it called what runs now.
-/// Async-signal-safe.
+/// [any] Returns the first owner whose code has a return address on the stack above `from`: that code called the
+/// function that runs now. Async-signal-safe.
 const Owner* ownerOnStack(const void* from) noexcept;
 
 }  // namespace hapticd

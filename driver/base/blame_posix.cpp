@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a signal interrupted: read from the machine's registers and the thread's stack.
+/// Finds the code that a signal interrupted, from the processor's registers and the thread's stack.
 #include <sys/uio.h>
 #include <ucontext.h>
 #include <unistd.h>
@@ -43,7 +43,7 @@ const Owner* ownerInterrupted(const void* context) noexcept {
 }
 
 const Owner* ownerOnStack(const void* from) noexcept {
-  constexpr size_t kPiece = 128, kPieces = 64;  // words, which are 64 KiB of the stack at most
+  constexpr size_t kPiece = 128, kPieces = 64;  // [words] together at most 64 KiB of the stack
   const auto* stack = static_cast<const uintptr_t*>(from);
   for (size_t piece = 0; stack != nullptr && piece < kPieces; ++piece, stack += kPiece) {
     std::array<uintptr_t, kPiece> words{};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What messages tell beside the owner of a call: which function it is, and where somebody asked for that owner.
+/// What messages say about a call besides its owner: the name of the function, and the line of the file that names this
+/// owner.
 #pragma once
 #include <atomic>
 #include <string>
@@ -12,11 +13,11 @@ namespace detail {
 inline thread_local std::atomic<const char*> t_call_name{nullptr};
 }
 
-/// The calling thread runs that function of a module while the object lives; such objects may nest. A step names none:
-/// if nothing is named, a module is called for its step.
+/// Says that the calling thread runs this function of a module, as long as the object lives. Such objects may nest. A
+/// step of a shape names no function: if a module runs and no function is named, the call is a step.
 class CallName {
  public:
-  /// @param name in static storage: "activate"
+  /// @param name such as "activate", in static storage
   explicit CallName(const char* name) noexcept : before_(detail::t_call_name.load(std::memory_order_relaxed)) {
     detail::t_call_name.store(name, std::memory_order_relaxed);
   }
@@ -28,14 +29,14 @@ class CallName {
   const char* before_;
 };
 
-/// [any] The function that the calling thread runs; nullptr: none was named. Async-signal-safe.
+/// [any] Returns the name of the function that the calling thread runs; nullptr if none was named. Async-signal-safe.
 inline const char* callNameHere() noexcept {
   return detail::t_call_name.load(std::memory_order_relaxed);
 }
 
-/// [main] `place`, such as "scene.yaml:4", asks for that owner. The last one counts.
+/// [main] Notes that `place`, such as "scene.yaml:4", asks for that owner. A later call replaces the place.
 void keepPlace(const Owner* owner, const std::string& place);
-/// [any] The place that asks for that owner; "" if it is unknown. Async-signal-safe.
+/// [any] Returns the place that asks for that owner; "" if it is unknown. Async-signal-safe.
 const char* placeOf(const Owner* owner) noexcept;
 
 }  // namespace hapticd

@@ -21,12 +21,13 @@ class Clock {
  public:
   virtual ~Clock() = default;
   virtual Nanoseconds now() noexcept HSP_RT = 0;
-  /// [rt] Returns at `deadline` or later, and gives the time at which it returns.
+  /// [rt] Waits until `deadline`. @return the time at the end of the wait, `deadline` or later
   virtual Nanoseconds waitUntil(Nanoseconds deadline) noexcept HSP_RT = 0;
 };
 
-/// CLOCK_MONOTONIC: sleeps to `spin` before the deadline, then spins. Spinning buys regularity (p50 22 us to 0.1 us on
-/// a virtual machine) for spin times rate of CPU; never spin a whole period, or the kernel throttles the thread.
+/// Uses CLOCK_MONOTONIC: sleeps until `spin` before the deadline, then waits busily. Busy waiting reduces the lateness
+/// (median 22 us to 0.1 us on a virtual machine) and uses spin * rate of one CPU. It must not last a whole period, or
+/// the kernel throttles the thread.
 class RealClock final : public Clock {
  public:
   explicit RealClock(Nanoseconds spin) : spin_(spin) {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Open files that are handed to another process over a Unix socket (SCM_RIGHTS): the receiver may use what the sender
-/// was allowed to open, without a right of its own to the name.
+/// Open files that are passed to another process over a Unix socket (SCM_RIGHTS). The receiver may use a file that the
+/// sender could open, even if the receiver itself has no right to open it by name.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace hapticd {
 
-/// An open file that is closed with its owner.
+/// An open file; the destructor closes it.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -32,15 +32,16 @@ class Descriptor {
   int fd_ = -1;
 };
 
-constexpr size_t kMostDescriptors = 250;  ///< most in one message; the kernel takes 253
+constexpr size_t kMostDescriptors = 250;  ///< largest number in one message; the kernel's limit is 253
 
-/// [any] Sends bytes and, with the first of them, descriptors; they stay open here. Blocks if the socket does.
-/// @return bytes that were sent, which on a stream may be fewer; -1 with errno
+/// [any] Sends bytes and, with the first byte, descriptors, which stay open in this process. It blocks if the socket is
+/// a blocking one.
+/// @return how many bytes were sent; on a stream they may be fewer than given; -1 on failure, with errno
 std::ptrdiff_t sendWith(int socket, std::string_view bytes, std::span<const int> descriptors) noexcept;
 
 /// [any] Receives bytes and appends the descriptors that came with them, closed on exec.
-/// @return bytes, 0: the other end has closed; -1 with errno, EMSGSIZE: there were more descriptors than one message
-/// may bring, and all of them were closed
+/// @return how many bytes came; 0 if the other end has closed; -1 on failure, with errno. EMSGSIZE means that there
+/// were more descriptors than one message may bring, and that all of them were closed
 std::ptrdiff_t receiveWith(int socket, std::span<char> to, std::vector<Descriptor>& descriptors);
 
 }  // namespace hapticd

@@ -6,14 +6,14 @@
 namespace hapticd::os {
 
 /// Installs a handler for SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTRAP and SIGSYS, and for every other
-/// signal that ends a process and that nobody handles or ignores: SIGUSR1 and 2, timers, SIGIO, real-time signals and
-/// their kind. nullptr restores the system's own.
+/// signal that ends a process and that nobody handles or ignores, such as SIGUSR1, SIGUSR2, timers, SIGIO and real-time
+/// signals. nullptr restores the system's default.
 void onFatalSignals(void (*handler)(int, siginfo_t*, void*));
 
-/// Installs a handler for SIGINT, SIGTERM, SIGQUIT and SIGHUP in front of the present ones, except where the signal is
-/// ignored. nullptr restores those, unless another took its place meanwhile.
+/// Replaces the present handlers of SIGINT, SIGTERM, SIGQUIT and SIGHUP by this one, except if the signal is ignored.
+/// nullptr restores the former handlers, unless the program has installed another one meanwhile.
 void onStopSignals(void (*handler)(int, siginfo_t*, void*));
-/// The handler that was there before; nullptr: the system's own. Async-signal-safe.
+/// Returns the handler of a signal before onStopSignals(); nullptr if it was the system's default. Async-signal-safe.
 void (*formerStop(int signal) noexcept)(int);
 
 }  // namespace hapticd::os

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A stretch of the servo thread that need not keep real time, such as the search in virtual time, told to RTSan.
+/// Tells RTSan (the real-time sanitizer of Clang) that the servo thread need not keep real time while the object lives,
+/// such as during the search in virtual time.
 #pragma once
 
 #if defined(__has_feature)

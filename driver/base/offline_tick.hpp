@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Ticks of commands that run the core without a loop, such as trace and tune: counted, so that one that does not come
-/// back is seen from another thread.
+/// Counts the ticks of commands that run the core without a servo loop, such as trace and tune, so that another thread
+/// can see a tick that does not return.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace detail {
 inline std::atomic<uint64_t> offline_begun{0}, offline_ended{0};
 }
 
-/// Stands around one tick.
+/// Lives for the duration of one tick.
 class OfflineTick {
  public:
   OfflineTick() noexcept { count(detail::offline_begun); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Everything that the daemon asks of the operating system for real time. The only place that calls pthread_*,
-/// mlockall, getrusage and their kind; pthread calls return their error and never set errno.
+/// Everything that the daemon needs from the operating system for real time. Only this part calls pthread_*, mlockall,
+/// getrusage and similar functions. The pthread functions return their error and do not set errno.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 namespace hapticd::os {
 
-constexpr size_t kThreadStackBytes = 256 * 1024;  ///< explicit, because locked memory counts the whole default of 8 MiB
-constexpr int kServoPriority = 80;                ///< below the kernel's own migration threads at 99
+constexpr size_t kThreadStackBytes = 256 * 1024;  ///< small, because all of it (default: 8 MiB) counts as locked memory
+constexpr int kServoPriority = 80;                ///< below the kernel's migration threads, which have 99
 
 /// A thread with an explicit stack, named for `ps` and `top`. Joins in its destructor.
 class Thread {
@@ -31,7 +31,7 @@ class Thread {
   bool running() const { return handle_ != nullptr; }
 
  private:
-  struct Handle;  // the operating system's own
+  struct Handle;  // the operating system's thread
   std::unique_ptr<Handle> handle_;
   std::function<void()> body_;
 };
@@ -45,13 +45,14 @@ std::error_code setFifo(int priority);
 /// Pins the calling thread to one processor.
 std::error_code pinTo(int cpu);
 
-/// Locks present and future memory and keeps malloc from giving any back, so that no page fault hits a tick.
+/// Locks present and future memory, and keeps malloc from returning any to the system, so that no tick has a page
+/// fault.
 std::error_code lockMemory();
 
-/// Keeps one arena and no trimming: the same settings that lockMemory needs, without locking.
+/// Gives malloc the settings that lockMemory needs (one arena, no trimming), without locking memory.
 void calmAllocator();
 
-/// Touches the stack of the calling thread below its present depth.
+/// Writes to the unused part of the calling thread's stack, so that its pages are present before the first tick.
 void prefaultStack();
 
 /// Keeps /dev/cpu_dma_latency at 0 (no deep sleep of the processor) while the object lives.
@@ -76,22 +77,22 @@ std::string realTimeRights();
 /// True inside a virtual machine, where spinning does not prevent pauses that the host causes.
 bool inVirtualMachine();
 
-/// [any] Number of the calling thread; async-signal-safe.
+/// [any] Returns the system's number of the calling thread. Async-signal-safe.
 int threadId() noexcept;
 
-/// Installs a handler for SIGTSTP (Ctrl-Z), and ignores SIGTTIN and SIGTTOU: a process in the background must not be
+/// Installs a handler for SIGTSTP (Ctrl-Z), and ignores SIGTTIN and SIGTTOU, so that a process in the background is not
 /// stopped because it prints.
 void onSuspendSignal(void (*handler)(int));
 
 /// [any] Stops the whole process until it is continued.
 void suspendProcess();
 
-/// Gives the calling thread a separate stack for handlers of fatal signals, so that they run even when its own is
-/// full.
+/// Gives the calling thread a separate stack for handlers of fatal signals, so that they run even if the thread's own
+/// stack is full.
 void prepareSignalStack();
 
-/// A real-time thread that runs this long without sleeping gets SIGXCPU, and after twice as long SIGKILL, so that a
-/// plugin that loops cannot freeze the machine. Lower limits stay in force.
+/// Sets a limit for real-time threads: a thread that runs this long without sleeping gets SIGXCPU, and after twice this
+/// time SIGKILL. So an endless loop in a plugin cannot freeze the machine. Lower limits stay in force.
 std::error_code limitRealTimeRun(uint64_t us);
 
 /// Installs an async-signal-safe handler for SIGINT, SIGTERM, SIGQUIT and SIGHUP, and ignores SIGPIPE and SIGXFSZ.

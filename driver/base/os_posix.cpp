@@ -111,7 +111,7 @@ void calmAllocator() {
 }
 
 std::error_code lockMemory() {
-  // Below this limit mlockall succeeds, but the next malloc or thread fails: say so now, with the cause.
+  // Below this limit mlockall() succeeds, but the next malloc() or thread fails. An error here can name the cause.
   constexpr rlim_t kEnough = 64u << 20;
   constexpr unsigned kCapIpcLock = 14;
   rlimit limit{};
@@ -196,8 +196,8 @@ void onFatalSignals(void (*handler)(int, siginfo_t*, void*)) {
 
 namespace {
 constexpr int kStopSignals[] = {SIGINT, SIGTERM, SIGQUIT, SIGHUP};
-std::atomic<void (*)(int)> former_stops[SIGTERM + 1];                 ///< by signal; SIG_DFL: the system's own
-std::atomic<void (*)(int, siginfo_t*, void*)> stop_handler{nullptr};  ///< nullptr: no handler is in front
+std::atomic<void (*)(int)> former_stops[SIGTERM + 1];                 ///< by signal; SIG_DFL: the system's default
+std::atomic<void (*)(int, siginfo_t*, void*)> stop_handler{nullptr};  ///< nullptr if none is installed
 }  // namespace
 
 void onStopSignals(void (*handler)(int, siginfo_t*, void*)) {
@@ -239,7 +239,7 @@ void suspendProcess() {
 
 void prepareSignalStack() {
   constexpr size_t kBytes = 64 * 1024;
-  // It lives as long as its thread may crash, which is until the process ends.
+  // The stack lives until the thread ends, because the thread may crash until then.
   static thread_local std::unique_ptr<std::byte[]> stack(new std::byte[kBytes]());
   stack_t signal_stack{};
   signal_stack.ss_sp = stack.get();
@@ -259,7 +259,7 @@ void onStopSignal(void (*handler)(int)) {
   struct sigaction action{};
   action.sa_handler = handler;
   for (const int signal : {SIGINT, SIGTERM, SIGQUIT}) sigaction(signal, &action, nullptr);
-  struct sigaction before{};  // nohup was used: the run outlives its terminal
+  struct sigaction before{};  // SIG_IGN if the program was started by nohup: then the run outlives its terminal
   if (sigaction(SIGHUP, nullptr, &before) != 0 || before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
   action.sa_handler = SIG_IGN;
   for (const int signal : {SIGPIPE, SIGXFSZ}) sigaction(signal, &action, nullptr);

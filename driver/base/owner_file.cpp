@@ -18,7 +18,7 @@ struct FileOfOwner {
 };
 std::atomic<const FileOfOwner*> newest_file{nullptr};
 
-/// A later entry of the same module replaces this one.
+/// True if a later entry of the same module replaces this entry.
 bool isRepeated(const FileOfOwner* entry) noexcept {
   for (const FileOfOwner* later = newest_file.load(); later != entry; later = later->next)
     if (later->foreign && later->owner->module == entry->owner->module) return true;
@@ -29,7 +29,7 @@ bool isRepeated(const FileOfOwner* entry) noexcept {
 
 void keepFile(const Owner* owner, const std::string& identity, bool foreign) {
   static std::mutex mutex;
-  static auto& last = *new std::unordered_map<const Owner*, const FileOfOwner*>;  // to walk the list takes n^2 steps
+  static auto& last = *new std::unordered_map<const Owner*, const FileOfOwner*>;  // for a fast search
   const std::lock_guard lock(mutex);
   const FileOfOwner*& kept = last[owner];
   if ((kept != nullptr ? kept->identity : "") == identity) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Which file an owner's code came from, for those who end the process: by it a repaired plugin is another one, and one
-/// that does not ship with the daemon is looked at first where memory was overwritten.
+/// The file that contains an owner's code, for the report of a crash. The file's identity tells a repaired plugin from
+/// the one that crashed. If memory was overwritten, plugins that do not ship with hapticd are suspected first.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -9,12 +9,13 @@
 
 namespace hapticd {
 
-/// [main] @param identity of the file as it was loaded, one line without tabs  @param foreign it does not ship with us
+/// [main] Notes the file of an owner. @param identity identity of the file when it was loaded, one line without tabs
+/// @param foreign true if the file does not ship with hapticd
 void keepFile(const Owner* owner, const std::string& identity, bool foreign);
-/// [any] The file of that owner; "" if none was given. Async-signal-safe.
+/// [any] Returns the identity of that owner's file; "" if none was given. Async-signal-safe.
 const char* fileOf(const Owner* owner) noexcept;
-/// [any] The owners whose files do not ship with hapticd, each module once. The first is number 0; nullptr: there are
-/// no more. Async-signal-safe.
+/// [any] Returns one of the owners whose files do not ship with hapticd, each module once. Numbers begin at 0; nullptr
+/// if there are no more. Async-signal-safe.
 const Owner* foreignOwner(size_t number) noexcept;
 
 }  // namespace hapticd

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Files that a program of other rights hands over open, under the names that it knows them by. While they are in
-/// force, a thread reads these and no others: a name alone opens nothing with the rights of this process.
+/// Files that a client passes to the daemon as open descriptors, together with their names, because the client may have
+/// other rights. While they are in force, a thread reads these files and no others, so that a client cannot use a name
+/// to open a file with the rights of the daemon.
 #pragma once
 #include <map>
 #include <set>
@@ -14,21 +15,21 @@ namespace hapticd {
 
 class PassedFiles {
  public:
-  static constexpr size_t kMostBytes = 256u << 20;  ///< of all files together
+  static constexpr size_t kMostBytes = 256u << 20;  ///< largest size of all files together
 
-  /// [main] Copies what each descriptor lets this process read into memory that does not change any more. A descriptor
-  /// that gives no right to read (O_PATH, O_WRONLY) is refused, as is what may let a reader wait for ever.
-  /// @param names one for each descriptor
+  /// [main] Copies the contents of each descriptor to memory that nobody can change. It refuses a descriptor without
+  /// the right to read (O_PATH, O_WRONLY), and a file whose reader may have to wait for ever.
+  /// @param names one name for each descriptor
   static Result<PassedFiles> copy(const std::vector<std::string>& names, std::vector<Descriptor> descriptors);
 
-  /// A file that this process chose itself, such as that of its arm, so it may be opened by name.
+  /// Allows a file to be opened by name, because this process chose it itself, such as the device file of its arm.
   void allow(const std::string& file) { own_.insert(file); }
-  /// The path at which the file can be opened; "" if there is none.
+  /// Returns the path at which the file can be opened; "" if it was neither passed nor allowed.
   std::string pathOf(const std::string& file) const;
-  /// The text with each path from pathOf replaced by the name that others know.
+  /// Returns the text with each path of pathOf() replaced by the name that the client gave.
   std::string named(std::string text) const;
 
-  /// [main] This thread uses the files while this object lives; they must outlive it.
+  /// [main] Makes this thread use the files as long as this object lives. The files must outlive it.
   class Scope {
    public:
     explicit Scope(const PassedFiles& files) noexcept;
@@ -45,12 +46,12 @@ class PassedFiles {
   std::set<std::string> own_;
 };
 
-/// [main] The path at which a file of that name must be opened: the name itself, unless this thread uses passed files.
-/// The error is meant to follow the file's name.
+/// [main] Returns the path at which a file of that name must be opened: the name itself, unless this thread uses passed
+/// files. The error is meant to follow the file's name in a message.
 Result<std::string> whereToOpen(const std::string& file);
 
-/// [main] Opens a regular file for another process. One that a program or the kernel keeps (FUSE, proc) becomes a copy
-/// in memory, which can be read without asking anybody. The error is meant to follow the file's name.
+/// [main] Opens a regular file for another process. If a program or the kernel provides the file (FUSE, proc), it is
+/// copied to memory, so that the reader depends on nobody. The error is meant to follow the file's name in a message.
 Result<Descriptor> openToPass(const std::string& file);
 
 }  // namespace hapticd

@@ -18,12 +18,13 @@ namespace hapticd {
 
 namespace {
 
-/// See statfs(2): file systems served by a program, and those where the kernel checks who reads, not only who opened.
+/// Magic numbers of statfs(2): file systems that a program serves, and those where the kernel checks at each read who
+/// reads.
 constexpr long kFuse = 0x65735546, kProc = 0x9fa0, kSys = 0x62656572;
 
 thread_local const PassedFiles* in_force = nullptr;
 
-/// Others judge what reading it gives.
+/// True if a program or the kernel decides at each read what the reader gets.
 bool answersReaders(int fd) {
   struct statfs where{};
   const long kind = fstatfs(fd, &where) == 0 ? static_cast<long>(where.f_type) : kFuse;
@@ -39,14 +40,15 @@ bool writeAll(int fd, const char* bytes, size_t count) {
   return true;
 }
 
-/// @param room [bytes] that may be used; the bytes used are subtracted
+/// Copies a file to memory that cannot be changed. @param room [bytes] how much may be used; the size of the copy is
+/// subtracted
 Result<Descriptor> copied(int from, size_t& room) {
   Descriptor copy(memfd_create("passed", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!copy) return Error{std::string("cannot be copied: ") + std::strerror(errno)};
   char part[65536];
   off_t at = 0;
   for (;;) {
-    const ssize_t got = pread(from, part, sizeof part, at);  // the sender's own position in the file stays as it is
+    const ssize_t got = pread(from, part, sizeof part, at);  // does not move the sender's position in the file
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return Error{std::string("cannot be read: ") + std::strerror(errno)};
     if (got == 0) break;
@@ -71,7 +73,7 @@ std::string pathTo(const Descriptor& file) {
 Result<PassedFiles> PassedFiles::copy(const std::vector<std::string>& names, std::vector<Descriptor> descriptors) {
   if (names.size() != descriptors.size())
     return Error{std::to_string(names.size()) + " files are named, but " + std::to_string(descriptors.size()) +
-                 " descriptors came, expected one for each"};
+                 " descriptors came, expected one descriptor for each file"};
   PassedFiles files;
   size_t room = kMostBytes;
   for (size_t i = 0; i < names.size(); ++i) {
@@ -82,7 +84,8 @@ Result<PassedFiles> PassedFiles::copy(const std::vector<std::string>& names, std
     const auto type = std::filesystem::status(pathTo(given), ignored).type();
     if (const std::string other = notAFile(type); !other.empty()) return Error{names[i] + ": " + other};
     if (answersReaders(given.get()))
-      return Error{names[i] + ": is kept by a program or by the kernel (FUSE, proc), expected a copy in its place"};
+      return Error{names[i] +
+                   ": is provided by a program or by the kernel (FUSE, proc), expected a copy of it on a disk"};
     auto copy = copied(given.get(), room);
     if (!copy) return Error{names[i] + ": " + copy.error()};
     if (!files.copies_.emplace(names[i], std::move(*copy)).second) return Error{names[i] + ": is named twice"};
@@ -101,7 +104,7 @@ std::string PassedFiles::named(std::string text) const {
     const std::string path = pathTo(copy);
     for (size_t at = 0; (at = text.find(path, at)) != std::string::npos;) {
       const size_t end = at + path.size();
-      const bool longer = end < text.size() && text[end] >= '0' && text[end] <= '9';  // another descriptor's number
+      const bool longer = end < text.size() && text[end] >= '0' && text[end] <= '9';  // such as 12 for 1
       if (!longer) text.replace(at, path.size(), name);
       at += longer ? path.size() : name.size();
     }

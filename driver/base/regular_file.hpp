@@ -9,17 +9,18 @@
 
 namespace hapticd {
 
-/// [any] Says what is wrong with a file that is not regular: "is a pipe, expected a file"; otherwise "".
+/// [any] Returns what is wrong with a file that is not regular, such as "is a pipe, expected a file"; "" if the file is
+/// regular.
 std::string notAFile(std::filesystem::file_type type);
 
-/// [main] Opens a regular file for reading. The error is meant to follow the file's name.
+/// [main] Opens a regular file for reading. The error is meant to follow the file's name in a message.
 Result<int> openRegular(const std::string& file);
 
 /// [main] Reads the bytes of a regular file, with the same errors. @param max_bytes a larger file is an error
 Result<std::string> readRegular(const std::string& file, size_t max_bytes);
 
-/// [main] Writes a file whole or not at all; a device, a pipe or a link is written directly. The error starts with the
-/// file's name.
+/// [main] Writes a file completely or not at all. A device, a pipe or a link is written directly, so it may be left
+/// incomplete. The error begins with the file's name.
 Result<void> writeWhole(const std::string& file, const std::string& text);
 
 }  // namespace hapticd

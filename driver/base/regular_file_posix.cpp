@@ -26,7 +26,7 @@ std::filesystem::file_type typeOf(mode_t mode) {
   return S_ISSOCK(mode) ? file_type::socket : file_type::unknown;
 }
 
-/// 0, or what failed.
+/// Returns 0, or the errno of the failure.
 int writeTo(const std::string& file, const std::string& text) {
   const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOCTTY, 0666);
   if (fd < 0) return errno;
@@ -59,7 +59,8 @@ Result<int> openRegular(const std::string& name) {
   const std::string& file = *where;
   struct stat info{};
   if (stat(file.c_str(), &info) != 0) return cannotBeRead(errno);
-  // checked before it is opened: opening a device may already move something, and a socket has no better message
+  // Checked before the file is opened: opening a device may already have an effect, and opening a socket gives an error
+  // that says less.
   if (std::string other = notAFile(typeOf(info.st_mode)); !other.empty()) return Error{std::move(other)};
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (fd < 0) return cannotBeRead(errno);

@@ -7,7 +7,7 @@
 
 namespace hapticd {
 
-/// What went wrong, in words for the user: what failed, the measured state, the consequence and the cure.
+/// An error in words for the user: what failed, the measured state, the consequence, and how to fix it.
 struct Error {
   std::string message;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Memory without a name that is shared with another process by its descriptor. Seals keep the other side from making
-/// it shorter, which would end this process with a bus error at the next access.
+/// Memory without a file name that is shared with another process by its descriptor. Seals keep the other process from
+/// making the memory shorter; otherwise the next access would end this process with a bus error.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -13,24 +13,25 @@ namespace hapticd {
 
 class SealedMemory {
  public:
-  /// All of it is allocated at once, so a size given by mistake must not take the machine's memory.
+  /// Largest size. All of the memory is allocated at once, so a wrong size must not use up the machine's memory.
   static constexpr size_t kMostBytes = size_t{1} << 30;
 
-  /// Who may write apart from this process.
+  /// Which processes may write, besides this one.
   enum class Writers {
-    kAll,  ///< everybody who gets the descriptor
-    kOne   ///< nobody: no further writable mapping can be made, and write() is refused
+    kAll,  ///< every process that gets the descriptor
+    kOne   ///< no other process: no further writable mapping can be made, and write() is refused
   };
 
-  /// [main] The memory is zeroed, touched, and locked if possible. @param name for /proc, at most 200 bytes
+  /// [main] Makes memory that is zeroed, present, and locked if possible. @param name name shown in /proc, at most 200
+  /// bytes
   static Result<std::unique_ptr<SealedMemory>> create(const char* name, size_t bytes, Writers writers);
   ~SealedMemory();
   SealedMemory(const SealedMemory&) = delete;
   SealedMemory& operator=(const SealedMemory&) = delete;
 
   std::byte* data() const noexcept { return data_; }  ///< page-aligned
-  size_t bytes() const noexcept { return bytes_; }    ///< in whole pages, at least as much as was asked for
-  /// A descriptor to be passed on, which may outlive the object.
+  size_t bytes() const noexcept { return bytes_; }    ///< whole pages, at least the size asked for
+  /// Returns a new descriptor for another process; it may outlive the object.
   Result<Descriptor> share() const;
 
  private:

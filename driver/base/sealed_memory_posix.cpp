@@ -28,7 +28,7 @@ Result<std::unique_ptr<SealedMemory>> SealedMemory::create(const char* name, siz
   const size_t whole = (bytes + page - 1) / page * page;
   Descriptor fd(memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!fd) return cannotShare(whole, errno);
-  // allocated now, so that missing memory is an error here instead of a bus error in a tick
+  // allocated now, so that a lack of memory is an error here instead of a bus error in a tick
   int code = posix_fallocate(fd.get(), 0, static_cast<off_t>(whole));
   void* data = MAP_FAILED;
   if (code == 0) {

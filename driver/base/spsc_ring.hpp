@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A bounded ring between one writing and one reading thread: no lock, no allocation after construction, order kept.
+/// A bounded queue between one writing and one reading thread. It has no lock, allocates only at construction, and
+/// keeps the order.
 #pragma once
 #include <atomic>
 #include <bit>
@@ -28,7 +29,7 @@ class SpscRing {
     return true;
   }
 
-  /// [rt] False: empty.
+  /// [rt] Takes the oldest value. Returns false if the ring is empty.
   bool pop(T& value) noexcept HSP_RT {
     const size_t tail = tail_.load(std::memory_order_relaxed);
     if (tail == head_.load(std::memory_order_acquire)) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What a thread has used of its processor and of memory. A platform that does not measure it answers zeros: nothing
-/// that is computed in virtual time depends on these numbers.
+/// Measures how much processor time a thread has used, and how many page faults it had. A platform that cannot measure
+/// them returns zeros: nothing that is computed in virtual time depends on these numbers.
 #pragma once
 #include <cstdint>
 
@@ -8,9 +8,9 @@ namespace hapticd::os {
 
 /// Names the CPU clock of a thread, so that other threads can read it.
 using CpuClock = int;
-constexpr CpuClock kNoCpuClock = 1;  ///< CLOCK_MONOTONIC until the thread has named its own clock
+constexpr CpuClock kNoCpuClock = 1;  ///< CLOCK_MONOTONIC, used until the thread has named its own clock
 
-/// [rt] Page faults (minor and major) of the calling thread so far.
+/// [rt] Returns the number of page faults (minor and major) of the calling thread so far.
 long pageFaultsOfThread() noexcept;
 
 /// [rt] CPU clock of the calling thread, for other threads to read.
@@ -20,7 +20,7 @@ uint64_t cpuTime(CpuClock clock) noexcept;
 /// [rt] CPU time [ns] that the calling thread has used.
 uint64_t cpuTimeOfThread() noexcept;
 
-/// [any] True if the thread lost its processor since the last call, so that others used time. A system call.
+/// [any] True if the kernel took the processor from the calling thread since the last call. It makes a system call.
 bool wasPreempted() noexcept;
 
 /// [rt] Wakes at most `most` threads, of any process, that wait for a word of shared memory to change; never waits.

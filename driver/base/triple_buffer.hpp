@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The newest value from one writing to one reading thread: the writer never waits, the reader never sees half a value,
-/// older values are lost.
+/// Passes the newest value from one writing to one reading thread. The writer never waits, the reader never sees a half
+/// written value, and older values are lost.
 #pragma once
 #include <array>
 #include <atomic>
@@ -19,14 +19,14 @@ class TripleBuffer {
   /// [rt] Makes the back slot the newest value.
   void publish() noexcept HSP_RT { back_ = middle_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex; }
 
-  /// [rt] True if a newer value than the last one has come, which front() then gives.
+  /// [rt] True if a new value has come since the last call; front() then returns it.
   bool update() noexcept HSP_RT {
     if ((middle_.load(std::memory_order_relaxed) & kFresh) == 0) return false;
     front_ = middle_.exchange(front_, std::memory_order_acq_rel) & kIndex;
     return true;
   }
 
-  /// [rt] The newest value at the last update(); it belongs to the reader.
+  /// [rt] Returns the value that was the newest at the last update(); it belongs to the reader.
   const T& front() const noexcept HSP_RT { return slots_[front_].value; }
 
  private:

@@ -51,7 +51,7 @@ int printSchema(const std::string& format) {
   return kWorked;
 }
 
-/// The scene, with the arm that `run` takes where the scene names none.
+/// Returns the scene, with the arm that `run` uses if the scene names none.
 scene::Scene withArm(scene::Scene scene) {
   if (const auto file = host::shippedFile(scene::kDefaultDevice); scene.devices.empty() && file)
     if (auto loaded = scene::loadDevice(*file, catalog()); loaded.device) {
@@ -74,8 +74,8 @@ hdv_info infoOf(const scene::Device& device) {
   return info;
 }
 
-/// Warns of contacts that cannot be stable. Only simulated arms are opened: `check` touches no hardware, and takes what
-/// the file of another one says; `run` warns of it as well.
+/// Warns of contacts that cannot be stable. Only simulated arms are opened, because `check` touches no hardware. For a
+/// real arm the numbers of its file are used. `run` gives these warnings as well.
 document::Problems unstable(const scene::Scene& scene, const std::vector<double>& stiffness) {
   document::Problems warnings = tune::fastPaths(scene);
   for (const scene::Device& device : scene.devices) {
@@ -93,15 +93,16 @@ document::Problems unstable(const scene::Scene& scene, const std::vector<double>
                                        [](const scene::Value& value) { return value.id == "wire"; });
     if (described && info.max_stiffness <= 0 &&
         std::any_of(stiffness.begin(), stiffness.end(), [](double k) { return k > 0; }))
-      document::report(warnings, device.place.file.empty() ? document::Place{device.file.string()} : device.place,
-                       "parameters.device.max_stiffness",
-                       "not given, so nobody knows whether " + device.name +
-                           " bears these models; expected what was found stable, begin with 100 N/m");
+      document::report(
+          warnings, device.place.file.empty() ? document::Place{device.file.string()} : device.place,
+          "parameters.device.max_stiffness",
+          "not given, so it is unknown whether " + device.name +
+              " is stable with these models; give the stiffness that was found stable, and begin with 100 N/m");
   }
   return warnings;
 }
 
-/// A bound for programs above the arm's own limit has no effect.
+/// Warns of a bound for programs (clients.max_force) above the arm's own limit, because it has no effect.
 document::Problems idleBounds(const scene::Scene& scene) {
   document::Problems warnings;
   for (const scene::Device& device : scene.devices) {
@@ -109,12 +110,13 @@ document::Problems idleBounds(const scene::Scene& scene) {
     if (bound > 0 && scene.clients.max_force > bound)
       document::report(warnings, document::Place{scene.file.string()}, "clients.max_force",
                        document::numberText(scene.clients.max_force) + " N, but " + device.name + " gives " +
-                           document::numberText(bound) + " N at most: programs get no more; expected that or less");
+                           document::numberText(bound) +
+                           " N at most, so programs get no more; expected this force or less");
   }
   return warnings;
 }
 
-/// Names what `run` leaves out: a scene that seems correct would lack a model.
+/// Warns of models that `run` would leave out because their plugin is in quarantine.
 document::Problems quarantinedModels(const scene::Scene& scene) {
   document::Problems warnings;
   const auto dir = watch::stateFolder();
@@ -123,7 +125,7 @@ document::Problems quarantinedModels(const scene::Scene& scene) {
     for (size_t i = 0; i < scene.models.size(); ++i)
       if (entry.holds(scene.models[i].plugin, host::identityOnDisk(scene.models[i].library)))
         document::report(warnings, scene.models[i].place, "models[" + std::to_string(i) + "].plugin",
-                         entry.plugin + " is in quarantine, as it ended an earlier run by " + entry.reason +
+                         entry.plugin + " is in quarantine, because it ended an earlier run by " + entry.reason +
                              "; runs leave " + scene.models[i].name +
                              " out; once the plugin is repaired: hapticd plugin clear " + entry.plugin);
   return warnings;
@@ -133,10 +135,10 @@ document::Problems quarantinedModels(const scene::Scene& scene) {
 struct Verdict {
   std::string file;
   document::Problems problems, warnings;
-  bool whole = true;  ///< false: something that checks need is missing or wrong, so these were left out
+  bool whole = true;  ///< false if some checks were left out, because something that they need is missing or wrong
 };
 
-/// True if a key such as "models[3].pose" is about one of these models.
+/// Returns true if a key such as "models[3].pose" is about one of these models.
 bool isOfThese(const std::string& key, const std::vector<bool>& models) {
   constexpr std::string_view kModels = "models[";
   if (key.rfind(kModels, 0) != 0) return false;
@@ -144,7 +146,7 @@ bool isOfThese(const std::string& key, const std::vector<bool>& models) {
   return index < models.size() && models[index];
 }
 
-/// A scene with problems has other models, in which a person would find the next problem only after these were mended.
+/// Tries the models without problems in a scene that has problems, so that the user sees all problems at once.
 void tryTheRest(const CheckArguments& options, Verdict& verdict) {
   const auto draft = scene::sceneDraft(verdict.file, catalog());
   verdict.whole = !draft && std::none_of(verdict.problems.begin(), verdict.problems.end(),
@@ -168,7 +170,7 @@ void tryTheRest(const CheckArguments& options, Verdict& verdict) {
     if (!isOfThese(one.key, unsound)) verdict.warnings.push_back(one);
 }
 
-/// What is in order, and yet cannot be meant, or cannot be stable.
+/// Adds warnings about what is allowed but was hardly meant, or cannot be stable.
 void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckArguments& options, Verdict& verdict) {
   document::Problems more = unstable(full, trial.stiffness);
   for (const document::Problem& one : lateVelocity(full, trial.needs_velocity)) more.push_back(one);
@@ -185,7 +187,7 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
   verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
 }
 
-/// What no stage objects to and nobody can mean; a value is told of once, as others know more of it.
+/// Adds warnings about unusual values. A value that has a warning already gets no second one.
 void addUnusual(const scene::Scene& scene, const ModelBoxes& boxes, Verdict& verdict) {
   document::Problems more = unusualValues(scene, boxes, catalog());
   for (const document::Problem& one : unusualSettings(scene, boxes)) more.push_back(one);
@@ -199,7 +201,8 @@ void addUnusual(const scene::Scene& scene, const ModelBoxes& boxes, Verdict& ver
       verdict.warnings.push_back(one);
 }
 
-/// The modules of a scene's arms: what runs would refuse, or crash in, is told before any of them is loaded here.
+/// Tries the modules of a scene's arms in child processes, before any of them is loaded here, and returns what a run
+/// would refuse or where it would crash.
 document::Problems badModules(const scene::Scene& scene) {
   document::Problems problems;
   for (size_t i = 0; i < scene.devices.size(); ++i) {
@@ -208,7 +211,7 @@ document::Problems badModules(const scene::Scene& scene) {
     if (trial.error.empty()) continue;
     const document::Problems placed = tryDevice(device.file, catalog());
     problems.insert(problems.end(), placed.begin(), placed.end());
-    if (!placed.empty()) continue;  // else it is what the scene says of the arm
+    if (!placed.empty()) continue;  // otherwise the problem is in the scene
     const document::Place place =
         device.place.file.empty() ? document::Place{device.file.string()} : document::Place(device.place);
     document::report(
@@ -218,14 +221,15 @@ document::Problems badModules(const scene::Scene& scene) {
   return problems;
 }
 
-/// What `run` would refuse once it opens the arms.
+/// Adds problems that `run` would find when it opens the arms.
 void addRefusals(const scene::Scene& full, bool needs_velocity, Verdict& verdict) {
   for (const document::Problems& problems :
        {refusedArms(full, needs_velocity), refusedVelocity(full, needs_velocity, verdict.warnings)})
     verdict.problems.insert(verdict.problems.end(), problems.begin(), problems.end());
 }
 
-/// Where a device file that a scene names is wrong, its module tells the rest of it in the same round.
+/// If a device file that a scene names has problems, its module is asked for the rest of them, so that the user sees
+/// all at once.
 void addOfDevices(Verdict& verdict) {
   std::set<std::string> others;
   for (const document::Problem& one : verdict.problems)
@@ -235,7 +239,7 @@ void addOfDevices(Verdict& verdict) {
   document::sortByPlace(verdict.problems);
 }
 
-/// Where nobody knew the place of a key, and its file has it; and what two have found is told once.
+/// Finds the line of each warning that has only a key, and removes warnings that occur twice.
 void placeWarnings(document::Problems& warnings) {
   document::Problems once;
   for (document::Problem& one : warnings) {
@@ -339,7 +343,7 @@ int check(const CheckArguments& options) {
   std::fflush(stdout);
   std::fprintf(stderr, "%zu problem%s in %zu of %zu file%s%s\n", problems, problems == 1 ? "" : "s", bad_files,
                options.files.size(), options.files.size() == 1 ? "" : "s",
-               whole ? "" : "; some checks need these mended first, and may find more");
+               whole ? "" : "; some checks can run only after these are corrected, and may find more");
   return kBadInput;
 }
 
@@ -350,7 +354,7 @@ void addCheck(const Command& app, int& exit_code) {
   const Command command = app.addSubcommand("check", "Validate scene, device and daemon files; print every problem.");
   command.addOption("files", options->files, "files to check");
   command.addOption("--device", options->device,
-                    "device file to check scenes with instead of their own, as run takes it");
+                    "check the scenes with this device file instead of their own (as hapticd run --device)");
   command.addOption("--schema", options->schema, "print the JSON Schema of a format instead, for editors")
       .oneOf({"scene", "device", "daemon"});
   command.addFlag("--quiet,-q", options->quiet, "print nothing about files without problems");
@@ -360,9 +364,9 @@ void addCheck(const Command& app, int& exit_code) {
       "Each problem is one line: file:line:column: key: what is wrong, and what was expected.\nThe exit code is 2 if "
       "there is a problem. If a scene has none, its models are set up once, because only\na plugin can check some "
       "files, such as geometry. A warning names each setting that cannot be stable on\nthe device, with the bound and "
-      "the nearest stable setting. On simulated arms the hand then goes its way once\nin virtual time: warnings tell "
-      "of a hand that meets no model, of forces that nobody feels or that the limits\ncut, and of buttons that do not "
-      "click. Warnings do not affect the exit code.\n\nExample:\n  hapticd check "
+      "the nearest stable setting. If the arm is simulated, its hand then runs its\nscript once in virtual time. "
+      "Warnings report a hand that touches no model, a force that is too small to feel or that\nthe limits cut, and a "
+      "button that does not click. Warnings do not affect the exit code.\n\nExample:\n  hapticd check "
       "config/scenes/teapot.yaml config/devices/simulated-premium15.yaml\n  hapticd check config/scenes/sphere.yaml "
       "--device my-arm.yaml\n  hapticd check --schema scene > "
       "scene.schema.json");

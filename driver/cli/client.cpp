@@ -31,7 +31,7 @@ struct ClientArguments {
   bool env = false;
 };
 
-/// The folder of hapticd's own libHD.so.
+/// Returns the folder of hapticd's own libHD.so.
 Result<std::string> libraryFolder() {
   std::error_code error;
   const fs::path folder = (host::executableDir() / ".." / "lib" / "hapticd" / "hdapi").lexically_normal();
@@ -57,10 +57,10 @@ void passOn(int signal) {
   if (program > 0) kill(static_cast<pid_t>(program), signal);
 }
 
-/// Called in a child, which must end when `hapticd client` ends, in whatever way. It stays so over execve.
+/// Called in a child process: makes it end when `hapticd client` ends, in whatever way, also after execve.
 void endWith(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() != parent) std::_Exit(kFailed);  // it ended before
+  if (getppid() != parent) std::_Exit(kFailed);  // the parent has already ended
 }
 
 /// Called in the child, which becomes the program in `words`. If `silent`, what it prints is dropped.
@@ -85,7 +85,7 @@ int endOf(pid_t child) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  constexpr int kBySignal = 128;  // as shells say it
+  constexpr int kBySignal = 128;  // exit code of a program that a signal ended, as in shells
   return WIFEXITED(status) ? WEXITSTATUS(status) : kBySignal + WTERMSIG(status);
 }
 
@@ -111,7 +111,8 @@ Result<pid_t> startDaemon(const ClientArguments& options) {
   }
   kill(child, SIGTERM);
   endOf(child);
-  return Error{"the daemon did not answer within 30 s\n  fix: start it by itself (hapticd run) and see what it says"};
+  return Error{
+      "the daemon did not answer within 30 s\n  fix: start the daemon by itself (hapticd run) and read its messages"};
 }
 
 int runWithDaemon(const ClientArguments& options, const std::vector<std::string>& words) {
@@ -135,13 +136,15 @@ int client(const ClientArguments& options, const std::vector<std::string>& words
   }
   if (words.empty()) return fail(kBadInput, "no program is named, expected: hapticd client PROGRAM [ARGUMENTS]");
   if (words.front().front() == '-')
-    return fail(kBadInput,
-                words.front() + ": unknown option, expected --name, --scene or --env, then PROGRAM and its own");
+    return fail(kBadInput, words.front() +
+                               ": unknown option; expected --name, --scene or --env before PROGRAM (the options of "
+                               "PROGRAM come after it)");
   setenv("LD_LIBRARY_PATH", path.c_str(), 1);
   setenv("HAPTICD_NAME", options.name.c_str(), 1);
   if (!isRunning(options.name)) return runWithDaemon(options, words);
   if (!options.scene.empty())
-    return fail(kBadInput, "a daemon runs as \"" + options.name + "\" already, so that --scene has no effect\n  fix: " +
+    return fail(kBadInput, "a daemon runs as \"" + options.name +
+                               "\" already, so --scene would have no effect\n  fix: " +
                                "leave --scene out, or choose another --name");
   become(words, false);
 }
@@ -152,13 +155,14 @@ void addClient(const Command& app, int& exit_code) {
   auto options = std::make_shared<ClientArguments>();
   const Command command = app.addSubcommand("client", "Run an OpenHaptics (HDAPI) program on a daemon's arm.");
   command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
-  command.addOption("--scene", options->scene, "scene of the daemon that is started where none runs");
+  command.addOption("--scene", options->scene, "scene for the daemon that this command starts if none runs");
   command.addFlag("--env", options->env, "print the environment that the program needs, for a shell");
   command.takesForeignCommandLine();  // the options after PROGRAM belong to that program
   command.footer(
-      "The program finds hapticd's own libHD.so and the daemon of --name. Where none runs, one is started with the\n"
-      "simulated arm, and ends with the program, also where this command is killed. Options of this command stand\n"
-      "before PROGRAM; its exit code is the program's.\n\n"
+      "The program uses hapticd's libHD.so and connects to the daemon of --name. If no such daemon runs, this command\n"
+      "starts one with the simulated arm. That daemon ends with the program, even if this command is killed. Options "
+      "of\n"
+      "this command stand before PROGRAM; its exit code is the program's.\n\n"
       "With real-time priority, the program's servo loop looks for each tick without sleeping from 100 us before it "
       "is\n"
       "due (a tenth of the period at most). HAPTICD_LISTEN in the environment sets this time: 0 to 200 us.\n\n"

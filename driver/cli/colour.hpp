@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Colour for verdicts on a terminal.
+/// Colours verdicts on a terminal.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -8,8 +8,8 @@ namespace hapticd::cli {
 
 enum class Colour : uint8_t { kGood, kWarning, kBad };
 
-/// [main] Colours the word where standard output is a terminal with colours and NO_COLOR is not set. Verdicts alone
-/// have a colour, and the word says the same without it.
+/// [main] Returns the word with colour if standard output is a terminal with colours and NO_COLOR is not set, otherwise
+/// the plain word. Only verdicts have a colour, and the colour adds nothing to the meaning of the word.
 std::string coloured(const std::string& word, Colour colour);
 
 }  // namespace hapticd::cli

@@ -23,11 +23,11 @@ Settings& settings() {
   return instance;
 }
 
-/// Errors of modules that wait, because a failing set-up will report them.
+/// Errors of modules that are kept for the message of a failing set-up.
 struct Waiting {
   std::mutex mutex;
   bool open = false;
-  std::vector<std::pair<std::string, std::string>> errors;  ///< who, text
+  std::vector<std::pair<std::string, std::string>> errors;  ///< sender and text of each error
 };
 
 Waiting& waiting() {
@@ -35,7 +35,7 @@ Waiting& waiting() {
   return instance;
 }
 
-/// The daemon file that is used, or "" where the defaults hold.
+/// Returns the daemon file that is used, or "" if the defaults are used.
 std::filesystem::path daemonFile() {
   if (!settings().config_file.empty()) return settings().config_file;
   if (const char* named = std::getenv("HAPTICD_CONFIG"); named != nullptr && named[0] != '\0') return named;

@@ -21,36 +21,37 @@ constexpr int kWorked = 0;                          ///< exit code: worked
 constexpr int kFailed = 1;                          ///< exit code: failed while running
 constexpr int kBadInput = command_line::kBadUsage;  ///< exit code: bad input or usage
 
-/// [main] Why a picture, which is always SVG, cannot have this name; "": it can.
+/// [main] Returns why a picture cannot have this file name (pictures are always SVG), or "" if it can.
 std::string wrongPicture(const std::string& file);
 
-/// Prints "error: MESSAGE" and gives back the exit code.
+/// Prints "error: MESSAGE" and returns the exit code.
 int fail(int exit_code, const std::string& message);
 
-/// Messages of plugins and modules, one per line, on standard error.
+/// Prints a message of a plugin or module as one line on standard error.
 void logToTerminal(int level, const std::string& who, const std::string& text);
 
-/// While an object of this type lives, errors of plugins and modules wait. A set-up that fails because of them reports
-/// them in its own message, so that they are reported once.
+/// While an object of this type lives, errors of plugins and modules are kept instead of printed. If the set-up fails
+/// because of them, its own message contains them, so that each is reported once.
 class SetupErrors {
  public:
   SetupErrors();
   ~SetupErrors() { tell(); }
   SetupErrors(const SetupErrors&) = delete;
   SetupErrors& operator=(const SetupErrors&) = delete;
-  /// [any] True if this message is an error, which waits from now on.
+  /// [any] Returns true if this message is an error that is kept for now.
   static bool keeps(int level, const std::string& who, const std::string& text);
-  /// [main] Reports what waits, and lets nothing wait any more.
+  /// [main] Prints the kept errors; later ones are printed at once.
   static void tell();
 };
 
-/// The options --config and --plugin-path, which stand before the subcommand.
+/// Adds the options --config and --plugin-path, which stand before the subcommand.
 void addGlobalOptions(const Command& app);
 
-/// The daemon file of this machine; a file with problems ends the program with exit code 2.
+/// Returns the daemon file of this machine. If the file has problems, the program ends with exit code 2.
 const scene::Daemon& daemonSettings();
 
-/// Plugins and modules, found with the search path of options, daemon file and environment.
+/// Returns the plugins and modules in the search path, which comes from the options, the daemon file and the
+/// environment.
 host::Catalog& catalog();
 
 /// Prints every problem as file:line:column: key: what is wrong, and what was expected.
@@ -60,8 +61,8 @@ void printProblems(const document::Problems& problems, std::FILE* out);
 void printWarnings(document::Problems warnings, std::FILE* out);
 
 /// Loads a scene, or prints every problem on standard error.
-/// @param device_file replaces the scene's devices; empty: as the scene says
-/// @param default_device takes the simulated arm if the scene names none; without it, devices may be empty
+/// @param device_file device file that replaces the scene's devices; empty to keep them @param default_device true uses
+/// the simulated arm if the scene names no device; false leaves the list of devices empty then
 std::optional<scene::Scene> loadSceneOrReport(const std::string& file, const std::string& device_file = "",
                                               bool default_device = true);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Every subcommand of `hapticd`, in the order of `--help`. A new command is a file of its own and a line in each list.
+/// Every subcommand of `hapticd`, in the order of `--help`. A new command needs a file of its own and a line in each
+/// list.
 #pragma once
 #include "cli/command.hpp"
 
@@ -7,7 +8,7 @@ namespace hapticd::cli {
 
 using AddCommand = void(const Command& app, int& exit_code);
 
-// clang-format off: a command is a line
+// clang-format off: one command per line
 AddCommand addCheck, addClient, addCompletion, addCtl, addDevice, addDeviceCalibrate, addDeviceCheck, addDeviceControls, addDeviceDecode,
     addDeviceKinematics, addDeviceNew, addDeviceRecord, addDeviceTwin, addDoctor, addExplain, addExport, addImport, addManual, addPart,
     addPlot, addPlugin, addPluginCheck, addPluginNew, addReplay, addRun, addTop, addTrace, addTune, addView;

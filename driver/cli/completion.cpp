@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd completion`: completion scripts for bash, zsh and fish, made of the option table itself.
+/// `hapticd completion`: makes completion scripts for bash, zsh and fish from the option table.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -32,7 +32,7 @@ bool isFile(const Option& argument) {
   return std::find(kFiles.begin(), kFiles.end(), argument.positionalName()) != kFiles.end();
 }
 
-/// The words of a validator such as "TEXT:{scene,device}"; other validators have none.
+/// Returns the words of a validator such as "TEXT:{scene,device}"; none for other validators.
 std::vector<std::string> choicesOf(const Option& option) {
   const std::string type = option.valueName();
   const size_t begin = type.find('{'), end = type.find('}');
@@ -76,7 +76,7 @@ std::string quoted(const std::string& text, bool zsh = false) {
   return result;
 }
 
-/// Lines of shell, the same in bash and zsh, that find the command in the words before the cursor.
+/// Returns lines of shell, for bash and zsh, that find the command in the words before the cursor.
 std::string findPath(const std::vector<CommandNode>& nodes, const std::string& words) {
   std::string text = "  local path_='' word_\n  for word_ in " + words + "; do\n    case \"$path_ $word_\" in\n      ";
   for (size_t i = 1; i < nodes.size(); ++i) {
@@ -189,7 +189,7 @@ std::string fish(const std::vector<CommandNode>& nodes) {
   return text;
 }
 
-/// The names that a running daemon knows: "models" or "devices".
+/// Returns the names of the "models" or "devices" of the running daemon.
 std::vector<std::string> namesOfDaemon(const std::string& kind) {
   std::vector<std::string> names;
   const auto answer = control::ask(status::runtimeFolder(false) + "/hapticd.sock", R"({"do":"snapshot"})");
@@ -199,7 +199,7 @@ std::vector<std::string> namesOfDaemon(const std::string& kind) {
   return names;
 }
 
-/// The files of a shipped folder.
+/// Returns the files in the folder of a shipped file.
 std::vector<std::string> filesIn(const char* one_of_them) {
   std::vector<std::string> names;
   const auto file = host::shippedFile(one_of_them);
@@ -229,7 +229,7 @@ void addCompletion(const Command& app, int& exit_code) {
   const Command command = app.addSubcommand("completion", "Print the completion script of a shell.");
   command.addOption("shell", *shell, "bash, zsh or fish").oneOf({"bash", "zsh", "fish"});
   auto kind = std::make_shared<std::string>();
-  command.addOption("--names", *kind, "print the names that the script offers instead")
+  command.addOption("--names", *kind, "print only the names that the script completes, not the script")
       .oneOf({"plugins", "models", "devices", "scenes", "device-files"})
       .excludes("shell");
   command.footer("Example:\n  source <(hapticd completion bash)");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd ctl`: asks a running daemon.
+/// `hapticd ctl`: sends requests to a running daemon.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -34,7 +34,7 @@ struct CtlArguments {
   bool consent = false, follow = false, tells_socket = false;
 };
 
-/// Writes the triangles of an answer.
+/// Writes the triangles of an answer as an OBJ file.
 int saveObj(const Json& json, const std::string& file) {
   if (const std::string wrong = whyNotWritten(file, objKind()); !wrong.empty()) return fail(kBadInput, wrong);
   std::ofstream out(file);
@@ -59,7 +59,7 @@ std::string lineOf(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// `socket`: prints only the path, for programs that connect to it; it is an error if nobody serves it.
+/// `socket`: prints only the path, for programs that connect to it; fails if no daemon serves it.
 int showSocket(const CtlArguments& options) {
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());
@@ -96,7 +96,7 @@ int sendScene(const CtlArguments& options, Json request) {
   }
   auto files = openNamed(request["file"].get<std::string>());
   if (!files && !again) return fail(kFailed, files.error());
-  if (!files) request.erase("file");  // the daemon may read its own scene, even where only the daemon's user may
+  if (!files) request.erase("file");  // the daemon may read its own scene, even if only the daemon's user may
   if (files) request["files"] = files->names;
   const std::vector<int> numbers = files ? files->numbers() : std::vector<int>();
   return show(options, client->askWith(lineOf(request), numbers));
@@ -120,7 +120,7 @@ int stop(const CtlArguments& options, const std::string& line) {
                   "end it with kill PID (hapticd top shows it)");
 }
 
-/// Prints the triangles, and then each frame of vertices as it comes, one line of JSON each, until nobody reads them or
+/// Prints the triangles, and then each new frame of vertices, one line of JSON each, until the reader of the output or
 /// the daemon ends.
 int follow(const CtlArguments& options) {
   constexpr Nanoseconds kPause = 4'000'000;  // a quarter of a frame's duration
@@ -128,7 +128,7 @@ int follow(const CtlArguments& options) {
   if (!client) return fail(kFailed, client.error());
   RealClock clock(0);
   uint64_t seen = 0;
-  for (const char* word : {"vertices", "geometry"}) {  // the first request tells whether there are any
+  for (const char* word : {"vertices", "geometry"}) {  // if the model has no frames, the first request fails
     const auto answer = client->ask(lineOf({{"do", word}, {"model", options.model}}));
     const Json json = answer ? document::parseJson(*answer) : Json();
     if (!answer) return fail(kFailed, answer.error());
@@ -140,7 +140,7 @@ int follow(const CtlArguments& options) {
     const auto answer = client->ask(lineOf({{"do", "vertices"}, {"model", options.model}, {"after", seen}}));
     if (!answer) return endOfStream(options);
     const Json json = document::parseJson(*answer);
-    if (!json.is_object() || !json.value("ok", false)) break;  // otherwise the model has left
+    if (!json.is_object() || !json.value("ok", false)) break;  // the model was removed
     if (json.contains("xyz")) std::printf("%s\n", answer->c_str());
     seen = json.value("frame", seen);
     clock.waitUntil(clock.now() + kPause);
@@ -148,7 +148,7 @@ int follow(const CtlArguments& options) {
   return kWorked;
 }
 
-/// The example in a request's own --help.
+/// Returns the example in the --help of a request.
 std::string exampleOf(const std::string& word) {
   static const std::pair<const char*, const char*> kExamples[] = {
       {"status", "status"},
@@ -175,7 +175,7 @@ std::string exampleOf(const std::string& word) {
   return "";
 }
 
-/// A subcommand that sends the request that `build` makes from the options.
+/// Adds a subcommand that sends the request that `build` makes from the options.
 template <class Build>
 const Command addRequest(const Command& parent, const char* word, const char* doc,
                          const std::shared_ptr<CtlArguments>& options, int& exit_code, Build build) {
@@ -225,7 +225,7 @@ void addFeatureRequest(const Command& ctl, const std::shared_ptr<CtlArguments>& 
 int showEvents(const CtlArguments& options) {
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());
-  uint64_t end = UINT64_MAX;  // the first event that comes without being asked for
+  uint64_t end = UINT64_MAX;  // number of the first event that the subscription sends
   for (const char* word : {"subscribe", "events"}) {
     if (word == std::string("subscribe") && !options.follow) continue;
     const auto answer = client->ask(lineOf({{"do", word}}));
@@ -263,7 +263,7 @@ void addLead(const Command& ctl, const std::shared_ptr<CtlArguments>& options, i
       ctl.addSubcommand("lead", "Move a kinematic model, or the simulated hand, by lines of standard input.");
   lead.addOption("model", options->model, "name of the model");
   lead.addOption("--hand", options->hand, "device whose simulated hand is led, instead of a model");
-  lead.addOption("--hold", options->hold, "seconds that the lead goes on after the last line; 1 unless given")
+  lead.addOption("--hold", options->hold, "how long the lead goes on after the last line [s]; default: 1")
       .within(0, 1e9);
   lead.footer(
       "A line is \"x y z\" in m, or \"x y z qw qx qy qz\", world frame. The model follows with at most 1 m/s and\n"
@@ -302,7 +302,7 @@ void addModelRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& o
   set.addOption("parameter", options->parameter, "a live parameter; `hapticd ctl list` shows them").required();
   set.addOption("value", options->value, "a number in the parameter's unit, or a word of a choice").required();
   set.addFlag("--consent", options->consent,
-              "the person who holds the arm agrees; needed where the change may be felt suddenly");
+              "the person who holds the arm agrees; needed if the change may be felt suddenly");
 
   const Command get = addRequest(ctl, "get", "Show the value of a parameter of a model, or of all.", options, exit_code,
                                  [options](Json& json) {
@@ -310,7 +310,7 @@ void addModelRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& o
                                    if (!options->parameter.empty()) json["parameter"] = options->parameter;
                                  });
   get.addOption("model", options->model, "name of the model").required();
-  get.addOption("parameter", options->parameter, "one of its plugin's; all without");
+  get.addOption("parameter", options->parameter, "name of one parameter; if it is left out, all parameters are shown");
 
   const Command move = addRequest(ctl, "move", "Move a kinematic model.", options, exit_code, [options](Json& json) {
     json["model"] = options->model, json["position"] = options->position;
@@ -320,7 +320,9 @@ void addModelRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& o
   move.addOption("model", options->model, "name of the model").required();
   move.addOption("--position", options->position, "x y z [m], world frame").required().expected(3);
   move.addOption("--orientation", options->orientation, "w x y z, a unit quaternion").expected(4);
-  move.addOption("--seconds", options->seconds, "shortest duration of the motion [s]; default: 0.2 m/s at most");
+  move.addOption("--seconds", options->seconds,
+                 "duration of the motion [s]; the daemon takes longer if this would be too fast; default: a speed of "
+                 "at most 0.2 m/s");
 }
 
 void addSceneRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {

@@ -25,9 +25,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What the servo would refuse is reported here, where its line number is known.
+/// Reports here what the servo would refuse, because the line number is known here.
 Result<hapticd_target> checked(const hapticd_target& target) {
-  constexpr double kFarthest = 10, kUnitWithin = 1e-3;  // m; as in control.md
+  constexpr double kFarthest = 10, kUnitWithin = 1e-3;  // [m]; deviation of the length from 1; as in control.md
   const auto length = [](const double* of, size_t count) {
     double square = 0;
     for (size_t i = 0; i < count; ++i) square += of[i] * of[i];
@@ -39,7 +39,7 @@ Result<hapticd_target> checked(const hapticd_target& target) {
   return target;
 }
 
-/// Reads three numbers, or seven; an error says what the line has instead.
+/// Reads three or seven numbers. An error says what was expected.
 Result<hapticd_target> targetOf(std::string line) {
   std::replace(line.begin(), line.end(), ',', ' ');
   std::vector<double> numbers;

@@ -6,13 +6,13 @@
 namespace hapticd::cli {
 
 struct LeadOptions {
-  std::string socket;  ///< of the daemon
-  std::string model;   ///< either a model
-  std::string hand;    ///< or a device whose simulated hand is led
+  std::string socket;  ///< control socket of the daemon
+  std::string model;   ///< name of the model to lead; empty if a hand is led
+  std::string hand;    ///< name of the device whose simulated hand is led; empty if a model is led
   double hold = 1;     ///< [s] how long the lead continues after the last line
 };
 
-/// [main] Leads by the lines of standard input until it ends. @return an exit code
+/// [main] Leads with one target per line of standard input, until the input ends. @return an exit code
 int leadByLines(const LeadOptions& options);
 
 }  // namespace hapticd::cli

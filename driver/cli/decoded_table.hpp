@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The table of `device decode` as one for `device encode`.
+/// Converts a table of `device decode` to one for `device encode`.
 #pragma once
 #include <cstddef>
 #include <string>

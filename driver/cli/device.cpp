@@ -91,13 +91,13 @@ int list() {
   return kWorked;
 }
 
-/// @param most [N] that the device file names for the arm; 0: it names none
+/// @param most [N] device.max_force of the device file; 0 if it is not given
 void printLimits(const scene::Limits& limits, double most) {
   const auto text = [](double value, const char* unit, const char* none) {
     return value == 0 ? std::string(none) : document::numberText(value) + " " + unit;
   };
   std::printf("limits\n  force      %s\n  torque     %s\n  slew       %s\n  velocity   %s\n  workspace  %s\n",
-              text(limits.force > 0 ? limits.force : most, "N", "none known: the motors alone bound it").c_str(),
+              text(limits.force > 0 ? limits.force : most, "N", "none known: only the motors bound it").c_str(),
               text(limits.torque, "N m", "the motors'").c_str(), text(limits.slew, "N/s", "none").c_str(),
               (limits.velocity ? text(*limits.velocity, "m/s", "none") : std::string("5 m/s on real hardware")).c_str(),
               text(limits.workspace, "m", "none").c_str());
@@ -107,7 +107,7 @@ void printLimits(const scene::Limits& limits, double most) {
                                        diagnostics::enableButtonText(*limits.enable.button))
                                           .c_str());
   std::printf("  ramps      %g s in, %g s out\n  passivity  %s\n", limits.ramp_in, limits.ramp_out,
-              !limits.passivity   ? "guarded unless tried on hardware"
+              !limits.passivity   ? "guarded, unless its description was tried on hardware"
               : *limits.passivity ? "guarded"
                                   : "not guarded");
 }
@@ -150,8 +150,8 @@ bool hasParameter(const hdv_class& module, const std::string& id) {
   return false;
 }
 
-/// What must be known before the arm is opened: whether anybody tried its description, and whether its weight is
-/// carried.
+/// Prints what a user must know before the arm is opened: whether its description was tried on hardware, and whether
+/// its weight is compensated.
 void printDoubts(const scene::Device& description, const host::DeviceInstance& device) {
   constexpr const char* kVerified = "device.verified";
   const bool tried = std::any_of(description.parameters.begin(), description.parameters.end(),
@@ -171,7 +171,7 @@ void logButNoErrors(int level, const std::string& who, const std::string& text) 
   if (level != HSP_LOG_ERROR) logToTerminal(level, who, text);
 }
 
-/// The facts for programs. It opens the arm if that is plugged in.
+/// Returns the facts for programs. Opens the arm if it is plugged in.
 Json infoJson(const scene::Device& description, host::DeviceInstance& device) {
   const Eigen::Vector3d& p = description.mount.position;
   const Eigen::Quaterniond& q = description.mount.orientation;

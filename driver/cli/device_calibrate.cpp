@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd device calibrate`: lets an arm find its zero, with the user's help. No force while it does.
+/// `hapticd device calibrate`: lets an arm find its zero, with the user's help. The arm gets no force meanwhile.
 #include <unistd.h>
 
 #include <memory>
@@ -19,7 +19,7 @@ struct CalibrationArguments {
   bool yes = false;
 };
 
-/// Waits for the user, if one is there.
+/// Waits until the user presses Enter, if standard input is a terminal.
 void waitForUser(const char* instructions, bool yes) {
   std::printf("%s\n", instructions);
   if (yes || isatty(STDIN_FILENO) == 0) return;
@@ -74,8 +74,10 @@ int calibrateDevice(const CalibrationArguments& options) {
 
 void addDeviceCalibrate(const Command& app, int& exit_code) {
   auto options = std::make_shared<CalibrationArguments>();
-  const Command command = app.subcommand("device").addSubcommand(
-      "calibrate", "Calibrate the encoders of an arm. The command says what you must do; no force is sent before.");
+  const Command command =
+      app.subcommand("device").addSubcommand("calibrate",
+                                             "Calibrate the encoders of an arm. The command tells you what to do. The "
+                                             "arm gets no force until it is calibrated.");
   command.addOption("file", options->file, "device file (YAML)").required();
   command.addFlag("-y,--yes", options->yes, "do not wait for Enter");
   command.footer("Example:\n  hapticd device calibrate config/devices/simulated-premium15.yaml");

@@ -34,7 +34,7 @@ bool isModuleFile(const std::string& file) {
          "ELF";
 }
 
-/// The arm of a device file, or the arms of a module file.
+/// Returns the arm of a device file, or the arms of a module file.
 Result<std::vector<scene::Device>> devicesOf(const ExamineArguments& options) {
   if (isModuleFile(options.file)) return device_check::devicesIn(options.file);
   const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
@@ -88,7 +88,7 @@ int sum(const std::vector<Outcome>& outcomes, const ExamineArguments& options, c
   const size_t left = device_check::tests().size() - outcomes.size();
   if (!options.json)
     std::printf("%zu tests, %d failed%s\n", outcomes.size(), failed,
-                left > 0 ? (", " + std::to_string(left) + " not run: first mend what stopped them").c_str() : "");
+                left > 0 ? (", " + std::to_string(left) + " not run: first correct what stopped them").c_str() : "");
   return failed;
 }
 
@@ -122,8 +122,8 @@ void addDeviceCheck(const Command& app, int& exit_code) {
       .within(0.1, 3600.0);
   command.footer(
       "Each test runs in a process of its own, so that a crash or a hang names the call in which it came. Opens the "
-      "arm if\nit is plugged in and reads it for half a second; every command says that the motors are off. Of an arm "
-      "that is not\nthere, the kinematics are tried. The exit code is 1 if a test fails.\n\n"
+      "arm if\nit is plugged in and reads it for half a second; every command says that the motors are off. If the "
+      "arm\nis not plugged in, only its kinematics are tested. The exit code is 1 if a test fails.\n\n"
       "Examples:\n  hapticd device check my-arm.yaml\n  hapticd device check build/my_arm.so --json");
   command.callback([options, &exit_code] { exit_code = check(*options); });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd device controls`: which controls of hazards one arm has.
+/// `hapticd device controls`: prints which controls (safety measures against hazards) one arm has.
 #include <memory>
 #include <string>
 
@@ -9,7 +9,7 @@
 namespace hapticd::cli {
 namespace {
 
-/// What each group of hazards of hazards.md is, in a few words.
+/// The hazards of hazards.md in groups, with a few words for each group.
 struct Against {
   const char *hazards, *words;
 };
@@ -31,7 +31,7 @@ constexpr Against kAgainst[] = {{"H4 H6 H8 H9 H13 H17 H21", "wrong numbers, faul
                                 {"H22", "a contact that buzzes"},
                                 {"H5", "an arm without its zero"}};
 
-/// The words for these hazards, or their codes where there are none.
+/// Returns the words for these hazards, or their codes if there are no words.
 std::string wordsOf(const std::string& hazards) {
   for (const Against& against : kAgainst)
     if (hazards == against.hazards) return against.words;
@@ -44,8 +44,8 @@ int controls(const std::string& file) {
   printProblems(problems, stderr);
   if (!found) return kBadInput;
   std::printf("%s: %s\n\n%-8s %-30s %-26s %s\n", found->arm.c_str(),
-              found->opened ? "plugged in" : "not plugged in; by its file and module alone", "", "control", "against",
-              "");
+              found->opened ? "plugged in" : "not plugged in; this is what its file and module say", "", "control",
+              "against", "");
   for (const diagnostics::Control& c : found->controls)
     std::printf("%-8s %-30s %-26s %s (%s)\n", nameOf(c.state), c.name.c_str(), wordsOf(c.hazards).c_str(),
                 c.text.c_str(), c.hazards.c_str());
@@ -56,8 +56,10 @@ int controls(const std::string& file) {
 }  // namespace
 
 void addDeviceControls(const Command& app, int& exit_code) {
-  const Command command = app.subcommand("device").addSubcommand(
-      "controls", "Show which controls of hazards an arm has. Opens the arm if it is plugged in, but moves nothing.");
+  const Command command =
+      app.subcommand("device").addSubcommand("controls",
+                                             "Show which safety measures (of driver/docs/hazards.md) an arm has. Opens "
+                                             "the arm if it is plugged in, but moves nothing.");
   auto file = std::make_shared<std::string>();
   command.addOption("file", *file, "device file (YAML)").required();
   command.footer("Example:\n  hapticd device controls config/devices/premium15.yaml");

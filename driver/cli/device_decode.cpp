@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd device decode` and `encode`: the wire format of a device file, tried on bytes without the arm.
+/// `hapticd device decode` and `encode`: apply the wire format of a device file to bytes, without the arm.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -54,7 +54,7 @@ capture::ArmFacts factsOf(const scene::Device& device, size_t joints) {
   return facts;
 }
 
-/// Prints all problems of the file, if it has any.
+/// Reads the device file, or prints all its problems.
 std::optional<Described> describedIn(const std::string& file, int& exit_code) {
   exit_code = kBadInput;
   const scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
@@ -114,7 +114,7 @@ int decode(const DecodeArguments& options) {
   return decoded.good() == decoded.reports.size() && decoded.lost == 0 ? kWorked : kFailed;
 }
 
-/// The first line of a table that is not empty or a comment.
+/// Returns the first line of a table that is neither empty nor a comment.
 std::string firstLine(const std::string& text) {
   std::istringstream in(text);
   std::string line;
@@ -122,7 +122,7 @@ std::string firstLine(const std::string& text) {
   return line;
 }
 
-/// "0.1 0.2 0.3" or "0.1;0.2": numbers, but not between commas.
+/// Returns true for "0.1 0.2 0.3" or "0.1;0.2": numbers without commas between them.
 bool lacksCommas(const std::string& line) {
   const size_t first = line.find_first_not_of(" \t"), end = line.find_first_of(" ;\t", first);
   if (end == std::string::npos || line.find(',') != std::string::npos) return false;
@@ -130,7 +130,7 @@ bool lacksCommas(const std::string& line) {
          line.find_first_not_of(" ;\t\r", end) != std::string::npos;
 }
 
-/// The same numbers, separated as the table needs them.
+/// Returns the same numbers, separated by commas.
 std::string withCommas(const std::string& line) {
   std::string text, word;
   for (std::istringstream in(line); in >> word;) {
@@ -141,7 +141,8 @@ std::string withCommas(const std::string& line) {
   return text;
 }
 
-/// The names of a table's columns: from its first line, or those that a command or a state begins with.
+/// Returns the names of a table's columns: those in its first line, or without a header the torques or positions of all
+/// joints.
 std::vector<std::string> namesIn(const std::string& text, const std::vector<std::string>& known, size_t joints) {
   std::string name;
   std::vector<std::string> names;
@@ -157,7 +158,7 @@ std::vector<std::string> namesIn(const std::string& text, const std::vector<std:
   return names;
 }
 
-/// Prints every row as a report, raw or in hexadecimal digits.
+/// Returns every row as a report, raw or in hexadecimal digits.
 Result<std::string> encodeTable(const DecodeArguments& options, const Described& described,
                                 const EncodeColumns& columns, const document::CsvTable& table) {
   std::string out;
@@ -181,7 +182,7 @@ Result<std::string> encodeTable(const DecodeArguments& options, const Described&
   return out;
 }
 
-/// Reads the table that is given, numbers alone; reports everything that is wrong.
+/// Reads the table of numbers from the input, or reports what is wrong with it.
 std::optional<std::string> tableOf(const DecodeArguments& options) {
   const auto text = contentOf(options.input);
   if (!text)
@@ -249,7 +250,8 @@ void addEncode(const Command& device, int& exit_code) {
   const Command command = device.addSubcommand("encode", "Write numbers as the bytes of an arm's reports.");
   command.addOption("file", options->file, "device file (YAML)").required();
   command.addOption("csv", options->input, "CSV file with the numbers; - for standard input").showDefault();
-  command.addFlag("--from-arm", options->from_arm, "write what the arm would send, instead of what it is sent");
+  command.addFlag("--from-arm", options->from_arm,
+                  "encode reports from the arm (input), instead of commands to the arm (output)");
   command.addFlag("--raw", options->raw, "write the bytes themselves instead of hexadecimal text");
   command.addOption("-o,--out", options->out, "file to write; - for standard output");
   command.footer(
@@ -259,9 +261,8 @@ void addEncode(const Command& device, int& exit_code) {
       "Without "
       "a\nheader they are the torques or, with --from-arm, the positions of all joints. Constants, counters, checksums "
       "and\nescapes are added. Tables of `device kinematics` are understood: tau1,... are the torques, q1,... the "
-      "positions with\n--from-arm, or x,y,z those of a tip in the device frame; its other columns are left out. Of a "
-      "table of `device "
-      "decode`\nthe good reports are taken.\n\n"
+      "positions with\n--from-arm, or x,y,z those of a tip in the device frame; its other columns are left out. In a "
+      "table\nwritten by `device decode`, only the rows of good reports are used.\n\n"
       "Example:\n  echo 0.1,0,-0.1 | hapticd device encode config/devices/woodenhaptics.yaml\n"
       "  echo 0.1,1.5,1.6 | hapticd device encode --from-arm config/devices/woodenhaptics.yaml | "
       "hapticd device decode config/devices/woodenhaptics.yaml");

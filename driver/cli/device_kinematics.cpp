@@ -132,7 +132,7 @@ class Table {
     return {};
   }
 
-  /// Names rows whose tip the arm cannot reach within its joint limits.
+  /// Returns the number of rows whose tip the arm cannot reach within its joint limits.
   size_t outside() const { return outside_; }
 
  private:
@@ -167,7 +167,7 @@ int kinematics(const KinematicsArguments& options) {
   auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
   if (!device) return fail(kFailed, device.error());
   const Inputs inputs{{options.joints, "the file of joints"}, {options.file, "the device file"}};
-  const OutputKind kind{"a table of this command (CSV)", {"q1,"}, kTipColumns};  // of any number of joints
+  const OutputKind kind{"a table of this command (CSV)", {"q1,"}, kTipColumns};  // for any number of joints
   if (const std::string wrong = whyNotWritten(options.out, kind, inputs); !wrong.empty()) return fail(kBadInput, wrong);
   auto rows = readRows(options.joints, (*device)->kinematics().joint_count);
   if (!rows) return fail(kBadInput, rows.error());

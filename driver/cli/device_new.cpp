@@ -38,7 +38,8 @@ double ofJoint(const std::vector<double>& list, int joint) {
   return list[list.size() == 1 ? 0 : static_cast<size_t>(joint)];
 }
 
-/// True for a chain whose axes are all parallel: its tip stays in a plane, and no force across that plane can be felt.
+/// Returns true for a chain whose axes are all parallel, because its tip stays in a plane and no force across that
+/// plane can be felt.
 bool isPlanar(const NewDeviceArguments& o) {
   const auto straight = [](double twist) { return std::abs(std::sin(twist)) < 1e-6; };
   return o.kind == "chain" && o.joints > 1 && std::all_of(o.twists.begin(), o.twists.end(), straight);
@@ -209,14 +210,14 @@ std::string armOf(const NewDeviceArguments& o) {
              listOf(o.torque));
 }
 
-/// How many bits a checksum has, in whole bytes, taken from its name: crc16-modbus, crc5-usb.
+/// Returns how many bits a checksum takes, in whole bytes, from its name: 16 for crc16-modbus, 8 for crc5-usb.
 int checksumBits(const std::string& name) {
   const size_t digits = name.find_first_of("0123456789");
   const int bits = digits == std::string::npos ? 8 : std::atoi(name.c_str() + digits);
   return std::clamp((bits + 7) / 8 * 8, 8, 64);
 }
 
-/// The checksum of the first `size` bytes, or a comment that shows how one is written.
+/// Returns the line for a checksum over the first `size` bytes, or a comment that shows how to write one.
 std::string checksumOf(const NewDeviceArguments& o, int size) {
   const bool given = !o.checksum.empty();
   const std::string name = given ? o.checksum : "crc16-modbus";
@@ -265,7 +266,8 @@ std::string wireOf(const NewDeviceArguments& o) {
   return text;
 }
 
-/// The block mount. Only the rest position of a PHANToM is known; that of another mechanism follows from its numbers.
+/// Returns the block `mount`. Only for a PHANToM is the rest position known here; for other mechanisms it depends on
+/// their dimensions.
 std::string mountOf(const NewDeviceArguments& o) {
   if (o.kind == "phantom")
     return "mount: {position: [0, 0, 0.09]}     # m: where its frame stands in the world; this one puts the tip at "
@@ -295,7 +297,7 @@ std::string textOf(const NewDeviceArguments& o) {
                       "in wire from 1\n"
                     : "",
       mountOf(o),
-      o.joints > 3 ? fmt::format("torque: {:.2g}, ", 0.1 * o.force) : "");  // N m: of that force at a handle of 0.1 m
+      o.joints > 3 ? fmt::format("torque: {:.2g}, ", 0.1 * o.force) : "");  // [N m] this force at a handle of 0.1 m
 }
 
 bool usableDeviceName(const std::string& name) {
@@ -350,7 +352,7 @@ int makeNew(const Command& command, NewDeviceArguments options) {
   if (isPlanar(options))
     std::printf(
         "\nnote: every axis of arm.dh is parallel, so the tip stays in a plane and feels no force across it\n"
-        "  fix: if your arm is not flat, its twists: --twists 1.5707963,0,0, or alpha in arm.dh\n");
+        "  fix: if your arm is not flat, give its twists: --twists 1.5707963,0,0, or alpha in arm.dh\n");
   return kWorked;
 }
 
@@ -365,12 +367,12 @@ void addDeviceNew(const Command& app, int& exit_code) {
   command.addOption("--bus", options->bus, "hid or bulk, both USB").showDefault();
   command.addOption("--id", options->id, "USB vendor:product, hexadecimal").showDefault();
   command.addOption("--kind", options->kind, "phantom, delta or chain").showDefault();
-  command.addOption("--joints", options->joints, "joints of a chain").showDefault().wholeWithin(1, 16);
+  command.addOption("--joints", options->joints, "number of joints of a chain").showDefault().wholeWithin(1, 16);
   const auto list = [command](const char* option, std::vector<double>& numbers, const char* doc) {
     command.addOption(option, numbers, doc).delimiter(',').oneValueEach();
   };
   list("--lengths", options->lengths, "link lengths [m], separated by commas");
-  list("--twists", options->twists, "of a chain: angles alpha from each joint's axis to the next [rad]; default: 0");
+  list("--twists", options->twists, "for a chain: angle alpha from each joint's axis to the next [rad]; default: 0");
   list("--counts", options->counts, "encoder counts of one motor turn, or one for each joint; default: 2000");
   list("--gear", options->gear, "motor turns of one joint turn, or one for each joint; default: 10");
   command.addOption("--bits", options->bits, "bits of a position in a report").showDefault();
@@ -378,7 +380,7 @@ void addDeviceNew(const Command& app, int& exit_code) {
       .showDefault()
       .wholeWithin(0, 255);
   command.addOption("--checksum", options->checksum,
-                    "of what the arm sends, by its name, such as crc16; default: none");
+                    "checksum of the arm's reports, by name, such as crc16; default: none");
   command.addOption("--buttons", options->buttons, "buttons").showDefault().wholeWithin(0, 32);
   list("--torque", options->torque, "largest torque of a joint [N m], or one for each; default: 0.5");
   command.addOption("--force", options->force, "limit of the force at the tip [N]").showDefault();

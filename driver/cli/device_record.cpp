@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd device record`: what an arm sends, as text that `decode` reads. Its motors stay off.
+/// `hapticd device record`: records what an arm sends, as text that `decode` reads. The motors stay off.
 #include <atomic>
 #include <csignal>
 #include <memory>
@@ -21,10 +21,10 @@ struct CaptureArguments {
 
 std::atomic<bool> g_stop{false};
 
-/// Where the transfers go.
+/// The file that gets the transfers, and their counts.
 struct Log {
   std::FILE* out = nullptr;
-  double until = 0;  ///< [s]
+  double until = 0;  ///< [s] end of the recording
   size_t from_arm = 0, to_arm = 0;
   bool full = false;
 };

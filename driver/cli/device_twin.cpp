@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd device twin`: a simulated arm with the mechanism of a real one.
+/// `hapticd device twin`: writes the device file of a simulated arm with the mechanism of a real one.
 #include "diagnostics/device_twin.hpp"
 
 #include <cstdio>
@@ -16,7 +16,7 @@
 namespace hapticd::cli {
 namespace {
 
-/// True if the twin that was written can be run.
+/// Checks whether the twin that was written can be run. @return an exit code
 int judge(const std::string& file, const std::string& out) {
   const scene::LoadedDevice twin = scene::loadDevice(out, catalog());
   document::Problems problems = twin.problems;
@@ -30,9 +30,10 @@ int judge(const std::string& file, const std::string& out) {
   problems = diagnostics::refusedArms(alone, false);
   printProblems(problems, stderr);
   if (problems.empty()) return kWorked;
-  return fail(kFailed, out + " is written, but its hand cannot begin\n  fix: mount of " + file +
-                           ", which says where the arm stands: shapes and hand are about the world's origin (left out "
-                           "of a chain, it is found); or its arm.limits; then write the twin anew");
+  return fail(kFailed, out + " was written, but its hand cannot reach its start position\n  fix: correct mount in " +
+                           file +
+                           ", which says where the arm stands (shapes and hand are near the world's origin; without "
+                           "mount, that of a chain is found), or correct arm.limits there; then write the twin again");
 }
 
 int makeTwin(const std::string& file, const std::string& wanted) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd doctor`: everything that keeps real time or a device from working, each with the command that fixes it.
+/// `hapticd doctor`: checks for everything that keeps real time or a device from working, and prints the command that
+/// fixes each problem.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -34,7 +35,7 @@ void print(const Finding& finding) {
   std::printf("      %-16s fix: %s\n", "", finding.fix.c_str());
 }
 
-/// 0: all well, 1: warnings, 2: something fails.
+/// Returns the exit code: 0 if all is well, 1 with warnings, 2 if a check fails.
 int doctor(const std::vector<std::string>& arms, bool json, double seconds) {
   std::vector<Finding> findings = checkSystem(catalog());
   findings.push_back(checkClients(status::runtimeFolder(false)));
@@ -71,8 +72,9 @@ void addDoctor(const Command& app, int& exit_code) {
   auto json = std::make_shared<bool>(false);
   auto seconds = std::make_shared<double>(10);
   auto arms = std::make_shared<std::vector<std::string>>();
-  const Command command = app.addSubcommand(
-      "doctor", "Find what keeps real time or a device from working, with the command that fixes it.");
+  const Command command = app.addSubcommand("doctor",
+                                            "Check this machine: find problems with real-time scheduling and devices, "
+                                            "and print the command that fixes each.");
   command.addOption("devices", *arms, "device files (YAML) of arms to check as well");
   command.addFlag("--json", *json, "print JSON, for issue reports");
   command.addOption("--seconds", *seconds, "duration of the latency test [s]; 0: no test")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The columns of `device kinematics` as those of a report, for `device encode`.
+/// Converts the columns of `device kinematics` to those of a report, for `device encode`.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,19 +11,20 @@ namespace hapticd::cli {
 
 /// Which of a table's columns become numbers of a report, and how.
 struct EncodeColumns {
-  std::vector<std::string> names;  ///< one per number of a row, in the names that encodeRow() knows
-  std::vector<size_t> from;        ///< the column of the table for each of them
-  std::vector<size_t> tip;         ///< columns x, y and z; their joints come after those; empty: there are none
+  std::vector<std::string> names;  ///< name of each number of a row, as encodeRow() knows it
+  std::vector<size_t> from;  ///< column of the table for each of these names; none for joints that follow from the tip
+  std::vector<size_t> tip;  ///< columns x, y and z of the tip, whose joints come last in a row; empty if there are none
 
-  /// The numbers of one row. @param joints where the arm is, from which the next row continues
+  /// Returns the numbers of one row. @param joints joints of the row before, from which inverse kinematics starts; gets
+  /// the joints of this row
   Result<std::vector<double>> row(const double* values, const host::DeviceInstance& arm,
                                   std::vector<double>& joints) const;
 };
 
-/// [main] From the names of a table: those of `known` as they are, q1 as position1 where the arm speaks, or else the
-/// joints of the tip x,y,z; tau1 as torque1 where it is spoken to. The rest of what `device kinematics` writes is left
-/// out. The error names any other column.
-/// @param known columns of the report @param to_arm an order; otherwise as the arm would send it
+/// [main] Finds the columns to encode from the names in a table. Names in `known` are used as they are. In a command to
+/// the arm, tau1 is torque1; in a report from it, q1 is position1, and without q1 the joints follow from the tip x,y,z.
+/// Other columns of `device kinematics` are left out. Any other name is an error. @param known columns of the report
+/// @param to_arm true for a command to the arm; false for a report from it
 Result<EncodeColumns> encodeColumns(const std::vector<std::string>& names, const std::vector<std::string>& known,
                                     size_t joints, bool to_arm);
 

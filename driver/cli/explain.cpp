@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd explain`: what a scene makes the daemon load, start and compute, why, and what it costs.
+/// `hapticd explain`: prints what a scene makes the daemon load, start and compute, why, and what it costs.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -26,7 +26,7 @@ using namespace diagnostics;
 
 namespace {
 
-/// One line with a fact, and the reason for it or against it.
+/// Prints one line with a fact and its reason.
 void say(const char* what, const std::string& why) {
   std::printf("  %-22s %s\n", what, why.c_str());
 }
@@ -45,7 +45,7 @@ std::string bytes(uint64_t count) {
   return text;
 }
 
-/// Median CPU time of one step of each model [ns], with the probe resting at the middle of the model.
+/// Returns the median CPU time of one step of each model [ns], with the probe resting near the surface of the model.
 std::vector<uint64_t> measureSteps(servo::World& world, const scene::Scene& scene) {
   constexpr int kTicks = 300;
   const double dt = 1 / scene.servo.rate;
@@ -56,7 +56,7 @@ std::vector<uint64_t> measureSteps(servo::World& world, const scene::Scene& scen
     probe.valid = true;
     Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;
     if (!shape.bounds(low.data(), high.data())) low.setZero(), high.setZero();
-    // A place just outside the face of the box that a hand meets first.
+    // A place just outside the front of the box, which a hand meets first.
     const Eigen::Vector3d front(0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), high.z() + 1e-3);
     probe.position = scene.models[index].pose.orientation * front + scene.models[index].pose.position;
     servo::Lockstep lockstep = world.lockstep();
@@ -74,7 +74,7 @@ std::vector<uint64_t> measureSteps(servo::World& world, const scene::Scene& scen
   return medians;
 }
 
-/// What models report about themselves at level debug, by their names.
+/// The debug messages of models, by the name of the model.
 using Details = std::multimap<std::string, std::string>;
 
 void explainModels(const scene::Scene& scene, servo::World& world, const std::vector<uint64_t>& costs,
@@ -197,8 +197,8 @@ void addExplain(const Command& app, int& exit_code) {
   command.addOption("scene", options->scene, "scene file (YAML)").required();
   command.addOption("--device", options->device, "device file; replaces the devices of the scene");
   command.addFlag("--cost", options->cost,
-                  "print a table of every part with its line in the scene, and the ns per tick and bytes that it "
-                  "costs; also of what is not needed");
+                  "print a table of every part: the line of the scene that asks for it, its time per tick [ns] and its "
+                  "memory [bytes]; parts that are not needed are listed too");
   command.addFlag("--json", options->json, "print the same table as JSON");
   command.footer("Example:\n  hapticd explain config/scenes/teapot.yaml --cost");
   command.callback([options, &exit_code] { exit_code = explain(*options); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd export`: a recording for other tools.
+/// `hapticd export`: converts a recording for other tools.
 #include "export/export.hpp"
 
 #include <cstdio>
@@ -39,14 +39,14 @@ std::vector<std::string> namesOf(const record::Recording& recording) {
   return names;
 }
 
-/// By which a table of this stream is known: a newer hapticd may have added some behind them.
+/// Returns the columns by which a table of this stream is recognised; a newer hapticd may add more columns after them.
 std::string firstColumns(const record::RecordedStream& stream) {
   std::string header;
   for (size_t i = 0; i < stream.columns().size() && i < 3; ++i) header += (i > 0 ? "," : "") + stream.columns()[i].name;
   return header;
 }
 
-/// One file of one stream, or a folder with a file of each.
+/// Writes one file of one stream, or a folder with a file for each stream.
 int toCsv(const record::Recording& recording, const ExportArguments& options) {
   const bool one = !options.stream.empty();
   if (one && recording.stream(options.stream) == nullptr)

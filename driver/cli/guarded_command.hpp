@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// While a command calls plugins: one that crashes, exits or hangs is named, with the place that asks for it.
+/// Watches a command while it calls plugins: if one crashes, exits or hangs, a message names it and the place of the
+/// scene that asks for it.
 #pragma once
 #include <filesystem>
 
@@ -12,7 +13,8 @@ namespace hapticd::cli {
 
 class GuardedCommand {
  public:
-  /// [main] @param dir for the quarantine; if it is empty, the plugin that ends this command is only named
+  /// [main] @param dir folder of the quarantine, to which a plugin is added that ends this command; if empty, the
+  /// plugin is only named
   explicit GuardedCommand(const std::filesystem::path& dir = {}) : guard_(none_, dir) { os::prepareSignalStack(); }
 
  private:

@@ -32,7 +32,7 @@ struct ImportArguments {
   bool json = false;
 };
 
-/// For formats that people use and hapticd does not read: how to convert them. "": it is not one of them.
+/// Returns how to convert a file of a common format that hapticd does not read, or "" for any other file.
 std::string otherWay(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -48,7 +48,7 @@ std::string otherWay(const std::string& file) {
   return "";
 }
 
-/// Says which options of one format have no effect with another.
+/// Returns a message about options that have no effect with this format, or "".
 std::string misplaced(const ImportArguments& options, bool cad) {
   const bool turned = options.placement.fit > 0 || options.placement.center || options.up != "y";
   if (cad && (turned || options.placement.scale != 1))
@@ -168,8 +168,8 @@ void addMedialOptions(const Command& command, ImportArguments& options) {
           .excludes(medial);
   command
       .addOption("--dents", options.dents,
-                 "with --calibrate, fit its shear_reach too: CSV x,y,z,x2,y2,z2,dent; in a press at the first place, "
-                 "the second goes down by this share of the depth")
+                 "with --calibrate: also fit shear_reach, from a CSV x,y,z,x2,y2,z2,dent; dent is how far the second "
+                 "point sinks when the first is pressed, divided by the depth of the press")
       .needs(calibrate);
 }
 

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The importer, in this program's build tree or in the installation; "" if it is in neither.
+/// Returns the path of the importer, in this program's build tree or in the installation; "" if it is in neither.
 std::string importer() {
   std::error_code error;
   for (const fs::path& folder : {host::executableDir() / ".." / "libexec" / "hapticd", fs::path(HAPTICD_LIBEXEC)})

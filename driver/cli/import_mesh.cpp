@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxMeshBytes = std::size_t{4} << 30;
 constexpr double kTooLarge = 10;    ///< [m] a part larger than this was probably given in millimetres
-constexpr double kTooSmall = 1e-3;  ///< [m] a part smaller than this was scaled twice: no fingertip feels its form
+constexpr double kTooSmall = 1e-3;  ///< [m] a smaller part was probably scaled twice: no fingertip feels its form
 
 std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
   const nlohmann::ordered_json report = {{"part", out},
@@ -36,7 +36,7 @@ std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
   return report.dump(2);
 }
 
-/// The unit of the file, as the part notes it.
+/// Returns the unit of the file, as it is noted in the part.
 std::string unitOf(const importing::Placement& placement) {
   char text[64];
   if (placement.fit > 0)

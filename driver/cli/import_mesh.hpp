@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd import` of a triangle mesh into a part file.
+/// `hapticd import` for triangle meshes: converts one into a part file.
 #pragma once
 #include <string>
 
@@ -10,11 +10,11 @@ namespace hapticd::cli {
 struct MeshImport {
   std::string file, out;
   importing::Placement placement;
-  double smooth_angle = 0;  ///< [degrees]
-  bool json = false;        ///< the report as JSON
+  double smooth_angle = 0;  ///< [degrees] as MeshOptions::smooth_angle
+  bool json = false;        ///< true prints the report as JSON
 };
 
-/// [main] Returns the exit code; everything else has been printed.
+/// [main] Converts the mesh and prints the report or the error. @return the exit code
 int importMesh(const MeshImport& options);
 
 }  // namespace hapticd::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd`: one program, a subcommand a file.
+/// `hapticd`: one program, with one file per subcommand.
 #include <algorithm>
 #include <exception>
 #include <string>
@@ -20,8 +20,8 @@ std::vector<std::string> commandNames(const hapticd::cli::Command& app) {
   return names;
 }
 
-/// What is wrong with the first word that is neither an option nor a subcommand, where a subcommand should stand, at
-/// any depth; "" if there is none. A word after an option may be its value: the parser looks at that.
+/// Returns what is wrong with the first word that should be a subcommand, at any depth, and is not one; "" if there is
+/// none. A word after an option is not judged, because it may be the option's value.
 std::string unknownCommand(const hapticd::cli::Command& app, int argc, char** argv, int at = 1) {
   const std::vector<std::string> names = commandNames(app);
   if (at >= argc || argv[at][0] == '-' || names.empty()) return "";
@@ -31,8 +31,8 @@ std::string unknownCommand(const hapticd::cli::Command& app, int argc, char** ar
          "\", expected one of " + hapticd::document::listed(names, 30) + hapticd::document::suggestion(argv[at], names);
 }
 
-/// Says which option is the first that no command of this line has; "" if none is. The parser would name the words
-/// after it.
+/// Returns a message about the first option that no command of this line has; "" if there is none. The parser itself
+/// would name the words after that option.
 std::string unknownOption(const hapticd::cli::Command& app, int argc, char** argv) {
   std::vector<hapticd::cli::Command> path{app};
   std::vector<std::string> names;
@@ -61,7 +61,8 @@ std::string unknownOption(const hapticd::cli::Command& app, int argc, char** arg
 
 }  // namespace
 
-// NOLINTNEXTLINE(bugprone-exception-escape): a table of commands that is wrong ends the program, and says so
+// NOLINTNEXTLINE(bugprone-exception-escape): an exception from a wrong table of commands ends the program with a
+// message
 int main(int argc, char** argv) {
   using namespace hapticd::cli;
   if (argc == 3 && argv[1] == std::string_view(hapticd::host::kDescribeForParent))

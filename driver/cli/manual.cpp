@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd manual`: the pages that follow from tables, so that they cannot say other than the program does:
-/// hapticd(1) from the option table, hapticd.yaml(5) from the tables of keys. man(7) source.
+/// `hapticd manual`: prints manual pages (man(7) source) that are made from the program's tables, so that they agree
+/// with the program: hapticd(1) from the option table, hapticd.yaml(5) from the tables of keys.
 #include <memory>
 #include <string>
 
@@ -10,7 +10,7 @@
 namespace hapticd::cli {
 namespace {
 
-/// The text with everything escaped that troff reads specially.
+/// Escapes the characters that are special to troff.
 std::string plain(const std::string& text) {
   std::string result;
   for (size_t i = 0; i < text.size(); ++i) {

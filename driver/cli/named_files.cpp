@@ -25,7 +25,7 @@ class Collector {
  public:
   Result<NamedFiles> collect(const std::string& scene) {
     if (auto done = open(scene); !done) return Error{done.error()};
-    document::Problems problems;  // which the daemon tells
+    document::Problems problems;  // not reported here, because the daemon reports them
     const auto root = document::parseFile(scene, problems);
     if (!root) return std::move(files_);
     if (auto done = values(*root, fs::path(scene).parent_path()); !done) return Error{done.error()};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The files that a scene names, opened with the rights of whoever asks, to be passed to a running daemon: it opens
+/// Opens the files that a scene names with the rights of the caller, to pass them to a running daemon. The daemon opens
 /// none of them by name.
 #pragma once
 #include <string>
@@ -11,14 +11,14 @@
 namespace hapticd::cli {
 
 struct NamedFiles {
-  std::vector<std::string> names;  ///< absolute
+  std::vector<std::string> names;  ///< absolute paths
   std::vector<Descriptor> descriptors;
   std::vector<int> numbers() const;
 };
 
-/// [main] The scene first, then each regular file whose name is one of its values, or one of the values of a device
-/// file that it names. Which of them are meant is for the daemon to say, which knows the plugins. @param scene absolute
-/// path
+/// [main] Opens the scene, and then each regular file whose name is a value in the scene or in a device file that the
+/// scene names. Only the daemon, which knows the plugins, decides which of these values are meant as files. @param
+/// scene absolute path
 Result<NamedFiles> openNamed(const std::string& scene);
 
 }  // namespace hapticd::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What is said of a recording that did not end in order, or has not ended yet.
+/// Notes for recordings that did not end in order, or have not ended yet.
 #pragma once
 #include <string>
 
@@ -7,7 +7,8 @@
 
 namespace hapticd::cli {
 
-/// [main] A note on standard error where the end is open. @param doing what the command does with the rest: "drawing"
+/// [main] Prints a note on standard error if the recording has no proper end. @param doing what the command does with
+/// the rows that are there, such as "drawing"
 void noteOpenEnd(const std::string& file, const record::Recording& recording, const char* doing);
 
 }  // namespace hapticd::cli

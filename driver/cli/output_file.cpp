@@ -9,7 +9,7 @@ namespace hapticd::cli {
 
 namespace {
 
-constexpr size_t kHeadBytes = 8192;  ///< a recording says what it is after 512 bytes, a report within its first lines
+constexpr size_t kHeadBytes = 8192;  ///< recordings need 512 bytes, reports their first lines
 
 std::string headOf(const std::string& file) {
   std::string head(kHeadBytes, '\0');
@@ -65,7 +65,7 @@ std::string whyNotWritten(const std::string& out, const OutputKind& kind, const 
       return out + ": is " + what + " itself, expected another file";
   if (!fs::is_regular_file(out, error) || fs::file_size(out, error) == 0) return "";
   if (!std::ifstream(out, std::ios::binary) || isOf(kind, headOf(out))) return "";
-  return out + ": is there and is not " + kind.name + ", so it would be lost; expected a new name, or that of " +
+  return out + ": exists already and is not " + kind.name + ", so it would be lost; expected a new name, or that of " +
          kind.name + " to be replaced\n  fix: another name, or remove the file";
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What a command may write over: a file of the kind that it writes itself, never one of another program or one that it
-/// reads. A name that was typed by habit or completed by the shell has cost people scenes and meshes.
+/// Decides which existing files a command may overwrite: only files of the kind that it writes itself, never other
+/// files or one of its inputs. Without this check, users have overwritten scenes and meshes by a wrong name.
 #pragma once
 #include <string>
 #include <string_view>
@@ -9,27 +9,28 @@
 
 namespace hapticd::cli {
 
-/// A kind of file, known by how it begins.
+/// A kind of file, recognised by its first bytes.
 struct OutputKind {
-  const char* name;                          ///< "a picture (SVG)"
-  std::vector<std::string_view> beginnings;  ///< any of them
-  std::string_view within = {};              ///< and this somewhere in the first kilobytes
+  const char* name;                          ///< name with article, such as "a picture (SVG)"
+  std::vector<std::string_view> beginnings;  ///< the file must begin with one of these
+  std::string_view within = {};              ///< and must contain this within its first 8 KiB; empty if nothing
 };
 
 const OutputKind& pictureKind();                                       ///< SVG
 const OutputKind& recordingKind();                                     ///< HDF5 of `run --record`
 const OutputKind& reportKind();                                        ///< JSON of `run --report`
 const OutputKind& mcapKind();                                          ///< MCAP
-constexpr const char* kObjBeginning = "# hapticd ctl geometry, in m";  ///< the first line of such triangles
+constexpr const char* kObjBeginning = "# hapticd ctl geometry, in m";  ///< first line of such an OBJ file
 const OutputKind& objKind();                                           ///< triangles of `ctl geometry --obj`
-/// CSV with a header that begins with these columns. @param header lives as long as the kind
+/// Returns the kind of CSV files whose header begins with these columns. @param header must live as long as the kind
 OutputKind tableKind(std::string_view header);
 
-/// What a command reads, each with what it is: "the recording".
+/// The files that a command reads, each with a name for it, such as "the recording".
 using Inputs = std::vector<std::pair<std::string, const char*>>;
 
-/// [main] Why a file must not be written: it is one of those that are read, or it is there and of another kind. "": it
-/// may be. Names that are no regular file (-, devices, pipes), new ones and empty files may.
+/// [main] Returns why a file must not be written: it is one of the inputs, or it exists and is of another kind. Returns
+/// "" if it may be written. New files, empty files and names that are not regular files (-, devices, pipes) may always
+/// be written.
 std::string whyNotWritten(const std::string& out, const OutputKind& kind, const Inputs& inputs = {});
 
 }  // namespace hapticd::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd part info`: what a part file holds.
+/// `hapticd part info`: prints what a part file holds.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -91,7 +91,7 @@ Json describe(const Part& part, std::size_t bytes) {
           {"warnings", part.warnings}};
 }
 
-/// What no record holds: the box around all bodies in their places, and what is noted when the part is loaded.
+/// Adds what is not in the file: the box around all bodies in their places, and the notes that loading the part gives.
 void addMeasures(Json& info, Part part) {
   try {
     const brep::Model model(std::move(part));
@@ -110,7 +110,8 @@ std::string listed(const Json& counts) {
   return text;
 }
 
-/// An importer leaves it to the loader of the part to tell smooth, convex and concave edges apart.
+/// Returns the counts of edges as text. Without the loader's analysis, an importer's edges are not yet smooth, convex
+/// or concave.
 std::string edgesOf(const Json& info) {
   Json told = info["edge_kinds"];
   told.erase(kEdgeNames[0]);
@@ -218,7 +219,8 @@ void addPart(const Command& app, int& exit_code) {
   info.addOption("part", *file, "a part file (.hpart)").required();
   info.addFlag("--json", *json, "print JSON");
   auto feature = std::make_shared<std::optional<std::uint32_t>>();
-  info.addOption("--feature", *feature, "print instance and face of this number alone, as it stands in a trace")
+  info.addOption("--feature", *feature,
+                 "print only the instance and the face of this feature number (column feature of a trace)")
       .excludes("--json");
   info.footer("Example:\n  hapticd part info bracket.hpart");
   info.callback([file, json, feature, &exit_code] { exit_code = partInfo(*file, *json, *feature); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd plot`: a picture of a recording.
+/// `hapticd plot`: draws a picture of a recording.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -74,7 +74,7 @@ record::Sample sampleAt(const record::RecordedStream& ticks, const Columns& c, u
   return sample;
 }
 
-/// When models were silenced: from then on such a run does not show why nothing is felt.
+/// Notes when models were silenced, because otherwise the picture would not show why nothing is felt from then on.
 void noteSilenced(const record::Recording& recording, record::RunNotes& notes) {
   const record::RecordedStream* events = recording.stream("events");
   const auto* kind = events != nullptr ? events->find("kind") : nullptr;
@@ -90,7 +90,8 @@ void noteSilenced(const record::Recording& recording, record::RunNotes& notes) {
   }
 }
 
-/// Models and limits of the run, and whether its time was real; empty where its description cannot be read.
+/// Returns models and limits of the run, and whether it ran in virtual time; empty if the description of the run cannot
+/// be read.
 record::RunNotes notesOf(const record::Recording& recording, uint32_t arm, bool& virtual_time) {
   record::RunNotes notes;
   notes.positions = true;
@@ -104,7 +105,8 @@ record::RunNotes notesOf(const record::Recording& recording, uint32_t arm, bool&
   return notes;
 }
 
-/// The ticks have the depth of the deepest of all arms; that of one arm is in the contacts. Nothing traced: no depth.
+/// Replaces the depths of the stream `ticks`, which are the greatest of all arms, by those of one arm from the stream
+/// `contacts`. There is no depth if nothing was traced.
 void takeOwnDepths(const record::Recording& recording, uint32_t arm, const record::Column& tick_column,
                    const record::RecordedStream& ticks, const std::vector<uint64_t>& rows,
                    std::vector<record::Sample>& samples) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd plugin list|info`: what is there, and the documentation that its parameter table holds.
+/// `hapticd plugin list|info|clear`: lists plugins, prints the documentation in their parameter tables, and takes them
+/// out of quarantine.
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -15,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The class that a scene would get under that name.
+/// Returns the note for a plugin in quarantine.
 std::string noteOf(const watch::QuarantinedPlugin& entry) {
   const auto found = catalog().shape(entry.plugin);
   if (!found || entry.holds(entry.plugin, host::identityOnDisk((*found)->file)))
@@ -24,7 +25,7 @@ std::string noteOf(const watch::QuarantinedPlugin& entry) {
          "; the file has changed since, or is another one, so it runs again";
 }
 
-/// Why runs leave a plugin out, by its name.
+/// Returns why runs leave a plugin out, by the name of the plugin.
 std::map<std::string, std::string> quarantineNotes() {
   std::map<std::string, std::string> notes;
   const auto dir = watch::stateDir();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd plugin check FILE.so`: the conformance tests, each in a child process of its own.
+/// `hapticd plugin check FILE.so`: runs the conformance tests, each in a child process of its own.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -42,7 +42,7 @@ struct Outcome {
   std::string end;  ///< how its process ended, if it gave no answer
 };
 
-/// A plugin that ships with hapticd and needs a model gets a model that ships, and says so.
+/// Gives a plugin that ships with hapticd and needs a model a model that ships, and prints a note.
 void addModelOfOurs(const host::ClassInfo& info, Recipe& recipe) {
   const int index = info.indexOf("geometry");
   const bool ours = info.id.rfind("org.hapticd.", 0) == 0;
@@ -60,7 +60,7 @@ void addModelOfOurs(const host::ClassInfo& info, Recipe& recipe) {
   recipe.set.push_back(std::move(value));
 }
 
-/// What each class is tested with; `problems` lists all that is wrong with it.
+/// Returns the parameters with which each class is tested; `problems` gets everything that is wrong with them.
 std::vector<Recipe> recipesFor(const std::vector<host::ClassInfo>& classes, const ConformanceArguments& options,
                                std::vector<std::string>& problems) {
   SetOption set(options.set, classes);
@@ -76,15 +76,15 @@ std::vector<Recipe> recipesFor(const std::vector<host::ClassInfo>& classes, cons
     // A bare name would be looked up in the system's library folders.
     recipes.push_back({std::filesystem::absolute(options.file).string(), info.name, set.valuesFor(info), {}});
     addModelOfOurs(info, recipes.back());
-    if (!set.problems().empty()) continue;  // a name that was refused is not missing
+    if (!set.problems().empty()) continue;  // a wrong name may stand for the missing parameter
     for (const std::string& one : missing(info, recipes.back().set)) problems.push_back(one);
   }
   problems.insert(problems.begin(), set.problems().begin(), set.problems().end());
   return recipes;
 }
 
-/// A place where it can be touched is looked for once, in a child. A search that crashes finds nothing, and the test
-/// that asks for a contact says how it ended. The error is that of a shape that refuses to be made or activated.
+/// Searches once, in a child process, for places where the shape can be touched. If the search crashes, it finds
+/// nothing, and the test contact-found reports the crash. Returns an error if the shape cannot be made or activated.
 Result<Touch> lookForContact(const Recipe& recipe, const ConformanceArguments& options) {
   const auto look = [&] {
     const Made made(recipe);
@@ -112,7 +112,7 @@ Outcome tryOne(const Recipe& recipe, const ConformanceTest& test, const Conforma
   return outcome;
 }
 
-/// Some runs of random input in one child. @return "=" if nothing was wrong
+/// Does some runs with random input in one child process. @return "=" if nothing was wrong
 Result<std::string> fuzzSome(const Recipe& recipe, const ConformanceArguments& options, uint64_t first, int count) {
   return host::runInChild(
       [&recipe, first, count] {
@@ -155,13 +155,13 @@ void print(const Outcome& outcome) {
   std::fflush(stdout);
 }
 
-/// A file that cannot even be described fails by the name of the test that says so.
+/// Returns the outcome for a file whose classes cannot even be read: a failure of the first test.
 std::vector<Outcome> unusable(const std::string& why) {
   const bool slow = why.find("took longer") != std::string::npos;
   return {{"", slow ? "scan-time-limit" : "descriptor-complete", why, false, false, false, false, ""}};
 }
 
-/// A shape that its parameters do not activate fails once, not by every test.
+/// Reports a shape that cannot be activated as a single failure, not as a failure of every test.
 size_t notActive(const Recipe& recipe, const std::string& why, const ConformanceArguments& options,
                  std::vector<Outcome>& outcomes) {
   const size_t left = conformanceTests().size();
@@ -195,7 +195,7 @@ class Lacking {
   size_t not_run_ = 0;
 };
 
-/// Tests whose process ends in the same way have one cause, which is reported once; the other tests are only numbered.
+/// Tests whose processes end in the same way have one cause. It is reported once, and the other tests are only listed.
 class SameEnd {
  public:
   bool known(const Outcome& outcome) {
@@ -217,8 +217,9 @@ class SameEnd {
   std::map<std::string, std::vector<std::string>> tests_;
 };
 
-/// Memory that a plugin overwrites ends whatever test comes next. After a crash the test in guarded memory tells what
-/// was overrun, if anything was. @return its outcome, given as the cause of the crash in `crashed`
+/// If a plugin writes beyond its memory, any later test may crash. So after a crash the test in guarded memory is run,
+/// which tells what was overrun. @return its outcome if it found an overrun, which is then named as the cause in
+/// `crashed`
 std::optional<Outcome> overrunBehind(const Recipe& recipe, const ConformanceArguments& options, Outcome& crashed) {
   if (crashed.end.empty() || crashed.hung || crashed.name == kGuarded) return std::nullopt;
   for (const ConformanceTest& test : conformanceTests()) {
@@ -226,14 +227,15 @@ std::optional<Outcome> overrunBehind(const Recipe& recipe, const ConformanceArgu
     Outcome guarded = tryOne(recipe, test, options);
     const bool named = overran() || guarded.why.find(kBeyond) != std::string::npos;
     if (guarded.passed || guarded.hung || !named) return std::nullopt;
-    crashed.why += ": memory beyond its own was written or read; first mend " + std::string(kGuarded);
+    crashed.why +=
+        ": it wrote or read memory that is not its own; first correct what fails in " + std::string(kGuarded);
     return guarded;
   }
   return std::nullopt;
 }
 
-/// All tests of one class, up to the first that hangs: those after it would hang too. A test that needs one that failed
-/// would only repeat it. @return how many were not run
+/// Runs all tests of one class, up to the first that hangs, because later tests would hang too. A test that needs a
+/// failed test is left out, because it would fail for the same reason. @return how many tests were not run
 size_t testClass(const Recipe& recipe, const ConformanceArguments& options, std::vector<Outcome>& outcomes) {
   const auto& tests = conformanceTests();
   Lacking lacking;
@@ -258,7 +260,7 @@ size_t testClass(const Recipe& recipe, const ConformanceArguments& options, std:
   if (!options.json) {
     same.print();
     if (left > 0)
-      std::printf("stopped at the first hang: %zu tests were not run; for a plugin that is slow: --timeout SECONDS\n",
+      std::printf("stopped at the first hang: %zu tests were not run; if the plugin is only slow: --timeout SECONDS\n",
                   left);
     if (lacking.notRun() > 0)
       std::printf("%zu other %s not run: first mend %s\n", lacking.notRun(),
@@ -289,7 +291,8 @@ int sum(const std::vector<Outcome>& outcomes, size_t not_run, const ConformanceA
   return failed == 0 ? kWorked : kFailed;
 }
 
-/// A scene in the place of a plugin is a slip, which the system's loader would call an invalid header.
+/// Returns true for a shared object. A scene that was given by mistake would otherwise get the loader's error "invalid
+/// ELF header".
 bool isSharedObject(const std::string& file) {
   char magic[4] = {};
   std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
@@ -344,8 +347,8 @@ void addPluginCheck(const Command& app, int& exit_code) {
   command.addOption("--seed", options->seed, "seed of all random numbers; a failure names the seed that repeats it")
       .showDefault();
   command.footer(
-      "The exit code is 1 if a test fails, 2 if a parameter is wrong. The first test that hangs is the last of its "
-      "plugin.\n\n"
+      "The exit code is 1 if a test fails, 2 if a parameter is wrong. If a test hangs, the tests after it are not "
+      "run.\n\n"
       "Examples:\n  hapticd plugin check ./my_shape.so --fuzz 60 --seed 7\n"
       "  hapticd plugin check ./relief.so --set heights=hills.csv --set 'origin=[0, 0.1, 0]'");
   command.callback([options, &exit_code] { exit_code = check(*options); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd plugin new`: a plugin to start from, made of the template under another name.
+/// `hapticd plugin new`: creates a plugin to start from, as a copy of the template under another name.
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -17,7 +17,7 @@ struct NewPluginArguments {
   std::string name, folder;
 };
 
-/// Names become files, C++ identifiers and CMake targets.
+/// Returns true for a name that can be a file, a C++ identifier and a CMake target.
 bool usablePluginName(const std::string& name) {
   if (name.empty() || name.size() > 40 || !std::islower(static_cast<unsigned char>(name[0]))) return false;
   for (const char c : name)
@@ -26,7 +26,7 @@ bool usablePluginName(const std::string& name) {
   return name != "template";
 }
 
-/// "push_button" to "PushButton".
+/// Turns "push_button" into "PushButton".
 std::string camelCase(const std::string& name) {
   std::string text;
   bool upper = true;
@@ -59,7 +59,8 @@ std::optional<fs::path> templateFolder() {
   return fs::is_directory(source, error) ? std::optional(source) : std::nullopt;
 }
 
-/// Where the headers of the plugin interface are: with the installed program, or in the checkout it was built from.
+/// Returns the folder of the plugin interface's headers: that of the installation, or that of the source tree from
+/// which the program was built.
 fs::path includeFolder() {
   std::error_code error;
   const fs::path source = fs::path(HAPTICD_TEMPLATE_DIR) / "../../driver/include";
@@ -67,7 +68,7 @@ fs::path includeFolder() {
   return "/usr/include";
 }
 
-/// One line for the compiler works with and without an installed hapticd, so it comes first.
+/// Prints what to do next. The compiler's command comes first, because it works with and without an installed hapticd.
 void tellNextSteps(const std::string& folder, const std::string& name) {
   const char *at = folder.c_str(), *what = name.c_str();
   std::printf("\nbuild it:  g++ -std=c++20 -O2 -shared -fPIC -I %s %s/%s.cpp -o %s/%s.so\n", includeFolder().c_str(),

@@ -17,7 +17,7 @@ Result<std::vector<PathRow>> readProbePath(const std::string& file) {
   const auto table = document::readCsv(file, kMaxBytes, rules, problems);
   if (!table) return Error{problems.front().text()};
   std::vector<PathRow> rows(table->rows());
-  constexpr double kLengthError = 1e-3;  // seven digits are within it; degrees and zeros are not
+  constexpr double kLengthError = 1e-3;  // quaternions with seven digits pass; degrees or zeros do not
   for (size_t i = 0; i < rows.size(); ++i) {
     const double* v = table->row(i);
     rows[i].t = v[0];
@@ -25,7 +25,7 @@ Result<std::vector<PathRow>> readProbePath(const std::string& file) {
     if (table->columns == kPoseColumns) rows[i].orientation = {v[4], v[5], v[6], v[7]};
     const double length = rows[i].orientation.norm();
     if (!rows[i].orientation.coeffs().allFinite() || std::abs(length - 1) <= kLengthError)
-      continue;  // a row without a sample: a gap
+      continue;  // a row of NaN is a gap without samples
     return Error{fmt::format("{}:{}: qw,qx,qy,qz: ({:g}, {:g}, {:g}, {:g}) has the length {:.4g}, expected 1", file,
                              table->lines[i], v[4], v[5], v[6], v[7], length)};
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Probe paths of `hapticd trace`: CSV with a header line t,x,y,z[,qw,qx,qy,qz].
+/// Reads probe paths for `hapticd trace`: CSV with a header line t,x,y,z[,qw,qx,qy,qz].
 #pragma once
 #include <Eigen/Geometry>
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace hapticd::cli {
 
-/// One tick of a prescribed path, world frame. Positions and orientations may be not-a-numbers: a bad sample. Finite
-/// orientations have the length 1, to seven digits.
+/// One tick of a prescribed path, in the world frame. A position or orientation may be NaN, which means a bad sample. A
+/// finite quaternion must have the length 1 to within 0.001.
 struct PathRow {
   double t = 0;              ///< [s]
   Eigen::Vector3d position;  ///< [m]

@@ -64,7 +64,8 @@ class RecordedModelsImpl final : public RecordedModels {
   struct Built {
     std::string name, plugin, error;
     std::unique_ptr<servo::World> world;
-    std::unique_ptr<servo::ModelRerun> rerun;  ///< the shape of a body that deforms, if the rows have the tips
+    /// Computes the shape of a body that deforms, if the recording has the tips.
+    std::unique_ptr<servo::ModelRerun> rerun;
   };
 
   /// Makes a scene of that model alone, so that a failing model does not affect the others.
@@ -92,8 +93,8 @@ class RecordedModelsImpl final : public RecordedModels {
     return built;
   }
 
-  /// Requests are those of a daemon, except for `"at"` of `geometry`, which is the time [s] of the recording at which a
-  /// body's shape is wanted.
+  /// Answers one request. Requests are those of a daemon; in addition, `geometry` takes `"at"`, the time [s] of the
+  /// recording at which the shape is wanted.
   std::string answer(const std::string& line, Descriptor& memory) {
     Json json = document::parseJson(line);
     std::optional<double> at;
@@ -130,7 +131,7 @@ class RecordedModelsImpl final : public RecordedModels {
   }
 
   std::unique_ptr<record::Recording> recording_;
-  std::vector<Built> models_;  // after what they read
+  std::vector<Built> models_;  // declared after what the models read, so that they are destroyed first
   std::string folder_, socket_;
   std::unique_ptr<control::Server> server_;
 };

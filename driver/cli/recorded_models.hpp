@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The models of a recording, built again to be drawn: answers `list` and `geometry` as the daemon would, on a socket
-/// of its own in a folder of its own.
+/// Builds the models of a recording again, so that they can be drawn. Answers `list` and `geometry` as the daemon
+/// would, on a control socket in a folder of its own.
 #pragma once
 #include <memory>
 #include <string>
@@ -11,7 +11,8 @@ namespace hapticd::cli {
 
 class RecordedModels {
  public:
-  /// [main] Builds what can be built. A model whose plugin or files no longer exist here is answered with the reason.
+  /// [main] Builds all models that can be built. Requests for a model whose plugin or files no longer exist are
+  /// answered with the reason.
   static Result<std::unique_ptr<RecordedModels>> serve(const std::string& recording);
   virtual ~RecordedModels() = default;  ///< the folder is removed too
   RecordedModels() = default;

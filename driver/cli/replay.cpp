@@ -32,7 +32,7 @@ struct ReplayArguments {
   bool json = false;
 };
 
-/// Plugins and modules as they are found here, because the recording may come from another machine.
+/// Finds plugins and modules on this machine, because the recording may come from another one.
 Result<void> findLibraries(scene::Scene& scene) {
   for (scene::Model& model : scene.models) {
     auto found = catalog().shape(model.plugin);
@@ -47,7 +47,7 @@ Result<void> findLibraries(scene::Scene& scene) {
   return {};
 }
 
-/// Parses "teapot.stiffness=900", a number for a parameter of a model.
+/// Parses a change such as "teapot.stiffness=900" and applies it to a parameter of a model.
 Result<void> change(scene::Scene& scene, const std::string& text) {
   const size_t equals = text.find('='), dot = text.find('.');
   const auto number = equals == std::string::npos ? std::nullopt : document::toNumber(text.substr(equals + 1));
@@ -84,14 +84,14 @@ void warnOfChanges(const servo::RecordedRun& run) {
       std::fprintf(stderr, "warning: %s has changed since the recording\n", file.path.c_str());
 }
 
-/// The processor instructions that the recorded run used, if this machine has them.
+/// Uses the processor instructions of the recorded run if this machine has them; otherwise prints a note.
 void takeInstructions(servo::RecordedRun& run) {
   if (run.instructions.empty()) return;
   if (run.instructions == "portable") run.scene.servo.instructions = scene::Instructions::kPortable;
   if (const std::string now = servo::takenInstructions(run.scene.servo); now != run.instructions)
     std::fprintf(
         stderr,
-        "note: recorded with the processor instructions %s, which cannot be had here: the last bits will differ\n"
+        "note: recorded with the processor instructions %s, which are not available here: the last bits will differ\n"
         "  fix: record with servo: {instructions: portable}, which replays on every machine\n",
         run.instructions.c_str());
 }
@@ -167,9 +167,8 @@ void addReplay(const Command& app, int& exit_code) {
   command.addFlag("--json", options->json, "print the outcome as JSON");
   command.footer(
       "Exit codes: 0 every bit is the same, 1 something differs, 2 the recording cannot be replayed, 3 every bit is "
-      "the same\nup to a tick in which models were added or removed, or up to where the file is damaged; the rest "
-      "cannot be "
-      "replayed.\n\nExample:\n  "
+      "the same\nas far as the run could be replayed: a replay ends where models were added or removed, or where the "
+      "file is damaged.\n\nExample:\n  "
       "hapticd run config/scenes/teapot.yaml --for 10 --record run.h5\n  hapticd replay run.h5");
   command.callback([options, &exit_code] { exit_code = replay(*options); });
 }

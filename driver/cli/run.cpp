@@ -47,17 +47,19 @@ struct RunArguments {
 
 const Nanoseconds program_start = monotonicNow();  ///< when the libraries were loaded
 
-/// Known before the run, not after it: a file that cannot be written. If no run comes, no file is left.
+/// Checks before the run that a file can be written. Leaves no new file behind, in case the run does not start.
 bool writable(const std::string& file) {
   if (file.empty()) return true;
   int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   const bool made = fd >= 0;
-  if (!made) fd = open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);  // an unread pipe is not writable
+  // a pipe without a reader counts as not writable
+  if (!made) fd = open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
   if (made) unlink(file.c_str());
   return fd >= 0 && close(fd) == 0;
 }
 
-/// Names two files that would overwrite each other; "" if all differ. Devices and pipes may be given more than once.
+/// Returns a file that was given for two purposes, so that one would overwrite the other; "" if all differ. Devices and
+/// pipes may be given more than once.
 std::string writtenTwice(const RunArguments& options) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -87,7 +89,7 @@ std::vector<record::Sample> samplesOf(const servo::Telemetry& telemetry) {
     sample.depth_m = traced ? static_cast<double>(row.depth_m) : std::nan("");
     sample.model = traced ? static_cast<int>(row.model) : -1;
     sample.force_n = std::hypot(row.force[0], row.force[1], row.force[2]);
-    sample.asked_n = std::nan("");  // the black box has what was sent
+    sample.asked_n = std::nan("");  // unknown: the black box has only the force that was sent
     sample.fault = row.fault;
     sample.lateness_us = static_cast<double>(row.lateness_us);
     sample.compute_us = static_cast<double>(row.compute_us);
@@ -119,7 +121,8 @@ record::LimitReport limitsOf(const std::string& device, const servo::Limiter& li
   return report;
 }
 
-/// Warns if the first arm, whose forces the black box keeps, was asked for more over the last seconds than it sustains.
+/// Warns if the first arm gave more force over the last seconds than it sustains. The black box keeps the forces of the
+/// first arm.
 void warnOfHeat(const servo::Runner& runner, double rate) {
   constexpr double kHeatSeconds = 5;  // a shorter time does not heat a winding
   std::vector<double> forces;
@@ -224,7 +227,8 @@ void logOfRun(int level, const std::string& who, const std::string& text) {
   if (!SetupErrors::keeps(level, who, text)) log::write(level, who, text);
 }
 
-/// Serves a page for this run in a process of its own, started before this one takes rights that it must not inherit.
+/// Starts a process that serves a page for this run. It must start before this process takes rights that a child must
+/// not inherit.
 Result<void> showPage(const RunArguments& options, const servo::RunFiles* files, scene::Scene& scene) {
   if (files == nullptr || files->name().empty())
     return Error{
@@ -236,7 +240,7 @@ Result<void> showPage(const RunArguments& options, const servo::RunFiles* files,
   return {};
 }
 
-/// What is wrong with the files that the run must write; "" if nothing is.
+/// Returns what is wrong with the files that the run must write; "" if nothing is.
 std::string wrongFiles(const RunArguments& options) {
   if (const std::string wrong = wrongPicture(options.picture); !wrong.empty()) return wrong;
   for (const std::string& file : {options.report, options.picture, options.record})
@@ -267,7 +271,7 @@ servo::RunOptions runOptions(const RunArguments& options, const scene::Scene& sc
   return how;
 }
 
-/// The run itself, from the first tick to the last.
+/// Runs from the first tick to the last.
 Result<void> tickToTheEnd(servo::Runner& runner, servo::RunFiles* files) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   size_t told = 0;
@@ -280,14 +284,15 @@ Result<void> tickToTheEnd(servo::Runner& runner, servo::RunFiles* files) {
     if (files != nullptr) files->end();
   };
   auto done = runner.run(every, end);
-  end();  // the run never began
+  end();  // the run has not begun
   if (terminal) std::fputs("\r\033[K", stderr);
   return done;
 }
 
 int runScene(const RunArguments& options, scene::Scene& scene) {
   servo::RunOptions how = runOptions(options, scene);
-  std::unique_ptr<servo::RunFiles> files;  // a virtual run is over before anybody looks, unless it was given a name
+  // a run in virtual time has such files only if it was given a name, because it is soon over
+  std::unique_ptr<servo::RunFiles> files;
   if (!options.virtual_time || !options.name.empty()) {
     auto opened = servo::RunFiles::open(options.name, how);
     if (!opened) return fail(kBadInput, opened.error());
@@ -315,7 +320,8 @@ int runScene(const RunArguments& options, scene::Scene& scene) {
   return conclude(options, **runner, left_out);
 }
 
-/// Names an enable button that no report of its arm has, so that no force could be felt. A module knows the highest.
+/// Reports an enable button that no report of its arm contains, because forces could never be enabled then. Returns
+/// false if there is one.
 bool switchesAreThere(const scene::Scene& scene) {
   document::Problems wrong;
   for (const scene::Device& device : scene.devices)
@@ -338,7 +344,7 @@ int run(const RunArguments& options) {
   return runScene(options, *scene);
 }
 
-/// For "1s" it says what to write instead of reporting a failed conversion.
+/// Returns "" if the text is a number; for "1s" and the like, returns what to write instead.
 std::string plainSeconds(const std::string& text) {
   char* end = nullptr;
   std::strtod(text.c_str(), &end);

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-/// The signals that end a run or suspend it: Ctrl-C, SIGTERM, Ctrl-Z.
+/// Handles the signals that end or suspend a run: Ctrl-C, SIGTERM, Ctrl-Z.
 #pragma once
 #include "session/runner.hpp"
 
 namespace hapticd::cli {
 
-/// From here on SIGINT and SIGTERM end the run that a StopBySignal names. A signal that comes before there is a run
-/// ends it as soon as it exists.
+/// From now on SIGINT and SIGTERM end the run of the present StopBySignal. If a signal comes before there is a run, the
+/// run ends as soon as it exists.
 void heedStopSignals();
 
-/// From here on SIGTSTP lets the run ramp its forces out before the process stops.
+/// From now on SIGTSTP makes the run ramp its forces out before the process stops.
 void heedSuspendSignal();
 
-/// The run that signals end, while this object lives. A second Ctrl-C, while the first ends the run, finds no run any
-/// more.
+/// Names the run that signals end, while this object lives. A second Ctrl-C has no further effect on a run that the
+/// first is ending.
 class StopBySignal {
  public:
   explicit StopBySignal(servo::Runner& runner);

@@ -17,7 +17,7 @@ document::Problems farModels(const scene::Scene& scene) {
     if (const double away = scene.models[i].pose.position.norm(); away > kFar)
       document::report(
           warnings, scene.models[i].place, "models[" + std::to_string(i) + "].pose.position",
-          document::numberText(away) + " m from the world's origin, where no arm reaches; expected metres");
+          document::numberText(away) + " m from the world's origin, where no arm reaches; the position must be in m");
   return warnings;
 }
 
@@ -29,7 +29,8 @@ document::Problems softModels(const scene::Scene& scene) {
       if (value.id == "stiffness" && value.kind == HSP_REAL && value.number < kUnfelt)
         document::report(warnings, value.place, "models[" + std::to_string(i) + "].parameters.stiffness",
                          document::numberText(value.number) + " N/m cannot be felt: 1 mm gives " +
-                             document::numberText(value.number * 1e-3) + " N; expected N/m (1 N/mm is 1000 N/m)");
+                             document::numberText(value.number * 1e-3) +
+                             " N; the value must be in N/m (1 N/mm is 1000 N/m)");
   return warnings;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What of a scene's models nobody can have meant: for `check`, and for who adds models to a running daemon.
+/// Finds settings of a scene's models that nobody meant, for `check` and for models that are added to a running daemon.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,13 +10,15 @@
 
 namespace hapticd::cli {
 
-/// [main] Warns of a model so far away that no arm reaches it: its numbers were meant in other units.
+/// [main] Warns of a model so far away that no arm reaches it, because its position was meant in another unit.
 document::Problems farModels(const scene::Scene& scene);
 
-/// [main] Warns of a stiffness in N/mm, as data sheets have it: a thousandth of what was meant, which nobody feels.
+/// [main] Warns of a stiffness too small to feel, because it was given in N/mm, as data sheets do; read as N/m it is a
+/// thousandth of what was meant.
 document::Problems softModels(const scene::Scene& scene);
 
-/// [any] Warns of models that are added to a run as `check` would. @param stiffness [N/m] that each of them claims
+/// [any] Returns the warnings that `check` would give about models that are added to a run. @param stiffness [N/m]
+/// stiffness that each of the models claims
 std::vector<std::string> adviceOnModels(const servo::Runner& runner, const scene::Scene& models,
                                         const std::vector<double>& stiffness);
 

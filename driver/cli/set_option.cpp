@@ -16,7 +16,7 @@ namespace {
 
 using document::Problem;
 
-/// The value that a message shows for a parameter that has none.
+/// Returns what a message shows as the value of a parameter that has no value.
 const char* placeholder(uint32_t kind) {
   switch (kind) {
     case HSP_PATH:

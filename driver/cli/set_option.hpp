@@ -13,14 +13,14 @@ namespace hapticd::cli {
 
 class SetOption {
  public:
-  /// [main] @param pairs ID=VALUE; VALUE is YAML: a number, a word, [1, 2, 3]; a path is seen from the current folder.
-  /// @param classes of the file: an ID must belong to one of them
+  /// [main] @param pairs ID=VALUE; VALUE is YAML: a number, a word, [1, 2, 3]; a path is relative to the current folder
+  /// @param classes classes of the plugin file; each ID must be a parameter of one of them
   SetOption(const std::vector<std::string>& pairs, const std::vector<host::ClassInfo>& classes);
 
-  /// [main] The values for one class; values for other classes are left out.
+  /// [main] Returns the values for one class; values for other classes are left out.
   std::vector<scene::Value> valuesFor(const host::ClassInfo& info);
 
-  /// Everything that was wrong so far, one line each: what is wrong, and what was expected.
+  /// Returns one line for each problem so far: what is wrong, and what was expected.
   const std::vector<std::string>& problems() const { return problems_; }
 
  private:
@@ -28,7 +28,8 @@ class SetOption {
   std::vector<std::string> problems_;
 };
 
-/// [main] "--set heights=FILE" for each required parameter that has no value, with what it is.
+/// [main] Returns a line with "give --set heights=FILE" for each required parameter that has no value, with its
+/// documentation.
 std::vector<std::string> missing(const host::ClassInfo& info, const std::vector<scene::Value>& values);
 
 }  // namespace hapticd::cli

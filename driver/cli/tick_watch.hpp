@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// While a command runs the core by itself: a plugin whose step does not come back is named, and ends the command.
+/// Watches a command that runs the servo core without a servo: if a step of a plugin does not return, the plugin is
+/// named and the command ends.
 #pragma once
 #include "base/offline_tick.hpp"
 #include "base/thread_usage.hpp"
@@ -11,11 +12,11 @@ namespace hapticd::cli {
 
 class TickWatch {
  public:
-  /// [main] Make it in the thread that ticks. Where no thread can be started, nothing is watched.
+  /// [main] Construct it in the thread that ticks. If no watching thread can be started, nothing is watched.
   TickWatch() { (void)watch_.start(); }
 
  private:
-  /// The ticks of a command, for EndWatch: there is no servo, but a tick may still hang.
+  /// Gives EndWatch the ticks of a command: there is no servo, but a tick may still hang.
   class Ticks final : public watch::Ended {
    public:
     uint64_t ticks() const noexcept override { return OfflineTick::ended(); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd top`: what a running daemon does, from its status page. Maps the page read-only: it may be killed at any
-/// time.
+/// `hapticd top`: shows what a running daemon does, from its status page. The page is mapped read-only, so `top` may be
+/// killed at any time.
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
@@ -40,8 +40,8 @@ struct ModelLine {
   std::string name, plugin;
   status::ModelNow now;
   status::ModelFeet feet;
-  std::string silenced;              ///< why it is no longer felt; "" if it is felt
-  double p50 = 0, p99 = 0, max = 0;  ///< [us] of a step
+  std::string silenced;              ///< why the model was silenced; "" if it was not
+  double p50 = 0, p99 = 0, max = 0;  ///< [us] times of a step
   bool traced = false;
 };
 
@@ -57,7 +57,7 @@ struct ArmLine {
 
 struct View {
   status::Now now;
-  double rate = 0, held = 0;  ///< [Hz] rate asked for, and ticks per second since the last view
+  double rate = 0, held = 0;  ///< [Hz] rate that the scene asks for, and ticks per second since the last view
   double late[3] = {}, compute[3] = {};
   std::vector<ArmLine> arms;
   std::vector<ModelLine> models;
@@ -98,7 +98,7 @@ View look(const status::Page& page) {
                    false};
     const status::SharedHistogram& step = page.model[i].step_us;
     line.p50 = step.quantile(0.5), line.p99 = step.quantile(0.99), line.max = step.max();
-    constexpr uint64_t kFresh = 50;  // ticks: a model that was not stepped for so long is far away
+    constexpr uint64_t kFresh = 50;  // ticks: a model whose last step is longer ago is far away
     line.traced = line.now.tick + kFresh >= view.now.tick && std::isfinite(line.now.depth);
     if (!line.traced) line.now.force = 0;
     line.silenced =
@@ -173,7 +173,7 @@ Json toJson(const View& view) {
           {"clients", jsonOfClients(view)}};
 }
 
-/// Programs that push; "" if none does.
+/// Returns the table of programs that push; "" if none does.
 std::string clientsTable(const View& view) {
   if (view.clients.empty()) return "";
   std::string text = fmt::format("\n{:<28} {:>8} {:<16} {:>9} {:>9} {:>11} {:>11} {:>7}  {}\n", "PROGRAM", "PID",
@@ -189,7 +189,7 @@ std::string clientsTable(const View& view) {
   return text;
 }
 
-/// Share of the ticks with a foot in which the foot was known: the nearest point, or held by a contact.
+/// Returns in which share of the ticks with a foot point it was certain, as the nearest point or by a held contact.
 std::string knownShare(const status::ModelFeet& feet) {
   const uint64_t known = feet.nearest + feet.held, all = known + feet.degraded;
   if (all == 0) return "-";
@@ -228,7 +228,7 @@ std::string table(const View& view, size_t rows) {
   return text;
 }
 
-/// Delivers each key at once and without echo while the object lives.
+/// While this object lives, the terminal delivers each key at once and without echo.
 class RawKeys {
  public:
   RawKeys() : raw_(isatty(STDIN_FILENO) != 0 && tcgetattr(STDIN_FILENO, &before_) == 0) {
@@ -242,7 +242,7 @@ class RawKeys {
   RawKeys(const RawKeys&) = delete;
   RawKeys& operator=(const RawKeys&) = delete;
 
-  /// The key that is pressed within a time; 0 if none is.
+  /// Returns the key that is pressed within a time, or 0 if none is.
   char wait(double seconds) const {
     pollfd polled{STDIN_FILENO, static_cast<short>(raw_ ? POLLIN : 0), 0};
     char key = 0;
@@ -259,7 +259,7 @@ bool ended(const status::Page& page) {
   return kill(static_cast<pid_t>(page.pid), 0) != 0 && errno == ESRCH;
 }
 
-/// A daemon that ended in order removed its files.
+/// Reports the end of the daemon. A daemon that ended in order has removed its files.
 int endOfDaemon(const TopArguments& options) {
   if (!control::wasKilled(status::runtimeFolder(false) + "/" + options.name + ".sock")) return kWorked;
   return fail(kFailed,
@@ -292,7 +292,7 @@ int watch(const TopArguments& options, const status::Page& page) {
   return kWorked;
 }
 
-/// Prints one line of JSON after the other, until nobody reads them or the daemon ends.
+/// Prints one line of JSON after another, until the reader of the output or the daemon ends.
 int stream(const TopArguments& options, const status::Page& page) {
   RealClock clock(0);
   status::Now before{};
@@ -308,7 +308,8 @@ int stream(const TopArguments& options, const status::Page& page) {
   return endOfDaemon(options);
 }
 
-/// A stopped process leaves its page unchanged, so it looks alive. @param tick the tick that the page showed
+/// Returns true if the page does not change. The page of a stopped process exists, so the process would seem to run.
+/// @param tick tick that the page showed before
 bool standsStill(const status::Page& page, uint64_t tick) {
   constexpr Nanoseconds kLook = 10'000'000, kPatience = 500'000'000;
   RealClock clock(0);
@@ -337,9 +338,10 @@ int top(const TopArguments& options) {
   sortModels(view.models, options.sort);
   std::fputs(options.json ? (toJson(view).dump() + "\n").c_str() : table(view, view.models.size()).c_str(), stdout);
   if (!still) return kWorked;
-  return fail(kFailed, "the daemon " + options.name +
-                           " stands still: no tick came while this looked, and the numbers are old\n  fix: let its "
-                           "process go on (kill -CONT PID), or end it (kill -9 PID)");
+  return fail(kFailed,
+              "the daemon " + options.name +
+                  " stands still: no tick came while this command waited, so the numbers are old\n  fix: let its "
+                  "process go on (kill -CONT PID), or end it (kill -9 PID)");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd trace`: the same servo core over a prescribed probe path, in virtual time, without a device.
+/// `hapticd trace`: runs the servo core over a prescribed probe path, in virtual time, without a device.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -28,7 +28,7 @@ struct TraceArguments {
   std::string scene, probe, out, models;
 };
 
-/// Indices of the models to print; an empty `filter` means all of them.
+/// Returns the indices of the models to print; an empty `filter` means all.
 Result<std::vector<uint32_t>> chosenModels(const scene::Scene& scene, const std::string& filter) {
   std::vector<uint32_t> chosen;
   if (filter.empty()) {
@@ -74,7 +74,7 @@ Result<void> traceRows(const scene::Scene& scene, servo::World& world, const std
   return writer.close();
 }
 
-/// What a trace reads, each with what it is.
+/// Returns the files that a trace reads, each with a name for it.
 Inputs filesRead(const TraceArguments& options, const scene::Scene& scene) {
   Inputs files{{options.scene, "the scene"}, {options.probe, "the probe path"}};
   for (const scene::Device& device : scene.devices) files.emplace_back(device.file.string(), "a device file");
@@ -84,29 +84,30 @@ Inputs filesRead(const TraceArguments& options, const scene::Scene& scene) {
   return files;
 }
 
-/// Warns of a path in mm, which is far from everything: a trace shows that only by its depths.
+/// Warns of a path that is far from everything, because it was probably given in mm.
 void warnOfFarRows(const std::string& file, const std::vector<PathRow>& rows) {
   constexpr double kFar = 10;  // [m]
   for (size_t i = 0; i < rows.size(); ++i) {
     if (!rows[i].finite() || !(rows[i].position.norm() > kFar)) continue;
-    std::fprintf(stderr,
-                 "warning: %s: row %zu is %.4g m from the world's origin, where no arm reaches; expected metres\n",
-                 file.c_str(), i + 1, rows[i].position.norm());
+    std::fprintf(
+        stderr,
+        "warning: %s: row %zu is %.4g m from the world's origin, where no arm reaches; positions must be in m\n",
+        file.c_str(), i + 1, rows[i].position.norm());
     return;
   }
 }
 
-/// A tick a row: rows of another unit or rate give another velocity than the one that a run has.
+/// Warns if the times of the rows are not those of ticks, because each row is one tick: damping and motion then differ
+/// from a run.
 void warnOfRowTimes(const std::string& file, const std::vector<PathRow>& rows, double rate) {
   constexpr double kFactor = 2;
   if (rows.size() < 2) return;
   const double apart = (rows.back().t - rows.front().t) / static_cast<double>(rows.size() - 1);
   if (apart <= kFactor / rate && apart >= 1 / (kFactor * rate)) return;
-  std::fprintf(
-      stderr,
-      "warning: %s: rows are %.4g s apart, and each is a tick, which in a run lasts %.4g s (servo.rate %g Hz): "
-      "damping and motion are those of that slower or faster loop\n",
-      file.c_str(), apart, 1 / rate, rate);
+  std::fprintf(stderr,
+               "warning: %s: rows are %.4g s apart, but a tick of this scene lasts %.4g s (servo.rate %g Hz); each row "
+               "is one tick, so damping and motion differ from a run\n",
+               file.c_str(), apart, 1 / rate, rate);
 }
 
 int trace(const TraceArguments& options) {

@@ -14,7 +14,7 @@ constexpr const char* kHeader =
     "t,model,feature,u,v,px,py,pz,nx,ny,nz,depth,fx,fy,fz,tx,ty,tz,contact,iterations,status,"
     "mx,my,mz,mqw,mqx,mqy,mqz\n";
 
-/// A name as a CSV field: in quotes if it has a comma, quote or line end.
+/// Returns a name as a CSV field, in quotes if it has a comma, quote or line end.
 std::string field(const std::string& name) {
   if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
   std::string quoted(1, '"');
@@ -40,7 +40,7 @@ TraceWriter::TraceWriter(std::FILE* out, std::string file, const scene::Scene& s
 
 namespace {
 
-constexpr long kHeld = 2;  ///< the answer is good, and its foot is that of a held contact
+constexpr long kHeld = 2;  ///< status of a good answer whose foot is kept by a held contact
 
 long statusOf(const servo::ModelState& model, const hsp_contact& contact, bool probe_valid) {
   if (!probe_valid) return HSP_E_NUMERIC;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Results of `hapticd trace`: a CSV row a tick and model, numbers with 17 digits so that doubles survive the file.
+/// Writes the results of `hapticd trace`: one CSV row per tick and model. Numbers have 17 digits, so that reading them
+/// gives the same doubles.
 #pragma once
 #include <cstdint>
 #include <cstdio>
@@ -15,19 +16,19 @@ namespace hapticd::cli {
 
 class TraceWriter {
  public:
-  static constexpr const char* kFirstColumns = "t,model,feature,u,v,";  ///< by which such a file is known
+  static constexpr const char* kFirstColumns = "t,model,feature,u,v,";  ///< by these such a file is recognised
 
-  /// [main] Opens `file` ("-": standard output) and writes the header. @param models indices to print
+  /// [main] Opens `file` ("-" is standard output) and writes the header. @param models indices of the models to print
   static Result<std::unique_ptr<TraceWriter>> open(const std::string& file, const scene::Scene& scene,
                                                    std::vector<uint32_t> models);
   ~TraceWriter();
   TraceWriter(const TraceWriter&) = delete;
   TraceWriter& operator=(const TraceWriter&) = delete;
 
-  /// [main] The rows of one tick.
+  /// [main] Writes the rows of one tick.
   Result<void> write(double t, const servo::Core& core, bool probe_valid);
 
-  /// [main] Flushes; a full disk is an error, not a short file.
+  /// [main] Writes what is still in memory, and returns an error if the disk is full.
   Result<void> close();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd tune`: cost against error of every setting of a scene, on this machine, and the setting to take.
+/// `hapticd tune`: measures cost and error of the settings of a scene on this machine, and chooses one.
 #include <unistd.h>
 
 #include <atomic>
@@ -40,7 +40,7 @@ void stopTuning(int signal) {
   if (stopped.exchange(true) || signal != SIGINT) watch::endAnyway(calledHere());
 }
 
-/// The motion of a path file, resampled to the scene's rate.
+/// Returns the motion of a path file, resampled to the scene's rate.
 Result<tune::Motion> motionOfFile(const std::string& file, double rate) {
   auto rows = readProbePath(file);
   if (!rows) return Error{rows.error()};
@@ -54,7 +54,7 @@ Result<tune::Motion> motionOfFile(const std::string& file, double rate) {
   return tune::resampled(tune::motionThrough(std::move(position), period), rate);
 }
 
-/// The motion of the first arm in a recording or a black box.
+/// Returns the motion of the first arm in a recording or a black box.
 Result<tune::Motion> motionOfRecording(const std::string& file, double rate) {
   auto recording = record::Recording::open(file);
   if (!recording) return Error{recording.error()};
@@ -79,12 +79,13 @@ Result<tune::Motion> motionOfRecording(const std::string& file, double rate) {
   return tune::resampled(tune::motionThrough(std::move(position), period), rate);
 }
 
-/// Messages of plugins were printed at the first set-up; here the same models are set up hundreds of times.
+/// Prints nothing: messages of plugins were printed at the first set-up, and the same models are now set up hundreds of
+/// times.
 void quiet(int level, const std::string& who, const std::string& text) {
   if (level >= HSP_LOG_ERROR) logToTerminal(level, who, text);
 }
 
-/// The motion that the user gave: a path file, a recording, or none.
+/// Returns the motion that the user gave (a path file or a recording), or the motion of the scene's hand.
 Result<tune::Motion> motionFor(const TuneArguments& options, const scene::Scene& scene) {
   if (!options.probe.empty()) return motionOfFile(options.probe, scene.servo.rate);
   if (!options.motion.empty()) return motionOfRecording(options.motion, scene.servo.rate);
@@ -144,7 +145,7 @@ int report(const TuneArguments& options, const tune::Findings& findings) {
   return findings.tuning.reached ? kWorked : kFailed;
 }
 
-/// The servo's own settings.
+/// Measures the servo's own settings.
 Result<void> sweep(const scene::Scene& scene, const tune::Motion& motion, bool uses_velocity,
                    tune::Findings& findings) {
   auto rates = tune::measureRates(scene, motion, quiet);
@@ -186,7 +187,7 @@ int tuneScene(const TuneArguments& options) {
   findings.limit_seconds = options.limit_seconds;
 
   os::onStopSignal(stopTuning);
-  const GuardedCommand in_front;  // of that handler too
+  const GuardedCommand in_front;  // installed before the handler of signals below
   auto tuning =
       tune::search(*scene, *motion, findings.knobs, {findings.goal, options.limit_seconds, showProgress, quiet});
   if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
@@ -198,7 +199,7 @@ int tuneScene(const TuneArguments& options) {
   return report(options, findings);
 }
 
-/// What the search aims at, and over which motion.
+/// Adds the options for the goal of the search and its motion.
 void addGoal(const Command& command, const std::shared_ptr<TuneArguments>& options) {
   const Option budget = command
                             .addOption("--budget-us", options->budget_us,
@@ -210,7 +211,9 @@ void addGoal(const Command& command, const std::shared_ptr<TuneArguments>& optio
       .within(1e-6, 1e6)
       .excludes(budget)
       .showDefault();
-  command.addOption("--force-tolerance-n", options->force_tolerance, "and with errors of the force below this [N]")
+  command
+      .addOption("--force-tolerance-n", options->force_tolerance,
+                 "with --tolerance-um: also require errors of the force below this [N]")
       .within(1e-9, 1e3)
       .showDefault();
   const Option probe =

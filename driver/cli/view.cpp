@@ -36,7 +36,7 @@ void passToView(int signal) {
   if (viewer > 0) kill(static_cast<pid_t>(viewer), signal);
 }
 
-/// This process draws the models, another serves the page.
+/// Shows a recording: this process draws the models, another one serves the page.
 int viewRecording(const ViewArguments& options) {
   auto models = RecordedModels::serve(options.file);
   if (!models) return fail(kBadInput, models.error());

@@ -27,7 +27,7 @@ std::vector<char*> asArguments(std::vector<std::string>& words) {
   return arguments;
 }
 
-/// Sets a parameter of the file; adds it where the file does not give it.
+/// Returns the value of a parameter, to be set; adds it if the file does not give it.
 scene::Value* valueOf(scene::Device& device, const host::ClassInfo& info, const std::string& id) {
   const int index = info.indexOf(id);
   if (index < 0) return nullptr;

@@ -30,7 +30,7 @@ Option Option::oneValueEach() const {
   return Option(option_->allow_extra_args(false));
 }
 
-/// CLI::Range would also accept what is not a number.
+/// CLI::Range is not used, because it would also accept nan.
 Option Option::within(double low, double high) const {
   const auto refuse = [=](const std::string& text) {
     double value = 0;
@@ -154,7 +154,7 @@ void Command::optionsMayFollowSubcommand() const {
 
 void Command::takesForeignCommandLine() const {
   app_->prefix_command();
-  app_->fallthrough(false);  // the words after it are not options of the program either
+  app_->fallthrough(false);  // the words after it are not parsed as options of the program either
 }
 
 std::vector<std::string> Command::foreignCommandLine() const {
@@ -205,7 +205,8 @@ void Program::version(const std::string& text) const {
 
 namespace {
 
-/// Gives CLI11's "Could not convert: value = abc" the form of the other messages. Only numbers are converted.
+/// Gives CLI11's "Could not convert: value = abc" the form of the other messages. Such a message is always about a
+/// number, because only numbers are converted.
 std::string unreadable(const std::string& told) {
   const size_t colon = told.find(": "), equals = told.find(" = ");
   if (colon == std::string::npos || equals == std::string::npos || equals < colon) return "error: " + told;

@@ -10,7 +10,7 @@
 namespace hapticd::document {
 namespace {
 
-constexpr size_t kShownProblems = 20;  ///< most problems of a file: one of another format is wrong in every line
+constexpr size_t kShownProblems = 20;  ///< limit per file: a file in another format is wrong in every line
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r";
@@ -19,20 +19,20 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-/// A number as YAML writes it, or what printf writes for one that is not finite.
+/// Reads a number as YAML writes it, or nan and inf as printf writes them.
 std::optional<double> numberIn(std::string_view text) {
   if (text == "nan" || text == "-nan") return std::nan("");
   if (text == "inf" || text == "-inf") return text.front() == '-' ? -HUGE_VAL : HUGE_VAL;
   return toNumber(text);
 }
 
-/// A text without the quotes around it.
+/// Returns the text without the quotes around it.
 std::string_view unquoted(std::string_view text) {
   const bool quoted = text.size() > 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front();
   return quoted ? text.substr(1, text.size() - 2) : text;
 }
 
-/// A text for a terminal, which bytes of another encoding would confuse.
+/// Returns the text for a terminal, without bytes of another encoding that would confuse it.
 std::string printable(std::string text) {
   for (char& c : text)
     if (c < ' ' || c > '~') c = '?';
@@ -43,7 +43,7 @@ std::string countText(size_t columns) {
   return std::to_string(columns) + (columns == 1 ? " column" : " columns");
 }
 
-/// The fields of a line, and the places where they begin.
+/// One field of a line, and the place where it begins.
 struct Field {
   std::string_view text;
   size_t offset;
@@ -86,12 +86,12 @@ class Parser {
     for (const std::string& header : rules_.headers) text += (text.empty() ? "" : " or ") + header;
     return text;
   }
-  /// Says how columns are separated here, for a line that has other signs between them.
+  /// Returns a hint about separators if the line seems to have other signs than commas between its columns; else "".
   static std::string separators(const std::vector<Field>& fields, size_t columns) {
     if (fields.size() >= columns) return "";
     bool others = fields.size() == 1 && fields[0].text.find(' ') != std::string_view::npos;
     for (const Field& field : fields) others = others || field.text.find_first_of(";\t") != std::string_view::npos;
-    if (others) return "; columns are separated by commas, and decimals have a point";
+    if (others) return "; separate columns by commas, and write decimals with a point";
     return "";
   }
   void problem(size_t offset, const std::string& column, const std::string& what) {
@@ -99,9 +99,9 @@ class Parser {
     report(problems_, file_, line_, static_cast<int>(offset) + 1, column, what);
   }
 
-  /// Settles the columns. True if the line was a header.
+  /// Chooses the columns by the first line. Returns true if this line was a header.
   bool header(const std::vector<Field>& fields) {
-    std::string names;  // some programs quote each
+    std::string names;  // without quotes, which some programs write around each name
     for (const Field& field : fields) names.append(names.empty() ? "" : ",").append(unquoted(field.text));
     const bool numbers = numberIn(fields.front().text).has_value();
     for (const std::string& header : rules_.headers) {
@@ -116,7 +116,7 @@ class Parser {
             (numbers ? countText(fields.size()) + ", expected " + expected()
                      : "the header is \"" + printable(names.substr(0, 60)) + "\", expected " + expected()) +
                 meant);
-    wrong_ = kShownProblems;  // without columns no row can be judged
+    wrong_ = kShownProblems;  // if the columns are unknown, no row can be checked
     return true;
   }
 
@@ -127,13 +127,14 @@ class Parser {
       return problem(0, "",
                      countText(fields.size()) + ", expected " + std::to_string(table_.columns) +
                          separators(fields, table_.columns) +
-                         (fields.size() > table_.columns ? "; a half is 0.5, with a point" : ""));
+                         (fields.size() > table_.columns ? "; write decimals with a point: 0.5, not 0,5" : ""));
     for (size_t i = 0; i < fields.size(); ++i)
       if (!take(fields[i], i)) return table_.values.resize(table_.lines.size() * table_.columns);
     const double* now = table_.values.data() + table_.lines.size() * table_.columns;
     if (rules_.growing && !table_.lines.empty() && *now <= *(now - table_.columns)) {
       problem(0, nameOf(0),
-              numberText(*now) + " does not grow, expected more than " + numberText(*(now - table_.columns)));
+              numberText(*now) + " does not grow from row to row, expected more than " +
+                  numberText(*(now - table_.columns)));
       return table_.values.resize(table_.lines.size() * table_.columns);
     }
     table_.lines.push_back(line_);

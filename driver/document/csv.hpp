@@ -16,23 +16,23 @@ namespace hapticd::document {
 
 /// What a table must be like.
 struct CsvRules {
-  std::vector<std::string> headers;  ///< the headers that are accepted, "t,x,y,z"; their lengths differ
-  bool finite = true;                ///< refuses nan and inf; the first column of a growing table is always finite
-  bool growing = false;              ///< the first column grows from row to row
+  std::vector<std::string> headers;  ///< accepted headers, such as "t,x,y,z", each with another number of columns
+  bool finite = true;                ///< true: nan and inf are errors. In column 1 of a growing table they always are
+  bool growing = false;              ///< true: the first column must grow from row to row
   double largest = HUGE_VAL;         ///< largest magnitude of a finite number
 };
 
 struct CsvTable {
   size_t columns = 0;
   std::vector<double> values;  ///< row by row
-  std::vector<int> lines;      ///< line of each row in the file, from 1
+  std::vector<int> lines;      ///< line number of each row in the file, counted from 1
 
   size_t rows() const { return lines.size(); }
   const double* row(size_t i) const { return values.data() + i * columns; }
 };
 
-/// [main] Parses a text. Whatever breaks the rules becomes a problem with line and column, at most twenty of them, and
-/// nothing is returned.
+/// [main] Parses a text. If something breaks the rules, it reports at most twenty problems with line and column, and
+/// returns nothing.
 std::optional<CsvTable> parseCsv(std::string_view text, const std::string& file, const CsvRules& rules,
                                  Problems& problems);
 

@@ -36,16 +36,16 @@ std::string foreignFile(std::string_view text, const std::string& file) {
   const std::string ending = endingOf(file);
   if (ending == ".hpart")
     return "a part, expected YAML; hapticd part info " + file +
-           " shows what it holds; geometry of nurbs_rigid may be one, that of a soft body is a .ma file";
+           " shows its contents; use it as the geometry of nurbs_rigid; the geometry of a soft body is a .ma file";
   const auto is = [&](const Kind& kind) {
     return ending == kind.ending || (!kind.begins.empty() && text.substr(0, kind.begins.size()) == kind.begins);
   };
   const auto* const found = std::find_if(std::begin(kKinds), std::end(kKinds), is);
   if (found == std::end(kKinds)) return "";
   const std::string part = std::filesystem::path(file).stem().string() + ".hpart";
-  return std::string(found->name) + ", expected YAML: bring it in with hapticd import " + file + " -o " + part +
-         ", then geometry: " + part + "; a soft body is made of a mesh with hapticd import --medial " + file + " -o " +
-         std::filesystem::path(file).stem().string() + ".ma";
+  return std::string(found->name) + ", expected YAML: convert it with hapticd import " + file + " -o " + part +
+         " and write geometry: " + part + "; for a soft body, convert a mesh with hapticd import --medial " + file +
+         " -o " + std::filesystem::path(file).stem().string() + ".ma";
 }
 
 }  // namespace hapticd::document

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-/// nlohmann's JSON from text. Its parser costs a unit that calls it more than a second of compiling, so one calls it
-/// for all. A tree that knows the place of every value is document::Node.
+/// Parses JSON with the library nlohmann/json. Its parser adds more than a second to the compilation of each source
+/// file that calls it, so only json_text.cpp does. For a tree with the line and column of every value, use
+/// document::Node.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string_view>
 
 namespace hapticd::document {
 
-/// [any] Keys keep their order. Gives a value that is_discarded() if the text is not JSON.
+/// [any] Parses a text; keys keep their order. If the text is not JSON, is_discarded() of the result is true.
 nlohmann::ordered_json parseJson(std::string_view text);
 
 /// [any] As parseJson(), but throws nlohmann::json::parse_error if the text is not JSON.

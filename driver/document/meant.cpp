@@ -14,9 +14,9 @@
 namespace hapticd::document {
 namespace {
 
-constexpr size_t kLongest = 60;  ///< longest text that is looked at: a number and its unit are short
+constexpr size_t kLongest = 60;  ///< length of the longest text that is examined: a number with its unit is short
 
-/// What people write for a unit, the unit's name here, and its size in it.
+/// A unit as people write it, the unit that hapticd uses, and the factor between them.
 struct Known {
   const char *written, *unit;
   double size;
@@ -42,7 +42,7 @@ std::string replaced(std::string_view text, std::string_view what, std::string_v
   return out;
 }
 
-/// A product, written as a person would write it.
+/// Returns the number in the form in which a person would write it, without rounding errors in its last digits.
 std::string rounded(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.7g", value);
@@ -58,24 +58,24 @@ bool isDigit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// A unit without what people leave out or add: "Ns/m", "N*s/m" and "N s/m" are one.
+/// Returns the unit without blanks, points and asterisks, so that "Ns/m", "N*s/m" and "N s/m" become the same text.
 std::string squeezed(std::string_view unit) {
   std::string out;
   for (const char c : replaced(unit, "·", "")) out += c == ' ' || c == '*' || c == '.' ? "" : std::string(1, c);
   return out;
 }
 
-/// The length of the longest beginning that is a number; 0 if there is none.
+/// Returns the length of the longest number at the beginning of the text; 0 if there is none.
 size_t numberLength(std::string_view text) {
   for (size_t length = text.size(); length > 0; --length)
     if (toNumber(text.substr(0, length))) return length;
   return 0;
 }
 
-/// The text without signs between its thousands, or nothing if it has none.
+/// Returns the number without separators between its thousands, as in 1'000; nothing if it has no such separators.
 std::optional<std::string> ungrouped(std::string_view text) {
   std::string out;
-  size_t group = 0;  // digits since the last such sign
+  size_t group = 0;  // digits since the last separator
   bool grouped = false;
   for (const char c : text) {
     if (c == '\'' || c == '_' || c == ' ') {
@@ -93,11 +93,11 @@ std::optional<std::string> ungrouped(std::string_view text) {
 /// Advice for a number with the text `rest` behind it: what its writer probably meant, and how to write that.
 std::string unitMeant(double number, const std::string& shown, std::string_view rest, std::string_view unit) {
   const std::string value = numberText(number), behind(rest);
-  if (rest == "," || rest == ";") return "; write " + value + ", without the " + behind + " behind it";
-  if (rest == "%") return "; write " + rounded(number / 100) + ": nothing is counted in percent";
-  if (rest.substr(0, 2) == "//") return "; a comment begins with a blank and #";
+  if (rest == "," || rest == ";") return "; write " + value + ", without the " + behind + " after it";
+  if (rest == "%") return "; write " + rounded(number / 100) + ": percentages are not accepted";
+  if (rest.substr(0, 2) == "//") return "; begin a comment with a blank and #";
   if (rest.find_first_of("*^+(") == 0 || rest.substr(0, 2) == "pi" || (rest[0] == '/' && rest.size() > 1))
-    return "; write the number itself: nothing is calculated here";
+    return "; write the result as a number: formulas are not calculated";
   if (isDigit(rest[0]) || rest[0] == '.' || rest[0] == '-') return "";
   if (!unit.empty() && squeezed(rest) == squeezed(unit)) return "; write " + value + ", without the unit";
   for (const Known& known : kUnits)
@@ -120,7 +120,7 @@ std::string numberMeant(std::string_view given, std::string_view unit) {
   if (text.empty() || text.size() > kLongest) return "";
   if (toNumber(text)) return "; write " + std::string(text) + ", without quotes or a tag";
   if (const std::string minus = replaced(replaced(text, "−", "-"), "–", "-"); minus != text && toNumber(minus))
-    return "; write " + minus + ", with the minus of the keyboard";
+    return "; write " + minus + ", with the minus sign of the keyboard";
   if (text.size() > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X')) return "; write it as a decimal number";
   if (const auto plain = ungrouped(text)) return "; write " + *plain + ", with nothing between the digits";
   const size_t comma = text.find(',');
@@ -132,11 +132,11 @@ std::string numberMeant(std::string_view given, std::string_view unit) {
   const std::string_view rest = withoutBlanks(std::string_view(point).substr(length));
   if (length == 0 || (decimal && length <= comma + 1)) return "";
   const std::string number = point.substr(0, length);
-  if (decimal && rest.empty() && point.size() == comma + 4)  // either a thousand, or one with three decimals
+  if (decimal && rest.empty() && point.size() == comma + 4)  // 1,000 may mean one thousand, or one with three decimals
     return "; write " + point.substr(0, comma) + point.substr(comma + 1) + ", or " + number + " with a point";
   if (decimal && rest.empty()) return "; write " + number + ", with a point, not a comma";
   if (decimal && rest.find(',') != rest.npos) return "";
-  return (decimal ? "; decimals have a point" : "") +
+  return (decimal ? "; write decimals with a point" : "") +
          unitMeant(toNumber(number).value_or(0), number + " " + std::string(rest), rest, unit);
 }
 
@@ -145,7 +145,7 @@ std::string listMeant(const Node& node, size_t count) {
   if (node.isSequence() && node.items.size() > count) {
     for (const Node& item : node.items)
       if (!item.isScalar() || !toNumber(item.scalar)) return "";
-    return "; a comma stands between two numbers: a half is 0.5, with a point";
+    return "; a comma separates two numbers: write decimals with a point, such as 0.5";
   }
   if (!node.isScalar()) return "";
   if (!node.scalar.empty() && node.scalar[0] == '(') return "; write it in brackets, as [0, 0, 0.1]";
@@ -171,15 +171,15 @@ std::string mappingMeant(const Node& node) {
 }
 
 std::string keyMeant(std::string_view key) {
-  if (toNumber(key)) return " (a comma stands before it: a half is 0.5, with a point)";
+  if (toNumber(key)) return " (there is a comma before it: write decimals with a point, such as 0.5)";
   const size_t colon = key.find(':');
   if (colon != key.npos && colon > 0 && colon + 1 < key.size())
     return " (no blank after the colon, expected \"" + std::string(key.substr(0, colon)) + ": " +
            std::string(key.substr(colon + 1, kLongest)) + "\")";
-  if (key.find("\u00a0") != key.npos) return " (it has a no-break space in it, expected blanks)";
+  if (key.find("\u00a0") != key.npos) return " (it contains a no-break space, expected ordinary blanks)";
   if (key.find("\u201c") != key.npos || key.find("\u201d") != key.npos || key.find("\u2018") != key.npos ||
       key.find("\u2019") != key.npos)
-    return " (it has quotes of print around it, expected none or \")";
+    return " (it has typographic quotes around it, expected \" or no quotes)";
   return "";
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a person meant who wrote a value that cannot be read: how to mend it, for the end of a message.
+/// Guesses what a person meant with a value that cannot be read, and says how to write it, for the end of a message.
 #pragma once
 #include <string>
 #include <string_view>
@@ -8,22 +8,22 @@
 
 namespace hapticd::document {
 
-/// [any] "; write 0.04: 40 mm are 0.04 m" for a text in the place of a number, or "" if it cannot be guessed: decimal
-/// commas, units, quotes, blanks or signs between digits, formulas.
-/// @param unit that is expected; "": not known
+/// [any] Returns advice such as "; write 0.04: 40 mm are 0.04 m" for a text in the place of a number; "" if nothing can
+/// be guessed. It knows decimal commas, units, quotes, blanks or signs between digits, and formulas.
+/// @param unit the expected unit; "" if it is unknown
 std::string numberMeant(std::string_view text, std::string_view unit = "");
 
-/// [any] "; write [0, 0, 0.1]" for a node in the place of a list of numbers, or "".
+/// [any] Returns advice such as "; write [0, 0, 0.1]" for a node in the place of a list of numbers, or "".
 std::string listMeant(const Node& node, size_t count);
 
-/// [any] "; write rate: 1000" for a node in the place of a mapping, or "".
+/// [any] Returns advice such as "; write rate: 1000" for a node in the place of a mapping, or "".
 std::string mappingMeant(const Node& node);
 
-/// [any] " (no blank after the colon, expected \"rate: 1000\")" for an unknown key that holds its own value, quotes of
-/// print, or a blank that is none; or "".
+/// [any] Returns advice such as " (no blank after the colon, expected \"rate: 1000\")" for an unknown key that contains
+/// its own value, typographic quotes, or a no-break space; otherwise "".
 std::string keyMeant(std::string_view key);
 
-/// [any] "; ~ is not read as a folder ..." for a path as a shell knows it, or "".
+/// [any] Returns advice such as "; ~ is not replaced here ..." for a path in the form of a shell or of Windows, or "".
 std::string pathMeant(std::string_view path);
 
 }  // namespace hapticd::document

@@ -7,7 +7,7 @@
 namespace hapticd::document {
 namespace {
 
-constexpr size_t kShownText = 40;  ///< length of a value that a message shows
+constexpr size_t kShownText = 40;  ///< longest part of a value that a message shows
 
 void appendJsonText(const std::string& text, std::string& out) {
   static constexpr char kHex[] = "0123456789abcdef";
@@ -115,7 +115,8 @@ std::optional<double> toNumber(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end != text.data() + text.size()) return std::nullopt;
-  if (error == std::errc::result_out_of_range)  // too small is zero; too large is refused as not finite, not as a text
+  if (error == std::errc::result_out_of_range)  // A number that is too small becomes zero. One that is too large
+                                                // becomes infinite, and is refused for that.
     value = text.find("e-") != text.npos || text.find("E-") != text.npos ? 0 : INFINITY;
   else if (error != std::errc())
     return std::nullopt;

@@ -18,13 +18,14 @@ namespace {
 constexpr const char* kEmpty =
     "the file is empty, expected YAML; a scene begins with \"hapticd: 1\", a device file with \"hapticd-device: 1\"";
 
-/// The reason why reading stops at once.
+/// An exception that stops the reading at once, with the reason.
 struct Refused {
   YAML::Mark mark;
   std::string what;
 };
 
-/// Builds the tree from the parser's events. Anchors are kept as copies; an alias copies one again, and is counted.
+/// Builds the tree from the parser's events. Nodes with anchors are kept as copies. An alias copies such a node again,
+/// and the copied values count toward the limit.
 class Builder final : public YAML::EventHandler {
  public:
   Builder(const std::string& file, size_t most_nodes, Problems& problems)
@@ -47,9 +48,10 @@ class Builder final : public YAML::EventHandler {
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     for (const Open& open : open_)
-      if (open.anchor == anchor) throw Refused{mark, "an alias inside the node that it names, which would never end"};
+      if (open.anchor == anchor)
+        throw Refused{mark, "an alias (*name) inside the very node that it stands for, so the file would never end"};
     const auto found = std::find_if(anchors_.begin(), anchors_.end(), [&](const auto& a) { return a.first == anchor; });
-    if (found == anchors_.end()) throw Refused{mark, "an alias without an anchor before it"};
+    if (found == anchors_.end()) throw Refused{mark, "an alias (*name) without its anchor (&name) before it"};
     count(sizeOf(found->second), mark);
     add(found->second, mark, 0);
   }
@@ -72,8 +74,8 @@ class Builder final : public YAML::EventHandler {
   struct Open {
     Node node;
     YAML::anchor_t anchor;
-    std::optional<Node> key;                // in a map: a key was read, but not its value
-    std::unordered_set<std::string> names;  // in a map: used to find duplicates
+    std::optional<Node> key;                // in a map: the key whose value has not come yet
+    std::unordered_set<std::string> names;  // in a map: all keys so far, to find duplicates
   };
 
   Node make(const YAML::Mark& mark, Node::Kind kind) {
@@ -99,7 +101,7 @@ class Builder final : public YAML::EventHandler {
     if (open_.size() >= kMaxDepth) throw Refused{mark, "nested deeper than " + std::to_string(kMaxDepth) + " levels"};
     open_.push_back({make(mark, kind), anchor, std::nullopt, {}});
   }
-  /// Puts the keys of other mappings beside those of this one, which come first (YAML 1.1, merge keys).
+  /// Adds the keys of other mappings (merge key << of YAML 1.1). If a key is in both, this mapping's own value counts.
   void merge(Open& map) {
     std::vector<Entry>& entries = map.node.entries;
     const auto named = std::find_if(entries.begin(), entries.end(),
@@ -165,7 +167,8 @@ class Builder final : public YAML::EventHandler {
   size_t nodes_ = 0, most_nodes_;
 };
 
-/// The first byte that is not part of valid UTF-8, or npos. Overlong forms pass, since nothing decodes them here.
+/// Returns the offset of the first byte that is not valid UTF-8, or npos. Overlong forms are accepted, because nothing
+/// here decodes them.
 size_t firstBadByte(const std::string& text) {
   for (size_t i = 0; i < text.size();) {
     const auto c = static_cast<unsigned char>(text[i]);
@@ -216,7 +219,7 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
       return std::nullopt;
     }
     std::optional<Node> root = builder.take();
-    if (const auto open = openQuote(text, placeOf(builder.lastQuoted(), file))) {  // the parser takes the end for it
+    if (const auto open = openQuote(text, placeOf(builder.lastQuoted(), file))) {  // to the parser, the end closes it
       problems.push_back(*open);
       return std::nullopt;
     }

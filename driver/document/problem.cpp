@@ -35,7 +35,7 @@ void report(Problems& problems, const std::string& file, int line, int column, c
 void sortByPlace(Problems& problems) {
   std::map<std::string, size_t> order;
   for (const Problem& problem : problems) order.emplace(problem.place.file, order.size());
-  // A list sorts without a buffer, and keeps the order of problems at the same place.
+  // std::list::sort needs no buffer, and keeps the order of problems at the same place.
   std::list<Problem> sorted(std::make_move_iterator(problems.begin()), std::make_move_iterator(problems.end()));
   sorted.sort([&](const Problem& a, const Problem& b) {
     return std::tuple(order[a.place.file], a.place.line, a.place.column) <

@@ -6,7 +6,7 @@
 
 namespace hapticd::document {
 
-/// Where something was written; lines and columns count from 1, 0: nowhere in particular.
+/// A place in a file. Lines and columns count from 1; 0 means that the line is unknown.
 struct Place {
   std::string file;
   int line = 0, column = 0;
@@ -14,10 +14,11 @@ struct Place {
 
 struct Problem {
   Place place;
-  std::string key;   ///< "models[2].parameters.stiffness"; "" for the file as a whole
+  std::string key;   ///< such as "models[2].parameters.stiffness"; "" for the file as a whole
   std::string what;  ///< what is wrong, and what was expected
 
-  /// "scene.yaml:12:18: models[2].parameters.stiffness: -5 N/m is out of range, expected 0 to 20000 N/m"
+  /// Returns a message such as "scene.yaml:12:18: models[2].parameters.stiffness: -5 N/m is out of range, expected 0 to
+  /// 20000 N/m".
   std::string text() const;
 };
 
@@ -28,7 +29,7 @@ void report(Problems& problems, const Place& place, const std::string& key, cons
 void report(Problems& problems, const std::string& file, int line, int column, const std::string& key,
             const std::string& what);
 
-/// Sorted by lines within each file, as editors list them; the order of the files stays.
+/// Sorts problems by line within each file, as editors list them, and keeps the order of the files.
 void sortByPlace(Problems& problems);
 
 }  // namespace hapticd::document

@@ -14,7 +14,7 @@
 namespace hapticd::document {
 namespace {
 
-constexpr double kUnitTolerance = 1e-3;  ///< of a quaternion's length: digits that a person leaves out are no error
+constexpr double kUnitTolerance = 1e-3;  ///< allowed error of a quaternion's length, since people write few digits
 constexpr size_t kLongestName = 100;
 
 std::string wordOf(const Node& node) {
@@ -49,13 +49,14 @@ bool normalise(Eigen::Quaterniond& q) {
   return true;
 }
 
-/// Without the noise of a product in its last digits.
+/// Returns the number as text without the rounding error of a product in its last digits.
 static std::string shortText(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 10).ptr};
 }
 
-/// What a number that is too large was meant to be, if that is in range: millimetres, degrees, milliseconds.
+/// Guesses that a number that is too large is in millimetres, degrees or milliseconds. Returns advice if the converted
+/// number is in the range, else "".
 static std::string inOtherUnits(double value, const Range& range) {
   struct Slip {
     const char *unit, *meant;
@@ -106,7 +107,7 @@ std::optional<size_t> Reader::choice(const Node& node, const std::string& key, s
   for (size_t i = 0; node.isScalar() && i < choices.size(); ++i)
     if (node.scalar == choices[i]) return i;
   const std::vector<std::string> all(choices.begin(), choices.end());
-  const bool word = node.isScalar() && !toNumber(node.scalar);  // a key that a comma made is never a number
+  const bool word = node.isScalar() && !toNumber(node.scalar);  // a number is not a misspelt choice
   const std::string meant = word ? suggestion(node.scalar, all) : "";
   problem(node, key, describe(node) + " is an invalid value, expected one of " + listed(all, 40) + meant);
   return std::nullopt;
@@ -208,11 +209,11 @@ std::optional<Eigen::Quaterniond> Reader::quaternion(const Node& node, const std
 
 namespace {
 
-/// The place of a key that was written one level too high.
+/// Returns a hint where an unknown key belongs: under another key, in another file, or under `parameters`; else "".
 std::string belongsTo(const Table& table, const std::string& name) {
   for (const Key& key : table.keys)
     if (key.type == Type::kObject && key.table->find(name) != nullptr)
-      return std::string("; ") + name + " belongs under " + key.name;
+      return std::string("; ") + name + " belongs under the key " + key.name;
   if (table.other != nullptr && table.other->find(name) != nullptr)
     return "; " + name + " belongs in " + table.other_file;
   return table.find("parameters") != nullptr ? "; a parameter of the plugin or module belongs under parameters" : "";
@@ -225,7 +226,7 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
     problem(node, key, describe(node) + ", expected a mapping with " + listed(table.names()) + mappingMeant(node));
     return;
   }
-  const std::string* empty = nullptr;  // a key without a value, above the unknown ones
+  const std::string* empty = nullptr;  // a key without a value: unknown keys after it probably belong under it
   for (const Entry& entry : node.entries) {
     const std::string path = joined(key, entry.key.scalar);
     if (const Key* known = table.find(entry.key.scalar)) {

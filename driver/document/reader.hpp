@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Reads nodes into values with checks; everything that is wrong becomes a problem and reading goes on.
+/// Reads nodes into values and checks them. Everything that is wrong becomes a problem, and reading goes on.
 #pragma once
 #include <Eigen/Geometry>
 #include <filesystem>
@@ -13,16 +13,16 @@ namespace hapticd::document {
 
 struct Table;
 
-/// Bounds of a number; infinite: none.
+/// Bounds of a number. An infinite bound means that there is none.
 struct Range {
   double min, max;
   const char* unit = "";
 };
 
-/// "0 to 20000 N/m", "0 N/m or more".
+/// Returns the range for messages, such as "0 to 20000 N/m" or "0 N/m or more".
 std::string expectedOf(const Range& range);
 
-/// The shortest text that reads back as the same number.
+/// Returns the shortest text that reads back as the same number.
 std::string numberText(double value);
 
 class Reader {
@@ -36,22 +36,23 @@ class Reader {
   const std::filesystem::path& file() const { return file_; }
   Problems& problems() { return problems_; }
 
-  /// A finite number in a range.
+  /// Reads a finite number in a range.
   std::optional<double> number(const Node& node, const std::string& key, const Range& range);
   std::optional<double> whole(const Node& node, const std::string& key, const Range& range);
   std::optional<bool> boolean(const Node& node, const std::string& key);
-  /// Index into the choices.
+  /// Reads one of the choices, and returns its index.
   std::optional<size_t> choice(const Node& node, const std::string& key, std::span<const std::string> choices);
   std::optional<std::string> text(const Node& node, const std::string& key);
-  /// A name that may stand in a table's column: no comma, quote or control character.
+  /// Reads a name without commas, quotes and control characters, so that it may stand in a column of a CSV file.
   std::optional<std::string> name(const Node& node, const std::string& key);
-  /// The absolute path of a file that exists; relative paths start from the folder of the file being read.
+  /// Reads the path of a file that exists, and returns it as an absolute path. A relative path begins at the folder of
+  /// the file that names it.
   std::optional<std::filesystem::path> existingFile(const Node& node, const std::string& key);
   std::optional<Eigen::Vector3d> vector3(const Node& node, const std::string& key, const Range& range);
-  /// w, x, y, z; normalised if its length is 1 within 1e-3.
+  /// Reads a quaternion w, x, y, z. Its length must be 1 within 1e-3; the result is normalised.
   std::optional<Eigen::Quaterniond> quaternion(const Node& node, const std::string& key);
 
-  /// Reads a mapping by its table: checks unknown keys, values and required keys, and stores values in `object`.
+  /// Reads a mapping by its table: reports unknown keys, wrong values and missing keys, and stores values in `object`.
   void object(const Node& node, const std::string& key, const Table& table, void* object);
 
  private:
@@ -59,10 +60,10 @@ class Reader {
   Problems& problems_;
 };
 
-/// "models[2]" + "pose" = "models[2].pose".
+/// Joins two parts of a key: "models[2]" and "pose" give "models[2].pose".
 std::string joined(const std::string& parent, const std::string& key);
 
-/// Normalises a quaternion (w, x, y, z) in place. False: its length is not 1 within 1e-3.
+/// Normalises a quaternion (w, x, y, z) in place. Returns false if its length is not 1 within 1e-3.
 bool normalise(Eigen::Quaterniond& q);
 
 }  // namespace hapticd::document

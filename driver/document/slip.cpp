@@ -11,13 +11,14 @@
 namespace hapticd::document {
 namespace {
 
-/// A line of block style: how far it is indented, and where what it holds begins ("- - a" holds at 4).
+/// A line of YAML's block style: its indentation, and the column where its content begins (4 in "- - a").
 struct Line {
   int number = 0, indent = 0, inner = 0;
-  bool opens = false;  ///< a deeper line may follow
+  bool opens = false;  ///< true if a deeper line may follow
 };
 
-/// The lines up to `last` that are not empty. Flow style and block texts have no indentation that could be wrong.
+/// Returns the lines up to `last` that are not empty. It leaves out flow style ({}, []) and block texts (|, >), whose
+/// indentation cannot be wrong.
 std::vector<Line> blockLines(const std::string& text, int last) {
   std::vector<Line> lines;
   std::istringstream in(text);
@@ -41,7 +42,7 @@ std::vector<Line> blockLines(const std::string& text, int last) {
   return lines;
 }
 
-/// For "-name: ball": the dash of a list, written without a blank before its first key.
+/// Finds a dash of a list without a blank after it, as in "-name: ball".
 std::optional<Problem> gluedDash(const std::string& line, size_t first, int number, const std::string& file) {
   const size_t colon = line.find(": ", first);
   if (line[first] != '-' || first + 1 >= line.size() ||
@@ -52,8 +53,8 @@ std::optional<Problem> gluedDash(const std::string& line, size_t first, int numb
                  "not YAML: no blank after the dash, expected \"- " + line.substr(first + 1, colon - first) + " ...\""};
 }
 
-/// A tab used for indentation, or a key without a blank after its colon, in a line up to `last`: the parser stumbles
-/// only later, when the map does not continue.
+/// Finds a tab used for indentation, or a key without a blank after its colon, in a line up to `last`. The parser
+/// notices these only later, where the mapping does not continue.
 std::optional<Problem> wrongBlank(const std::string& text, int last, const std::string& file) {
   constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
   std::istringstream in(text);
@@ -70,7 +71,7 @@ std::optional<Problem> wrongBlank(const std::string& text, int last, const std::
     const size_t key = line.find_first_not_of("- ", first), end = line.find_first_not_of(kLetters, key);
     if (key == std::string::npos || end == std::string::npos || end == key || line[end] != ':') continue;
     if (end + 1 >= line.size() || std::string(" \t\r/:").find(line[end + 1]) != std::string::npos) continue;
-    if (std::isalpha(static_cast<unsigned char>(line[key])) == 0) continue;  // a time: 12:30
+    if (std::isalpha(static_cast<unsigned char>(line[key])) == 0) continue;  // not a key but a time, such as 12:30
     if (const size_t comment = line.find(" #"); comment != std::string::npos) line.erase(comment);
     const std::string name = line.substr(key, end - key);
     return Problem{{file, number, static_cast<int>(end) + 2},
@@ -81,8 +82,8 @@ std::optional<Problem> wrongBlank(const std::string& text, int last, const std::
   return std::nullopt;
 }
 
-/// What is wrong with the indentation of a line up to `last`, and where: the parser notices it late, and says it in its
-/// own words.
+/// Finds a line up to `last` whose indentation is wrong. The parser notices it only later, and says it in its own
+/// terms.
 std::optional<Problem> wrongIndent(const std::string& text, int last, const std::string& file) {
   const auto wrong = [&](const Line& line, const std::string& expected) {
     return Problem{{file, line.number, line.indent + 1},
@@ -94,8 +95,10 @@ std::optional<Problem> wrongIndent(const std::string& text, int last, const std:
   for (const Line& line : blockLines(text, last)) {
     const bool deeper = open.empty() || line.indent > open.back();
     if (deeper && !may_go_deeper)
-      return wrong(line, std::to_string(open.back()) +
-                             ": the line before it opens nothing (to do so it would end with a colon)");
+      return wrong(
+          line,
+          std::to_string(open.back()) +
+              ": only a line that ends with a colon can have deeper lines below it, and the line before does not");
     std::string all;
     for (const int indent : open) all += (all.empty() ? "" : " or ") + std::to_string(indent);
     while (open.size() > 1 && open.back() > line.indent) open.pop_back();
@@ -115,7 +118,7 @@ std::string closing(char open) {
   return open == '[' ? "]" : "}";
 }
 
-/// A quote or a bracket that is open at the end, or closed by a wrong one, or closed too late.
+/// Finds a quote or a bracket that is never closed, is closed by the wrong one, or is closed too late.
 std::optional<Problem> wrongPair(const std::string& text, const std::string& file) {
   const Scan scan = scanYaml(text);
   const auto quoted = [](char what) { return std::string("the ") + what; };
@@ -126,7 +129,8 @@ std::optional<Problem> wrongPair(const std::string& text, const std::string& fil
                   std::to_string(scan.wrong_open->line) + ", column " + std::to_string(scan.wrong_open->column) +
                   " is open, expected " + closing(scan.wrong_open->what) + " before it");
   if (scan.wrong_close)
-    return at(*scan.wrong_close, file, quoted(scan.wrong_close->what) + " closes nothing, expected one fewer");
+    return at(*scan.wrong_close, file,
+              quoted(scan.wrong_close->what) + " closes nothing; remove it, or add the bracket that it closes");
   if (scan.long_quote)
     return at(*scan.long_quote, file,
               quoted(scan.long_quote->what) + " that begins here is closed only in line " +
@@ -139,7 +143,7 @@ std::optional<Problem> wrongPair(const std::string& text, const std::string& fil
   return std::nullopt;
 }
 
-/// The character at a place.
+/// Returns the character at a place.
 char charAt(const std::string& text, const Place& place) {
   size_t start = 0;
   for (int line = 1; line < place.line && start != std::string::npos; ++line) {
@@ -150,24 +154,26 @@ char charAt(const std::string& text, const Place& place) {
   return offset < text.size() ? text[offset] : '\0';
 }
 
-/// Puts the parser's words into plain ones.
+/// Translates the parser's message into plain words.
 std::string plainWords(const std::string& text, const Place& place, const std::string& words) {
   const char here = charAt(text, place);
   const auto begins = [&words](const char* with) { return words.rfind(with, 0) == 0; };
   if (begins("unknown token") && here > ' ')
     return std::string("a text cannot begin with ") + here + ", expected it in quotes";
   if (begins("the referenced anchor"))
-    return "a text that begins with * stands for one marked with & before, and there is none; expected it in quotes";
+    return "a text that begins with * stands for one marked with & before, but there is none of this name; to write an "
+           "ordinary text that begins with *, put it in quotes";
   if (begins("unknown escape character"))
-    return "a \\ within \"...\" begins a code, and " + words.substr(words.find_last_of(' ') + 1) +
-           " is none; expected / in a path, or '...' around the text";
+    return "a \\ within \"...\" begins an escape sequence, and " + words.substr(words.find_last_of(' ') + 1) +
+           " is not one; expected / in a path, or '...' around the text";
   if (begins("illegal map value"))
-    return "a second colon in this line, expected quotes around a text that holds one, or a line of its own";
-  if (begins("illegal flow end")) return "this closing bracket closes nothing, expected it after the one that opens it";
+    return "a second colon in this line, expected quotes around a text with a colon, or a new line for the second key";
+  if (begins("illegal flow end")) return "this closing bracket closes nothing, expected an opening bracket before it";
   if (begins("end of map flow") || begins("end of sequence flow"))
     return "no comma between this and what stands before it, expected {key: value, key: value} or [1, 2]";
   if (begins("end of map not found") || begins("end of sequence not found"))
-    return "this does not go on with the lines before it, expected key: value, or - for a list, indented as they are";
+    return "this line does not continue the lines before it, expected key: value, or - for a list, with their "
+           "indentation";
   return words;
 }
 

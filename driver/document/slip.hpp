@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Why a text is no YAML, where the slip of the hand is and in a person's words: a parser tells it late, and in its
-/// own.
+/// Finds out why a text is not YAML, and says it in plain words at the place of the mistake. A parser notices a mistake
+/// only later in the text, and describes it in its own terms.
 #pragma once
 #include <optional>
 #include <string>
@@ -9,11 +9,12 @@
 
 namespace hapticd::document {
 
-/// [any] What is wrong with a text that the parser gave up at `place`, saying `words`.
+/// [any] Returns what is wrong with a text. @param place the place where the parser gave up
+/// @param words the parser's message
 Problem slipIn(const std::string& text, const Place& place, const std::string& words);
 
-/// [any] The quote that is never closed, if the last text that was read began with it: then the parser takes the end of
-/// the file for its end.
+/// [any] Returns a problem if the last text in quotes is never closed. The parser itself reports nothing then: it takes
+/// the end of the file for the closing quote.
 std::optional<Problem> openQuote(const std::string& text, const Place& last_quoted);
 
 }  // namespace hapticd::document

@@ -9,7 +9,7 @@
 namespace hapticd::document {
 namespace {
 
-constexpr size_t kLongestWord = 64;  ///< longest word that is compared, because the cost is the product of the lengths
+constexpr size_t kLongestWord = 64;  ///< words are compared up to this length: the time grows with its square
 
 char lower(char c) {
   return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -38,7 +38,8 @@ size_t editDistance(std::string_view a, std::string_view b) {
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
-  // A third of the letters may differ, or two of five; of a shorter word one, since "poke" does not mean "none".
+  // A third of the letters may differ, and at least two. In words of less than five letters only one may differ,
+  // because "poke" does not mean "none".
   size_t best_distance = std::max<size_t>(word.size() < 5 ? 1 : 2, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     const size_t distance = editDistance(word, candidate);

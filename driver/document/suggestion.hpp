@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// "Did you mean ...?": the known names that a misspelt one is near to.
+/// Finds the known name that is nearest to a misspelt one, for "did you mean ...?".
 #pragma once
 #include <string>
 #include <string_view>
@@ -7,16 +7,16 @@
 
 namespace hapticd::document {
 
-/// [any] Edits (insert, delete, replace, swap of neighbours) between two words, ignoring case.
+/// [any] Returns the number of edits (insert, delete, replace, swap of neighbours) between two words, ignoring case.
 size_t editDistance(std::string_view a, std::string_view b);
 
-/// [any] The candidate nearest to `word`, or "" if none is near enough to be the word that was meant.
+/// [any] Returns the candidate nearest to `word`, or "" if none is near enough.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
-/// [any] " (did you mean \"stiffness\"?)", or "".
+/// [any] Returns a text such as " (did you mean \"stiffness\"?)", or "" if no candidate is near.
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates);
 
-/// [any] "a, b, c", or "a, b, ... (17 in all)" where the list is long.
+/// [any] Returns "a, b, c", or "a, b, ... (17 in all)" if there are more than `most` names.
 std::string listed(const std::vector<std::string>& names, size_t most = 12);
 
 }  // namespace hapticd::document

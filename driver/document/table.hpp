@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// One line a key: parser, type, unit, range, default, documentation and JSON Schema all come from it.
+/// Tables of the keys of a file. One line of a table describes one key: the parser, the type, unit, range and default,
+/// the documentation and the JSON Schema all come from this line.
 #pragma once
 #include <optional>
 #include <span>
@@ -22,35 +23,35 @@ enum class Type : uint8_t {
   kVector3,
   kQuaternion,  ///< w, x, y, z
   kObject,
-  kList,  ///< of objects
-  kAny    ///< read later, with the plugin's own table
+  kList,  ///< a list of mappings
+  kAny    ///< any node; it is read later, with the plugin's own table
 };
 
 struct Key {
   const char* name;
   Type type;
   const char* doc;
-  const char* def = nullptr;  ///< as YAML; nullptr: none
+  const char* def = nullptr;  ///< default value, as YAML; nullptr if there is none
   bool required = false;
   Range range{-1e308, 1e308};
   std::span<const std::string_view> choices{};
-  const Table* table = nullptr;  ///< kObject, kList
+  const Table* table = nullptr;  ///< for kObject and kList: the keys of the mapping
   void (*store)(Reader&, const Node&, const std::string& path, const Key&, void* object) = nullptr;
-  const char* shape = "";  ///< for kAny: what is expected, in words
+  const char* shape = "";  ///< for kAny: words that say what is expected
 
-  std::string expected() const;  ///< "a number, 10 to 20000 Hz"
+  std::string expected() const;  ///< such as "a number, 10 to 20000 Hz"
 };
 
 struct Table {
   std::span<const Key> keys;
-  const Table* other = nullptr;  ///< the file for which a key may have been intended
-  const char* other_file = "";   ///< "the device file"
+  const Table* other = nullptr;  ///< table of another file to which an unknown key may belong
+  const char* other_file = "";   ///< name of that file, such as "the device file"
 
   const Key* find(std::string_view name) const;
   std::vector<std::string> names() const;
 };
 
-/// Marks the line as a required one.
+/// Makes the key a required one.
 constexpr Key required(Key key) {
   key.required = true;
   return key;
@@ -204,7 +205,7 @@ constexpr Key quaternion(const char* name, const char* def, const char* doc) {
           }};
 }
 
-/// A nested mapping; an optional member exists once the mapping is given.
+/// A nested mapping. If the member is a std::optional, it has a value only if the file contains the mapping.
 template <auto M>
 constexpr Key object(const char* name, const Table& table, const char* doc) {
   return {name,
@@ -224,7 +225,7 @@ constexpr Key object(const char* name, const Table& table, const char* doc) {
           }};
 }
 
-/// A list of mappings; elements with a member `node` remember where they stand.
+/// A list of mappings. If the elements have a member `node`, it keeps the element's node, with its line and column.
 template <auto M>
 constexpr Key list(const char* name, const Table& table, Range count, const char* doc) {
   return {name,
@@ -252,7 +253,7 @@ constexpr Key list(const char* name, const Table& table, Range count, const char
           }};
 }
 
-/// Kept as it is; the node outlives the reading.
+/// Any node, kept without checks. The node must live longer than the object that points to it.
 template <auto M>
 constexpr Key any(const char* name, const char* shape, const char* doc) {
   return {name,

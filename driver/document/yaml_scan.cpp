@@ -43,7 +43,7 @@ class Scanner {
     while (at_ < text_.size() && text_[at_] != '\n') ++at_;
   }
 
-  /// True if the line before ends with | or > and what may follow them, so that a block text begins.
+  /// True if the line before ends with | or > (and perhaps their options), so that a block text begins.
   bool opensBlock() const {
     size_t end = at_;
     while (end > line_start_ && (isBlank(text_[end - 1]) || text_[end - 1] == '-' || text_[end - 1] == '+' ||
@@ -56,7 +56,7 @@ class Scanner {
     while (at < text_.size() && text_[at] == ' ') ++at;
     return at - start;
   }
-  /// Skips lines that are indented more than the one that opened the block.
+  /// Skips the lines that are indented more than the line that opened the block.
   void skipBlock() {
     size_t opener = line_start_ - 1;
     while (opener > 0 && text_[opener - 1] != '\n') --opener;
@@ -72,7 +72,7 @@ class Scanner {
     }
   }
 
-  /// Goes from a quote to the one that closes it.
+  /// Goes from a quote to the quote that closes it.
   void quoted(char quote) {
     const Mark begin = here(quote);
     fresh_ = false;
@@ -83,7 +83,7 @@ class Scanner {
         ++at_;
       } else if (text_[at_] == quote) {
         if (quote == '"' || next() != '\'') break;
-        ++at_;  // '' within '...'
+        ++at_;  // '' within '...' stands for one quote
       }
     }
     if (at_ >= text_.size()) {
@@ -108,7 +108,7 @@ class Scanner {
       fresh_ = true;
     } else if (c == ':' && (isBlank(next()) || (flow && after_quote_ == at_))) {
       fresh_ = true;
-    } else if (fresh_ && (c == '&' || c == '!')) {  // an anchor or a tag, which stands before what it marks
+    } else if (fresh_ && (c == '&' || c == '!')) {  // an anchor or a tag; the value that it marks comes after it
       while (!isBlank(next())) ++at_;
     } else if (!(fresh_ && (isBlank(c) || ((c == '-' || c == '?') && isBlank(next()))))) {
       fresh_ = false;
@@ -131,7 +131,7 @@ class Scanner {
   Scan found_;
   size_t at_ = 0, line_start_ = 0, after_quote_ = std::string::npos;
   int line_ = 1, closed_line_ = 0;
-  bool fresh_ = true;  ///< a value may begin here
+  bool fresh_ = true;  ///< true if a value may begin here
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Quotes and brackets of a YAML text: which of them is not closed. Not a parser: it says why one failed.
+/// Finds quotes and brackets of a YAML text that are not closed or do not fit. It does not parse the text: it explains
+/// why the parser failed.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,20 +9,20 @@
 namespace hapticd::document {
 
 struct Mark {
-  int line = 0, column = 0;  ///< from 1
+  int line = 0, column = 0;  ///< counted from 1
   char what = 0;
 };
 
 struct Scan {
-  std::vector<Mark> open;           ///< brackets that are still open at the end of the text, the outermost first
-  std::optional<Mark> quote;        ///< opened, and never closed
-  std::optional<Mark> long_quote;   ///< the first quote that ends in another line
-  int long_quote_ends = 0;          ///< its last line
+  std::vector<Mark> open;           ///< brackets that are open at the end of the text, the outermost first
+  std::optional<Mark> quote;        ///< a quote that is never closed
+  std::optional<Mark> long_quote;   ///< the first quote that is closed in another line
+  int long_quote_ends = 0;          ///< line in which that quote is closed
   std::optional<Mark> wrong_close;  ///< the first closing bracket that does not fit
-  std::optional<Mark> wrong_open;   ///< the bracket that is open there, if there is one
+  std::optional<Mark> wrong_open;   ///< the bracket that is open at `wrong_close`, if there is one
 };
 
-/// [any]
+/// [any] Scans a whole text.
 Scan scanYaml(const std::string& text);
 
 }  // namespace hapticd::document

@@ -13,13 +13,13 @@ namespace {
 // pi/2 in three parts: products of the first two with whole numbers below 2^20 are exact.
 constexpr double kHalfPi1 = 0x1.921fb54400000p+0, kHalfPi2 = 0x1.0b4611a600000p-34, kHalfPi3 = 0x1.3198a2e037073p-69;
 constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
-// The double nearest to pi and to 2 pi, and the remainder.
+// The doubles nearest to pi and 2 pi, and the remainders to the exact numbers.
 constexpr double kPi = 0x1.921fb54442d18p+1, kPiRest = 0x1.1a62633145c07p-53;
 constexpr double kTurn = 0x1.921fb54442d18p+2, kTurnRest = 0x1.1a62633145c07p-52;
 constexpr double kEighth = 0x1.921fb54442d18p-1;  // pi/4
 constexpr double kMostQuarters = 0x1p20;
 
-/// An angle less whole quarter turns: hi + lo within an eighth of a turn, and the number of quarters modulo 4.
+/// An angle minus a number of quarter turns: the rest is hi + lo, at most an eighth of a turn; the number is modulo 4.
 struct Reduced {
   double hi, lo;
   int quarter;
@@ -79,7 +79,7 @@ void sineAndCosine(double x, double* s, double* c) noexcept {
 double sine(double x) noexcept {
   double s, c;
   sineAndCosine(x, &s, &c);
-  return x == 0 ? x : s;  // the sign of zero
+  return x == 0 ? x : s;  // keeps the sign of zero
 }
 
 double cosine(double x) noexcept {
@@ -96,7 +96,8 @@ double tangent(double x) noexcept {
 
 namespace {
 
-/// For 0 to 1: the arc of the nearest eighth, plus the arc of the rest by the law of tangents.
+/// Arc tangent for 0 to 1: looks up the arc of the nearest eighth (k/8), and adds the arc of the rest by the addition
+/// theorem of the tangent.
 double arcOfFraction(double x) noexcept {
   constexpr double kArcs[] = {0x0.0p+0,
                               0x1.fd5ba9aac2f6ep-4,

@@ -117,7 +117,7 @@ double logarithmOfOnePlus(double x) noexcept {
   if (!(x > -1)) return x == -1 ? -kInf : kNan;
   const double u = 1 + x;
   if (u == 1 || x == kInf) return x;
-  return logarithm(u) + (x - (u - 1)) / u;  // what the sum lost
+  return logarithm(u) + (x - (u - 1)) / u;  // corrects the rounding error of the sum u = 1 + x
 }
 
 double power(double x, double y) noexcept {

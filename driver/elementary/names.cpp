@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The C names of the elementary functions, for the program and for each of its modules: whatever calls sin() there,
-/// from the mathematics of shapes to Eigen, calls ours and not that of the C library of the machine. Hidden: other
-/// libraries of the process keep their own.
+/// Defines the elementary functions under their C names, for the program and for each of its modules. So every call of
+/// sin() there, also within Eigen, uses the functions of functions.hpp instead of the machine's C library. The names
+/// are hidden: other libraries in the process still use the C library.
 #include "elementary/functions.hpp"
 
 extern "C" {

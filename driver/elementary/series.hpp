@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Small things that the elementary functions share. Every operation stands in the order in which it shall be done.
+/// Helpers that the elementary functions share. The order of the operations matters, because it decides the last bits.
 #pragma once
 #include <cstddef>
 
@@ -13,7 +13,7 @@ constexpr double polynomial(const double (&a)[N], double z) noexcept {
   return sum;
 }
 
-/// The whole number nearest to x, ties to even; |x| < 2^51.
+/// Returns the whole number nearest to x; of two equally near ones, the even one. Only for |x| < 2^51.
 inline double nearestWhole(double x) noexcept {
   constexpr double kShift = 0x1.8p52;
   const double shifted = x + kShift;

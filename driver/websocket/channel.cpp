@@ -22,7 +22,7 @@ using ErrorCode = boost::system::error_code;
 
 constexpr size_t kMessageBytes = 64 * 1024, kHeadBytes = 8 * 1024;
 
-/// Starts an operation and runs until it is over, or is cut off after that time.
+/// Starts an operation and waits until it is finished. After the timeout the operation is cancelled.
 template <class Start>
 ErrorCode waitFor(asio::io_context& io, beast::tcp_stream& stream, int timeout_ms, Start start) {
   bool over = false;
@@ -57,7 +57,7 @@ class ChannelImpl final : public Channel {
     return {};
   }
 
-  /// Takes the new connection; false if it is not wanted.
+  /// Accepts the new connection; returns false if it is refused.
   bool take(tcp::socket socket, int timeout_ms) {
     auto& tcp_stream = beast::get_lowest_layer(stream_);
     const int native = socket.release();
@@ -105,7 +105,7 @@ class ChannelImpl final : public Channel {
   }
   static bool ofThisMachine(const http::request<http::empty_body>& request) {
     const auto origin = request[http::field::origin];
-    if (origin.empty()) return true;  // no browser
+    if (origin.empty()) return true;  // the client is not a browser
     for (const char* own : {"http://localhost", "http://127.0.0.1"}) {
       const beast::string_view mine(own);
       if (origin.substr(0, mine.size()) != mine) continue;

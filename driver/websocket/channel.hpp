@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A WebSocket of one thread, which waits for each message, and a port that takes such.
+/// A WebSocket connection that is used by one thread, whose calls wait for each message; and a port that accepts such
+/// connections.
 #pragma once
 #include <memory>
 #include <string>
@@ -15,9 +16,9 @@ class Channel {
   virtual ~Channel() = default;  ///< closes the connection at once
   /// [main] Connects to ws://HOST:PORT/.
   static Result<std::unique_ptr<Channel>> connect(const std::string& host, unsigned short port, int timeout_ms);
-  /// [any] Only one thread. Waits until the message is on its way.
+  /// [any] Called from one thread only. Waits until the message has been passed to the system.
   virtual Result<void> send(std::string_view text, int timeout_ms) = 0;
-  /// [any] The same thread. Waits for the next message.
+  /// [any] Called from the same thread. Waits for the next message.
   virtual Result<std::string> receive(int timeout_ms) = 0;
 };
 
@@ -25,11 +26,12 @@ class Channel {
 class Listener {
  public:
   virtual ~Listener() = default;
-  /// [main] Binds 127.0.0.1. @param port 0: one that is free
+  /// [main] Binds 127.0.0.1. @param port 0 takes any free port
   static Result<std::unique_ptr<Listener>> listen(unsigned short port);
   virtual unsigned short port() const = 0;
-  /// [any] One thread. The next who asks for a WebSocket; nullptr: nobody came in this time, or it was refused. A page
-  /// of a browser is refused unless this machine serves it: any page of the world could connect otherwise.
+  /// [any] Called from one thread only. Returns the next connection; nullptr if nobody connected in this time, or if
+  /// the connection was refused. A browser is refused unless this machine serves its page; otherwise any page on the
+  /// web could connect.
   virtual std::unique_ptr<Channel> accept(int timeout_ms) = 0;
 };
 

@@ -9,12 +9,13 @@ namespace {
 using medial::FeltPlace;
 using medial::PlaceNode;
 
-constexpr double kNoRival = 0.05;  ///< 1 + cosine of two normals below which they are those of a sheet's two sides
+/// if 1 + cosine of two normals is below this, they belong to the two sides of a sheet
+constexpr double kNoRival = 0.05;
 
 }  // namespace
 
 double rivalShare(const Track& track, double width) noexcept HSP_RT {
-  const double reach = std::min(width, track.foot.depth);  // nothing is added at the surface
+  const double reach = std::min(width, track.foot.depth);  // at the surface the rival adds nothing
   if (!(track.apart > 0) || !(reach > 0)) return 0;
   const double beside = 1 - (track.foot.depth - track.rival.depth) / reach;
   const double opposite = (1 + track.foot.normal.dot(track.rival.normal)) / kNoRival;

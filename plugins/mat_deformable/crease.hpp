@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-/// A valley of a felt body, where a second part of the surface is nearly as deep over the probe as the first.
+/// The force in a valley of a felt body, where the probe is nearly equally deep below two parts of the surface.
 #pragma once
 #include "soft_body.hpp"
 
 namespace hapticd {
 
-/// [rt] How much the rival counts beside the foot: 0 to 1, where both are as deep.
-/// @param width [m] difference of depths from which it does not count
+/// [rt] Returns how much the rival foot counts besides the foot: from 0, to 1 if both are equally deep.
+/// @param width [m] difference of the depths from which the rival does not count
 double rivalShare(const Track& track, double width) noexcept HSP_RT;
 
-/// [rt] The depth is a smooth maximum of both, and the direction its gradient: the force is that of an energy,
-/// whichever flank the probe comes from.
+/// [rt] Returns the felt surface in a valley. Its depth is a smooth maximum of both depths, and its direction is the
+/// gradient of this depth. So the force has a potential energy, from whichever flank the probe comes.
 Felt feltInCrease(const Felt& felt, const Track& track, double width) noexcept HSP_RT;
 
-/// [rt] The place of the one foot with a share of the other's in it.
+/// [rt] Adds a share of the other foot's place to `place`.
 void mixPlaces(const medial::FeltPlace& other, double share, medial::FeltPlace& place) noexcept HSP_RT;
 
 }  // namespace hapticd

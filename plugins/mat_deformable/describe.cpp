@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a person should know of a body before they touch it.
+/// Writes to the log what a person should know about a body before touching it.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,15 +13,18 @@
 namespace hapticd {
 namespace {
 
-constexpr double kLarge = 1.5;           ///< [m] no arm reaches round a longer body
-constexpr double kNoticed = 1.1;         ///< felt over told stiffness from which a hint is due
-constexpr std::size_t kMostLines = 200;  ///< nobody reads more
-constexpr double kSwings = 2;            ///< times K T / 2: damping of an arm that only a swinging mass asks for
-constexpr int kGuesses = 30;             ///< at a damping that would do: from kLittle of the critical one, times kMore
+constexpr double kLarge = 1.5;  ///< [m] a longer body is unusual: no arm reaches round it
+/// ratio of the felt stiffness to the file's stiffness above which a hint is given
+constexpr double kNoticed = 1.1;
+constexpr std::size_t kMostLines = 200;  ///< most lines in the log; nobody reads more
+/// multiple of K T / 2; only a swinging mass needs an arm with more damping than this
+constexpr double kSwings = 2;
+/// attempts to find a sufficient damping: from kLittle of the critical damping on, each time kMore times the last
+constexpr int kGuesses = 30;
 constexpr double kLittle = 1e-3, kMore = 1.3;
-constexpr double kSameStiffness = 1e-3;  ///< relative difference of places that are told together
+constexpr double kSameStiffness = 1e-3;  ///< places with a smaller relative difference are reported together
 
-/// Places of one material, in the order of the file.
+/// Places with the same material.
 struct Group {
   std::size_t count = 0;
   FeltMaterial first;
@@ -39,7 +42,7 @@ bool alike(const Place& a, const Group& b) {
          near(a.tissue.damping, b.tissue.damping) && near(a.tissue.mass, b.tissue.mass);
 }
 
-/// Stiffest first.
+/// Groups places with the same material, the stiffest first.
 std::vector<Group> grouped(std::vector<Place> all) {
   std::stable_sort(all.begin(), all.end(), [](const Place& a, const Place& b) { return a.felt.told > b.felt.told; });
   std::vector<Group> groups;
@@ -50,26 +53,29 @@ std::vector<Group> grouped(std::vector<Place> all) {
   return groups;
 }
 
-/// What an arm must damp [N s/m] for a hand on it to be safe at a surface whose force is held for a tick.
+/// Returns the damping [N s/m] that an arm needs so that its contact with a surface whose force is held for a tick is
+/// passive.
 double neededDamping(const medial::Tissue& tissue, double ratio, double tick) {
   return medial::passiveDamping(medial::dampedForTick(medial::elementOf(tissue, ratio), tick), tick);
 }
 
-/// How much of what an arm must damp is the mass's doing.
+/// The damping that an arm needs because of the mass behind the surface.
 struct Swing {
   medial::Tissue tissue;
-  double need = 0, times = 0;  ///< [N s/m]; over what the contact spring alone needs
+  /// [N s/m] needed damping; the same as a multiple of what the contact spring alone needs
+  double need = 0, times = 0;
 };
 Swing swingOf(const medial::Tissue& tissue, double ratio, double tick) {
   const double need = neededDamping(tissue, ratio, tick);
   return {tissue, need, need / (0.5 * tick * medial::elementOf(tissue, ratio).contact)};
 }
 
-/// [N s/m] of the tissue itself, with which its mass asks for no more than kSwings times what the spring does.
+/// Returns the damping of the tissue [N s/m] with which an arm needs at most kSwings times the damping that the contact
+/// spring alone needs.
 double enoughDamping(medial::Tissue tissue, double ratio, double tick) {
   tissue.damping = std::max(tissue.damping, kLittle * std::sqrt(tissue.stiffness * tissue.mass));
   for (int i = 0; i < kGuesses && swingOf(tissue, ratio, tick).times > kSwings; ++i) tissue.damping *= kMore;
-  const double unit = std::pow(10, std::floor(std::log10(tissue.damping)) - 1);  // two digits, as a person writes them
+  const double unit = std::pow(10, std::floor(std::log10(tissue.damping)) - 1);  // rounded up to two digits
   return unit * std::ceil(tissue.damping / unit);
 }
 
@@ -80,12 +86,14 @@ std::string springText(const medial::Tissue& tissue, double ratio, double tick) 
     std::snprintf(text, sizeof text, "; contact spring %.4g N/m, passive on an arm that damps %.3g N s/m", contact,
                   need);
   else
-    std::snprintf(text, sizeof text, "; contact spring %.4g N/m, passive on no arm: nothing damps the mass", contact);
+    std::snprintf(text, sizeof text,
+                  "; contact spring %.4g N/m, not passive on any arm, because the mass has no damping", contact);
   return text;
 }
 
-/// @param who says the stiffness: "the file"  @param spring what is to be said of the contact spring of a surface that
-/// is felt
+/// Returns a line of the log about a group of places.
+/// @param who source of the stiffness, such as "the file"
+/// @param spring text about the contact spring of a felt surface; "" if the surface is not felt
 std::string line(const Group& group, const char* who, const std::string& spring) {
   const FeltMaterial& one = group.first;
   char text[320];
@@ -93,7 +101,7 @@ std::string line(const Group& group, const char* who, const std::string& spring)
       std::snprintf(text, sizeof text, "felt %.4g N/m 1 mm deep, %.4g N/m 5 mm deep; %s says %.4g N/m%s: ", one.felt,
                     one.deep, who, one.told, spring.c_str());
   const auto left = sizeof text - static_cast<std::size_t>(length);
-  const Eigen::Array3d mm = 0.01 * (1e5 * one.place.array()).round() + 0.0;  // no -0
+  const Eigen::Array3d mm = 0.01 * (1e5 * one.place.array()).round() + 0.0;  // + 0.0 avoids -0
   if (group.count == 1)
     std::snprintf(text + length, left, "(%.4g, %.4g, %.4g) mm", mm.x(), mm.y(), mm.z());
   else
@@ -102,7 +110,7 @@ std::string line(const Group& group, const char* who, const std::string& spring)
   return text;
 }
 
-/// The default of a parameter.
+/// Returns the default of a parameter.
 double usual(std::string_view id) {
   for (const auto& field : MatDeformable::fields())
     if (id == field.param.id) return field.param.def;
@@ -123,31 +131,37 @@ void MatDeformable::describe(const MedialFile& file, double tick) const {
   describeMaterial(file, tick);
   for (const std::string& odd : file.odd) say(HSP_LOG_WARNING, "geometry: " + odd);
   describeDynamics(file);
-  // What stands in the scene for a file that has none: nobody would feel that it is left aside.
+  // Materials in the scene are only for files without materials. Otherwise they have no effect, which nobody would
+  // notice.
   for (const auto& [id, given] : {std::pair("stiffness", stiffness_), std::pair("mass", mass_)})
     if (!geometry_.ends_with(".ma") && given != usual(id))
-      say(HSP_LOG_WARNING, std::string(id) + ": has no effect: " + geometry_ +
-                               " says what its points have; expected it with a medial mesh without materials (.ma)");
+      say(HSP_LOG_WARNING,
+          std::string(id) + ": has no effect: " + geometry_ +
+              " gives the materials of its points; this parameter is only for a medial mesh without materials (.ma)");
   const double size = body_->bounds().sizes().maxCoeff();
   if (!(size > kLarge)) return;
   char text[128];
-  std::snprintf(text, sizeof text, ": the body is %.3g m long, expected metres: was the file in millimetres?", size);
+  std::snprintf(text, sizeof text, ": the body is %.3g m long; lengths must be in m: is the file in millimetres?",
+                size);
   say(HSP_LOG_WARNING, geometry_ + text);
 }
 
-/// Which dynamics holds, and where a mass was given that nobody feels.
+/// Writes which dynamics is in use, and warns if a mass was given that nobody feels.
 void MatDeformable::describeDynamics(const MedialFile& file) const {
   const Dynamics dynamics = dynamicsOf(file);
   const bool by_file = dynamics_ == kAsFile, without = geometry_.ends_with(".ma");
   std::string text = "dynamics: ";
-  text += dynamics == kFelt   ? "felt: mass, damping and relaxation of the body are in the force"
-          : dynamics == kSeen ? "seen: the body swings to the eye, and the force is that of a body at rest"
+  text += dynamics == kFelt   ? "felt: the force includes mass, damping and relaxation of the body"
+          : dynamics == kSeen ? "seen: the body swings in the drawing, but the force is that of a body at rest"
                               : "off: the body follows the probe at once, and the force is that of a body at rest";
-  if (by_file) text += without ? " (so for .ma files; felt makes it felt)" : " (so for files of this format)";
+  if (by_file)
+    text += without ? " (the default for .ma files; with dynamics: felt the hand feels it)"
+                    : " (the default for files of this format)";
   say(HSP_LOG_DEBUG, text);
   if (without && by_file && dynamics == kSeen && mass_ != usual("mass"))
     say(HSP_LOG_WARNING,
-        "mass: is seen and not felt, as dynamics is that of .ma files, seen; dynamics: felt makes it felt");
+        "mass: has no effect on the force, because dynamics is `seen` by default for .ma files; to feel the mass, set "
+        "dynamics to felt");
 }
 
 medial::Tissue MatDeformable::tissueAt(const MedialFile& file, std::size_t point) const {
@@ -160,7 +174,7 @@ medial::Tissue MatDeformable::tissueAt(const MedialFile& file, std::size_t point
   return file.grid ? of(*file.grid) : of(*file.mesh);
 }
 
-/// A line for each material at level debug, for who asks, and a hint where it is not what the file says.
+/// Writes a line for each material at level debug, and a hint if a hand feels another stiffness than the file says.
 void MatDeformable::describeMaterial(const MedialFile& file, double tick) const {
   double most = 1;
   const bool felt = body_->feltSurface() != nullptr, without = geometry_.ends_with(".ma");
@@ -175,18 +189,19 @@ void MatDeformable::describeMaterial(const MedialFile& file, double tick) const 
   }
   if (felt) describeContact(file, tick);
   if (file.grid && file.revision >= 2 && shear_offset_ != kUsualShearOffset)
-    say(HSP_LOG_WARNING, geometry_ + ": shear_offset has no meaning for hapticd-model/2; use shear_distance");
+    say(HSP_LOG_WARNING,
+        geometry_ + ": shear_offset has no effect on files of format hapticd-model/2; use shear_distance");
   if (!(most > kNoticed)) return;
   char text[192];
   std::snprintf(text, sizeof text,
-                "shear_offset makes a press 5 mm deep up to %.2g times as stiff as the file says; with shear_distance "
-                "in its place the file is right",
+                "shear_offset makes a press 5 mm deep up to %.2g times as stiff as the file says; use shear_distance "
+                "instead to feel the stiffness of the file",
                 most);
   say(HSP_LOG_INFO, text);
 }
 
-/// The material that a swinging mass makes worst for an arm, with a warning where it is so little damped that an arm
-/// can hardly make up for it.
+/// Finds the material whose swinging mass needs the greatest damping of an arm. Warns if the mass has so little damping
+/// that hardly any arm is passive on it.
 void MatDeformable::describeContact(const MedialFile& file, double tick) const {
   double most = 0;
   Swing worst;
@@ -198,18 +213,18 @@ void MatDeformable::describeContact(const MedialFile& file, double tick) const {
   char text[320];
   if (std::isfinite(most)) {
     std::snprintf(text, sizeof text,
-                  "the whole body is passive by itself on an arm that damps %.3g N s/m at %.4g Hz; else "
-                  "limits.passivity guards it",
+                  "the whole body is passive on an arm with a damping of at least %.3g N s/m at %.4g Hz; with less, "
+                  "limits.passivity must guard it",
                   most, 1 / tick);
     say(HSP_LOG_DEBUG, text);
   }
   if (!(worst.times > kSwings)) return;
-  char arm[96] = "no arm is passive on it";
+  char arm[96] = "it is not passive on any arm";
   if (std::isfinite(worst.times))
-    std::snprintf(arm, sizeof arm, "an arm must damp %.3g times what the spring alone needs", worst.times);
+    std::snprintf(arm, sizeof arm, "an arm needs %.3g times the damping that the spring alone needs", worst.times);
   std::snprintf(text, sizeof text,
                 ": a mass of %.3g kg swings almost undamped against the contact spring of %.4g N/m: at %.4g Hz %s; "
-                "expected a damping of at least %.2g N s/m",
+                "give it a damping of at least %.2g N s/m",
                 worst.tissue.mass, medial::elementOf(worst.tissue, contact_ratio_).contact, 1 / tick, arm,
                 enoughDamping(worst.tissue, contact_ratio_, tick));
   say(HSP_LOG_WARNING, geometry_ + text);

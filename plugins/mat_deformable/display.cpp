@@ -7,8 +7,9 @@
 namespace hapticd {
 
 namespace {
-constexpr int kAttempts = 100;  ///< a set is written in microseconds, 60 times a second
-}
+/// most attempts to read a complete set; they suffice, because a set is written in microseconds, 60 times a second
+constexpr int kAttempts = 100;
+}  // namespace
 
 void Displaced::publish(const medial::Nodes& body) noexcept HSP_RT {
   const uint32_t version = version_.load(std::memory_order_relaxed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a body looks like now, for whoever draws it: displacements that the servo leaves and another thread takes.
+/// The present look of a body, for drawing: the servo thread writes displacements, and another thread reads them.
 #pragma once
 #include <Eigen/Core>
 #include <atomic>
@@ -11,52 +11,56 @@
 
 namespace hapticd {
 
-/// Newest displacements of all nodes, written by one thread and read by another without waiting for each
-/// other: a reader that was overtaken tries again.
+/// The newest displacements of all nodes. One thread writes them and another reads them, without waiting for each
+/// other: a reader that was overtaken by the writer tries again.
 class Displaced {
  public:
   explicit Displaced(std::size_t nodes) : values_(4 * nodes + 1) {}  ///< [main]
 
-  /// [rt]
+  /// [rt] Copies the displacements of all nodes.
   void publish(const medial::Nodes& body) noexcept HSP_RT;
-  /// [main] The newest whole set. @returns the bulge
+  /// [main] Reads the newest complete set.
+  /// @return the bulge [m]
   float read(medial::Displacements& out) const;
   std::size_t bytes() const noexcept { return values_.size() * sizeof(std::atomic<float>); }
 
  private:
-  std::vector<std::atomic<float>> values_;  ///< four a node, and the bulge
-  std::atomic<uint32_t> version_{0};        ///< odd while it is written
+  std::vector<std::atomic<float>> values_;  ///< four values per node, then the bulge
+  std::atomic<uint32_t> version_{0};        ///< odd while values_ is being written
 };
 
-/// Writes the vertices of a contour for a host that draws them in its steps. One that is too large for a step is
-/// written in parts, of the body as it was when the first was written; then a frame is one of those of before.
+/// Writes the vertices of a contour for a host that takes a frame with its steps. A contour that is too large for one
+/// step is computed in parts over several steps, all for the body as it was at the first part. The host then gets the
+/// last complete frame.
 class Frames {
  public:
-  Frames(std::unique_ptr<medial::MovingMesh> contour, std::size_t nodes);  ///< [main] memory is taken here
+  Frames(std::unique_ptr<medial::MovingMesh> contour, std::size_t nodes);  ///< [main] allocates all memory
 
-  /// [rt] At most kPart vertices are made. `xyz`: where the host wants a frame now; nullptr: nowhere.
+  /// [rt] Computes at most kPart vertices.
+  /// @param xyz memory for a frame if the host wants one now; else nullptr
   void step(const medial::Nodes& body, float* xyz, std::size_t capacity) noexcept HSP_RT;
   const medial::MovingMesh& contour() const noexcept { return *contour_; }
   std::size_t bytes() const noexcept;
 
  private:
-  static constexpr std::size_t kPart = 1024;  ///< vertices: some 30 us
+  static constexpr std::size_t kPart = 1024;  ///< most vertices per step; they take about 30 us
 
   void begin(const medial::Nodes& body) noexcept HSP_RT;
   void write(float* xyz, std::size_t first, std::size_t count) noexcept HSP_RT;
 
   std::unique_ptr<medial::MovingMesh> contour_;
-  medial::Displacements moved_;      ///< of the frame at work
-  float bulge_ = 0;                  ///< likewise
-  std::vector<float> whole_, work_;  ///< the newest frame, and the one at work; empty: a step makes all
-  std::size_t done_ = 0;             ///< vertices of the frame at work
+  medial::Displacements moved_;  ///< displacements of the frame that is being computed
+  float bulge_ = 0;              ///< [m] bulge of this frame
+  /// the newest complete frame, and the one that is being computed; empty if one step computes a whole frame
+  std::vector<float> whole_, work_;
+  std::size_t done_ = 0;  ///< number of vertices computed so far
   bool working_ = false;
 };
 
-/// The mesh of a body as it is now. [main]
+/// [main] The mesh of a body in its present shape.
 class Display {
  public:
-  /// Fills `out` with the contour within `chord_error` [m], displaced; its pointers live until the next call.
+  /// Fills `out` with the displaced contour, to within `chord_error` [m]. Its pointers are valid until the next call.
   void show(const SoftBody& body, const Displaced& displaced, double chord_error, hsp_mesh& out);
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A step of a body whose surface is felt: all probes meet it as it is, then it moves under all of them at once.
+/// A step of a body whose surface is felt: first all probes are located on the present surface, then the surface moves
+/// under all of them at once.
 #include <algorithm>
 
 #include "crease.hpp"
@@ -10,8 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSwingsOut = 5e-3;  ///< [m] outside the contour at rest a swinging surface may meet a probe
-constexpr double kShallow = 1e-6;    ///< [m] the direction of the force is that of a press at least so deep
+/// [m] greatest distance outside the contour at rest at which a swinging surface may meet a probe
+constexpr double kSwingsOut = 5e-3;
+constexpr double kShallow = 1e-6;  ///< [m] least depth of the held press from which the direction of the force is taken
 
 }  // namespace
 
@@ -35,7 +37,7 @@ hsp_status MatDeformable::stepFelt(const hsp_step& step) noexcept HSP_RT {
   return worst;
 }
 
-/// Finds the surface under a probe and, where the two may touch, notes the contact.
+/// Finds the surface at a probe, and records a contact if the two may touch.
 hsp_status MatDeformable::meet(const hsp_probe& probe, const hsp_step& step, uint32_t index,
                                hsp_contact& contact) noexcept HSP_RT {
   const Located located = locate(probe, step, index, contact);
@@ -48,7 +50,7 @@ hsp_status MatDeformable::meet(const hsp_probe& probe, const hsp_step& step, uin
   const bool near = depth > 0 || (body_->nodes().awake() > 0 && depth > -kSwingsOut);
   if (near && met_.size() < contacts_.size()) {
     medial::FeltContact& met = contacts_[met_.size()];
-    met_.push_back({index, located.surface});  // reserved: one a probe
+    met_.push_back({index, located.surface});  // has room for all probes
     met.depth = depth;
     met.before = track.inside;
     met.known = track.counted;
@@ -60,9 +62,9 @@ hsp_status MatDeformable::meet(const hsp_probe& probe, const hsp_step& step, uin
       body_->placeOf(Vector3d(probe.position), track.rival, located.surface, envelope, *beside_);
       mixPlaces(*beside_, 0.5 * located.surface.share, met.place);
     }
-  } else if (depth > 0) {  // more probes than one surface answers: that of the body at rest
+  } else if (depth > 0) {  // too many probes for one surface: this one feels the body at rest
     push(probe, located.surface, track, contact);
-  } else {  // nothing moves here: the surface is at rest
+  } else {  // no contact: the surface here is at rest
     track.inside = depth;
     track.counted = true;
     track.friction.reset();
@@ -72,7 +74,8 @@ hsp_status MatDeformable::meet(const hsp_probe& probe, const hsp_step& step, uin
   return located.status;
 }
 
-/// The force of the surface, in the direction of a held press here, and along the slope of the dent.
+/// Writes the result for a probe: the force in the direction of a held press at this place, plus a part along the slope
+/// of the dent.
 void MatDeformable::answer(const hsp_probe& probe, const medial::FeltContact& met, const Felt& felt, Track& track,
                            hsp_contact& contact) noexcept HSP_RT {
   track.inside = met.inside;

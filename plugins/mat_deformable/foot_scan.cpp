@@ -9,17 +9,21 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDense = 0.5;        ///< of the least radius: distance of neighbouring samples
-constexpr int kMostPerInterval = 6;   ///< samples to an interval of the skeleton's points, each way
-constexpr uint32_t kATick = 64;       ///< samples that a tick looks at: some 0.2 us
-constexpr double kAside = 0.87;       ///< cosine to the foot's direction: samples within are of its own place
-constexpr double kFarAside = 0.7;     ///< likewise: those without are surely of another place
-constexpr double kParting = 0.05;     ///< [rad] directions of two feet that differ by less are one
-constexpr double kParted = 0.15;      ///< [rad] those that differ by more are two
-constexpr double kMayBeNearer = 0.1;  ///< of the radius: a foot between samples is nearer than they are
-constexpr uint32_t kGroup = 8;        ///< samples that are ruled out together; kATick is a multiple
-constexpr float kSteep = 1e6F;        ///< makes of a doubt an open question and of a certain no a great depth below
-constexpr float kRounding = 2e-5F;    ///< of the size: more than single numbers err by
+constexpr double kDense = 0.5;  ///< distance of neighbouring samples, as a share of the least radius
+/// most samples in an interval between points of the skeleton, along each direction
+constexpr int kMostPerInterval = 6;
+constexpr uint32_t kATick = 64;  ///< samples that are examined in one tick; they take about 0.2 us
+/// samples whose direction has a greater cosine to the foot's direction belong to the foot's own place
+constexpr double kAside = 0.87;
+constexpr double kFarAside = 0.7;  ///< samples with a smaller cosine certainly belong to another place
+constexpr double kParting = 0.05;  ///< [rad] feet whose directions differ by less are at one place
+constexpr double kParted = 0.15;   ///< [rad] feet whose directions differ by more are at two places
+/// share of the radius by which a foot between samples may be nearer than the samples
+constexpr double kMayBeNearer = 0.1;
+constexpr uint32_t kGroup = 8;  ///< number of samples that are ruled out together; kATick is a multiple of it
+/// factor that turns a missed condition into a large negative depth, while a narrow miss stays possible
+constexpr float kSteep = 1e6F;
+constexpr float kRounding = 2e-5F;  ///< share of size_; more than the rounding error of floats
 
 std::vector<double> between(const std::vector<double>& t, int per_interval) {
   std::vector<double> all;
@@ -29,7 +33,8 @@ std::vector<double> between(const std::vector<double>& t, int per_interval) {
   return all;
 }
 
-/// Samples an interval along u (0) or v (1), for their distance to be small beside the radius.
+/// Returns the number of samples per interval along u (0) or v (1) with which their distance is small compared with the
+/// radius.
 int perInterval(const medial::Skeleton& skeleton, std::size_t axis) {
   const auto& [us, vs] = skeleton.parameters();
   const std::vector<double>& t = axis == 0 ? us : vs;
@@ -50,13 +55,13 @@ int perInterval(const medial::Skeleton& skeleton, std::size_t axis) {
 
 }  // namespace
 
-/// Whether the sphere of a sample reaches over p by more than `deepest`, which it then sets. Far aside of the foot it
-/// may reach by `width` less: the other flank of a valley is known before it begins to push.
+/// True if p is deeper than `deepest` in the sphere of a sample; then sets `deepest` to this depth. Far aside of the
+/// foot, p may be less deep by `width`. So the other flank of a valley is known before it begins to push.
 bool FootScan::nearer(const Sample& sample, const Vector3d& p, const medial::SkeletonFoot& foot, double width,
                       double& deepest) noexcept {
   const Vector3d away = p - sample.center;
   const double reach = sample.radius + width - deepest, distance2 = away.squaredNorm();
-  if (!(reach > 0) || !(distance2 < reach * reach)) return false;  // most: no root is taken
+  if (!(reach > 0) || !(distance2 < reach * reach)) return false;  // most samples end here, without a square root
   const double distance = std::sqrt(distance2), along = away.dot(foot.normal);
   const double over = sample.radius - distance + (along < kFarAside * distance ? width : 0);
   if (along > kAside * distance || !(over > deepest)) return false;
@@ -100,8 +105,8 @@ void FootScan::scale() {
   }
 }
 
-/// The next group, from the k-th sample on, of which one may be a rival as nearer() says. What is not so far aside as
-/// it should be counts as far below.
+/// Returns the start of the next group, from the k-th sample on, in which nearer() may be true for some sample. A
+/// sample that is not far enough aside gets a large negative depth.
 uint32_t FootScan::nextGroup(const Probe& probe, uint32_t first, uint32_t k, uint32_t looks) const noexcept {
   using Group = Eigen::Array<float, kGroup, 1>;
   const float deepest = probe.deepest - kRounding;
@@ -117,7 +122,7 @@ uint32_t FootScan::nextGroup(const Probe& probe, uint32_t first, uint32_t k, uin
   return k;
 }
 
-/// Most samples are ruled out by the group, in single numbers; what the rest are is found to the last bit.
+/// Most samples are ruled out in groups, with floats; the others are examined in double precision.
 std::optional<std::array<double, 2>> FootScan::rival(const Vector3d& p, const medial::SkeletonFoot& foot, double width,
                                                      uint32_t& next) const noexcept {
   const auto count = static_cast<uint32_t>(samples_.size()), looks = std::min(kATick, count);

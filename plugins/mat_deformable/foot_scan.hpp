@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Looks for a nearer part of a skeleton while a probe is pressed in: in a valley two flanks are nearly as near.
+/// Searches for a nearer part of a skeleton while a probe is pressed in, because in a valley two flanks are nearly
+/// equally near.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -13,13 +14,16 @@ namespace hapticd {
 
 class FootScan {
  public:
-  explicit FootScan(const medial::Skeleton& skeleton);  ///< [main]
-  /// [rt] Looks at the next samples, from `next` on, round and round.
-  /// @param width [m] by which a foot may be less deep, where it is surely of another place
-  /// @return the parameters of the best that is apart from the foot and may be nearer to p, or by `width` less near
+  explicit FootScan(const medial::Skeleton& skeleton);  ///< [main] makes the samples
+  /// [rt] Examines some samples after the sample `next`, and sets `next` to the last of them; after the last sample
+  /// comes the first.
+  /// @param width [m] a foot that is certainly at another place may be less deep by this much
+  /// @return the parameters of the best sample at another place that may be nearer to p than the foot, or less near by
+  /// at most `width`
   std::optional<std::array<double, 2>> rival(const Eigen::Vector3d& p, const medial::SkeletonFoot& foot, double width,
                                              uint32_t& next) const noexcept;
-  /// [rt] 0: two feet are of one place of the skeleton; 1: of two.
+  /// [rt] Returns 0 if two feet are at the same place of the skeleton, 1 if they are at two places; values between
+  /// blend.
   static double apart(const medial::SkeletonFoot& a, const medial::SkeletonFoot& b) noexcept;
   std::size_t bytes() const noexcept {
     return samples_.capacity() * sizeof(Sample) + 4 * x_.capacity() * sizeof(float);
@@ -30,7 +34,7 @@ class FootScan {
     Eigen::Vector3d center;
     double radius, u, v;
   };
-  /// A probe and what is asked of samples, likewise.
+  /// A probe and the conditions for samples, in the same units as x_.
   struct Probe {
     Eigen::Vector3f p, normal;
     float deepest, width;
@@ -41,10 +45,10 @@ class FootScan {
                      double& deepest) noexcept;
 
   std::vector<Sample> samples_;
-  // The same about `middle_`, in lengths of `size_`, and once more from the beginning behind the end.
+  // The samples again, relative to `middle_` and divided by `size_`. The first ones are repeated after the last one.
   std::vector<float> x_, y_, z_, radius_;
   Eigen::Vector3d middle_{0, 0, 0};
-  double size_ = 1;  ///< [m]
+  double size_ = 1;  ///< [m] half the size of the body
 };
 
 }  // namespace hapticd

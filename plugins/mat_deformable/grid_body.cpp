@@ -16,14 +16,21 @@ namespace {
 using Eigen::Vector3d;
 using medial::SkeletonFoot;
 
-constexpr double kNewPlace = 0.25;     ///< a probe that moved by this share of a cell is looked for all over the body
-constexpr double kWithinReach = 0.02;  ///< [m] farther bodies wait for the search of the simulation side
-constexpr double kGridHullError = 0.005;  ///< of the greatest radius
-constexpr double kForget = 0.3;           ///< of the radius: a rival that is less deep by so much is left alone
-constexpr double kLookAhead = 0.2;        ///< likewise, of the other flank: a scan of all samples takes its time
-constexpr double kAloof = 0.01;      ///< [m] a probe so far outside a felt body need not know its foot to the last bit
-constexpr double kLoosely = 1e-6;    ///< [m] that a step there may be worth: what is left after it is less
-constexpr double kOtherFoot = 0.02;  ///< difference of parameters from which an offered foot is another one
+/// if a probe has moved by more than this share of a cell in a tick, its foot is searched on the whole body
+constexpr double kNewPlace = 0.25;
+/// [m] for a body that is farther away, the servo waits for the proximity search
+constexpr double kWithinReach = 0.02;
+constexpr double kGridHullError = 0.005;  ///< chord error of hull(), as a share of the greatest radius
+/// share of the radius; a rival that is less deep by more than this is dropped
+constexpr double kForget = 0.3;
+/// share of the radius; a rival on the other flank is searched already if it is less deep by up to this, because a scan
+/// of all samples takes many ticks
+constexpr double kLookAhead = 0.2;
+/// [m] if a probe is farther outside a felt body than this, its foot need not be exact
+constexpr double kAloof = 0.01;
+constexpr double kLoosely = 1e-6;  ///< [m] error of the distance that is allowed there
+/// an offered foot whose parameters differ by more than this counts as another foot
+constexpr double kOtherFoot = 0.02;
 
 class GridBody final : public SoftBody {
  public:
@@ -40,7 +47,7 @@ class GridBody final : public SoftBody {
     }
     const std::array<double, 2>& offer = track.offer;
     const bool jumped = (flags & HSP_IN_JUMP) != 0;
-    if (!track.known && track.offered && !jumped) {  // the search that started it has looked all over the body
+    if (!track.known && track.offered && !jumped) {  // the proximity search has just searched the whole body
       track.foot.u = offer[0];
       track.foot.v = offer[1];
       track.known = true;
@@ -104,21 +111,22 @@ class GridBody final : public SoftBody {
     char text[512];
     if (check.holds()) {
       std::snprintf(text, sizeof text,
-                    "%zu control points, asleep until touched; shear springs: force grows with every depth (least "
-                    "slope %.0f %% of the normal spring's)",
+                    "%zu control points, at rest until touched; with the shear springs the force grows with depth "
+                    "everywhere (least slope: %.0f %% of the normal spring's)",
                     body_.deformation().count(), 100 * check.slope);
     } else {
-      std::snprintf(text, sizeof text,
-                    "%s: near u = %.3g, v = %.3g the shear springs may pull inward: rest length over least length is "
-                    "%.3g, expected below %.3g; use shear_distance, or a smaller shear_offset",
-                    file.c_str(), check.u, check.v, check.ratio, check.limit);
+      std::snprintf(
+          text, sizeof text,
+          "%s: near u = %.3g, v = %.3g the shear springs may pull the hand inward: their rest length over their least "
+          "length is %.3g, but must be below %.3g; use shear_distance, or a smaller shear_offset",
+          file.c_str(), check.u, check.v, check.ratio, check.limit);
     }
     Description description{text, !check.holds()};
     if (const medial::Steepness steep = body_.skeleton().steepest(); steep.slope >= 1) {
       std::snprintf(text, sizeof text,
-                    "%s: near u = %.3g, v = %.3g the radius changes by %.3g m per metre of skeleton, expected below 1: "
-                    "spheres there are inside others, and only the union of all is felt; place points farther apart or "
-                    "radii nearer to each other",
+                    "%s: near u = %.3g, v = %.3g the radius changes by %.3g m per metre of skeleton, but must change "
+                    "by less than 1: some spheres there are inside others, and only the union of all spheres is felt; "
+                    "place the points farther apart, or make the radii more equal",
                     file.c_str(), steep.u, steep.v, steep.slope);
       description = {description.warning ? description.text + "; " + text : text, true};
     }
@@ -126,7 +134,7 @@ class GridBody final : public SoftBody {
   }
 
  private:
-  /// Presses the contour above a point of the skeleton, on the side that (u, v) turns to.
+  /// Presses the contour above a point of the skeleton, on the side of the normal Su x Sv.
   FeltMaterial materialAt(double u, double v) const {
     const medial::Skeleton& skeleton = body_.skeleton();
     spline::SurfacePoint s;
@@ -149,8 +157,9 @@ class GridBody final : public SoftBody {
     return material;
   }
 
-  /// Beside a body that is felt, beyond the reach of its swings, its distance alone matters, which changes with the
-  /// square of a step: one evaluation follows it. Bodies that are not felt keep their bits.
+  /// Returns a coarser tolerance for a probe outside a felt body, beyond the reach of its swings. Only the distance
+  /// matters there, and its error is of second order in the step, so one evaluation suffices. Bodies that are not felt
+  /// keep the exact tolerance, so that their results do not change.
   medial::NewtonOptions followed(medial::NewtonOptions options, const Track& track) const noexcept {
     const double outside = -track.foot.depth;
     if (felt_ && track.known && outside > kAloof)
@@ -158,7 +167,7 @@ class GridBody final : public SoftBody {
     return options;
   }
 
-  /// In a valley both flanks are followed, so that neither is lost.
+  /// Follows the foot on the other flank of a valley too, so that neither is lost.
   void followRival(const Vector3d& p, const FindOptions& options, Track& track) const noexcept {
     const bool known = track.apart > 0;
     track.apart = 0;
@@ -169,7 +178,8 @@ class GridBody final : public SoftBody {
       isRival(p, (*found)[0], (*found)[1], options, track);
   }
 
-  /// Whether the foot from there is another one and nearly as deep. The deeper of both is the foot.
+  /// True if the foot that is found from (u, v) is another foot, and nearly as deep. The deeper of both then becomes
+  /// the track's foot, the other its rival.
   bool isRival(const Vector3d& p, double u, double v, const FindOptions& options, Track& track) const noexcept {
     const SkeletonFoot other = body_.skeleton().nearest(p, u, v, options.newton);
     if (!other.converged || !accept(other, track)) return false;
@@ -177,8 +187,9 @@ class GridBody final : public SoftBody {
     return true;
   }
 
-  /// Deep in a bend, about where its spheres meet, a flank stops to have a foot of its own while it is still nearly as
-  /// deep. Its sphere goes on to push there until it is less deep: else its share would end in one step.
+  /// Keeps the rival for some time. Deep in a bend, near the place where its spheres meet, a flank may lose its own
+  /// foot while it is still nearly as deep. Its last sphere then continues to push until it is less deep; otherwise its
+  /// share of the force would end in one step.
   static bool remains(const Vector3d& p, Track& track) noexcept {
     SkeletonFoot other = track.rival;
     const Vector3d away = p - other.center;
@@ -199,8 +210,8 @@ class GridBody final : public SoftBody {
   }
 
   medial::Body body_;
-  std::optional<FootScan> scan_;  ///< of a body that is felt
-  bool felt_;  ///< what is new in creases and where a body is pushed through holds for bodies that are felt
+  std::optional<FootScan> scan_;  ///< only for a felt body
+  bool felt_;  ///< the newer rules for creases and for a push through the body apply only to felt bodies
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMostProblems = 20;
 constexpr long kMostElements = 10'000'000;
 
-/// For a terminal: what is no plain character, as a question mark.
+/// Replaces every character that is not plain ASCII by a question mark, for the terminal.
 std::string printable(std::string_view word) {
   std::string text(word);
   for (char& c : text)
@@ -79,14 +79,14 @@ class MaReader {
       const bool good = words.number(s.center.x()) && words.number(s.center.y()) && words.number(s.center.z()) &&
                         words.number(s.radius) && s.center.allFinite() &&
                         s.center.cwiseAbs().maxCoeff() <= kFarthestPoint && s.radius >= 0 && s.radius <= kFarthestPoint;
-      if (!good) problem("expected v x y z r: numbers within 1e6 m, and a radius of at least 0");
+      if (!good) problem("expected v x y z r: centre and radius in m, at most 1e6, and a radius of at least 0");
       data_.vertices.push_back(s);
     } else if (kind == "e") {
       readCorners(words, data_.edges, "e i j");
     } else if (kind == "f") {
       readCorners(words, data_.triangles, "f i j k");
     } else {
-      problem("'" + printable(kind.substr(0, 20)) + "', expected v, e, f or #");
+      problem("'" + printable(kind.substr(0, 20)) + "': a line must begin with v, e, f or #");
     }
   }
 
@@ -97,14 +97,14 @@ class MaReader {
       if (!Words(word).number(count)) {
         counts_known_ = false;
         return problem((word.empty() ? "too few numbers" : "'" + printable(word.substr(0, 20)) + "'") +
-                       ", expected three whole numbers: how many vertices, edges and triangles follow");
+                       "; the first line must have three whole numbers: how many vertices, edges and triangles follow");
       }
       if (count >= 0 && count <= kMostElements) continue;
       counts_known_ = false;
-      return problem(std::to_string(count) + " of a kind, expected 0 to " + std::to_string(kMostElements) +
+      return problem(std::to_string(count) + " elements of one kind; expected 0 to " + std::to_string(kMostElements) +
                      " vertices, edges and triangles");
     }
-    if (counts_[0] == 0) problem("there are no vertices, expected at least one");
+    if (counts_[0] == 0) problem("there are no vertices; at least one is needed");
   }
 
   template <std::size_t kCount>
@@ -123,12 +123,13 @@ class MaReader {
   }
 
   void finish() {
-    if (!counted_) return problem("the file is empty, expected the numbers of vertices, edges and triangles");
+    if (!counted_)
+      return problem("the file is empty; the first line must have the numbers of vertices, edges and triangles");
     if (!counts_known_) return;
     const auto check = [this](long promised, std::size_t found, const char* one, const char* many) {
       if (static_cast<std::size_t>(promised) != found)
-        problem(std::to_string(found) + " " + (found == 1 ? one : many) + " in the file, expected " +
-                std::to_string(promised) + " as its first line says");
+        problem(std::to_string(found) + " " + (found == 1 ? one : many) + " in the file, but the first line says " +
+                std::to_string(promised) + " of them");
     };
     check(counts_[0], data_.vertices.size(), "vertex", "vertices");
     check(counts_[1], data_.edges.size(), "edge", "edges");

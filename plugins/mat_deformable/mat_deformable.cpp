@@ -16,11 +16,13 @@ namespace {
 using Eigen::Vector3d;
 using medial::SkeletonFoot;
 
-constexpr double kShowPeriod = 1.0 / 60;  ///< [s] between two sets of displacements for drawing
-constexpr double kFinestMesh = 1e-6;      ///< [m] finer meshes are for files, not for drawing
-constexpr double kGapFactor = 1.5;        ///< so many ticks without a step: the body was left alone meanwhile
-constexpr double kHop = 0.2;              ///< of the radius: a foot that goes farther at once has not been followed
-constexpr double kSweep = 4;              ///< times the probe's way that a foot may go on the inside of a bend
+constexpr double kShowPeriod = 1.0 / 60;  ///< [s] time between two sets of displacements for drawing
+constexpr double kFinestMesh = 1e-6;      ///< [m] least chord error of a mesh for drawing
+/// if more ticks than this have passed since the last step, no probe was near in the meantime
+constexpr double kGapFactor = 1.5;
+/// share of the radius; a foot that moves farther in one tick, beyond kSweep, has jumped
+constexpr double kHop = 0.2;
+constexpr double kSweep = 4;  ///< multiple of the probe's path that a foot may move on the inside of a bend
 
 bool hasHopped(const SkeletonFoot& foot, const Vector3d& center, const Vector3d& moved) noexcept {
   return (foot.center - center).norm() > kHop * foot.radius + kSweep * moved.norm();
@@ -108,10 +110,10 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
   const medial::FeltSurface* const surface = body_->feltSurface();
   const std::vector<unsigned char> loaded = std::exchange(states_->loaded, {});
   if (!loaded.empty() && !restoreState(loaded, body_->nodes(), body_->feltSurface()))
-    throw std::invalid_argument(geometry_ + ": the state that was loaded belongs to another body");
+    throw std::invalid_argument(geometry_ + ": the saved state that was loaded belongs to another body");
   if (viscosity_ > 0 || (surface == nullptr && (file.swings || file.damps))) report.flags |= HSP_R_VELOCITY;
   report.max_stiffness = body_->greatestStiffness() * (surface != nullptr ? surface->contactRatio() : 1);
-  // A surface that is felt comes up at a hand that holds still: it swings back, or another hand lets go of it.
+  // A felt surface can push a hand that does not move: the surface swings back, or another hand lets go of it.
   if (surface != nullptr) reportJumps(report, report.max_stiffness * kDeepPress);
   report.size_m = body_->bounds().diagonal().norm();
   report.locked_bytes = body_->bytes() + displaced_->bytes() + volume_bytes + probes * sizeof(Track) + sizeof *this +
@@ -144,7 +146,8 @@ void MatDeformable::reset() noexcept HSP_RT {
   shown_at_rest_ = false;
 }
 
-/// Time since the last step. A body that no probe was near to has not been stepped: it catches up when one comes back.
+/// Returns the time since the last step. While no probe was near, the body was not stepped; it catches up when a probe
+/// comes back.
 double MatDeformable::elapsed(const hsp_step& step) noexcept HSP_RT {
   if (step.count == 0) return step.dt_s;
   const uint64_t now = step.in->time_ns, before = last_time_ns_;
@@ -176,7 +179,7 @@ double MatDeformable::energy() const noexcept HSP_RT {
   return stored_ + (surface != nullptr ? surface->energy({contacts_.data(), met_.size()}) : body_->nodes().energy());
 }
 
-/// Leaves displacements for drawing 60 times a second while the body moves, and once when it has come to rest.
+/// Publishes displacements for drawing: 60 times a second while the body moves, and once when it has come to rest.
 void MatDeformable::show(const hsp_step& step) noexcept HSP_RT {
   const medial::Nodes& moved = body_->nodes();
   if (frames_) frames_->step(moved, step.viz_xyz, step.viz_capacity);
@@ -194,7 +197,7 @@ double MatDeformable::displayed() const {
 
 hsp_status MatDeformable::mesh(double chord_error, hsp_mesh& out) {
   if (!body_) return HSP_E_STATE;
-  if (chord_error == 0 && frames_) chord_error = displayed();  // the mesh of the vertices that steps write
+  if (chord_error == 0 && frames_) chord_error = displayed();  // the mesh whose vertices the steps write
   if (!(chord_error > 0)) return HSP_E_ARG;
   if (!display_) display_ = std::make_unique<Display>();
   display_->show(*body_, *displaced_, std::max(chord_error, kFinestMesh), out);
@@ -284,7 +287,7 @@ void MatDeformable::push(const hsp_probe& probe, const Felt& felt, Track& track,
   Eigen::Map<Vector3d>(contact.force) = answer.force + rub;
   contact.stiffness = answer.stiffness;
   stored_ += answer.energy + track.friction.energy(law);
-  presses_.push_back(  // reserved: one a probe
+  presses_.push_back(  // has room for all probes
       {track.foot.u, track.foot.v, felt.normal, felt.depth, closing, track.foot.element});
 }
 
@@ -315,7 +318,7 @@ hsp_status MatDeformable::stop(uint32_t probe) noexcept HSP_RT {
   return HSP_OK;
 }
 
-/// A body that is not there yet is as it was loaded; one that is gone, as it was last.
+/// Before activation, the state is the loaded one; after deactivation, the last one.
 int64_t MatDeformable::save(void* buffer, uint64_t capacity) const {
   const std::vector<unsigned char> state = body_                     ? stateOf(body_->nodes(), body_->feltSurface())
                                            : states_->loaded.empty() ? states_->kept
@@ -325,7 +328,7 @@ int64_t MatDeformable::save(void* buffer, uint64_t capacity) const {
   return static_cast<int64_t>(state.size());
 }
 
-/// What the bytes say is looked at when the body that they are of is known.
+/// The bytes are checked in activate(), when the body is known.
 hsp_status MatDeformable::load(const void* buffer, uint64_t length) {
   if (body_) return HSP_E_STATE;
   const auto* bytes = static_cast<const unsigned char*>(buffer);

@@ -17,12 +17,13 @@ namespace hapticd {
 
 class MatDeformable final : public Shape {
  public:
-  static constexpr ShapeInfo kInfo = {"org.hapticd.shape.mat_deformable",
-                                      "mat_deformable",
-                                      "1.0",
-                                      "MIT",
-                                      "A soft body made of spheres along a skeleton: it yields, swings and settles.",
-                                      HSP_C_DEFORMS};
+  static constexpr ShapeInfo kInfo = {
+      "org.hapticd.shape.mat_deformable",
+      "mat_deformable",
+      "1.0",
+      "MIT",
+      "A soft body made of spheres along a skeleton: it gives way to the hand, swings, and comes to rest.",
+      HSP_C_DEFORMS};
 
  private:
   static constexpr auto skeletonFields() {  // how the foot is found
@@ -30,82 +31,99 @@ class MatDeformable final : public Shape {
     using F = Fields<T>;
     return std::array{
         F::path("geometry", &T::geometry_,
-                "model file (format hapticd-model/1) with medial, YAML or JSON; or a medial mesh, .ma", HSP_P_REQUIRED),
-        F::choice("search", &T::search_, kSearchNames, 0,
-                  "newton: safeguarded Newton from the last foot; binary: nested halving, the paper's way",
-                  HSP_P_ACCURACY),
-        F::integer("depth", &T::depth_, "", 4, 30, 10, "halvings of each parameter of search binary", HSP_P_ACCURACY),
-        F::real("tolerance", &T::tolerance_, "m", 1e-12, 1e-3, 1e-8, "step at which search newton stops",
-                HSP_P_ACCURACY | HSP_P_LIVE),
+                "model file with the key medial (format hapticd-model/1 or /2, YAML or JSON), or a medial mesh (.ma)",
+                HSP_P_REQUIRED),
+        F::choice(
+            "search", &T::search_, kSearchNames, 0,
+            "newton: safeguarded Newton iteration from the last foot point; binary: nested bisection, as in the paper",
+            HSP_P_ACCURACY),
+        F::integer("depth", &T::depth_, "", 4, 30, 10, "number of halvings of each parameter with search: binary",
+                   HSP_P_ACCURACY),
+        F::real("tolerance", &T::tolerance_, "m", 1e-12, 1e-3, 1e-8,
+                "with search: newton, the search ends at a step shorter than this", HSP_P_ACCURACY | HSP_P_LIVE),
         F::choice("envelope", &T::envelope_, kEnvelopeNames, 0,
                   "exact: the union of the spheres; foot: the paper's test, too small where radii vary",
                   HSP_P_ACCURACY),
-        F::integer("degree", &T::degree_, "", 1, medial::kMaxSkeletonDegree, 3, "of the skeleton spline, at most"),
-        F::choice("evaluation", &T::evaluation_, kEvaluationNames, 0, "fast: a table a span; small: control points",
-                  HSP_P_ACCURACY)};
+        F::integer("degree", &T::degree_, "", 1, medial::kMaxSkeletonDegree, 3,
+                   "highest degree of the skeleton spline"),
+        F::choice(
+            "evaluation", &T::evaluation_, kEvaluationNames, 0,
+            "fast: stores a table for each knot span; small: computes from the control points and needs less memory",
+            HSP_P_ACCURACY)};
   }
   static constexpr auto dynamicsFields() {  // how the body yields and swings
     using T = MatDeformable;
     using F = Fields<T>;
     return std::array{
         F::real("split", &T::split_, "", 0, 1, 0.5,
-                "g: share of the depth by which the skeleton moves; 0.5: the opposite side stays, 1: it follows"),
+                "g: share of the depth by which the skeleton moves. 0.5: the opposite side of the body stays; 1: it "
+                "moves along"),
         F::array("influence", &T::influence_, "", 2, 2, 2, 1, medial::kMaxSkeletonDegree + 1, "[4, 4]",
-                 "p', q': control points that a contact moves; degree + 1: no jumps. Seen, not felt"),
+                 "p', q': how many control points a contact moves; with degree + 1 the dent does not jump. It changes "
+                 "the drawing, not the force"),
         F::choice("dynamics", &T::dynamics_, kDynamicsNames, kAsFile,
-                  "off: the body springs back at once; seen (or on): it swings and creeps for the eye alone; felt: the "
-                  "hand meets the surface as it moves; auto: felt where damping or mass is given, else off; file: auto "
-                  "for model files of format hapticd-model/2, seen for others"),
+                  "off: the body springs back at once. seen (or on): it swings and creeps, but this changes only the "
+                  "drawing. felt: the hand feels the moving surface. auto: felt if the file gives damping or mass, "
+                  "else off. file: auto for files of format hapticd-model/2, seen for others"),
         F::real("contact_ratio", &T::contact_ratio_, "", 1.1, 100, 3,
-                "felt: spring between probe and surface, over the stiffness of the body: the stiffest that fast motion "
-                "feels"),
+                "with dynamics felt: stiffness of the spring between probe and surface, divided by the body's "
+                "stiffness. No fast motion feels a stiffer body"),
         F::real("relaxation.share", &T::relaxation_share_, "", 0, 10, 0,
-                "felt: a fast press is stiffer by this share of the stiffness, and relaxes to it"),
-        F::real("relaxation.time", &T::relaxation_time_, "s", 1e-4, 100, 0.5, "felt: time in which it relaxes"),
-        F::real(
-            "shear_offset", &T::shear_offset_, "", 0, 0.5, kUsualShearOffset,
-            "distance of the four springs along the surface, as a share of the parameters; 0: none. They make a body "
-            "stiffer than its file says: shear_distance does not")};
+                "with dynamics felt: a fast press is stiffer by this share of the stiffness, and then relaxes"),
+        F::real("relaxation.time", &T::relaxation_time_, "s", 1e-4, 100, 0.5,
+                "with dynamics felt: time constant of this relaxation"),
+        F::real("shear_offset", &T::shear_offset_, "", 0, 0.5, kUsualShearOffset,
+                "distance of the ends of four springs along the surface, as a share of the parameter range; 0: no such "
+                "springs. They make the body stiffer than its file says; with shear_distance they do not")};
   }
-  static constexpr auto contactFields() {  // what a probe feels besides
-    using T = MatDeformable;
-    using F = Fields<T>;
-    return std::array{F::real("damping_scale", &T::damping_scale_, "m", 1e-6, 1, 5e-3,
-                              "depth at which the damping of the contact is whole"),
-                      F::real("friction_static", &T::friction_static_, "", 0, 10, 0,
-                              "mu_s: force along the surface over normal force that a stuck probe must overcome"),
-                      F::real("friction_dynamic", &T::friction_dynamic_, "", 0, 10, 0, "mu_d: of a sliding probe"),
-                      F::real("viscosity", &T::viscosity_, "N s/m", 0, 100, 0, "drag along the surface in contact"),
-                      F::choice("volume", &T::volume_, kSwitchNames, 0,
-                                "on: what a press pushes in comes out all round, so that the volume stays")};
-  }
-  static constexpr auto materialFields() {  // what a file leaves open, and how its numbers are meant
+  static constexpr auto contactFields() {  // what else a probe feels
     using T = MatDeformable;
     using F = Fields<T>;
     return std::array{
-        F::real("stiffness", &T::stiffness_, "N/m", 0, 1e6, 300, "of a medial mesh whose file has none (.ma)"),
+        F::real("damping_scale", &T::damping_scale_, "m", 1e-6, 1, 5e-3,
+                "depth at which the contact's damping reaches its full value"),
+        F::real(
+            "friction_static", &T::friction_static_, "", 0, 10, 0,
+            "mu_s: a stuck probe begins to slide when the force along the surface exceeds mu_s times the normal force"),
+        F::real("friction_dynamic", &T::friction_dynamic_, "", 0, 10, 0,
+                "mu_d: the friction on a sliding probe is mu_d times the normal force"),
+        F::real("viscosity", &T::viscosity_, "N s/m", 0, 100, 0, "viscous drag along the surface during a contact"),
+        F::choice(
+            "volume", &T::volume_, kSwitchNames, 0,
+            "on: the rest of the surface moves out when a press pushes a part in, so that the volume stays the same")};
+  }
+  static constexpr auto materialFields() {  // defaults for what a file does not give, and how to read its numbers
+    using T = MatDeformable;
+    using F = Fields<T>;
+    return std::array{
+        F::real("stiffness", &T::stiffness_, "N/m", 0, 1e6, 300,
+                "stiffness of a medial mesh whose file gives none (.ma)"),
         F::real("damping", &T::damping_, "N s/m", 0, 1e6, 0.5,
-                "likewise; a file may say up to ten times this, or 5, before it is refused"),
-        F::real("mass", &T::mass_, "kg", 0, 1e6, 0.01, "of a vertex, likewise"),
+                "damping of a medial mesh whose file gives none (.ma). A file that gives more than ten times this "
+                "value is refused (up to 5 is always allowed)"),
+        F::real("mass", &T::mass_, "kg", 0, 1e6, 0.01,
+                "mass of each vertex of a medial mesh whose file gives none (.ma)"),
         F::integer("rings", &T::rings_, "", 0, 8, 2,
-                   "of a medial mesh: rings of neighbours that a contact moves with its cone or slab. Seen, not felt"),
-        F::real(
-            "crease", &T::crease_, "m", 0, 1, 1e-3,
-            "of a medial mesh: width over which the force turns from one part to another in the crotch of a branch; "
-            "0: at once",
-            HSP_P_LIVE),
+                   "medial mesh only: how many rings of neighbouring vertices a contact moves. It changes the drawing, "
+                   "not the force"),
+        F::real("crease", &T::crease_, "m", 0, 1, 1e-3,
+                "medial mesh only: where a branch begins, the force turns from one part to the other over this width; "
+                "0: at once",
+                HSP_P_LIVE),
         F::real("display_tolerance", &T::display_tolerance_, "m", 0, 1e-2, 0,
-                "chord error of the vertices that steps write 60 times a second for whoever draws; 0: none"),
+                "largest distance of the drawn mesh, which is updated 60 times a second, from the surface; 0: no such "
+                "mesh"),
+        F::real("shear_distance", &T::shear_distance_, "m", 0, 1, 0,
+                "distance of the ends of four springs along the surface. They change the direction of the force, but "
+                "not its part along the normal. 0: shear_offset is used for files of format hapticd-model/1, and no "
+                "springs for others"),
         F::real(
-            "shear_distance", &T::shear_distance_, "m", 0, 1, 0,
-            "distance of the four springs along the surface, which then turn the force and leave its part along the "
-            "normal as the file says; 0: shear_offset counts in files of format hapticd-model/1, none in others"),
-        F::real("probe_radius", &T::probe_radius_, "m", 1e-4, 0.1, 5e-3,
-                "of the flat tip with which a file's young, poisson and thickness are felt")};
+            "probe_radius", &T::probe_radius_, "m", 1e-4, 0.1, 5e-3,
+            "radius of the flat tip for which young, poisson and thickness of a file are converted into a stiffness")};
   }
 
  public:
-  /// In the order of their indices, which recordings hold.
+  /// The order must not change, because recordings hold the indices.
   static constexpr auto fields() { return join(skeletonFields(), dynamicsFields(), contactFields(), materialFields()); }
 
   void activate(const hsp_activation& activation, hsp_report& report);
@@ -123,7 +141,7 @@ class MatDeformable final : public Shape {
   static constexpr const char* kDynamicsNames[] = {"off", "on", "seen", "felt", "auto", "file"};
   enum Dynamics { kOff, kOn, kSeen, kFelt, kAuto, kAsFile };
 
-  /// Bytes that describe a body: of the last deactivation; for the next activation.
+  /// The state of a body as bytes: `kept` at the last deactivation, `loaded` for the next activation.
   struct States {
     std::vector<unsigned char> kept, loaded;
   };
@@ -136,8 +154,8 @@ class MatDeformable final : public Shape {
   Dynamics dynamicsOf(const MedialFile& file) const;
   void openBody(const MedialFile& file, double rate_hz);
   void openContacts(uint32_t probes);
-  uint32_t openDisplay();    ///< @return vertices that move; 0: none are shown
-  std::size_t openVolume();  ///< @return bytes that keep the volume; 0: it is not kept
+  uint32_t openDisplay();    ///< @return the number of moving vertices; 0 if none are drawn
+  std::size_t openVolume();  ///< @return bytes of the volume keeper; 0 if the volume is not kept
   static const void* surfacesExtension();
   static const void* geometryExtension();
   static const void* energyExtension();
@@ -146,13 +164,14 @@ class MatDeformable final : public Shape {
   void describeMaterial(const MedialFile& file, double tick) const;
   void describeDynamics(const MedialFile& file) const;
   void describeContact(const MedialFile& file, double tick) const;
-  medial::Tissue tissueAt(const MedialFile& file, std::size_t point) const;  ///< what the file says of a point
+  /// material of a point as the file gives it
+  medial::Tissue tissueAt(const MedialFile& file, std::size_t point) const;
   std::vector<medial::Tissue> distinct(const MedialFile& file) const;
-  void say(int level, const std::string& text) const;  ///< [main] to the log of the host, where it has one
+  void say(int level, const std::string& text) const;  ///< [main] writes to the log of the host, if it has one
   double elapsed(const hsp_step& step) noexcept HSP_RT;
   FindOptions findOptions(const hsp_step& step) const noexcept HSP_RT;
   FindOptions searchOptions() const noexcept;
-  /// The surface that a probe is at, if there is one and the sample is good.
+  /// The surface at a probe, if the probe is near one and its sample is good.
   struct Located {
     hsp_status status = HSP_OK;
     bool found = false;
@@ -166,7 +185,7 @@ class MatDeformable final : public Shape {
               hsp_contact& contact) noexcept HSP_RT;
   void push(const hsp_probe& probe, const Felt& felt, Track& track, hsp_contact& contact) noexcept HSP_RT;
 
-  double energy() const noexcept HSP_RT;  ///< [J]
+  double energy() const noexcept HSP_RT;  ///< [J] of the body and its contacts
 
   int64_t nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const;
   hsp_status start(const hsp_near& near) noexcept HSP_RT;
@@ -174,7 +193,7 @@ class MatDeformable final : public Shape {
   int64_t save(void* buffer, uint64_t capacity) const;
   hsp_status load(const void* buffer, uint64_t length);
   void show(const hsp_step& step) noexcept HSP_RT;
-  double displayed() const;  ///< [m] chord error of the frames
+  double displayed() const;  ///< [m] chord error of the mesh in the frames
   hsp_status mesh(double chord_error, hsp_mesh& out);
 
   std::string geometry_;
@@ -188,25 +207,26 @@ class MatDeformable final : public Shape {
   std::vector<double> influence_{4, 4};
 
   std::unique_ptr<SoftBody> body_;
-  std::vector<Track> tracks_;           ///< one a probe
-  std::vector<medial::Press> presses_;  ///< of this step, reserved for all probes
-  /// What a step met on a surface that is felt, one a probe that is near, and which probe that is.
+  std::vector<Track> tracks_;           ///< one per probe
+  std::vector<medial::Press> presses_;  ///< contacts of this step; has room for all probes
+  /// On a felt surface: one entry for each probe that is near in this step, with the probe's index.
   struct Met {
     uint32_t probe = 0;
     Felt felt;
   };
-  std::vector<medial::FeltContact> contacts_;  ///< as many as one surface answers; `met_` says how many are in use
-  std::unique_ptr<medial::FeltPlace> beside_;  ///< of the rival, for the contact that is being met
-  std::vector<Met> met_;                       ///< likewise
+  /// has the size of the most contacts of one surface; the first met_.size() are in use
+  std::vector<medial::FeltContact> contacts_;
+  std::unique_ptr<medial::FeltPlace> beside_;  ///< place of the rival foot, for the contact that is being handled
+  std::vector<Met> met_;                       ///< contacts of this step; has room for all probes
   std::unique_ptr<Displaced> displaced_;
-  std::unique_ptr<Frames> frames_;  ///< written by the step, if display_tolerance asks for it
-  std::unique_ptr<Keeper> keeper_;  ///< of the volume, if that was asked for
+  std::unique_ptr<Frames> frames_;  ///< written by step() if display_tolerance is above 0
+  std::unique_ptr<Keeper> keeper_;  ///< keeps the volume, if `volume` is on
   std::unique_ptr<States> states_ = std::make_unique<States>();
   std::unique_ptr<Display> display_;
-  double since_shown_ = 0;  ///< [s]
+  double since_shown_ = 0;  ///< [s] time since the last set of displacements for drawing
   bool shown_at_rest_ = true;
   uint64_t last_time_ns_ = 0;
-  double stored_ = 0;  ///< [J] in the springs of the contacts
+  double stored_ = 0;  ///< [J] energy in the springs of the contacts
 };
 
 }  // namespace hapticd

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the file of a soft body says that its format allows and nobody can mean.
+/// Warnings for numbers in the file of a soft body that its format allows, but that nobody can mean.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -9,8 +9,11 @@
 
 namespace hapticd {
 
-/// [main] Grams for kilograms, millimetres for metres, megapascals for pascals: each as `file:line:column: key: what`.
-/// @param medial the tree that the body was read from  @param text of the file, for the lines
+/// [main] Finds numbers in a wrong unit, such as grams for kilograms, millimetres for metres, or megapascals for
+/// pascals.
+/// @param medial the tree from which the body was read
+/// @param text of the file, to find the lines
+/// @return warnings of the form `file:line:column: key: what`
 std::vector<std::string> adviseMedial(const MedialFile& file, const nlohmann::json& medial, const std::string& text,
                                       const std::string& name);
 

@@ -19,12 +19,12 @@ namespace {
 
 using Json = nlohmann::json;
 constexpr std::size_t kMostPoints = 1'000'000;
-constexpr double kMost = 1e6;        ///< N/m and kg, like the parameters
-constexpr double kLeastMass = 1e-9;  ///< [kg] lighter points are a slip of the hand; 0 is a body that creeps
-constexpr double kHardest = 1e9;     ///< [Pa] what is harder is no soft body
-constexpr double kThinnest = 10;     ///< tip over thickness up to which the stiffness of a layer is right
-constexpr double kClaimMargin = 10;  ///< a host lets a shape damp so many times what its parameters say
-constexpr double kLeastDamping = 5;  ///< [N s/m] so little passes as stiffness
+constexpr double kMost = 1e6;        ///< [N/m], [kg] greatest stiffness and mass, as for the parameters
+constexpr double kLeastMass = 1e-9;  ///< [kg] a smaller mass is surely a typing error; with 0 the body creeps
+constexpr double kHardest = 1e9;     ///< [Pa] a harder body is not soft
+constexpr double kThinnest = 10;     ///< greatest ratio of tip radius to thickness for which layerStiffness() is right
+constexpr double kClaimMargin = 10;  ///< the host lets a shape damp this many times as much as its parameters say
+constexpr double kLeastDamping = 5;  ///< [N s/m] the host accepts up to this for every body
 
 Path below(Path path, const char* key) {
   path.push_back({key, 0});
@@ -35,7 +35,7 @@ Path below(Path path, std::size_t index) {
   return path;
 }
 
-/// Reads the tree of one file; every wrong value becomes a problem and reading goes on.
+/// Reads the tree of one file. Every wrong value becomes a problem, and reading continues.
 class Reader {
  public:
   Reader(Problems& problems, const Material& material)
@@ -44,12 +44,12 @@ class Reader {
         most_damping_(std::max(kLeastDamping, kClaimMargin * material.damping)) {}
 
   void read(const Json& root, MedialFile& file) {
-    if (!root.is_object()) return problems_.add({}, "expected a mapping with format and medial");
+    if (!root.is_object()) return problems_.add({}, "expected a mapping with the keys format and medial");
     checkKeys(root, {}, {"format", "name", "credit", "surfaces", "edges", "medial"});
     const auto format = root.find("format");
     file.revision = format != root.end() && *format == "hapticd-model/2" ? 2 : 1;
     if (format == root.end() || (file.revision == 1 && *format != "hapticd-model/1"))
-      problems_.add({PathStep{"format", 0}}, "expected hapticd-model/2, or hapticd-model/1 as older files have it");
+      problems_.add({PathStep{"format", 0}}, "expected hapticd-model/2 (or hapticd-model/1, for older files)");
     const Path at = below(Path{}, "medial");
     const auto medial = root.find("medial");
     if (medial == root.end() || !medial->is_object())
@@ -81,7 +81,7 @@ class Reader {
     const Json& vertices = medial["vertices"];
     const Path place = below(at, "vertices");
     if (!vertices.is_array() || vertices.empty() || vertices.size() > kMostPoints)
-      return problems_.add(place, "expected [x, y, z, radius] in m, one per vertex");
+      return problems_.add(place, "expected a list with [x, y, z, radius] in m for each vertex");
     for (std::size_t i = 0; i < vertices.size() && !problems_.full(); ++i) {
       if (!vertices[i].is_array() || vertices[i].size() != 4) {
         problems_.add(below(place, i), "expected [x, y, z, radius] in m");
@@ -101,12 +101,13 @@ class Reader {
     data.mass = list(medial, at, "mass", vertices.size(), false);
   }
 
-  /// As the file says it, or from the elastic constants of a layer: `read` gives the values of a key.
+  /// Returns the stiffness of the file, or computes it from the elastic constants of a layer. `read` returns the values
+  /// of a key.
   template <class Read>
   std::vector<double> stiffnessOf(const Json& medial, const Path& at, Read read) {
     if (!medial.contains("young")) {
       for (const char* key : {"poisson", "thickness"})
-        if (medial.contains(key)) problems_.add(below(at, key), "expected only beside young");
+        if (medial.contains(key)) problems_.add(below(at, key), "is used only together with young");
       return read("stiffness", true);
     }
     if (medial.contains("stiffness"))
@@ -117,7 +118,7 @@ class Reader {
     const auto pick = [](const std::vector<double>& values, std::size_t i) {
       return values[values.size() > 1 ? i : 0];
     };
-    std::map<std::array<double, 2>, double> known;  // of a modulus of 1 Pa
+    std::map<std::array<double, 2>, double> known;  // stiffness for a modulus of 1 Pa, by poisson and thickness
     std::vector<double> all;
     for (std::size_t i = 0; i < std::max({young.size(), poisson.size(), thickness.size()}); ++i) {
       const std::array<double, 2> layer{pick(poisson, i), pick(thickness, i)};
@@ -126,7 +127,8 @@ class Reader {
       all.push_back(found->second * pick(young, i));
     }
     if (const double most = *std::max_element(all.begin(), all.end()); most > kMost)
-      problems_.add(below(at, "young"), "is felt as " + std::to_string(most) + " N/m, expected at most 1e6");
+      problems_.add(below(at, "young"),
+                    "gives a stiffness of " + std::to_string(most) + " N/m, which is more than 1e6");
     return all;
   }
 
@@ -157,13 +159,13 @@ class Reader {
     const Path at = below(parent, key);
     const auto json = medial.find(key);
     if (json == medial.end() || json->is_null()) {
-      if (required) problems_.add(at, "missing, expected a number, or one for each vertex");
+      if (required) problems_.add(at, "this key is missing; give a number, or one for each vertex");
       return {};
     }
     if (json->is_number()) return {value(*json, at, key)};
     std::vector<double> all;
     if (!json->is_array() || json->size() != total) {
-      problems_.add(at, "expected a number, or " + std::to_string(total) + " of them, one per vertex");
+      problems_.add(at, "expected a number, or " + std::to_string(total) + " numbers, one for each vertex");
       return all;
     }
     for (std::size_t i = 0; i < total && !problems_.full(); ++i) all.push_back(value((*json)[i], below(at, i), key));
@@ -172,11 +174,12 @@ class Reader {
 
   double finite(const Json& json, const Path& at) {
     const double number = json.is_number() ? json.get<double>() : NAN;
-    if (!(std::abs(number) <= kFarthestPoint)) problems_.add(at, "expected a number within 1e6 m");
+    if (!(std::abs(number) <= kFarthestPoint)) problems_.add(at, "expected a number between -1e6 and 1e6 m");
     return number;
   }
 
-  /// False where not even the number of points is known; else what is wrong with some hides nothing of the rest.
+  /// Returns false if even the number of points is unknown. Otherwise reading continues after a wrong point, so that
+  /// the other problems are found too.
   bool readPoints(const Json& medial, const Path& at, medial::SkeletonGrid& grid) {
     const auto rows = medial.find("points");
     const bool good = rows != medial.end() && rows->is_array() && !rows->empty() && (*rows)[0].is_array() &&
@@ -208,7 +211,7 @@ class Reader {
   bool isRow(const Json& json, const Path& at, const medial::SkeletonGrid& grid) {
     const auto columns = static_cast<std::size_t>(grid.count[1]);
     if (json.is_array() && json.size() == columns) return true;
-    problems_.add(at, "expected a row of " + std::to_string(columns) + ", like the first row of points");
+    problems_.add(at, "expected a row of " + std::to_string(columns) + " values, as in the first row of points");
     return false;
   }
 
@@ -218,13 +221,15 @@ class Reader {
     const auto json = medial.find(key);
     const std::size_t total = grid.points.size(), rows = static_cast<std::size_t>(grid.count[0]);
     if (json == medial.end() || json->is_null()) {
-      if (required) problems_.add(at, "missing, expected a number for each point, in rows like points");
+      if (required)
+        problems_.add(at,
+                      "this key is missing; give a number, or rows like those of points with a number for each point");
       return {};
     }
     if (json->is_number()) return std::vector<double>(total, value(*json, at, key));
     std::vector<double> all;
     if (!json->is_array() || json->size() != rows) {
-      problems_.add(at, "expected " + std::to_string(rows) + " rows, like points");
+      problems_.add(at, "expected " + std::to_string(rows) + " rows, as many as points has");
       return all;
     }
     for (std::size_t i = 0; i < rows && !problems_.full(); ++i) {
@@ -257,8 +262,8 @@ class Reader {
       char text[192];
       std::snprintf(
           text, sizeof text,
-          "expected at most %g N s/m: a host may silence a body that damps more than ten times what its parameter "
-          "damping says; set that parameter to %g in the scene",
+          "expected at most %g N s/m, because the host silences a body that damps more than ten times its parameter "
+          "damping; set this parameter to %g in the scene",
           most_damping_, std::min(number, kMost));
       problems_.add(at, number > kMost ? "expected at most 1e6 N s/m" : text);
     }
@@ -275,8 +280,8 @@ class Reader {
   }
 
   Problems& problems_;
-  double tip_;           ///< [m]
-  double most_damping_;  ///< [N s/m]
+  double tip_;           ///< [m] radius of the flat tip, see Material
+  double most_damping_;  ///< [N s/m] greatest damping that a file may give
 };
 
 }  // namespace

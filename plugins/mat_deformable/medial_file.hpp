@@ -9,32 +9,35 @@
 
 namespace hapticd {
 
-inline constexpr double kFarthestPoint = 1e6;  ///< [m] of points and radii: squares of larger ones leave no digits
+/// [m] greatest coordinate and radius; with larger ones, squares would lose all digits
+inline constexpr double kFarthestPoint = 1e6;
 
-/// What a file says of a body: a grid or a mesh.
+/// The contents of a model file: a body from a grid or from a mesh.
 struct MedialFile {
   std::optional<medial::BodyData> grid;
   std::optional<medial::MeshBodyData> mesh;
-  int revision = 1;                    ///< of the format: hapticd-model/1 or /2
-  bool swings = false, damps = false;  ///< some point has mass, some has damping
-  std::vector<std::string> odd;        ///< what can hardly be meant: adviseMedial()
+  int revision = 1;                    ///< version of the format: 1 for hapticd-model/1, 2 for hapticd-model/2
+  bool swings = false, damps = false;  ///< true if some point has mass; if some point has damping
+  std::vector<std::string> odd;        ///< warnings of adviseMedial()
 };
 
-/// Material of all vertices where the file has none. The file may damp ten times as much at most, or 5 N s/m: the host
-/// takes the parameter for what a body claims.
+/// Material of all vertices if the file gives none. A file may give at most ten times this damping, or 5 N s/m if that
+/// is more, because the host takes the parameter as the damping that the body claims.
 struct Material {
   double stiffness = 0, damping = 0, mass = 0;  ///< [N/m], [N s/m], [kg]
-  double tip = 5e-3;                            ///< [m] radius of the flat tip that Young's modulus is felt with
+  /// [m] radius of the flat tip for which Young's modulus is converted into a stiffness
+  double tip = 5e-3;
 };
 
-/// [main] Reads the body of a file: a medial mesh in the field's own format if its name ends in .ma (ma_file.hpp), else
-/// `medial` of a model file (format hapticd-model/1), YAML or JSON. That has either points, radius and stiffness as
-/// grids of equal rows, or vertices, edges and triangles; damping and mass too where they are given. One number serves
-/// all points. In place of stiffness a file may have young [Pa], poisson and thickness [m]: layerStiffness() of them.
-/// @throws ModelFileError with every problem found, a line each; whatever the bytes of the file.
+/// [main] Reads the body of a file. If the name ends in .ma, the file is a medial mesh in the format of the literature
+/// (ma_file.hpp); otherwise it is a model file (hapticd-model/1 or /2, YAML or JSON) with the key `medial`. This key
+/// has either points, radius and stiffness as grids of equal rows, or vertices, edges and triangles with a stiffness;
+/// damping and mass are optional. One number can stand for all points. Instead of stiffness a file may give young [Pa],
+/// poisson and thickness [m], which layerStiffness() converts. @throws ModelFileError with every problem found, one
+/// line each, for every possible content of the file.
 MedialFile readMedialFile(const std::string& path, const Material& material);
 
-/// [main] The same from the text of a file; `name` stands in messages and tells the format.
+/// [main] The same from the text of a file. `name` appears in messages, and its ending gives the format.
 MedialFile parseMedialFile(const std::string& text, const std::string& name, const Material& material);
 
 }  // namespace hapticd

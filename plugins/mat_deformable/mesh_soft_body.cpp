@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 using medial::MedialMesh;
 using medial::SkeletonFoot;
 
-constexpr double kMeshHullError = 0.05;  ///< of the greatest radius
+constexpr double kMeshHullError = 0.05;  ///< chord error of hull(), as a share of the greatest radius
 
 class MeshSoftBody final : public SoftBody {
  public:
@@ -26,8 +26,9 @@ class MeshSoftBody final : public SoftBody {
       greatest_radius_ = std::max(greatest_radius_, sphere.radius);
   }
 
-  /// Every search is global: the tree makes it as fast as following, and nothing is ever lost. In the middle of a body
-  /// whose parts are all as near it ends early, from the foot of the last tick.
+  /// Searches the whole body in every tick: with the tree this is as fast as following the foot, and no foot is ever
+  /// lost. The search begins at the foot of the last tick. It ends early in the middle of a body whose parts are all
+  /// equally near.
   void find(const Vector3d& p, uint32_t, const FindOptions& options, Track& track) const noexcept override {
     const uint32_t start = track.known ? track.foot.element : MedialMesh::kNoStart;
     if (!felt_) {
@@ -80,7 +81,7 @@ class MeshSoftBody final : public SoftBody {
     for (const MedialMesh::Element& element : body_.mesh().elements()) cones += element.count < 3 ? 1 : 0;
     const std::size_t slabs = body_.mesh().elements().size() - cones;
     char text[256];
-    std::snprintf(text, sizeof text, "%zu vertices, asleep until touched; a medial mesh of %zu cone%s and %zu slab%s",
+    std::snprintf(text, sizeof text, "%zu vertices, at rest until touched; a medial mesh of %zu cone%s and %zu slab%s",
                   body_.mesh().vertices().size(), cones, cones == 1 ? "" : "s", slabs, slabs == 1 ? "" : "s");
     return {text, false};
   }
@@ -88,7 +89,8 @@ class MeshSoftBody final : public SoftBody {
  private:
   medial::MeshBody body_;
   double greatest_radius_ = 0;
-  bool felt_ = false;  ///< a probe that is pushed through fades out; other bodies keep their bits
+  /// the force fades out after a push through the body only if the body is felt; others keep their results
+  bool felt_ = false;
 };
 
 }  // namespace

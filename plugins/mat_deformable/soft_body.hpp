@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the plugin needs of a soft body, whichever form its medial axis has: a grid of points or a mesh.
+/// The interface of a soft body to the plugin. Its medial axis is either a grid of points or a mesh.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -17,64 +17,71 @@
 
 namespace hapticd {
 
-/// How a foot is looked for.
+/// How the foot point is searched.
 struct FindOptions {
   medial::NewtonOptions newton;
-  bool binary = false;  ///< the paper's halving instead
+  bool binary = false;  ///< true: uses the paper's bisection instead of Newton's method
   int halvings = 10;
-  double crease = 0;  ///< [m] width over which the force turns from one part of a mesh to another
+  double crease = 0;  ///< [m] width over which the force turns from one part of a mesh to another; see MeshBody::foot()
 };
 
-/// One probe on a body.
+/// What is remembered of one probe on a body from tick to tick.
 struct Track {
   medial::SkeletonFoot foot;
-  Eigen::Vector3d last{0, 0, 0};    ///< where the probe was
-  Eigen::Vector3d pushed{0, 0, 0};  ///< direction in which the surface pushed; zero: it did not
-  std::array<double, 2> offer{};    ///< parameters of what the search of the simulation side found last
+  Eigen::Vector3d last{0, 0, 0};    ///< [m] position of the probe in the last tick
+  Eigen::Vector3d pushed{0, 0, 0};  ///< direction in which the surface pushed in the last tick; zero if it did not push
+  std::array<double, 2> offer{};    ///< parameters of the foot that the proximity search found last
   bool active = false, known = false, offered = false;
-  int side = 0;          ///< of a sheet that it came from; 0: of neither
-  bool settled = false;  ///< within a sheet: `pushed` has turned to the direction of the foot
+  int side = 0;          ///< side of a sheet from which the probe came, +1 or -1; 0 if from neither
+  bool settled = false;  ///< in the interior of a sheet: `pushed` has turned fully to the direction of the foot
   contact::Friction friction;
-  // On a surface that is felt:
-  bool met = false;            ///< the probe has been at the surface since it came near; else it may have begun inside
-  bool counted = false;        ///< `inside` is that of the last tick
-  bool near = false;           ///< the probe was within reach of the swinging surface in the last tick
-  medial::SkeletonFoot rival;  ///< another part of the surface that is nearly as deep over the probe, in a valley
-  double apart = 0;            ///< 0: there is none, or it is the foot's own place; 1: it is another
-  bool swapped = false;        ///< the foot is the rival of the last tick
-  uint32_t scanned = 0;        ///< sample of the body that was looked at last
-  bool hopped = false;         ///< the foot went to another part of the surface in this tick
-  double inside = 0;           ///< [m] by how much the probe was inside the present surface
+  // The following is used only on a felt surface:
+  /// the probe was located in an earlier tick since it came near; if false, it may have begun inside
+  bool met = false;
+  bool counted = false;  ///< true if `inside` was set in the last tick
+  bool near = false;     ///< the probe was within reach of the swinging surface in the last tick
+  /// in a valley: the foot on another part of the surface, below which the probe is nearly as deep
+  medial::SkeletonFoot rival;
+  /// 0 if there is no rival or it is at the foot's own place; 1 if it is at another place; between: separating
+  double apart = 0;
+  bool swapped = false;  ///< true if the foot is the rival of the last tick
+  uint32_t scanned = 0;  ///< index of the sample that the search for a rival examined last
+  bool hopped = false;   ///< true if the foot jumped to another part of the surface in this tick
+  double inside = 0;     ///< [m] depth of the probe below the displaced surface
 };
 
-/// The surface as the probe feels it: where it was pushed through the skeleton, still that of the side it came from.
+/// The surface as the probe feels it. After a push through the skeleton, this is still the surface of the side from
+/// which the probe came.
 struct Felt {
   Eigen::Vector3d normal{0, 0, 1};
   double depth = 0;
-  double steep = 1;  ///< length of the depth's gradient: less than 1 where two parts of the surface push together
-  double share = 0;  ///< of the rival, 0 to 1
+  double steep = 1;  ///< length of the depth's gradient; less than 1 if two parts of the surface push together
+  double share = 0;  ///< share of the rival, 0 to 1
 };
-inline constexpr double kSameDirection = 0.99;  ///< cosine of the direction of a foot and the one that is felt
-inline constexpr double kTurned = 0.9;          ///< cosine from which on it is another, that turns toward the foot's
+/// if the cosine between the felt direction and the direction of the foot is above this, they count as equal
+inline constexpr double kSameDirection = 0.99;
+/// if it is below this, they are different, and the felt direction turns toward the foot's
+inline constexpr double kTurned = 0.9;
 
-/// [rt] 1: a direction with this cosine to that of the foot is the foot's; 0: it is another.
+/// [rt] Returns 1 if a felt direction with this cosine to the direction of the foot counts as equal to it, and 0 if as
+/// different; values between blend the two cases.
 inline double directness(double cosine) noexcept {
   return std::clamp((cosine - kTurned) / (kSameDirection - kTurned), 0.0, 1.0);
 }
 
-/// What a person should know of a body before they touch it.
+/// What a person should know about a body before touching it.
 struct Description {
   std::string text;
   bool warning = false;
 };
 
-/// What a file says of one place of the body, and what a hand feels there.
+/// The stiffness of one place of the body: as the file gives it, and as a hand feels it.
 struct FeltMaterial {
-  Eigen::Vector3d place{0, 0, 0};  ///< [m] on the contour
-  double told = 0;                 ///< [N/m] in the file
-  double felt = 0, deep = 0;       ///< [N/m] force along the normal over depth, kShallowPress and kDeepPress deep
+  Eigen::Vector3d place{0, 0, 0};  ///< [m] point on the contour
+  double told = 0;                 ///< [N/m] stiffness in the file
+  double felt = 0, deep = 0;       ///< [N/m] normal force divided by depth, at the depths kShallowPress and kDeepPress
 };
-inline constexpr double kShallowPress = 1e-3, kDeepPress = 5e-3;  ///< [m] at most half the radius
+inline constexpr double kShallowPress = 1e-3, kDeepPress = 5e-3;  ///< [m] depths, limited to half the radius
 
 class SoftBody {
  public:
@@ -83,32 +90,33 @@ class SoftBody {
   SoftBody& operator=(const SoftBody&) = delete;
   virtual ~SoftBody() = default;
 
-  /// [rt] Follows the foot of a probe at p; looks all over the body where following may have lost it.
+  /// [rt] Follows the foot of a probe at p. If the foot may have been lost, searches the whole body.
   virtual void find(const Eigen::Vector3d& p, uint32_t flags, const FindOptions& options,
                     Track& track) const noexcept = 0;
-  /// [rt] What the probe feels there; `moved` [m] since the last tick.
+  /// [rt] Returns the surface that the probe feels at p.
+  /// @param moved [m] motion of the probe since the last tick
   virtual Felt felt(const Eigen::Vector3d& p, const Eigen::Vector3d& moved, Track& track) const noexcept = 0;
-  /// [rt] The force on a probe so deep.
+  /// [rt] Returns the force on a probe at p at the depth `felt.depth`.
   virtual medial::BodyForce press(const Eigen::Vector3d& p, const medial::SkeletonFoot& foot, const Felt& felt,
                                   double closing_speed) const noexcept = 0;
-  /// [rt] The place that the probe is at, for a surface that is felt.
+  /// [rt] Describes to a felt surface the place where the probe touches it.
   virtual void placeOf(const Eigen::Vector3d& p, const medial::SkeletonFoot& foot, const Felt& felt,
                        medial::Envelope envelope, medial::FeltPlace& place) noexcept = 0;
-  virtual medial::FeltSurface* feltSurface() noexcept = 0;  ///< [any] nullptr: its dynamics are seen alone
-  /// [rt] Gives way to all contacts of a tick, where its dynamics are seen alone.
+  virtual medial::FeltSurface* feltSurface() noexcept = 0;  ///< [any] nullptr if the dynamics are only seen
+  /// [rt] Moves the body under all contacts of a tick; only if the dynamics are only seen.
   virtual void yield(std::span<const medial::Press> contacts) noexcept = 0;
-  /// [sim] The foot of p with no start known.
+  /// [sim] Returns the foot of p, by a search without a known start.
   virtual medial::SkeletonFoot search(const Eigen::Vector3d& p, const FindOptions& options) const noexcept = 0;
 
-  virtual medial::Nodes& nodes() noexcept = 0;  ///< [rt]
+  virtual medial::Nodes& nodes() noexcept = 0;  ///< [rt] the moving parts of the body
   virtual const Eigen::AlignedBox3d& bounds() const noexcept = 0;
-  virtual double greatestRadius() const noexcept = 0;                                 ///< [m]
-  virtual double greatestStiffness() const noexcept = 0;                              ///< [N/m]
-  virtual std::unique_ptr<medial::MovingMesh> contour(double chord_error) const = 0;  ///< [main]
-  /// [main] Fine enough for the volume under it to be right to a thousandth.
+  virtual double greatestRadius() const noexcept = 0;     ///< [m] of all spheres
+  virtual double greatestStiffness() const noexcept = 0;  ///< [N/m] no force grows faster with depth
+  virtual std::unique_ptr<medial::MovingMesh> contour(double chord_error) const = 0;  ///< [main] a mesh for drawing
+  /// [main] Returns a mesh that is fine enough for the body's volume to be right to a thousandth.
   virtual std::unique_ptr<medial::MovingMesh> hull() const = 0;
-  virtual Description describe(const std::string& file) const = 0;  ///< [main]
-  virtual std::vector<FeltMaterial> feltMaterial() const = 0;       ///< [main] one a point of the file
+  virtual Description describe(const std::string& file) const = 0;  ///< [main] text for the log
+  virtual std::vector<FeltMaterial> feltMaterial() const = 0;       ///< [main] one per point of the file
   virtual std::size_t bytes() const noexcept = 0;
 };
 

@@ -9,8 +9,8 @@ namespace hapticd {
 namespace {
 
 constexpr uint32_t kMagic = 0x3153'4d48;          // "HMS1"
-constexpr uint32_t kRelaxingMagic = 0x3253'4d48;  // "HMS2": records end with the displacement that has relaxed
-constexpr double kFarthest = 1e3;                 ///< [m], [m/s] no node is farther or faster
+constexpr uint32_t kRelaxingMagic = 0x3253'4d48;  // "HMS2": each record ends with the relaxed displacement
+constexpr double kFarthest = 1e3;                 ///< [m], [m/s] greatest displacement and rate in a valid state
 
 struct Head {
   uint32_t magic, nodes;
@@ -90,7 +90,7 @@ bool restoreState(std::span<const unsigned char> bytes, medial::Nodes& nodes, me
     const auto record = readAt<Record>(bytes, at);
     nodes.place(record.node, Eigen::Vector4d(record.x), Eigen::Vector4d(record.v));
     if (surface == nullptr || !surface->branches()) continue;
-    const bool said = head.magic == kRelaxingMagic;  // else it was held for long
+    const bool said = head.magic == kRelaxingMagic;  // otherwise it counts as fully relaxed
     surface->setRelaxed(record.node, Eigen::Vector4d(said ? readAt<Relaxed>(bytes, at + sizeof(Record)).y : record.x));
   }
   nodes.setBulge(head.bulge);

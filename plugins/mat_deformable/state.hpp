@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a soft body remembers beyond its parameters, as bytes: the nodes that are not at rest.
+/// The state of a soft body as bytes: the nodes that are not at rest.
 #pragma once
 #include <span>
 #include <vector>
@@ -9,12 +9,13 @@
 
 namespace hapticd {
 
-/// [main] Nodes in motion, what of them has relaxed (if `surface` relaxes), and the bulge. The bytes serve on machines
-/// of the same byte order.
+/// [main] Returns the state as bytes: the nodes in motion, the displacement to which each has relaxed (if `surface`
+/// relaxes), and the bulge. Only machines of the same byte order can read these bytes.
 std::vector<unsigned char> stateOf(const medial::Nodes& nodes, const medial::FeltSurface* surface);
-/// [main] Whether bytes are a state at all; of which body, only restoreState() can tell.
+/// [main] True if the bytes are the state of some body; restoreState() tells if it is a state of this body.
 bool isState(std::span<const unsigned char> bytes);
-/// [main] Puts the nodes where the state says. @returns false, and changes nothing, for the state of another body.
+/// [main] Moves the nodes to the given state.
+/// @return false, and changes nothing, if it is the state of another body
 bool restoreState(std::span<const unsigned char> bytes, medial::Nodes& nodes, medial::FeltSurface* surface);
 
 }  // namespace hapticd

@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Nodes and weights of Gauss and Legendre on [-1, 1], eight points: exact for a polynomial surface of degree 3 by 3,
-/// and to 1e-9 for arcs of a quarter circle.
+/// Nodes and weights of Gauss-Legendre quadrature on [-1, 1] with eight points. It is exact for a polynomial surface of
+/// degree 3 by 3, and to 1e-9 for arcs of a quarter circle.
 constexpr std::array<double, 4> kNodes = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
                                           0.9602898564975363};
 constexpr std::array<double, 4> kWeights = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
@@ -45,14 +45,14 @@ dynamics::RigidBodyLaw lawOf(const MotionParameters& given, const dynamics::Mass
   if (numbers.size() == 3) {
     law.inertia = Vector3d(numbers.data()).asDiagonal();
   } else if (numbers.size() == 9) {
-    law.inertia = Eigen::Matrix3d(numbers.data());  // symmetric, or refused
+    law.inertia = Eigen::Matrix3d(numbers.data());  // a matrix that is not symmetric is refused below
   } else if (numbers.empty()) {
     const Vector3d away = shape.center - law.center;
     law.inertia =
         given.mass_ * (shape.inertia + away.squaredNorm() * Eigen::Matrix3d::Identity() - away * away.transpose());
   } else {
     throw std::invalid_argument("inertia: " + std::to_string(numbers.size()) +
-                                " numbers, expected three moments or three rows of three");
+                                " numbers are given; expected three moments, or three rows of three");
   }
   dynamics::validateSolid(law.inertia);
   law.damping = given.drag_;
@@ -72,10 +72,10 @@ dynamics::MassProperties massProperties(const trace::Model& model, bool& bounded
   for (int i = 0; i < model.patchCount(); ++i) addPatch(model.patch(i), integral);
   bounded = true;
   for (int shell = 0; shell < model.shellCount(); ++shell) bounded = bounded && model.closed(shell);
-  constexpr double kEmptiest = 1e-6;  // of the box: what is thinner bounds nothing that rounding leaves intact
+  constexpr double kEmptiest = 1e-6;  // share of the box; a smaller volume may be only rounding
   bounded = bounded && std::abs(integral.volume()) > kEmptiest * box.volume();
   if (bounded) return integral.properties();
-  Eigen::AlignedBox3d thick = box;  // a flat model has moments too
+  Eigen::AlignedBox3d thick = box;  // a flat model must have moments of inertia too
   const Vector3d margin = Vector3d::Constant(1e-3 * box.diagonal().norm());
   thick.min() -= margin;
   thick.max() += margin;

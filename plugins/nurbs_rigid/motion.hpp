@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A rigid model that moves by the forces on it: its parameters, its body, and the contacts that push it.
+/// A rigid model that moves under the forces on it: its parameters, its body, and the contacts that push it.
 #pragma once
 #include <array>
 #include <vector>
@@ -13,31 +13,35 @@
 
 namespace hapticd {
 
-/// What `motion: dynamic` takes from the scene. A shape that derives from it joins motionFields() into its table.
+/// The parameters of `motion: dynamic` in a scene. A shape that derives from this struct joins motionFields() into its
+/// table of parameters.
 struct MotionParameters {
   template <class T>
   static constexpr auto motionFields() {
     using F = Fields<T>;
     return std::array{
-        F::real("mass", &MotionParameters::mass_, "kg", 1e-6, 1e6, 1, "motion dynamic: of the body"),
+        F::real("mass", &MotionParameters::mass_, "kg", 1e-6, 1e6, 1, "mass of the body, with motion: dynamic"),
         F::array("center", &MotionParameters::center_, "m", 3, 0, 3, -1e3, 1e3, "[]",
-                 "of mass, model frame; []: of the volume that the surfaces bound"),
+                 "centre of mass, in the model frame; []: that of the volume inside the surfaces"),
         F::array("inertia", &MotionParameters::inertia_, "kg m^2", 3, 0, 9, -1e12, 1e12, "[]",
-                 "about center along the model's axes: three moments, or the tensor in three rows; []: of a solid of "
-                 "constant density"),
-        F::boolean("gravity", &MotionParameters::gravity_, true, "motion dynamic: the body has weight"),
-        F::real("drag", &MotionParameters::drag_, "N s/m", 0, 1e6, 0, "against the velocity of center"),
-        F::real("angular_drag", &MotionParameters::angular_drag_, "N m s/rad", 0, 1e6, 0, "against turning"),
+                 "moments of inertia about `center`, along the axes of the model frame: three moments, or the tensor "
+                 "in three rows; []: those of a solid of constant density"),
+        F::boolean("gravity", &MotionParameters::gravity_, true, "true: the body has weight, with motion: dynamic"),
+        F::real("drag", &MotionParameters::drag_, "N s/m", 0, 1e6, 0, "drag against the velocity of `center`"),
+        F::real("angular_drag", &MotionParameters::angular_drag_, "N m s/rad", 0, 1e6, 0, "drag against the rotation"),
         F::choice("joint", &MotionParameters::joint_, kJointNames, 0,
-                  "to the world. free; hinge: turns about axis through pivot; slider: moves along axis, does not turn"),
-        F::vector3("pivot", &MotionParameters::pivot_, "m", -1e3, 1e3, "[0, 0, 0]", "of the hinge, model frame"),
-        F::vector3("axis", &MotionParameters::axis_, "", -1e6, 1e6, "[0, 1, 0]", "of hinge or slider, model frame"),
+                  "how the body is joined to the world. free: not at all; hinge: turns about axis through pivot; "
+                  "slider: moves along axis and does not turn"),
+        F::vector3("pivot", &MotionParameters::pivot_, "m", -1e3, 1e3, "[0, 0, 0]",
+                   "a point on the axis of the hinge, in the model frame"),
+        F::vector3("axis", &MotionParameters::axis_, "", -1e6, 1e6, "[0, 1, 0]",
+                   "direction of the axis of hinge or slider, in the model frame"),
         F::real("tether", &MotionParameters::tether_, "N/m", 0, 1e6, 0,
-                "spring that draws center to where it started; 0: none"),
+                "spring that pulls `center` to its initial position; 0: no spring"),
         F::vector3("velocity", &MotionParameters::velocity_, "m/s", -1e3, 1e3, "[0, 0, 0]",
-                   "of center at the start, world frame"),
+                   "velocity of `center` at the start, in the world frame"),
         F::vector3("spin", &MotionParameters::spin_, "rad/s", -1e4, 1e4, "[0, 0, 0]",
-                   "angular velocity at the start, model frame")};
+                   "angular velocity at the start, in the model frame")};
   }
   static constexpr const char* kJointNames[] = {"free", "hinge", "slider"};
 
@@ -48,32 +52,35 @@ struct MotionParameters {
   std::array<double, 3> pivot_{}, axis_{0, 1, 0}, velocity_{}, spin_{};
 };
 
-/// [main] Centre and inertia of 1 kg that fills a model: the volume that its surfaces bound, or the box around it when
-/// they bound none; `bounded` tells which.
+/// [main] Returns the centre of mass and the inertia of 1 kg that fills a model: the volume inside its surfaces, or, if
+/// these are not closed, the box around the model. `bounded` is set to true in the first case.
 dynamics::MassProperties massProperties(const trace::Model& model, bool& bounded);
-/// [main] The same of a part, from triangles within a ten-thousandth of its size.
+/// [main] The same for a part, from triangles that are exact to a ten-thousandth of its size.
 dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded);
 
-/// The moving frame of one model.
+/// A model that moves under forces: its rigid body, its frame, and its contacts.
 class DynamicBody {
  public:
-  /// [main] @param shape of 1 kg, for what the parameters leave open
-  /// @throws std::invalid_argument: no body is like that.
+  /// [main] Places the body.
+  /// @param shape properties for 1 kg, used where the parameters give none
+  /// @throws std::invalid_argument if no body can have these properties.
   DynamicBody(const MotionParameters& parameters, const dynamics::MassProperties& shape,
               const hsp_activation& activation);
 
-  /// [rt] Moves the body through the step, pushed by the contacts that remember() was told of since the last one.
-  /// Writes the new pose and gives the same step with its probes seen from there.
+  /// [rt] Moves the body through the step, pushed by the contacts that were given to remember() since the last step.
+  /// Writes the new pose.
+  /// @return the same step, with its probes seen from the new pose
   hsp_step move(const hsp_step& step) noexcept HSP_RT;
 
-  /// [rt] What probe number `index` does to the body, in the frame of the model; all that is not listed is left alone.
+  /// [rt] Stores the contact of probe `index` with the body, in the model frame. Probes that are not stored do not push
+  /// the body.
   void remember(uint32_t index, const dynamics::Pressing& in_model) noexcept HSP_RT {
     presses_.remember(index, in_model, now_);
   }
 
   void release() noexcept HSP_RT { presses_.release(); }  ///< [rt] forgets the contacts
 
-  double energy() const noexcept HSP_RT { return body_.energy(); }  ///< [rt] [J]
+  double energy() const noexcept HSP_RT { return body_.energy(); }  ///< [rt] [J] see RigidBody::energy()
   const dynamics::RigidBody& body() const noexcept { return body_; }
 
  private:

@@ -22,20 +22,22 @@ std::string number(double value) {
 void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) {
   if (friction_dynamic_ > friction_static_)
     throw std::invalid_argument("friction_dynamic: " + number(friction_dynamic_) + " is more than friction_static, " +
-                                number(friction_static_) + "; expected at most as much");
+                                number(friction_static_) + "; it must not be greater");
   takeParts(instance_name_);
   load(activation, report);
   if (pop_through_ > 0 && sides_ != kBoth && host() != nullptr && host()->log != nullptr)
-    host()->log(host(), HSP_LOG_WARNING, "pop_through: has no effect: only a shell gives way; expected sides: both");
+    host()->log(host(), HSP_LOG_WARNING, "pop_through: has no effect, because only a shell gives way; set sides: both");
   extents_ = part() != nullptr ? extentsOf(*part()) : extentsOf(model());
   if (extents_.empty() && texture_amplitude_ > 0)
-    throw std::invalid_argument("texture.amplitude: a mesh has no parameters to lay bumps along; expected 0");
+    throw std::invalid_argument(
+        "texture.amplitude: a mesh has no parameters u and v, so it cannot have bumps; expected 0");
   double slope = 0;
   for (const Extent& extent : extents_) slope = std::max(slope, slopeOf(extent));
   if (slope > kSteepest)
     throw std::invalid_argument("texture.amplitude: bumps of " + number(texture_amplitude_) + " m rise " +
-                                number(slope) + " m per m at this texture.wavelength; expected " + number(kSteepest) +
-                                " or less, so at most " + number(texture_amplitude_ * kSteepest / slope) + " m");
+                                number(slope) + " m per m at this texture.wavelength; the slope must be " +
+                                number(kSteepest) + " or less, so give at most " +
+                                number(texture_amplitude_ * kSteepest / slope) + " m");
   const contact::WallLaw law{stiffness_, damping_, exponent_, depth_scale_};
   const double steepest = stiffness_ > 0 ? contact::wallSlopeAt(law, forceToClaimFor(activation, kUnknownForce)) : 0;
   report.max_stiffness = steepest * (1 + slope);
@@ -56,7 +58,7 @@ void NurbsRigid::setInMotion(const hsp_activation& activation, hsp_report& repor
   const bool asked = center_.empty() || inertia_.empty();
   if (!bounded && asked && host() != nullptr && host()->log != nullptr)
     host()->log(host(), HSP_LOG_WARNING,
-                "the surfaces bound no volume: center and inertia that are not given are those of the box around them");
+                "the surfaces are not closed, so center or inertia, if not given, are taken from the box around them");
   body_.emplace(*this, shape, activation);
   report.flags |= HSP_R_MOVES;
 }
@@ -102,7 +104,8 @@ hsp_status NurbsRigid::press(const hsp_probe& probe, const hsp_step& step, hsp_c
   return touch.status;
 }
 
-/// A dynamic body is pushed in the next step by what this one answers; a probe just outside may touch it by then.
+/// Stores the contact of this step, which pushes a dynamic body in the next step. A probe just outside is stored too,
+/// because it may touch the body by then.
 void NurbsRigid::remember(const hsp_probe& probe, const Touch& touch, uint32_t index, double depth,
                           const Eigen::Vector3d& rub) noexcept HSP_RT {
   dynamics::Pressing pressing;
@@ -121,7 +124,7 @@ void NurbsRigid::remember(const hsp_probe& probe, const Touch& touch, uint32_t i
   body_->remember(index, pressing);
 }
 
-/// What the surface does along itself: dry friction and drag.
+/// Returns the force along the surface: dry friction and drag.
 Eigen::Vector3d NurbsRigid::along(const Touch& touch, const Eigen::Vector3d& velocity, double wall_force,
                                   contact::Friction& friction) const noexcept HSP_RT {
   const contact::FrictionLaw law{friction_static_, friction_dynamic_, stiffness_, viscosity_};
@@ -157,12 +160,12 @@ std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const trace::Model& model)
   return extents;
 }
 
-/// Height [m] of the bumps at a foot. Waves along u and v, a whole number of them on the surface: their product
-/// vanishes on every side of it, so the skin has no step at seams, common edges and poles.
+/// Returns the height [m] of the bumps at a foot: the product of waves along u and v. Each surface has a whole number
+/// of waves, so the height is 0 on all its sides, and does not jump at seams, common edges and poles.
 double NurbsRigid::texture(const trace::Foot& foot) const noexcept HSP_RT {
   if (extents_.empty()) return 0;
   const Extent& extent = extents_[static_cast<std::size_t>(foot.surface)];
-  const double steep = slopeOf(extent) / kSteepest;  // above 1 only where it was set so while it runs
+  const double steep = slopeOf(extent) / kSteepest;  // above 1 only if the parameter was changed during the run
   const Eigen::Array2d phase =
       2 * std::numbers::pi * wavesOf(extent) * (Eigen::Array2d(foot.u, foot.v) - extent.lo) / extent.range;
   return texture_amplitude_ / std::max(1.0, steep) * std::sin(phase[0]) * std::sin(phase[1]);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A rigid model of NURBS surfaces with the feel of a material: wall, friction, viscosity, texture, pop-through.
+/// A rigid model of NURBS surfaces or a part, with the feel of a material: wall, friction, viscosity, texture,
+/// pop-through.
 #pragma once
 #include <array>
 #include <numbers>
@@ -19,7 +20,7 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
                                       "nurbs_rigid",
                                       "1.1",
                                       "MIT",
-                                      "A rigid model of NURBS surfaces, traced exactly by its parameters.",
+                                      "A rigid model of NURBS surfaces or a part, traced on its exact surfaces.",
                                       HSP_C_MOVES};
   static constexpr auto fields() {
     using F = Fields<NurbsRigid>;
@@ -27,25 +28,30 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
         tracingFields<NurbsRigid>(),
         std::array{
             F::text("instance", &NurbsRigid::instance_name_, "",
-                    "of a part: the name of one instance or assembly, or its path assembly/sub/part; left out: all"),
+                    "parts only: name of one instance or assembly, or its path assembly/sub/part; left out: the whole "
+                    "part"),
             F::choice("motion", &NurbsRigid::motion_, kMotionNames, 0,
-                      "static; kinematic: moved by the host along a path; dynamic: moved by the forces on it"),
-            F::real("stiffness", &NurbsRigid::stiffness_, "N/m", 0, 1e5, 800, "k of Eq. 4: force is k x0 at depth x0",
-                    HSP_P_LIVE | HSP_P_SAFETY),
-            F::real("damping", &NurbsRigid::damping_, "N s/m", 0, 1e3, 0, "of the closing speed, grows with depth",
+                      "static: does not move; kinematic: the host moves it along a path; dynamic: it moves under the "
+                      "forces on it"),
+            F::real("stiffness", &NurbsRigid::stiffness_, "N/m", 0, 1e5, 800,
+                    "k of the contact law (Eq. 4): the force is k x0 at depth x0", HSP_P_LIVE | HSP_P_SAFETY),
+            F::real("damping", &NurbsRigid::damping_, "N s/m", 0, 1e3, 0,
+                    "damping of the closing speed; it grows with depth", HSP_P_SAFETY),
+            F::real("exponent", &NurbsRigid::exponent_, "", 0.25, 3, 1, "n of the contact law (Eq. 4); 1: linear wall",
                     HSP_P_SAFETY),
-            F::real("exponent", &NurbsRigid::exponent_, "", 0.25, 3, 1, "n of Eq. 4; 1: linear wall", HSP_P_SAFETY),
-            F::real("depth_scale", &NurbsRigid::depth_scale_, "m", 1e-6, 1, 1e-3, "x0 of Eq. 4", HSP_P_SAFETY),
+            F::real("depth_scale", &NurbsRigid::depth_scale_, "m", 1e-6, 1, 1e-3, "x0 of the contact law (Eq. 4)",
+                    HSP_P_SAFETY),
             F::real("friction_static", &NurbsRigid::friction_static_, "", 0, 10, 0,
-                    "mu_s: force along the surface over "
-                    "wall force that a stuck probe must overcome"),
+                    "mu_s: a stuck probe begins to slide when the force along the surface exceeds mu_s times the wall "
+                    "force"),
             F::real("friction_dynamic", &NurbsRigid::friction_dynamic_, "", 0, 10, 0,
-                    "mu_d: the same for a sliding probe, at most friction_static"),
-            F::real("viscosity", &NurbsRigid::viscosity_, "N s/m", 0, 100, 0, "drag along the surface in contact"),
+                    "mu_d: the friction on a sliding probe is mu_d times the wall force; at most friction_static"),
+            F::real("viscosity", &NurbsRigid::viscosity_, "N s/m", 0, 100, 0,
+                    "viscous drag along the surface during a contact"),
             F::real("texture.amplitude", &NurbsRigid::texture_amplitude_, "m", 0, 1e-2, 0,
                     "height of bumps on the surface, in rows along u and v; 0: smooth", HSP_P_LIVE | HSP_P_SAFETY),
             F::real("texture.wavelength", &NurbsRigid::texture_wavelength_, "m", 1e-5, 1, 2e-3,
-                    "length of a bump along u and v; a surface holds a whole number of them",
+                    "length of a bump along u and v; it is rounded so that a surface has a whole number of bumps",
                     HSP_P_LIVE | HSP_P_SAFETY),
             F::real("pop_through", &NurbsRigid::pop_through_, "N", 0, 1e3, 0,
                     "a shell (sides: both) gives way above this force; 0: never")},
@@ -58,7 +64,8 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
   const void* extension(const char* name);
 
  private:
-  static constexpr double kSteepest = 4;  ///< rise over way of bumps: with the wall itself, half of what a host bears
+  /// greatest slope of bumps; together with the wall itself it is half of what a host allows
+  static constexpr double kSteepest = 4;
   enum Motion { kStatic = 0, kKinematic = 1, kDynamic = 2 };
   static constexpr const char* kMotionNames[] = {"static", "kinematic", "dynamic"};
 
@@ -69,18 +76,19 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
                 const Eigen::Vector3d& rub) noexcept HSP_RT;
   Eigen::Vector3d along(const Touch& touch, const Eigen::Vector3d& velocity, double wall_force,
                         contact::Friction& friction) const noexcept HSP_RT;
-  /// A surface's parameters as lengths, for the bumps along them.
+  /// The parameter ranges of a surface and their lengths, for the bumps along u and v.
   struct Extent {
-    Eigen::Array2d lo, range;  ///< of (u, v)
-    Eigen::Array2d length;     ///< [m] along u and along v, on average
+    Eigen::Array2d lo, range;  ///< start and size of the range of (u, v)
+    Eigen::Array2d length;     ///< [m] mean length along u and along v
   };
   static std::vector<Extent> extentsOf(const trace::Model& model);
   static std::vector<Extent> extentsOf(const brep::Model& part);
-  /// Bumps along u and along v of a surface: at least one each.
+  /// Returns the number of bumps along u and along v of a surface, at least one each.
   Eigen::Array2d wavesOf(const Extent& extent) const noexcept HSP_RT {
     return (extent.length / texture_wavelength_).round().max(1);
   }
-  /// Largest rise over way of the bumps on a surface, of the asked amplitude, where its parameters are even.
+  /// Returns the greatest slope of the bumps on a surface with the given amplitude, if the parameters are evenly
+  /// spread.
   double slopeOf(const Extent& extent) const noexcept HSP_RT {
     return texture_amplitude_ * 2 * std::numbers::pi * (wavesOf(extent) / extent.length).maxCoeff();
   }
@@ -91,10 +99,10 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
   double stiffness_ = 800, damping_ = 0, exponent_ = 1, depth_scale_ = 1e-3;
   double friction_static_ = 0, friction_dynamic_ = 0;
   double viscosity_ = 0, texture_amplitude_ = 0, texture_wavelength_ = 2e-3, pop_through_ = 0;
-  std::vector<contact::Friction> friction_;  ///< one a probe, empty if nothing rubs
+  std::vector<contact::Friction> friction_;  ///< one per probe; empty if there is no friction and no viscosity
   std::vector<Extent> extents_;              ///< by surface; empty for meshes, which have no bumps
-  std::optional<DynamicBody> body_;          ///< of a dynamic model
-  double stored_ = 0;                        ///< [J] in the wall
+  std::optional<DynamicBody> body_;          ///< only for motion: dynamic
+  double stored_ = 0;                        ///< [J] energy stored in the wall
   hsp_ext_energy energy_extension_{};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a rigid model needs to know of a part: lengths of its faces for bumps, and its mass.
+/// Properties of a part for a rigid model: the lengths of its faces for bumps, thin walls, and the centre and inertia.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,7 +16,7 @@ std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const brep::Model& part) {
   spline::SurfacePoint E;
   for (const brep::Body& body : part.part().bodies)
     if (body.triangle_count > 0) return extents;
-  // Features of instances that are left out keep a length that means nothing.
+  // Features of instances that are left out keep a length of 1, which is not used.
   extents.assign(part.featureCount(), {Eigen::Array2d(0, 0), Eigen::Array2d(1, 1), Eigen::Array2d(1, 1)});
   for (const brep::Placement& place : part.placements()) {
     const brep::Body& body = part.part().bodies[place.body];
@@ -38,26 +38,26 @@ std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const brep::Model& part) {
   return extents;
 }
 
-/// A press that comes out behind is felt all the same, since the contact is held; but the tip is seen on the other
-/// side, and from there it is in front of the next face.
+/// Warns of walls that a firm press goes through. The hand still feels the wall, because the contact is held. But the
+/// tip is drawn on the other side, where it may be in front of another face.
 void NurbsRigid::warnOfThinWalls(const hsp_activation& activation) const {
-  constexpr double kFirmPress = 2;  // [N] of a finger tip that explores [assumption]; the arm's limit is for moments
+  // [N] firm press of an exploring finger tip [assumption]; the arm's limit is for short moments
+  constexpr double kFirmPress = 2;
   const double force = std::min(forceToClaimFor(activation, kFirmPress), kFirmPress);
   if (!(stiffness_ > 0) || host() == nullptr || host()->log == nullptr) return;
   const double depth = contact::wallDepthAt({stiffness_, damping_, exponent_, depth_scale_}, force);
   const std::optional<ThinWall> wall = thinnestWall(*part(), depth);
   if (!wall) return;
   char text[256];
-  std::snprintf(
-      text, sizeof text,
-      ": a wall is %.3g mm thick, and a press of %.3g N goes %.3g mm deep at this stiffness: the tip comes out "
-      "behind; expected a greater stiffness",
-      1e3 * wall->thickness, force, 1e3 * depth);
+  std::snprintf(text, sizeof text,
+                ": a wall is %.3g mm thick, but a press of %.3g N goes %.3g mm deep at this stiffness, so the tip "
+                "comes out behind; give a greater stiffness",
+                1e3 * wall->thickness, force, 1e3 * depth);
   host()->log(host(), HSP_LOG_WARNING, (part()->featureName(wall->feature) + text).c_str());
 }
 
 dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded) {
-  constexpr double kChord = 1e-4;  // of the size: curved faces count to a thousandth of their volume
+  constexpr double kChord = 1e-4;  // share of the part's size; curved faces then have their volume to a thousandth
   const Eigen::AlignedBox3d& box = part.bounds();
   const Mesh mesh = tessellate(part, kChord * box.diagonal().norm());
   dynamics::SolidIntegral integral(box.center());
@@ -67,7 +67,7 @@ dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded) 
   };
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const Eigen::Vector3d a = at(i), b = at(i + 1), c = at(i + 2), area = 0.5 * (b - a).cross(c - a);
-    // Mid-edge rule: exact for the quadratic integrands, and near enough for the cubic ones.
+    // Mid-edge rule: exact for the quadratic integrands, and accurate enough for the cubic ones.
     for (const Eigen::Vector3d& middle :
          {Eigen::Vector3d(0.5 * (a + b)), Eigen::Vector3d(0.5 * (b + c)), Eigen::Vector3d(0.5 * (c + a))})
       integral.add(middle, area / 3);

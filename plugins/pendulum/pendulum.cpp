@@ -13,14 +13,14 @@ namespace hapticd {
 
 namespace {
 
-/// A swing has no bound of its own, but a contact has: it is felt once a tick, and what turns by more than a radian
-/// between two ticks passes through the probe and hits it from anywhere.
+/// Refuses a swing that is too fast to be felt. A contact is computed once per tick. If the pendulum turns by more than
+/// a radian between two ticks, it passes through the probe and hits it from any direction.
 void checkFelt(double swing_rate, double rate_hz) {
   if (!(rate_hz > 0) || swing_rate <= rate_hz) return;
   char text[200];
   std::snprintf(text, sizeof text,
-                "pendulum: it swings at %.4g rad/s, more than 1 rad in a tick at %.4g Hz: no contact with it can be "
-                "felt; expected a greater length or inertia",
+                "pendulum: it swings at %.4g rad/s, more than 1 rad per tick at %.4g Hz, so a contact with it cannot "
+                "be felt; give it a greater length or inertia",
                 swing_rate, rate_hz);
   throw std::invalid_argument(text);
 }
@@ -30,7 +30,8 @@ void checkFelt(double swing_rate, double rate_hz) {
 void Pendulum::activate(const hsp_activation& activation, hsp_report& report) {
   load(activation, report);
   const Eigen::Vector3d axis(axis_.data());
-  if (!(axis.norm() > 0)) throw std::invalid_argument("pendulum: axis: expected a direction, got [0, 0, 0]");
+  if (!(axis.norm() > 0))
+    throw std::invalid_argument("pendulum: axis: [0, 0, 0] has no direction; give one such as [0, 0, 1]");
   drawn_ = MovingFrame::of(activation.pose);
   axis_world_ = drawn_.orientation * axis.normalized();
   pivot_world_ = drawn_.position + drawn_.orientation * Eigen::Vector3d(pivot_.data());
@@ -39,7 +40,7 @@ void Pendulum::activate(const hsp_activation& activation, hsp_report& report) {
   law_ = {mass_, inertia, length_, damping_, (gravity - gravity.dot(axis_world_) * axis_world_).norm()};
   if (!(inertia > 0))
     throw std::invalid_argument(
-        "pendulum: inertia: a point mass of length 0 has none; expected inertia or length above 0");
+        "pendulum: inertia: a point mass at length 0 has no inertia; give an inertia or a length above 0");
   dynamics::validate(law_);
   dynamics::validateSwing(std::sqrt(law_.frequencySquared()), activation.rate_hz);
   checkFelt(std::sqrt(law_.frequencySquared()), activation.rate_hz);
@@ -59,8 +60,8 @@ void Pendulum::reset() noexcept HSP_RT {
   stored_ = 0;
 }
 
-/// Turned by an angle from the drawing, never by steps: whatever the number of ticks the pose has the angle's error
-/// only.
+/// Computes the pose from the angle and the pose in the scene, not step by step. So after any number of ticks it has
+/// only the error of the angle.
 MovingFrame Pendulum::frame() const noexcept HSP_RT {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(std::remainder(state_.angle, 2 * M_PI), axis_world_));
   MovingFrame now;
@@ -71,14 +72,16 @@ MovingFrame Pendulum::frame() const noexcept HSP_RT {
   return now;
 }
 
-/// A step under the hand by backward Euler: all torques are those of its end, so no pendulum is too light for it.
+/// Makes a step under the forces of the hand by backward Euler: it uses the torques at the end of the step, so it is
+/// stable even for a very light pendulum.
 void Pendulum::push(std::span<const dynamics::Press> presses, double dt) noexcept HSP_RT {
   const double weight = law_.mass * law_.gravity * law_.length, here = state_.angle + dt * state_.rate;
   const double own = law_.inertia + dt * (law_.damping + dt * weight * std::max(0.0, std::cos(state_.angle)));
   const double own_impulse = -dt * (weight * std::sin(here) + law_.damping * state_.rate);
   double resisting = own, impulse = own_impulse;
   for (const dynamics::Press& press : presses) {
-    const Eigen::Vector3d moment = axis_world_.cross(press.point - pivot_world_);  // velocity of the point at 1 rad/s
+    // velocity of the point per angular velocity
+    const Eigen::Vector3d moment = axis_world_.cross(press.point - pivot_world_);
     resisting += dt * moment.dot(press.give * moment);
     impulse += dt * moment.dot(press.force);
   }
@@ -100,7 +103,8 @@ hsp_status Pendulum::step(const hsp_step& step) noexcept HSP_RT {
   if (step.dt_s > 0) {
     const auto presses = presses_->foresee(step, before, velocity_at);
     presses.empty() ? void(state_ = dynamics::advance(law_, state_, 0, step.dt_s)) : push(presses, step.dt_s);
-    state_.angle = std::remainder(state_.angle, 2 * M_PI);  // one that goes round keeps the digits of its angle
+    // keeps the precision of the angle if the pendulum goes round many times
+    state_.angle = std::remainder(state_.angle, 2 * M_PI);
   }
   const MovingFrame now = frame();
   now.write(*step.pose);

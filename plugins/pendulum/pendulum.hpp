@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A pendulum of any NURBS bob and rod, pushed by the user's hand.
+/// A pendulum of any NURBS surfaces that the user's hand pushes.
 #pragma once
 #include <array>
 #include <optional>
@@ -12,32 +12,39 @@ namespace hapticd {
 
 class Pendulum final : public TracedShape {
  public:
-  static constexpr ShapeInfo kInfo = {"org.hapticd.shape.pendulum",
-                                      "pendulum",
-                                      "1.1",
-                                      "MIT",
-                                      "A model that swings about a fixed axis under gravity and the hand.",
-                                      HSP_C_MOVES};
+  static constexpr ShapeInfo kInfo = {
+      "org.hapticd.shape.pendulum",
+      "pendulum",
+      "1.1",
+      "MIT",
+      "A model that swings about a fixed axis under gravity and the forces of the hand.",
+      HSP_C_MOVES};
   static constexpr auto fields() {
     using F = Fields<Pendulum>;
     return join(
         tracingFields<Pendulum>(),
         std::array{
-            F::real("stiffness", &Pendulum::stiffness_, "N/m", 0, 1e5, 800, "k of Eq. 4", HSP_P_LIVE | HSP_P_SAFETY),
+            F::real("stiffness", &Pendulum::stiffness_, "N/m", 0, 1e5, 800, "k of the contact law (Eq. 4)",
+                    HSP_P_LIVE | HSP_P_SAFETY),
             F::real("contact_damping", &Pendulum::contact_damping_, "N s/m", 0, 1e3, 0,
-                    "damping of the surface, lambda of Eq. 4", HSP_P_SAFETY),
-            F::real("exponent", &Pendulum::exponent_, "", 0.25, 3, 1, "n of Eq. 4; 1: linear wall", HSP_P_SAFETY),
-            F::real("depth_scale", &Pendulum::depth_scale_, "m", 1e-6, 1, 1e-3, "x0 of Eq. 4", HSP_P_SAFETY),
-            F::vector3("pivot", &Pendulum::pivot_, "m", -1e3, 1e3, "[0, 0, 0]", "a point of the axis, model frame"),
+                    "lambda of the contact law (Eq. 4): damping of the surface", HSP_P_SAFETY),
+            F::real("exponent", &Pendulum::exponent_, "", 0.25, 3, 1, "n of the contact law (Eq. 4); 1: linear wall",
+                    HSP_P_SAFETY),
+            F::real("depth_scale", &Pendulum::depth_scale_, "m", 1e-6, 1, 1e-3, "x0 of the contact law (Eq. 4)",
+                    HSP_P_SAFETY),
+            F::vector3("pivot", &Pendulum::pivot_, "m", -1e3, 1e3, "[0, 0, 0]",
+                       "a point of the axis, in the model frame"),
             F::vector3("axis", &Pendulum::axis_, "", -1e6, 1e6, "[0, 0, 1]",
-                       "axis of the swing, model frame; positive angles by the right hand"),
-            F::real("mass", &Pendulum::mass_, "kg", 1e-6, 1e6, 1, "of the moving body"),
-            F::real("inertia", &Pendulum::inertia_, "kg m^2", 0, 1e9, 0, "about the pivot; 0: a point mass at length"),
+                       "axis of the swing, in the model frame; angles are positive by the right-hand rule"),
+            F::real("mass", &Pendulum::mass_, "kg", 1e-6, 1e6, 1, "mass of the moving body"),
+            F::real("inertia", &Pendulum::inertia_, "kg m^2", 0, 1e9, 0,
+                    "moment of inertia about the pivot; 0: that of a point mass at the distance `length`"),
             F::real("length", &Pendulum::length_, "m", 0, 1e3, 0.25,
-                    "pivot to centre of mass, which is drawn straight along gravity"),
-            F::real("damping", &Pendulum::damping_, "N m s/rad", 0, 1e6, 0, "of the swing"),
-            F::real("angle", &Pendulum::angle_, "rad", -1e3, 1e3, 0, "at the start, from hanging"),
-            F::real("rate", &Pendulum::rate_, "rad/s", -1e3, 1e3, 0, "at the start")},
+                    "distance from the pivot to the centre of mass, which at angle 0 lies straight below the pivot, "
+                    "along gravity"),
+            F::real("damping", &Pendulum::damping_, "N m s/rad", 0, 1e6, 0, "damping of the swing"),
+            F::real("angle", &Pendulum::angle_, "rad", -1e3, 1e3, 0, "angle at the start; 0: hanging straight down"),
+            F::real("rate", &Pendulum::rate_, "rad/s", -1e3, 1e3, 0, "angular velocity at the start")},
         formerFields<Pendulum>());
   }
 
@@ -59,8 +66,8 @@ class Pendulum final : public TracedShape {
   dynamics::PendulumLaw law_;
   dynamics::PendulumState state_;
   Eigen::Vector3d pivot_world_{0, 0, 0}, axis_world_{0, 0, 1};
-  MovingFrame drawn_;  ///< at angle 0
-  double stored_ = 0;  ///< [J] in the surface
+  MovingFrame drawn_;  ///< frame of the model at angle 0: its pose in the scene
+  double stored_ = 0;  ///< [J] energy stored in the surface
   std::optional<MovedProbes> probes_;
   std::optional<Presses> presses_;
   hsp_ext_energy energy_extension_{};

@@ -9,14 +9,16 @@
 namespace hapticd {
 namespace {
 
-constexpr double kSteepest = 0.1;  // of the normal along the axis: on steeper flanks a push hardly moves the button
+// least component of the normal along the axis: on steeper flanks a push hardly moves the button
+constexpr double kSteepest = 0.1;
 
 }  // namespace
 
 void PushButton::activate(const hsp_activation& activation, hsp_report& report) {
   load(activation, report);
   inward_ = Eigen::Vector3d(axis_.data());
-  if (!(inward_.norm() > 0)) throw std::invalid_argument("push_button: axis: expected a direction, got [0, 0, 0]");
+  if (!(inward_.norm() > 0))
+    throw std::invalid_argument("push_button: axis: [0, 0, 0] has no direction; give one such as [0, -1, 0]");
   inward_.normalize();
   std::vector<dynamics::DetentCurve::Knot> knots;
   for (size_t i = 0; i + 1 < detent_.size(); i += 2) knots.push_back({detent_[i], detent_[i + 1]});
@@ -29,7 +31,8 @@ void PushButton::activate(const hsp_activation& activation, hsp_report& report) 
   probes_.emplace(std::max(activation.max_probes, 1u));
   report.max_stiffness = stiffness_;
   report.flags |= HSP_R_MOVES | HSP_R_PUSHES;
-  double highest = 0;  // where the detent falls steeper than the surface's spring, the button snaps by less than that
+  // if the detent falls faster than the surface's spring, the button snaps, and the force jumps by less than this
+  double highest = 0;
   for (const dynamics::DetentCurve::Knot& knot : knots) highest = std::max(highest, knot.force);
   reportJumps(report, highest);
 }
@@ -40,8 +43,9 @@ void PushButton::reset() noexcept HSP_RT {
   stored_ = 0;
 }
 
-/// Travel from the button's rest to the probe, along the axis, as the cap under the probe tells it; 0: not pressed. The
-/// stiffness of a cap whose normal leans counts with the square of its part along the axis.
+/// Returns the travel from the cap at rest to the probe, along the axis, measured on the cap at the probe; 0 if the
+/// button is not pressed. If the cap's normal is tilted, its stiffness counts with the square of the normal's component
+/// along the axis.
 PushButton::Press PushButton::press(const hsp_step& step) noexcept HSP_RT {
   Press deepest;
   for (uint32_t i = 0; i < step.count; ++i) {
@@ -57,14 +61,14 @@ PushButton::Press PushButton::press(const hsp_step& step) noexcept HSP_RT {
   return deepest;
 }
 
-/// The button has no mass: it is where the springs balance in this very tick. The probes are traced on the cap as it
-/// was, the balance moves the cap, and they are traced again on the cap where it is.
+/// The button has no mass, so in every tick it is where the springs balance. First the probes are traced on the cap of
+/// the last tick; then the balance moves the cap, and the probes are traced again.
 hsp_status PushButton::step(const hsp_step& step) noexcept HSP_RT {
   bool clicked = false;
   const MovingFrame before = MovingFrame::of(*step.pose);
   if (step.dt_s > 0) {
     const Press pressed = press(step);
-    if (pressed.travel > 0 || !pressed.blind)  // a lost sample leaves the button where it is
+    if (pressed.travel > 0 || !pressed.blind)  // if a sample is lost, the button stays where it is
       clicked = button_.step(stiffness_ * pressed.along * pressed.along, *curve_, pressed.travel).clicked;
   }
   const MovingFrame now = frame(step.dt_s);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A push button with a detent, of any NURBS cap: Thompson et al. 1999, Eq. 10 and 11.
+/// A push button with a detent and a cap of any NURBS surfaces (Thompson et al. 1999, Eq. 10 and 11).
 #pragma once
 #include <array>
 #include <optional>
@@ -20,19 +20,18 @@ class PushButton final : public TracedShape {
                                       HSP_C_MOVES};
   static constexpr auto fields() {
     using F = Fields<PushButton>;
-    return join(
-        tracingFields<PushButton>(),
-        std::array{
-            F::vector3("axis", &PushButton::axis_, "", -1e6, 1e6, "[0, -1, 0]",
-                       "direction in which the button is pushed in, model frame"),
-            F::real("stiffness", &PushButton::stiffness_, "N/m", 1, 1e5, 2000, "k1: spring of the surface",
-                    HSP_P_SAFETY),
-            F::array("detent", &PushButton::detent_, "m, N", 2, 2, 128, 0, 1e3,
-                     "[[0, 0], [0.003, 4], [0.004, 2], [0.005, 3]]",
-                     "points [travel, force] of the button's own resistance, from [0, 0]; it clicks where it falls"),
-            F::real("end_stiffness", &PushButton::end_stiffness_, "N/m", 1, 1e6, 8000,
-                    "slope beyond the last point of detent")},
-        formerFields<PushButton>());
+    return join(tracingFields<PushButton>(),
+                std::array{F::vector3("axis", &PushButton::axis_, "", -1e6, 1e6, "[0, -1, 0]",
+                                      "direction in which the button is pushed in, in the model frame"),
+                           F::real("stiffness", &PushButton::stiffness_, "N/m", 1, 1e5, 2000,
+                                   "k1: spring of the surface", HSP_P_SAFETY),
+                           F::array("detent", &PushButton::detent_, "m, N", 2, 2, 128, 0, 1e3,
+                                    "[[0, 0], [0.003, 4], [0.004, 2], [0.005, 3]]",
+                                    "points [travel, force] of the button's own resistance, beginning at [0, 0]; the "
+                                    "button clicks where the force falls"),
+                           F::real("end_stiffness", &PushButton::end_stiffness_, "N/m", 1, 1e6, 8000,
+                                   "slope of the resistance beyond the last point of detent")},
+                formerFields<PushButton>());
   }
 
   void activate(const hsp_activation& activation, hsp_report& report);
@@ -42,9 +41,9 @@ class PushButton final : public TracedShape {
 
  private:
   struct Press {
-    double travel = 0;   ///< [m]
-    double along = 1;    ///< part of the cap's normal along the axis
-    bool blind = false;  ///< a probe had no good sample
+    double travel = 0;   ///< [m] travel of the probe from the cap at rest, along the axis
+    double along = 1;    ///< component of the cap's normal along the axis
+    bool blind = false;  ///< true if a probe had no good sample
   };
   Press press(const hsp_step& step) noexcept HSP_RT;
   MovingFrame frame(double dt) noexcept HSP_RT;
@@ -56,8 +55,8 @@ class PushButton final : public TracedShape {
   std::optional<dynamics::DetentCurve> curve_;
   dynamics::ButtonState button_;
   Eigen::Vector3d inward_{0, -1, 0};
-  Eigen::Vector3d rest_{0, 0, 0};        // of the model's frame, world
-  Eigen::Quaterniond turn_{1, 0, 0, 0};  // of the model, world
+  Eigen::Vector3d rest_{0, 0, 0};        // position of the model frame with the button at rest, in the world
+  Eigen::Quaterniond turn_{1, 0, 0, 0};  // orientation of the model, in the world
   double last_x2_ = 0, stored_ = 0;
   std::optional<MovedProbes> probes_;
   hsp_ext_energy energy_extension_{};

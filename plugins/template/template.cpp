@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A ball: a small whole plugin, with every kind of parameter and a state for each probe.
+/// A ball: a small complete plugin, with every kind of parameter and a state for each probe.
 /// `hapticd plugin new NAME` copies it under another name; delete what your shape does not need.
 #include <algorithm>
 #include <cmath>
@@ -11,15 +11,15 @@
 
 namespace {
 
-/// The ball holds the tip where it touched, until the tip slides: one such state for each probe (finger).
+/// The friction state of one probe (finger): the ball holds the tip at the point of first touch, until the tip slides.
 struct Grip {
   bool holds = false;
-  double at[3] = {0, 0, 0};  // [m] model frame
+  double at[3] = {0, 0, 0};  // [m] held point, in the model frame
 };
 
 struct TemplateBall : hapticd::Shape {
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.shape.template", "template", "0.1.0", "MIT",
-                                            "A ball about the model's origin; the plugin to start from."};
+                                            "A ball about the model's origin; start your own plugin from it."};
   static constexpr const char* kLaws[] = {"linear", "profile"};
 
   double radius = 0, stiffness = 0, friction = 0;
@@ -33,12 +33,14 @@ struct TemplateBall : hapticd::Shape {
         F::real("radius", &TemplateBall::radius, "m", 0.001, 1, 0.05, "Radius of the ball."),
         F::real("stiffness", &TemplateBall::stiffness, "N/m", 0, 5000, 500, "Force for each metre of depth.",
                 HSP_P_LIVE | HSP_P_SAFETY),
-        F::real("friction", &TemplateBall::friction, "", 0, 2, 0.2, "Force along the surface by force into it."),
-        F::choice("law", &TemplateBall::law, kLaws, 0, "Force by stiffness, or by the table of depth and force."),
+        F::real("friction", &TemplateBall::friction, "", 0, 2, 0.2,
+                "Greatest force along the surface, divided by the force into it."),
+        F::choice("law", &TemplateBall::law, kLaws, 0,
+                  "linear: the force is stiffness * depth; profile: it comes from the table of depth and force."),
         F::array("profile", &TemplateBall::profile, "m, N", 2, 4, 200, 0, 20, "[[0, 0], [0.002, 1], [0.01, 3]]",
-                 "Table of depth and force in rows that grow."),
+                 "Table with rows of depth and force, by growing depth."),
         F::path("profile_file", &TemplateBall::profile_file,
-                "The same table as a file of lines depth,force; it replaces profile."),
+                "The same table as a file with lines of the form depth,force; it replaces profile."),
     };
   }
 
@@ -47,16 +49,16 @@ struct TemplateBall : hapticd::Shape {
     if (!profile_file.empty()) profile = readTable(profile_file);
     grips_.assign(activation.max_probes, Grip{});
     report.max_stiffness = law == 0 ? stiffness : steepest();
-    // Without friction it only pushes, and a run silences it at its first pull. With friction `hapticd plugin check`
-    // finds a wrong sign, and a run tells of it only at its end. A shape that reads probe.velocity adds HSP_R_VELOCITY
-    // here: without it, it is zero.
+    // Without friction the ball only pushes; the host then silences it if it ever pulls. With friction, `hapticd plugin
+    // check` finds a wrong sign of the force, and a run reports it only at its end. A shape that reads probe.velocity
+    // must add HSP_R_VELOCITY here; otherwise the velocity is zero.
     if (friction == 0) report.flags |= HSP_R_PUSHES;
     report.size_m = 2 * radius;
     report.typical_ns = 50;
     report.worst_ns = 2000;
   }
 
-  /// Triangles, for `run --view` and other drawings; forces do not need them.
+  /// Returns triangles for `run --view` and other drawings. Forces do not need them.
   const void* extension(const char* name) {
     static constexpr hsp_ext_geometry kGeometry = {sizeof(hsp_ext_geometry), 0, &tessellate, &bounds};
     return std::strcmp(name, HSP_EXT_GEOMETRY) == 0 ? &kGeometry : nullptr;
@@ -64,14 +66,15 @@ struct TemplateBall : hapticd::Shape {
 
   void reset() noexcept HSP_RT { std::fill(grips_.begin(), grips_.end(), Grip{}); }
 
-  /// Every tick, for each probe: no allocation, lock, system call or exception. Model frame, SI units.
+  /// Called in every tick for each probe: no allocation, lock, system call or exception is allowed. All values are in
+  /// the model frame and in SI units.
   hsp_status touch(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT {
     Grip& grip = grips_[numberOf(probe, step)];
     if ((probe.flags & (HSP_IN_INVALID | HSP_IN_JUMP)) != 0) grip.holds = false;
     if ((probe.flags & HSP_IN_INVALID) != 0) return HSP_OK;  // no sample: no force
     const double* p = probe.position;
     const double distance = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-    if (distance == 0) return HSP_E_NUMERIC;  // the very centre has no nearest side
+    if (distance == 0) return HSP_E_NUMERIC;  // the centre has no nearest point of the surface
     contact.depth_m = radius - distance;
     const double push = contact.depth_m > 0 ? forceAt(contact.depth_m) : 0;
     for (int i = 0; i < 3; ++i) {
@@ -87,13 +90,15 @@ struct TemplateBall : hapticd::Shape {
   }
 
  private:
-  /// Which of the probes of a step this one is, below hsp_activation::max_probes: records lie in_stride bytes apart.
+  /// Returns the index of a probe in its step; it is below hsp_activation::max_probes. Records of probes are in_stride
+  /// bytes apart.
   static size_t numberOf(const hsp_probe& probe, const hsp_step& step) noexcept HSP_RT {
     const auto bytes = reinterpret_cast<const char*>(&probe) - reinterpret_cast<const char*>(step.in);
     return static_cast<size_t>(bytes) / step.in_stride;
   }
 
-  /// The tip hangs on a spring from where it is held, with at most friction * push; beyond that the hold slides along.
+  /// Adds friction: a spring from the held point to the tip, with a force of at most friction * push. Beyond this force
+  /// the held point slides along.
   void rub(Grip& grip, const double* p, double push, hsp_contact& contact) const noexcept HSP_RT {
     if (push <= 0 || !grip.holds) std::copy_n(p, 3, grip.at);
     grip.holds = push > 0;
@@ -111,7 +116,7 @@ struct TemplateBall : hapticd::Shape {
     }
   }
 
-  /// Straight between the rows, and on as the last two go.
+  /// Returns the force [N]. It is linear between the rows; beyond the last row the line through the last two continues.
   double forceAt(double depth) const noexcept HSP_RT {
     if (law == 0) return stiffness * depth;
     size_t i = 2;
@@ -120,24 +125,26 @@ struct TemplateBall : hapticd::Shape {
     return std::fmax(0.0, profile[i - 1] + part * (profile[i + 1] - profile[i - 1]));
   }
 
-  /// The largest slope of the table; refuses one that does not grow.
+  /// Returns the greatest slope of the table. Refuses a table whose depths do not grow.
   double steepest() const {
     double most = 0;
     for (size_t i = 2; i < profile.size(); i += 2) {
-      if (profile[i] <= profile[i - 2]) throw std::runtime_error("profile: the depths do not grow");
+      if (profile[i] <= profile[i - 2])
+        throw std::runtime_error("profile: each depth must be greater than the one before");
       most = std::fmax(most, std::fabs((profile[i + 1] - profile[i - 1]) / (profile[i] - profile[i - 2])));
     }
     return most;
   }
 
-  /// The path is absolute: the host has looked for it beside the scene.
+  /// Reads the table. The host has made the path absolute; it looked for the file in the folder of the scene.
   static std::vector<double> readTable(const std::string& file) {
     std::ifstream in(file);
     std::vector<double> numbers;
     double depth = 0, force = 0;
     char comma = 0;
     while (in >> depth >> comma >> force && comma == ',') numbers.insert(numbers.end(), {depth, force});
-    if (!in.eof() || numbers.size() < 4) throw std::runtime_error(file + ": expected two or more lines depth,force");
+    if (!in.eof() || numbers.size() < 4)
+      throw std::runtime_error(file + ": expected two or more lines of the form depth,force");
     return numbers;
   }
 
@@ -148,7 +155,7 @@ struct TemplateBall : hapticd::Shape {
     return HSP_OK;
   }
 
-  /// Rings of corners from pole to pole. The arrays stay valid until the next call.
+  /// Makes rings of vertices from pole to pole. The arrays stay valid until the next call.
   static hsp_status tessellate(hsp_shape* shape, double /*chord_error_m*/, hsp_mesh* mesh) {
     constexpr uint32_t kRings = 24, kSides = 36;
     TemplateBall& ball = self(shape);
@@ -160,7 +167,7 @@ struct TemplateBall : hapticd::Shape {
           ball.normals_.push_back(static_cast<float>(n));
           ball.xyz_.push_back(static_cast<float>(ball.radius * n));
         }
-        const uint32_t a = i * (kSides + 1) + k, b = a + kSides + 1;  // the corner below
+        const uint32_t a = i * (kSides + 1) + k, b = a + kSides + 1;  // the vertex below
         if (i < kRings && k < kSides) ball.indices_.insert(ball.indices_.end(), {a, b, a + 1, a + 1, b, b + 1});
       }
     mesh->xyz = ball.xyz_.data(), mesh->normals = ball.normals_.data(), mesh->indices = ball.indices_.data();
@@ -170,7 +177,7 @@ struct TemplateBall : hapticd::Shape {
   }
 
   std::vector<Grip> grips_;
-  std::vector<float> xyz_, normals_;  // of the drawing
+  std::vector<float> xyz_, normals_;  // for drawing
   std::vector<uint32_t> indices_;
 };
 

@@ -12,7 +12,8 @@ namespace {
 using Json = nlohmann::json;
 using document::Node;
 constexpr std::size_t kMostProblems = 20;
-// A tree takes some 250 times the bytes of its YAML, and 20 times those of its JSON; a part file takes its own.
+// A tree needs about 250 times the size of its YAML text, or 20 times that of its JSON text. A part file needs only its
+// own size.
 constexpr std::size_t kMostYaml = 2u << 20, kMostJson = 32u << 20;
 
 constexpr const char* kPartWay = "hapticd import";
@@ -61,7 +62,7 @@ bool looksLikeJson(const std::string& text) {
   return first != std::string::npos && text[first] == '{';
 }
 
-/// The value at `path`, or the nearest value around it.
+/// Returns the value at `path`; if there is none, the innermost value on this path.
 const Node& nodeAt(const Node& root, const Path& path) {
   const Node* node = &root;
   for (const PathStep& step : path) {
@@ -101,7 +102,8 @@ bool Problems::full() const {
 
 document::Problems Problems::placed() const {
   document::Problems all, unread;
-  const auto root = document::parseText(text_, file_, unread);  // JSON that YAML does not read: no positions
+  // empty for JSON that the YAML reader does not accept; then there are no positions
+  const auto root = document::parseText(text_, file_, unread);
   for (const Problem& problem : found_) {
     document::Place place{file_, 1, 1};
     if (root) {
@@ -129,7 +131,7 @@ std::string readModelText(const std::string& path) {
   auto text = document::readFile(path, kMostJson, problems);
   if (text) return *std::move(text);
   throwOne(path, problems.front().what +
-                     "; expected a model file (format hapticd-model/1) of 32 MiB at most; for more, " +
+                     "; expected a model file (format hapticd-model/1) of at most 32 MiB; for larger models, " +
                      "make a part file: " + kPartWay);
 }
 
@@ -139,7 +141,10 @@ Json parseDocument(const std::string& text, const std::string& file) {
     if (!json.is_discarded()) return json;
   }
   if (text.size() > kMostYaml)
-    throwOne(file, std::string("larger than 2 MiB as YAML; give it as JSON (32 MiB), or as a part file: ") + kPartWay);
+    throwOne(
+        file,
+        std::string("is larger than 2 MiB, the most for YAML; write it as JSON (up to 32 MiB), or make a part file: ") +
+            kPartWay);
   document::Problems problems;
   const auto root = document::parseText(text, file, problems);
   if (!root || !problems.empty()) throwAll(problems);

@@ -31,15 +31,15 @@ Path surfaceAt(std::size_t surface, const char* key = nullptr) {
 }
 
 void adviseSize(const trace::Model& model, Problems& odd) {
-  constexpr double kHuge = 5, kTiny = 1e-3;  // [m]
+  constexpr double kHuge = 5, kTiny = 1e-3;  // [m] sizes beyond these are unusual
   const double size = model.bounds().diagonal().norm();
-  if (size > kHuge || (size > 0 && size < kTiny))  // 0: told of the surfaces without area
-    odd.add({{"surfaces", 0}},
-            written("the model is %.3g m large, expected metres and what a hand can feel: %.3g mm are %.3g m", size,
-                    size, size / 1000));
+  if (size > kHuge || (size > 0 && size < kTiny))  // a size of 0 is reported as surfaces without area
+    odd.add({{"surfaces", 0}}, written("the model is %.3g m large; a hand feels models from 0.001 to 5 m, and lengths "
+                                       "must be in m: %.3g mm is %.3g m",
+                                       size, size, size / 1000));
 }
 
-/// All control points lie in one place or on one line.
+/// True if all control points lie in one place or on one line.
 bool hasNoArea(const SurfaceData& surface) {
   constexpr double kFlat = 1e-9;
   const Vector3d& first = surface.points.front();
@@ -57,14 +57,13 @@ void adviseNames(const ModelFile& file, Problems& odd) {
     const std::string& name = file.surfaces[i].name;
     const auto [known, is_new] = first.emplace(name, i);
     if (!name.empty() && !is_new)
-      odd.add(surfaceAt(i, "name"),
-              written("\"%.100s\" is the name of surfaces[%zu] too; expected each name once: edges "
-                      "and messages go by it",
-                      name.c_str(), known->second));
+      odd.add(surfaceAt(i, "name"), written("\"%.100s\" is also the name of surfaces[%zu]; each name must be used "
+                                            "once, because edges and messages refer to it",
+                                            name.c_str(), known->second));
   }
 }
 
-/// A weight that leaves nothing of its neighbours in the net.
+/// Warns of a weight that is so large that its neighbours in the net have no effect.
 void adviseWeights(const SurfaceData& surface, std::size_t index, Problems& odd) {
   constexpr double kTimes = 1000;
   const auto rows = static_cast<std::size_t>(surface.count(0)), columns = static_cast<std::size_t>(surface.count(1));
@@ -74,8 +73,8 @@ void adviseWeights(const SurfaceData& surface, std::size_t index, Problems& odd)
     Path at = surfaceAt(index, "weights");
     at.push_back({"", heavy});
     odd.add(at,
-            written("%.4g is %.3g times the weight beside it (%.4g): the surface is drawn into that point; expected "
-                    "weights of about 1",
+            written("%.4g is %.3g times the neighbouring weight (%.4g), so the surface is pulled into this point; "
+                    "weights are usually about 1",
                     surface.weights[heavy], surface.weights[heavy] / surface.weights[light], surface.weights[light]));
     return true;
   };
@@ -86,8 +85,8 @@ void adviseWeights(const SurfaceData& surface, std::size_t index, Problems& odd)
     }
 }
 
-/// Two sides that end in one corner and hardly part from there: the other corner of one was meant to be that of the
-/// other. Surfaces that are apart on purpose, such as a lid above its pot, share no corner.
+/// Finds two sides that begin at a common corner and end near each other: their other corners were probably meant to be
+/// the same. Surfaces that are apart on purpose, such as a lid above its pot, share no corner.
 class Gaps {
  public:
   Gaps(const trace::Model& model, const ModelFile& file, Problems& odd) : model_(model), file_(file), odd_(odd) {
@@ -100,7 +99,9 @@ class Gaps {
   }
 
   void tell() {
-    constexpr std::size_t kMost = 64;  // sides at one corner, and free sides of which all pairs are compared, by eight
+    // most sides at one corner that are compared; judgeAlone() is left out if there are more than eight times as many
+    // free sides
+    constexpr std::size_t kMost = 64;
     for (const auto& [corner, ends] : free_at_)
       for (std::size_t i = 0; i < std::min(ends.size(), kMost); ++i)
         for (std::size_t j = i + 1; j < std::min(ends.size(), kMost); ++j) judge(ends[i], ends[j]);
@@ -109,7 +110,7 @@ class Gaps {
   }
 
  private:
-  static constexpr double kNear = 0.1;  ///< of the shorter side
+  static constexpr double kNear = 0.1;  ///< greatest distance of corners that are near, as a share of the shorter side
   struct SideOf {
     int patch, side;
   };
@@ -134,14 +135,13 @@ class Gaps {
     if (gap > near || (at(a.of, a.end, 0.5) - at(b.of, b.end, 0.5)).norm() > near) return;
     const int source = model_.patch(a.of.patch).source, other = model_.patch(b.of.patch).source;
     if (source == other || !told_.insert(std::max(source, other)).second) return;
-    odd_.add(
-        surfaceAt(static_cast<std::size_t>(std::max(source, other))),
-        written("%.80s is open toward %.80s: from one corner of theirs, two sides part to %.3g mm at the other end; "
-                "expected one corner there (a coordinate mistyped?)",
-                nameOf(std::max(source, other)).c_str(), nameOf(std::min(source, other)).c_str(), 1e3 * gap));
+    odd_.add(surfaceAt(static_cast<std::size_t>(std::max(source, other))),
+             written("there is a gap between %.80s and %.80s: two of their sides share one corner, but their other "
+                     "ends are %.3g mm apart; is a coordinate mistyped?",
+                     nameOf(std::max(source, other)).c_str(), nameOf(std::min(source, other)).c_str(), 1e3 * gap));
   }
 
-  /// The patch of another surface whose free side runs beside this one; -1: none does.
+  /// Returns the patch of another surface whose free side runs beside this one; -1 if there is none.
   int besideOf(const SideOf& one) const {
     const double near = kNear * (at(one, 0, 1) - at(one, 0, 0)).norm();
     for (const SideOf& other : free_) {
@@ -153,8 +153,8 @@ class Gaps {
     return -1;
   }
 
-  /// A face that joins nothing, with other surfaces round it: all of it is beside its place. Two sheets in parallel
-  /// have one neighbour alone.
+  /// Finds a face that joins no other face although other surfaces surround it: the whole face is probably misplaced.
+  /// Two parallel sheets do not count, because each has only one neighbour.
   void judgeAlone(int patch) {
     constexpr std::size_t kRound = 3;
     std::set<int> beside;
@@ -167,8 +167,8 @@ class Gaps {
     if (beside.size() < kRound) return;
     const int source = model_.patch(patch).source;
     odd_.add(surfaceAt(static_cast<std::size_t>(source)),
-             written("%.80s joins none of the %zu surfaces round it, though all its sides run beside theirs; expected "
-                     "common corners (a coordinate mistyped?)",
+             written("%.80s joins none of the %zu surfaces round it, although all its sides run beside theirs; they "
+                     "should have common corners: is a coordinate mistyped?",
                      nameOf(source).c_str(), beside.size()));
   }
 
@@ -181,8 +181,8 @@ class Gaps {
   const ModelFile& file_;
   Problems& odd_;
   std::vector<SideOf> free_;
-  std::set<int> told_;                       ///< surfaces
-  std::map<int, std::vector<End>> free_at_;  ///< sides that end at a corner
+  std::set<int> told_;                       ///< surfaces that have been reported
+  std::map<int, std::vector<End>> free_at_;  ///< by corner: the free sides that end there
 };
 
 }  // namespace
@@ -193,7 +193,8 @@ std::vector<std::string> adviseModel(const ModelFile& file, const trace::Model& 
   adviseSize(model, odd);
   for (std::size_t i = 0; i < file.surfaces.size() && !odd.full(); ++i) {
     if (hasNoArea(file.surfaces[i]))
-      odd.add(surfaceAt(i, "points"), "lie in one place or on one line, so the surface has no area and is not felt");
+      odd.add(surfaceAt(i, "points"),
+              "all points lie in one place or on one line, so the surface has no area and cannot be felt");
     if (!file.surfaces[i].weights.empty()) adviseWeights(file.surfaces[i], i, odd);
   }
   adviseNames(file, odd);

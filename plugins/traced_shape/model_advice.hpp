@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a model file says that its format allows and nobody can mean.
+/// Warnings for values in a model file that its format allows, but that nobody can mean.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,9 +8,11 @@
 
 namespace hapticd {
 
-/// [main] A size of another unit, a surface without area, a name or a weight that is a slip, a corner that misses its
-/// neighbour: each as `file:line:column: key: what`.
-/// @param text of the file, for the lines  @param name of the file, for messages
+/// [main] Finds a size in another unit, a surface without area, a mistyped name or weight, and a corner that misses its
+/// neighbour.
+/// @param text of the file, to find the lines
+/// @param name of the file, for messages
+/// @return warnings of the form `file:line:column: key: what`
 std::vector<std::string> adviseModel(const ModelFile& file, const trace::Model& model, const std::string& text,
                                      const std::string& name);
 

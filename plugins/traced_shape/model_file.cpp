@@ -24,7 +24,7 @@ Path operator/(Path path, std::size_t index) {
   return path;
 }
 
-/// Reads the tree of one file; every wrong value becomes a problem and reading goes on.
+/// Reads the tree of one file. Every wrong value becomes a problem, and reading continues.
 class Reader {
  public:
   explicit Reader(Problems& problems) : problems_(problems) {}
@@ -32,11 +32,10 @@ class Reader {
   ModelFile read(const Json& root) {
     ModelFile file;
     if (!root.is_object()) {
-      problems_.add(
-          {},
-          "no model file, expected a mapping with format and surfaces; triangles and CAD files become a part "
-          "first: hapticd import FILE -o PART.hpart; Bezier patches (.bpt) become a model file: hapticd import "
-          "FILE -o MODEL.yaml");
+      problems_.add({},
+                    "this is not a model file: expected a mapping with the keys format and surfaces. Convert triangles "
+                    "and CAD files to a part: hapticd import FILE -o PART.hpart. Convert Bezier patches (.bpt) to a "
+                    "model file: hapticd import FILE -o MODEL.yaml");
       return file;
     }
     checkKeys(root, {}, {"format", "name", "credit", "surfaces", "edges", "medial"});
@@ -59,7 +58,7 @@ class Reader {
   spline::SurfaceData surface(const Json& json, const Path& at) {
     spline::SurfaceData data;
     if (!json.is_object()) {
-      problems_.add(at, "expected a mapping with degree, knots and points");
+      problems_.add(at, "expected a mapping with the keys degree, knots and points");
       return data;
     }
     checkKeys(json, at, {"name", "degree", "knots", "points", "weights", "outward"});
@@ -98,7 +97,7 @@ class Reader {
   void readDegree(const Json& json, const Path& at, spline::SurfaceData& data) {
     const Json* degree = member(json, "degree");
     if (degree == nullptr || !degree->is_array() || degree->size() != 2)
-      return problems_.add(at, "expected two whole numbers, for u and v");
+      return problems_.add(at, "expected two whole numbers: the degrees along u and v");
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const Json& value = (*degree)[axis];
       const double number = value.is_number() ? value.get<double>() : 0;
@@ -111,7 +110,7 @@ class Reader {
   void readKnots(const Json& json, const Path& at, spline::SurfaceData& data) {
     const Json* knots = member(json, "knots");
     if (knots == nullptr || !knots->is_array() || knots->size() != 2)
-      return problems_.add(at, "expected two lists of numbers, for u and v");
+      return problems_.add(at, "expected two lists of numbers: the knots along u and v");
     for (std::size_t axis = 0; axis < 2; ++axis) data.knots[axis] = numbers((*knots)[axis], at / axis);
   }
 

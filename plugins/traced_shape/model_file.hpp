@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Model files: the surfaces that a scene's `geometry` names.
+/// Model files: the surfaces in the file that `geometry` names in a scene.
 #pragma once
 #include <stdexcept>
 #include <string>
@@ -10,22 +10,22 @@
 
 namespace hapticd {
 
-/// What a file of format hapticd-model/1 says about its surfaces.
+/// The contents of a file of format hapticd-model/1.
 struct ModelFile {
   std::vector<spline::SurfaceData> surfaces;  ///< at least one, each valid
-  std::vector<trace::EdgeLink> edges;         ///< stated adjacency; the rest is found by geometry
+  std::vector<trace::EdgeLink> edges;         ///< common edges that the file states; the others are found by geometry
 };
 
-/// All that is wrong with a model file, one problem a line: `file:line:column: key: what, expected what`.
+/// All problems of a model file, one per line: `file:line:column: key: what, expected what`.
 class ModelFileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 /// [main] Reads a model file, YAML or JSON (the same structure).
-/// @throws ModelFileError with every problem found; whatever the bytes of the file.
+/// @throws ModelFileError with every problem found, for every possible content of the file.
 ModelFile readModelFile(const std::string& path);
 
-/// [main] The same from the text of a file; `name` stands in messages.
+/// [main] The same from the text of a file; `name` appears in messages.
 ModelFile parseModelFile(const std::string& text, const std::string& name);
 
 }  // namespace hapticd

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Traced shapes that move: where a model is, and its probes seen from where it goes.
+/// Tools for traced shapes that move: the frame of a model, and its probes as seen from its new frame.
 #pragma once
 #include <Eigen/Geometry>
 #include <vector>
@@ -8,19 +8,19 @@
 
 namespace hapticd {
 
-/// A model's frame in the world and its velocities there; the Eigen side of hsp_pose.
+/// A model frame in the world with its velocities: hsp_pose as Eigen types.
 struct MovingFrame {
   Eigen::Vector3d position{0, 0, 0};
   Eigen::Quaterniond orientation{1, 0, 0, 0};
   Eigen::Vector3d linear{0, 0, 0}, angular{0, 0, 0};
 
-  /// [rt]
+  /// [rt] Converts an hsp_pose.
   static MovingFrame of(const hsp_pose& pose) noexcept HSP_RT {
     const double* q = pose.orientation;
     return {Eigen::Vector3d(pose.position), Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized(),
             Eigen::Vector3d(pose.linear), Eigen::Vector3d(pose.angular)};
   }
-  /// [rt]
+  /// [rt] Writes an hsp_pose.
   void write(hsp_pose& pose) const noexcept HSP_RT {
     for (int i = 0; i < 3; ++i) {
       pose.position[i] = position[i];
@@ -34,12 +34,12 @@ struct MovingFrame {
   }
 };
 
-/// The probes of a step, seen from the pose to which the model has moved in it.
+/// The probes of a step, as seen from the pose to which the model has moved in this step.
 class MovedProbes {
  public:
   explicit MovedProbes(uint32_t most) : probes_(most) {}  ///< [main]
 
-  /// [rt] The same step with its probes in the frame `now`; it was given them in the frame `before`.
+  /// [rt] Returns the step `given`, whose probes are in the frame `before`, with its probes in the frame `now`.
   hsp_step step(const hsp_step& given, const MovingFrame& before, const MovingFrame& now) noexcept HSP_RT {
     const Eigen::Quaterniond turn = now.orientation.conjugate() * before.orientation;
     hsp_step moved = given;
@@ -47,7 +47,7 @@ class MovedProbes {
     for (uint32_t i = 0; i < moved.count; ++i) {
       hsp_probe& probe = probes_[i];
       probe = *HSP_AT(const hsp_probe, given.in, given.in_stride, i);
-      const Eigen::Vector3d from_origin = before.orientation * Eigen::Vector3d(probe.position);  // world
+      const Eigen::Vector3d from_origin = before.orientation * Eigen::Vector3d(probe.position);  // in the world frame
       const Eigen::Vector3d from_now = from_origin + (before.position - now.position);
       const Eigen::Vector3d drift =
           before.linear + before.angular.cross(from_origin) - now.linear - now.angular.cross(from_now);

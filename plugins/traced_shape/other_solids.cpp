@@ -6,7 +6,7 @@ namespace {
 
 constexpr int kMostBodies = 20;
 
-/// One body of a part, where its own frame is.
+/// Returns a part with only one body, placed at its own frame.
 brep::Part aloneIn(brep::Part part, std::uint32_t body) {
   brep::Instance instance;
   instance.body = body;

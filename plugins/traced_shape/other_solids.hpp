@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Which solids of a part hold a point, each asked alone. The search over all of them answers with the nearest face,
-/// and where a bolt fills a hole the faces of both are equally near.
+/// Finds out if a point lies inside other solids of a part. Each solid is asked alone, because a search over all solids
+/// returns only the nearest face, and if a bolt fills a hole, the faces of both are equally near.
 #pragma once
 #include <memory>
 #include <vector>
@@ -13,8 +13,8 @@ class OtherSolids {
  public:
   explicit OtherSolids(const brep::Model& part) : part_(part), alone_(part.part().bodies.size()) {}
 
-  /// [main] Whether a point of the model's frame is inside a solid placed elsewhere than at `place`. A part of very
-  /// many bodies is answered with yes where it takes too long to know.
+  /// [main] True if a point (in the model frame) is inside another solid than that of `place`. Returns true also if the
+  /// part has so many bodies that the search would take too long.
   bool hold(const Eigen::Vector3d& point, const brep::Placement& place);
 
  private:
@@ -24,7 +24,7 @@ class OtherSolids {
     brep::Tracer tracer;
   };
   const brep::Model& part_;
-  std::vector<std::unique_ptr<Alone>> alone_;  ///< by body; made when it is asked first
+  std::vector<std::unique_ptr<Alone>> alone_;  ///< by body; made at its first use
   int made_ = 0;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// A trimmed face is cut into strips along u between the heights at which its loops turn; between the loops a strip is
-/// a row of trapezoids. (Scan conversion of polygons: Foley et al., Computer Graphics, 3.6, with exact corners.)
+/// Triangles of trimmed faces. A face is divided into strips along u, at the values of v where its loops turn; inside
+/// the loops, a strip is a row of trapezoids. (Scan conversion of polygons: Foley et al., Computer Graphics, 3.6, with
+/// exact corners.)
 #include "traced_shape/part_mesh.hpp"
 
 #include <algorithm>
@@ -17,8 +18,8 @@ using brep::Geometry;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kMostCells = 256;        ///< of a face along u or v
-constexpr double kLowestStrip = 4096;  ///< strips of a face at most
+constexpr int kMostCells = 256;        ///< most cells of a face along u or v
+constexpr double kLowestStrip = 4096;  ///< most strips of a face
 
 class FaceMesh {
  public:
@@ -57,7 +58,8 @@ class FaceMesh {
     double at(double v) const { return a[0] + (v - a[1]) / (b[1] - a[1]) * (b[0] - a[0]); }
   };
 
-  /// A chord over a step h of a curve with second derivative C'' is off by |C''| h^2 / 8.
+  /// Chooses the number of cells: a chord over a step h is off by |C''| h^2 / 8 from a curve with the second derivative
+  /// C''.
   void countCells() {
     constexpr int kProbes = 5;
     double bend_u = 0, bend_v = 0;
@@ -96,7 +98,7 @@ class FaceMesh {
     }
   }
 
-  /// Points of a coedge along its loop, without the last.
+  /// Adds points of a coedge, in the direction of its loop, without the last point.
   void sample(const brep::Coedge& c, std::vector<Vector2d>& chain) const {
     const bool reversed = (c.flags & brep::kReversed) != 0;
     const double from = reversed ? c.t1 : c.t0, to = reversed ? c.t0 : c.t1;
@@ -119,7 +121,7 @@ class FaceMesh {
     for (int i = 0; i < count; ++i) chain.push_back(at(static_cast<double>(i) / count));
   }
 
-  /// Heights between which no loop turns.
+  /// Returns the values of v between which no loop turns.
   std::vector<double> strips() const {
     std::vector<double> levels;
     for (const Segment& s : segments_) {

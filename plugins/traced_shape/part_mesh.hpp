@@ -6,7 +6,7 @@
 
 namespace hapticd {
 
-/// [main] Triangles within about `chord_error` [m] of all faces of a part, where they stand in the model.
+/// [main] Returns triangles that are within about `chord_error` [m] of all faces of a part, in the model frame.
 Mesh tessellate(const brep::Model& model, double chord_error);
 
 }  // namespace hapticd

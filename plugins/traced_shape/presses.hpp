@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Traced shapes that the probes push: what each probe does to the body in the coming step.
+/// Tools for traced shapes that the probes push: the force of each probe on the body in the coming step.
 #pragma once
 #include <algorithm>
 #include <span>
@@ -10,14 +10,15 @@
 
 namespace hapticd {
 
-/// The contacts of the last step, by probe, kept in the world frame.
+/// The contacts of the last step, by probe, in the world frame.
 class Presses {
  public:
   explicit Presses(uint32_t most) : last_(most), held_(most, 0) { presses_.reserve(most); }  ///< [main]
 
-  /// [rt] What presses by the end of a step, from where the probes are now. A probe that jumped presses no more.
-  /// @param before the frame that the probes are given in  @param velocity_at the body's velocity at a point, both
-  /// world
+  /// [rt] Predicts the contacts at the end of a step, from the present positions of the probes. A probe that has jumped
+  /// no longer presses.
+  /// @param before frame in which the probes are given
+  /// @param velocity_at function that returns the body's velocity at a point, both in the world frame
   template <class VelocityAt>
   std::span<const dynamics::Press> foresee(const hsp_step& step, const MovingFrame& before,
                                            const VelocityAt& velocity_at) noexcept HSP_RT {
@@ -30,13 +31,14 @@ class Presses {
       const double closing = -last.normal.dot(before.orientation * Eigen::Vector3d(probe.velocity));
       if (!now.allFinite()) continue;
       const dynamics::Press press = dynamics::foresee(last, now, closing, velocity_at(last.point), step.dt_s);
-      if (!press.force.isZero(0)) presses_.push_back(press);  // reserved for all of them: never allocates
+      if (!press.force.isZero(0)) presses_.push_back(press);  // has room for all probes, so it never allocates
     }
     release();
     return presses_;
   }
 
-  /// [rt] The contact of probe `index` in this step, in the model's frame, which is now at `now`.
+  /// [rt] Stores the contact of probe `index` in this step. `in_model` is in the model frame, which is at `now` in the
+  /// world.
   void remember(uint32_t index, const dynamics::Pressing& in_model, const MovingFrame& now) noexcept HSP_RT {
     if (index >= last_.size()) return;
     dynamics::Pressing& there = last_[index];
@@ -52,7 +54,7 @@ class Presses {
 
  private:
   std::vector<dynamics::Pressing> last_;
-  std::vector<char> held_;  ///< last_ is of the last step
+  std::vector<char> held_;  ///< by probe: 1 if last_ holds a contact of the last step
   std::vector<dynamics::Press> presses_;
 };
 

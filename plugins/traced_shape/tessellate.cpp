@@ -10,7 +10,8 @@ namespace {
 using Eigen::Array2d;
 using trace::Patch;
 
-/// Cells along u and v: a chord over a step h of a curve with second derivative C'' is off by |C''| h^2 / 8.
+/// Returns the number of cells along u and v: a chord over a step h is off by |C''| h^2 / 8 from a curve with the
+/// second derivative C''.
 std::array<int, 2> cellsOf(const Patch& patch, double chord_error) {
   constexpr int kProbes = 9, kMostSpans = 256;
   const Array2d range = patch.hi - patch.lo;

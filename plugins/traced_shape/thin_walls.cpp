@@ -12,14 +12,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint32_t kPoints = 2000;    ///< that are looked at
-constexpr std::uint32_t kMostOfFace = 32;  ///< of these on one face
-constexpr double kOnSurface = 1e-7;        ///< [m] farther from the part, a point is outside its face's loops
-constexpr double kAbove = 1e-6;            ///< [m] where the tip is before it presses
-constexpr double kOpposite = -0.7;         ///< cosine: of faces that bound a wall, not a wedge
+constexpr std::uint32_t kPoints = 2000;    ///< most points that are tried
+constexpr std::uint32_t kMostOfFace = 32;  ///< most points on one face
+/// [m] a point that is farther from the part lies outside the loops of its face
+constexpr double kOnSurface = 1e-7;
+constexpr double kAbove = 1e-6;  ///< [m] height of the tip over the face before it presses
+/// greatest cosine between the normals of two faces that bound a wall and not a wedge
+constexpr double kOpposite = -0.7;
 constexpr int kHalvings = 20;
 
-/// Points that fill a square evenly (Roberts' sequence R2), the i-th.
+/// Returns the i-th point of a sequence that fills a square evenly (Roberts' sequence R2).
 Eigen::Array2d evenly(std::uint32_t i) {
   const double u = 0.7548776662466927 * (i + 0.5), v = 0.5698402909980532 * (i + 0.5);
   return {u - std::floor(u), v - std::floor(v)};
@@ -29,12 +31,12 @@ class Presser {
  public:
   Presser(const brep::Model& part, double depth) : tracer_(part), others_(part), depth_(depth) {}
 
-  /// Presses at a point of a body's frame, if it is on the surface of the part.
+  /// Presses at a point, given in its body's frame, if it lies on the surface of the part.
   void press(const brep::Placement& place, const Vector3d& in_body) {
     const Vector3d point = place.rotation * in_body + place.position;
     const contact::Foot foot = tracer_.nearest(point);
     if (!contact::found(foot) || foot.distance > kOnSurface || foot.on_edge || !isOf(place, foot)) return;
-    if (others_.hold(foot.point + kAbove * foot.normal, place)) return;  // no tip comes there
+    if (others_.hold(foot.point + kAbove * foot.normal, place)) return;  // no tip can be there
     const double deepest = wall_ ? wall_->thickness : depth_;
     if (!comesOut(place, foot, deepest)) return;
     double inside = 0, out = deepest;
@@ -48,15 +50,15 @@ class Presser {
   const std::optional<ThinWall>& wall() const { return wall_; }
 
  private:
-  /// Of two faces that lie on each other, the foot may be on the other's.
+  /// True if the foot is on this body. If two faces lie on each other, it may be on the other face.
   bool isOf(const brep::Placement& place, const contact::Foot& foot) const {
     const brep::Body& body = tracer_.model().part().bodies[place.body];
     const auto feature = static_cast<std::uint32_t>(foot.surface);
     return feature >= place.first_feature && feature - place.first_feature < body.face_count + body.triangle_count;
   }
 
-  /// Whether a probe so deep below a foot is outside again, behind a face that looks the other way. Where another
-  /// solid lies close behind, a press goes on into that one.
+  /// True if a probe at this depth below a foot is outside again, behind a face that looks the other way. If another
+  /// solid lies close behind, the press continues into that solid.
   bool comesOut(const brep::Placement& place, const contact::Foot& foot, double depth) {
     const Vector3d probe = foot.point - depth * foot.normal;
     const contact::Foot there = tracer_.nearest(probe);
@@ -70,7 +72,8 @@ class Presser {
   std::optional<ThinWall> wall_;
 };
 
-/// Faces of a placement, each at some points of its parameters; those outside its loops are passed over.
+/// Presses each face of a placement at some points of its parameter range; points outside the face's loops are left
+/// out.
 void pressFaces(const brep::Model& part, const brep::Placement& place, std::uint32_t each, std::uint32_t stride,
                 Presser& presser) {
   const brep::Body& body = part.part().bodies[place.body];

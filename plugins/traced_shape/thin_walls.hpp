@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Walls of a part that a press would go through.
+/// Finds walls of a part that a press would go through.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -13,9 +13,9 @@ struct ThinWall {
   std::uint32_t feature = 0;  ///< the face or triangle that was pressed
 };
 
-/// [main] The thinnest wall of the part's solids that a press of `depth` [m] comes out of behind, at a face that looks
-/// away from the pressed one; none: there is none, or no sample met it. Looks at some 2000 points spread over all faces
-/// and triangles, at most.
+/// [main] Returns the thinnest wall of the part's solids through which a press of `depth` [m] goes, so that the probe
+/// comes out behind a face that looks away from the pressed one. Returns nothing if there is no such wall, or if no
+/// sample met it. Tries at most about 2000 points, spread over all faces and triangles.
 std::optional<ThinWall> thinnestWall(const brep::Model& part, double depth);
 
 }  // namespace hapticd

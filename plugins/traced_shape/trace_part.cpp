@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a traced shape does with a part in place of a model file.
+/// Tracing of a part, which a traced shape uses instead of a model file.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdio>
@@ -14,14 +14,15 @@
 namespace hapticd {
 namespace {
 
-/// A size or a place that was hardly meant. "": nothing is odd.
+/// Returns a warning about a size or a place that nobody can mean, or "".
 std::string oddPlace(const Eigen::AlignedBox3d& box, const hsp_pose& pose) {
-  constexpr double kHuge = 10, kTiny = 1e-3, kFar = 2;  // [m]
+  constexpr double kHuge = 10, kTiny = 1e-3, kFar = 2;  // [m] sizes and distances beyond these are unusual
   const double size = box.diagonal().norm();
   char text[160];
   if (size > kHuge || size < kTiny) {
-    std::snprintf(text, sizeof text,
-                  "%.3g m large, expected what a hand can feel; a wrong unit? (--scale of hapticd import)", size);
+    std::snprintf(
+        text, sizeof text,
+        "it is %.3g m large, too large or too small for a hand; a wrong unit? (see --scale of hapticd import)", size);
     return text;
   }
   const Eigen::Quaterniond turn(pose.orientation[0], pose.orientation[1], pose.orientation[2], pose.orientation[3]);
@@ -29,11 +30,12 @@ std::string oddPlace(const Eigen::AlignedBox3d& box, const hsp_pose& pose) {
   const double away = box.exteriorDistance(origin);
   if (away <= kFar) return "";
   std::snprintf(text, sizeof text,
-                "its nearest point is %.3g m from the world's origin, where no arm reaches; expected a pose", away);
+                "its nearest point is %.3g m from the world's origin, and no arm reaches it; give the model a pose",
+                away);
   return text;
 }
 
-/// Which features belong to which instance, a line each.
+/// Returns one line per instance with the range of its features.
 std::vector<std::string> instancesOf(const brep::Model& part) {
   constexpr size_t kMost = 100;
   std::vector<std::string> lines;
@@ -51,18 +53,18 @@ std::vector<std::string> instancesOf(const brep::Model& part) {
   return lines;
 }
 
-/// "" or what the import could not keep: a solid without one of its faces is an open shell.
+/// Returns a warning about faces that the import has lost, or "". A solid without one of its faces is an open shell.
 std::string lostOf(const brep::Part& part) {
   if (part.losses.empty()) return "";
   const size_t more = part.losses.size() - 1;
   return "the import lost " + part.losses.front().what +
          (more > 0 ? " and " + std::to_string(more) + " more" : std::string()) +
-         ", so a solid may be felt as an open shell; hapticd part info lists all";
+         ", so a solid may feel like an open shell; `hapticd part info` lists everything that was lost";
 }
 
 }  // namespace
 
-/// [main] See hsp_ext_names.
+/// [main] Returns the name of a feature, as hsp_ext_names requires.
 int64_t TracedShape::nameOf(uint32_t feature, char* text, uint64_t cap) const {
   if (!part_) return 0;
   const std::string name = part_->featureName(feature);
@@ -73,12 +75,11 @@ int64_t TracedShape::nameOf(uint32_t feature, char* text, uint64_t cap) const {
 void TracedShape::loadPart(const std::string& bytes, const hsp_activation& activation, hsp_report& report) {
   if (!takes_parts_)
     throw std::invalid_argument("geometry: " + geometry_ +
-                                " is a part; expected a model file here (parts are for nurbs_rigid)");
+                                " is a part, but this plugin needs a model file (only nurbs_rigid takes parts)");
   if (method_ == 0)
     throw std::invalid_argument(
-        "method: dpt steps from one foot to the next on a surface without trims; a part is searched as a whole in "
-        "every "
-        "tick, so expected newton");
+        "method: dpt works only on surfaces without trims, from one foot to the next, but a part is searched as a "
+        "whole in every tick; use method: newton");
   brep::ModelOptions options;
   options.form = evaluation_ == 0 ? spline::Form::kTable : spline::Form::kNet;
   options.instance = instance_;
@@ -93,11 +94,10 @@ void TracedShape::loadPart(const std::string& bytes, const hsp_activation& activ
       host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + odd).c_str());
     for (const std::string& line : instancesOf(*part_)) host()->log(host(), HSP_LOG_DEBUG, line.c_str());
     if (sides_ == kFront && part_->open())
-      host()->log(
-          host(), HSP_LOG_WARNING,
-          (geometry_ + ": bounds no volume, but sides: front takes all behind it as solid; expected sides: both, "
-                       "or none stated")
-              .c_str());
+      host()->log(host(), HSP_LOG_WARNING,
+                  (geometry_ + ": is not closed, but with sides: front everything behind it counts as solid; give "
+                               "sides: both, or leave sides out")
+                      .c_str());
   }
   if (sides_ == kAuto) sides_ = part_->open() ? kBoth : kFront;
   const uint32_t probes = std::max(activation.max_probes, 1u);

@@ -15,7 +15,7 @@
 namespace hapticd {
 namespace {
 
-constexpr double kFarthestMesh = 1e-6;  // [m] finer meshes are for files, not for drawing
+constexpr double kFarthestMesh = 1e-6;  // [m] least chord error of a mesh for drawing
 
 }  // namespace
 
@@ -27,7 +27,7 @@ void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
   if (brep::looksLikePart(std::as_bytes(std::span(text)))) return loadPart(text, activation, report);
   if (!instance_.empty())
     throw std::invalid_argument("instance: '" + instance_ + "', but " + geometry_ +
-                                " is a model file, which has none; expected a part (.hpart)");
+                                " is a model file, which has no instances; geometry must be a part (.hpart)");
   if (sides_ == kAuto) sides_ = kFront;
   ModelFile file = parseModelFile(text, geometry_);
   trace::ModelOptions options;
@@ -70,7 +70,8 @@ void TracedShape::takeFormerNames() {
   contact_hysteresis_ = std::max(hold_, 0.0);
   hold_ = kNotGiven;
   if (host() != nullptr && host()->log != nullptr)
-    host()->log(host(), HSP_LOG_WARNING, "hold: its name is contact_hysteresis now; write that in its place");
+    host()->log(host(), HSP_LOG_WARNING,
+                "hold: this parameter is now called contact_hysteresis; write contact_hysteresis instead");
 }
 
 contact::ContactRule TracedShape::contactRule() const noexcept HSP_RT {
@@ -86,7 +87,7 @@ trace::TraceOptions TracedShape::optionsOf(const hsp_step& step) const noexcept 
   options.iterations = iterations_;
   options.tolerance = step.tolerance_m > 0 ? step.tolerance_m : tolerance_;
   options.rule = contactRule();
-  options.unite = sides_ == kFront;  // the other side of a union of solids is no union
+  options.unite = sides_ == kFront;  // seen from the back, a union of solids is not a union
   if (step.max_iterations > 0)
     options.max_evaluations = static_cast<int>(std::min<uint32_t>(step.max_iterations, options.max_evaluations));
   return options;
@@ -109,8 +110,8 @@ Touch TracedShape::trace(const hsp_probe& probe, const hsp_step& step, hsp_conta
   offers_[index].count = 0;
   touch = answer(tracers_[index].step(Eigen::Vector3d(probe.position), optionsOf(step)), contact);
   if (searched_[index] == 0 && touch.traced) {
-    // What was followed is no longer near, and a foot on the way from there would push the wrong way: until the next
-    // search it is told of, but nothing pushes.
+    // The old foot is no longer near, and a foot on the way from it would push in a wrong direction. Until the next
+    // search the foot is reported, but there is no force.
     contact.depth_m = touch.depth = -touch.foot.distance;
     contact.flags &= ~uint32_t{HSP_OUT_CONTACT | HSP_OUT_HELD};
     touch.status = HSP_DEGRADED;
@@ -118,7 +119,7 @@ Touch TracedShape::trace(const hsp_probe& probe, const hsp_step& step, hsp_conta
   return touch;
 }
 
-/// After a jump only what a search has offered since is followed, if there is such.
+/// After a jump, traces only the feet that a search has offered since then, if there are any.
 void TracedShape::beginAnew(uint32_t probe) noexcept HSP_RT {
   tracers_[probe].forgetContact();
   const uint32_t count = offers_[probe].count;
@@ -128,7 +129,7 @@ void TracedShape::beginAnew(uint32_t probe) noexcept HSP_RT {
   searched_[probe] = 1;
 }
 
-/// A foot that is felt, as the host is told of it.
+/// Writes a foot to the contact record for the host.
 Touch TracedShape::answer(const contact::Foot& foot, hsp_contact& contact) const noexcept HSP_RT {
   Touch touch;
   touch.foot = foot;
@@ -158,13 +159,14 @@ void TracedShape::popThrough(uint32_t probe) noexcept HSP_RT {
   if (sides_ == kBoth && probe < tracers_.size()) tracers_[probe].popThrough();
 }
 
-/// A hand moves little between two searches: what was found two millimetres away leads to the same feet, and its
-/// distances less that way are bounds still. Only a valley that comes to be meanwhile is found later, as it is at
-/// 0.4 m/s anyway. Twenty of these at most, then it is searched again: 100 ms. Another hand that comes there, or one
-/// that jumps, has followed no foot on the way: for it is searched where it is.
+/// Returns a search result for p, if possible an old one. A hand moves little between two searches: a result from up to
+/// two millimetres away leads to the same feet, and its distances minus this path are still lower bounds. Only a valley
+/// that appears in the meantime is found later, as also happens at 0.4 m/s. After twenty uses (100 ms) there is a new
+/// search. A hand that has just arrived here, or has jumped, has followed no foot on the way; it gets a new search at
+/// its own place.
 const TracedShape::Search& TracedShape::searchAbout(const Eigen::Vector3d& p, double radius) const {
-  constexpr double kSamePlace = 2e-3;  // [m]
-  constexpr double kSameHand = 1e-3;   // [m] of way between two questions: 0.2 m/s
+  constexpr double kSamePlace = 2e-3;  // [m] greatest distance of p from the place of the search
+  constexpr double kSameHand = 1e-3;   // [m] greatest path of the same hand between two requests: 0.2 m/s
   constexpr int kMostTold = 20;
   for (Search& search : searches_)
     if (search.radius == radius && (search.at - p).norm() < kSamePlace && (search.asked - p).norm() < kSameHand) {
@@ -181,7 +183,7 @@ const TracedShape::Search& TracedShape::searchAbout(const Eigen::Vector3d& p, do
   return search;
 }
 
-/// One record a surface, then rivals: other feet on the same surfaces, which come as second offers.
+/// Writes one record per surface, and then rivals: other feet on the same surfaces, as second offers.
 int64_t TracedShape::nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const {
   const Eigen::Vector3d p(p_model);
   const Search& search = searchAbout(p, radius);

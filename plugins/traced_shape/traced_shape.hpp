@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Base of shapes that trace NURBS models: geometry and tracing parameters, the tracers, the surfaces and geometry
-/// extensions. A derived class adds what happens at contact.
+/// Base class of shapes that trace NURBS models. It has the parameters of geometry and tracing, the tracers, and the
+/// extensions for surfaces and geometry. A derived class adds the forces of a contact.
 #pragma once
 #include <array>
 #include <memory>
@@ -15,84 +15,91 @@
 
 namespace hapticd {
 
-/// Where a probe is against a model, seen from the side that is felt.
+/// The position of a probe relative to a model, seen from the side that is felt.
 struct Touch {
   contact::Foot foot;
-  Eigen::Vector3d normal{0, 0, 1};  ///< unit, away from the solid
-  double depth = 0;                 ///< [m] > 0 inside
-  bool traced = false;              ///< foot is valid
-  hsp_status status = HSP_OK;       ///< what step() answers for this probe
+  Eigen::Vector3d normal{0, 0, 1};  ///< unit normal, pointing away from the solid
+  double depth = 0;                 ///< [m] penetration depth, > 0 inside
+  bool traced = false;              ///< true if `foot` is valid
+  hsp_status status = HSP_OK;       ///< status that step() returns for this probe
 };
 
-/// [main] Triangles within `chord_error` [m] of the surfaces.
+/// [main] Returns triangles that are within `chord_error` [m] of the surfaces.
 Mesh tessellate(const trace::Model& model, double chord_error);
 
-/// T derives from TracedShape, calls load() in activate() and trace() for each probe, and joins tracingFields<T>() into
-/// its table of parameters.
+/// Base class of the shapes that trace. A derived class T calls load() in activate() and trace() for each probe, and
+/// joins tracingFields<T>() into its table of parameters.
 class TracedShape : public Shape {
  public:
   template <class T>
   static constexpr auto tracingFields() {
     using F = Fields<T>;
     return std::array{
-        F::path(
-            "geometry", &TracedShape::geometry_,
-            "model file (format hapticd-model/1), YAML or JSON; nurbs_rigid: or a part (.hpart), see hapticd import",
-            HSP_P_REQUIRED),
-        F::choice("sides", &TracedShape::sides_, kSideNames, kAuto,
-                  "front: solid behind the outward normal; back: before it; both: a shell that pushes back to the side "
-                  "it was entered from; auto: both for parts that bound no volume, front for all others"),
-        F::choice("method", &TracedShape::method_, kMethodNames, 1,
-                  "dpt: the first-order step of Thompson et al.; newton: safeguarded Newton to tolerance",
-                  HSP_P_ACCURACY),
-        F::integer("iterations", &TracedShape::iterations_, "", 1, 4, 1, "steps per tick of dpt", HSP_P_ACCURACY),
+        F::path("geometry", &TracedShape::geometry_,
+                "model file (format hapticd-model/1, YAML or JSON); for nurbs_rigid also a part (.hpart), see hapticd "
+                "import",
+                HSP_P_REQUIRED),
+        F::choice(
+            "sides", &TracedShape::sides_, kSideNames, kAuto,
+            "front: the solid is behind the outward normal; back: in front of it; both: a shell that pushes the probe "
+            "back to the side from which it came; auto: both for parts that are not closed, front for all others"),
+        F::choice(
+            "method", &TracedShape::method_, kMethodNames, 1,
+            "dpt: the first-order step of Thompson et al.; newton: a safeguarded Newton iteration down to `tolerance`",
+            HSP_P_ACCURACY),
+        F::integer("iterations", &TracedShape::iterations_, "", 1, 4, 1, "steps per tick with method: dpt",
+                   HSP_P_ACCURACY),
         F::choice("evaluation", &TracedShape::evaluation_, kEvaluationNames, 0,
-                  "table: polynomials of each knot span, fastest; net: control points alone, a tenth of the memory",
+                  "table: stores the polynomials of each knot span, fastest; net: uses only the control points, a "
+                  "tenth of the memory",
                   HSP_P_ACCURACY),
         F::real("tolerance", &TracedShape::tolerance_, "m", 1e-12, 1e-3, 1e-9,
-                "error of the foot point at which method newton stops", HSP_P_ACCURACY | HSP_P_LIVE),
+                "with method: newton, the search ends when the foot point's error is below this",
+                HSP_P_ACCURACY | HSP_P_LIVE),
         F::real("contact_hysteresis", &TracedShape::contact_hysteresis_, "m", 0, kHoldAlways, kHoldAlways,
-                "a contact is held on the face it began on, and goes over to another only when that is nearer by this: "
-                "0 the nearest face always; the default: until the probe comes out")};
+                "a contact stays on the face where it began, and changes to another face only if that is nearer by "
+                "more than this. 0: always the nearest face; default: the contact stays until the probe comes out")};
   }
 
-  /// Old names of parameters, at the end of the table: recordings know parameters by their number.
+  /// Old names of parameters. They stand at the end of the table, because recordings refer to parameters by their
+  /// number.
   template <class T>
   static constexpr auto formerFields() {
     using F = Fields<T>;
     return std::array{F::real("hold", &TracedShape::hold_, "m", kNotGiven, kHoldAlways, kNotGiven,
-                              "the former name of contact_hysteresis; -1: not given")};
+                              "the former name of contact_hysteresis; -1 means that it is not given")};
   }
 
   void deactivate();
   void reset() noexcept HSP_RT;
 
  protected:
-  /// [N] What a claim of stiffness holds up to where no arm is known: more than any arm of a hand gives.
+  /// [N] Force up to which a claim of stiffness holds if no arm is known: more than any hand-held arm gives.
   static constexpr double kUnknownForce = 100;
   enum Sides { kFront = 0, kBack = 1, kBoth = 2, kAuto = 3 };
 
-  /// [main] Reads and prepares the model, one tracer a probe. Logs the model's warnings; fills size and memory of the
-  /// report. @throws std::exception for the user.
+  /// [main] Reads and prepares the model, with one tracer per probe. Logs the model's warnings; fills size and memory
+  /// of the report. @throws std::exception with a text for the user.
   void load(const hsp_activation& activation, hsp_report& report);
-  /// [rt] Traces one probe and fills point, normal, depth, parameters and flags of its contact; forces stay zero.
+  /// [rt] Traces one probe, and sets point, normal, depth, parameters and flags of its contact. The forces stay zero.
   Touch trace(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
-  /// [rt] The number of a probe of this step.
+  /// [rt] Returns the index of a probe of this step.
   static uint32_t indexOf(const hsp_probe& probe, const hsp_step& step) noexcept HSP_RT {
     const auto offset = reinterpret_cast<const char*>(&probe) - reinterpret_cast<const char*>(step.in);
     return step.in_stride == 0 ? 0 : static_cast<uint32_t>(offset / static_cast<std::ptrdiff_t>(step.in_stride));
   }
-  /// [rt] A shell that was pushed through: from now on the other side of it is felt by this probe.
+  /// [rt] Call it after a probe was pushed through a shell: from now on this probe feels the shell's other side.
   void popThrough(uint32_t probe) noexcept HSP_RT;
-  const trace::Model& model() const noexcept { return *model_; }  ///< only without a part
-  /// [any] The part that is traced in place of a model file, null: none.
+  const trace::Model& model() const noexcept { return *model_; }  ///< the traced model; valid only if part() is null
+  /// [any] Returns the part that is traced instead of a model file; null if there is none.
   const brep::Model* part() const noexcept { return part_.get(); }
 
-  /// [main] Extensions of a T; call from T's extension().
+  /// [main] Returns the extensions of a T; call it from T's extension().
   template <class T>
   const void* tracedExtension(const char* name);
 
-  /// [main] A class that can do with parts says so before load(). `instance`: see brep::ModelOptions.
+  /// [main] Allows parts instead of model files; call it before load().
+  /// @param instance see brep::ModelOptions
   void takeParts(const std::string& instance) {
     takes_parts_ = true;
     instance_ = instance;
@@ -103,24 +110,26 @@ class TracedShape : public Shape {
   double tolerance_ = 1e-9, contact_hysteresis_ = kHoldAlways, hold_ = kNotGiven;
 
  private:
-  static constexpr double kHoldAlways = 1;  ///< [m] a contact hysteresis of this or more never leaves the face
+  /// [m] with a contact hysteresis of at least this, the contact never changes to another face
+  static constexpr double kHoldAlways = 1;
   static constexpr double kNotGiven = -1;
   static constexpr const char* kSideNames[] = {"front", "back", "both", "auto"};
   static constexpr const char* kMethodNames[] = {"dpt", "newton"};
   static constexpr const char* kEvaluationNames[] = {"table", "net"};
 
-  /// What the search offered since the last step: all that holds after a jump.
+  /// The feet that the proximity search has offered since the last step. After a jump only these are valid.
   struct Offers {
     std::array<hsp_near, 64> near;
     uint32_t count = 0;
   };
 
-  /// What was found about a place, and how often that was told since.
+  /// The result of a search about a place, and how often it has been returned since.
   struct Search {
     Eigen::Vector3d at{0, 0, 0};
-    Eigen::Vector3d asked{0, 0, 0};  ///< where it was last asked for: a hand is near there the next time
+    /// [m] place of the last request that used it; the same hand asks again near there
+    Eigen::Vector3d asked{0, 0, 0};
     double radius = -1;
-    int told = 0;
+    int told = 0;  ///< number of requests answered with this result
     trace::Found found;
   };
 
@@ -146,10 +155,10 @@ class TracedShape : public Shape {
   std::vector<brep::Tracer> part_tracers_;  ///< one per probe
   std::unique_ptr<trace::Model> model_;
   std::vector<trace::Tracer> tracers_;      ///< one per probe
-  std::vector<Offers> offers_;              ///< by probe
-  std::vector<char> searched_;              ///< by probe: a search has answered since the last jump
-  mutable std::array<Search, 4> searches_;  ///< [sim] newest ones, for some fingers
-  mutable std::size_t next_search_ = 0;     ///< [sim] the one to be replaced
+  std::vector<Offers> offers_;              ///< one per probe
+  std::vector<char> searched_;              ///< by probe: 1 if a search has answered since the last jump
+  mutable std::array<Search, 4> searches_;  ///< [sim] the newest results, enough for several fingers
+  mutable std::size_t next_search_ = 0;     ///< [sim] index of the result that is replaced next
   Mesh mesh_;
   hsp_ext_surfaces surfaces_extension_{};
   hsp_ext_geometry geometry_extension_{};

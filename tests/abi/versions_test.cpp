@@ -105,7 +105,7 @@ TEST_P(BrokenPlugin, IsRefusedWithItsOwnReason) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, BrokenPlugin,
                          testing::Values(Broken{"bad_no_symbol", "hsp_plugin_entry"},
-                                         Broken{"bad_magic", "does not begin with the expected mark"},
+                                         Broken{"bad_magic", "does not begin with the magic number of the interface"},
                                          Broken{"bad_major", "built for version 2."},
                                          Broken{"bad_no_class", "lists 0 classes"}, Broken{"bad_null_class", "damaged"},
                                          Broken{"bad_no_step", "lacks a required function"},

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// Numbers of 1 to 64 bits at any bit of a row of bytes.
+/// Numbers of 1 to 64 bits that begin at any bit of a sequence of bytes.
 ///
-/// Little endian counts bits from the lowest of the first byte upward; big endian from the highest downward, as the
-/// bytes are written on paper. For whole bytes this is the usual byte order.
+/// Little endian counts bits from the lowest bit of the first byte upward. Big endian counts from the highest bit
+/// downward, which is the order of bits on paper. For whole bytes this is the usual byte order.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -10,12 +10,12 @@
 
 namespace hapticd::codec {
 
-/// A number whose lowest `bits` places are ones, 0 to 64.
+/// Returns a number whose lowest `bits` bits (0 to 64) are ones.
 constexpr uint64_t onesOf(unsigned bits) noexcept {
   return bits >= 64 ? ~uint64_t{0} : (uint64_t{1} << bits) - 1;
 }
 
-/// [any] The `bits` bits that begin `skip` bits after the beginning of bytes[0].
+/// [any] Returns the number of `bits` bits that begins `skip` bits after the beginning of bytes[0].
 inline uint64_t getBits(const uint8_t* bytes, size_t skip, unsigned bits, bool big_endian) noexcept {
   bytes += skip / 8;
   auto offset = static_cast<unsigned>(skip % 8);
@@ -29,7 +29,7 @@ inline uint64_t getBits(const uint8_t* bytes, size_t skip, unsigned bits, bool b
   return value;
 }
 
-/// [any] Writes those bits; the bits around them stay.
+/// [any] Writes a number of `bits` bits to the same place. The bits around it stay.
 inline void putBits(uint64_t value, uint8_t* bytes, size_t skip, unsigned bits, bool big_endian) noexcept {
   bytes += skip / 8;
   auto offset = static_cast<unsigned>(skip % 8);

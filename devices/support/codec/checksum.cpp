@@ -47,7 +47,7 @@ uint64_t mirrored(uint64_t value, unsigned bits) noexcept {
   return out;
 }
 
-/// It goes bit by bit, because a report has few bytes and a table for each polynomial would be larger than all of them.
+/// Works bit by bit: a report has few bytes, and a table for each polynomial would be larger than many reports.
 uint64_t remainder(const Check& check, std::span<const uint8_t> bytes) noexcept {
   const uint64_t ones = onesOf(check.bits);
   if (check.reflected) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A word of a file as one of some named values.
+/// Reads a word of a file that must be one of several names.
 #pragma once
 #include <string>
 #include <vector>
@@ -15,8 +15,8 @@ struct Name {
   T value;
 };
 
-/// [main] The value of that name; where there is none, the first value, with a note in the tree.
-/// @param fits true for values that the note shall offer
+/// [main] Returns the value whose name the file gives. For another word it notes a problem in the tree and returns the
+/// first value. @param fits returns true for values that the problem's text should offer
 template <class T, size_t N, class Fits>
 T choiceOf(const Tree& tree, const Name<T> (&names)[N], const Fits& fits) {
   const size_t before = tree.problems();

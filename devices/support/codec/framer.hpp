@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Cuts a stream of USB packets into reports, when the arm's reports have marks of their own.
+/// Cuts a stream of USB packets into reports, for arms whose reports begin or end with marks.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,7 +16,7 @@ class Framer {
 
   void reset() noexcept { filled_ = 0, pending_ = false; }
 
-  /// [any] Takes what one transfer brought and calls `report(bytes)` for each whole report in it.
+  /// [any] Takes the bytes of one transfer, and calls `report(bytes)` for each report that is whole now.
   /// @return bytes that belonged to no report
   template <class Report>
   size_t take(std::span<const uint8_t> bytes, const Report& report) noexcept {
@@ -43,7 +43,7 @@ class Framer {
     return false;
   }
 
-  /// A mark that is not escaped is a mark wherever it stands.
+  /// A mark byte that is not escaped is a mark at any place. @return true if `held_` is a whole report
   bool takeEscaped(uint8_t byte, size_t& lost) noexcept {
     const Escape& escape = framing_.escape;
     if (byte == escape.mark && !pending_) return pending_ = true, false;
@@ -55,7 +55,7 @@ class Framer {
     const bool starts = !literal && framing_.start >= 0 && byte == framing_.start;
     if (ends && last) return held_[filled_++] = byte, true;
     if (starts) {
-      lost += filled_ > 1 ? filled_ : 0;  // one mark alone is a pause
+      lost += filled_ > 1 ? filled_ : 0;  // a mark alone may fill a pause, so it is not lost
       held_[0] = byte, filled_ = 1;
       return false;
     }
@@ -69,7 +69,7 @@ class Framer {
     return filled_ == report_bytes_;
   }
 
-  /// Drops the bytes up to the next start mark that is held. @return bytes dropped
+  /// Drops the held bytes before the next start mark. @return number of bytes dropped
   size_t resynchronise() noexcept {
     size_t next = 1;
     while (next < filled_ && framing_.start >= 0 && held_[next] != framing_.start) ++next;
@@ -80,12 +80,12 @@ class Framer {
 
   Framing framing_;
   size_t report_bytes_, filled_ = 0;
-  bool pending_ = false;  // the escape mark came, but not yet the byte after it
+  bool pending_ = false;  // the escape mark has come, but the byte after it has not
   std::array<uint8_t, kMaxReportBytes + 1> held_{};
 };
 
-/// [any] Puts escapes into a report that goes out; its own first and last byte stay where they are marks.
-/// @param bytes the report, and room for twice as many @return bytes to send
+/// [any] Puts escapes into a report that is to be sent; marks at its first and last byte are not escaped.
+/// @param bytes the report, with room for twice its size @return number of bytes to send
 inline size_t addEscapes(const Framing& framing, std::span<uint8_t> bytes, size_t size) noexcept {
   if (!framing.escape.used) return size;
   const auto isMark = [&](size_t i) { return (i == 0 && framing.start >= 0) || (i + 1 == size && framing.end >= 0); };
@@ -93,7 +93,7 @@ inline size_t addEscapes(const Framing& framing, std::span<uint8_t> bytes, size_
   for (size_t i = 0; i < size; ++i) extra += !isMark(i) && framing.escapes(bytes[i]) ? 1 : 0;
   size_t to = size + extra;
   if (to > bytes.size()) return 0;
-  for (size_t i = size; i-- > 0;) {  // goes backward, so that nothing is overwritten before it was read
+  for (size_t i = size; i-- > 0;) {  // backward, so that no byte is overwritten before it is read
     const uint8_t byte = bytes[i];
     if (isMark(i) || !framing.escapes(byte)) {
       bytes[--to] = byte;

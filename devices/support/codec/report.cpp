@@ -21,13 +21,13 @@ bool isNibble(uint8_t c) noexcept {
   return c >= kNibbleBase && c < kNibbleBase + 16;
 }
 
-/// What the bytes of a field hold: its bits, and the number that they mean, which is NaN where they mean none.
+/// The content of a field: its bits, and the number that they encode, which is NaN if they encode no number.
 struct Raw {
   uint64_t code = 0;
   double number = kNotANumber;
 };
 
-/// How many bits of a number a type has: text has fewer bits than its bytes hold.
+/// Returns how many bits the number of a field has. Text has fewer bits than its characters.
 unsigned digitsOf(const Field& field) noexcept {
   return field.type == Type::kNibble ? 4 : field.type == Type::kNibbles ? 16 : field.bits;
 }
@@ -47,7 +47,7 @@ double numberOf(Type type, unsigned bits, uint64_t code) noexcept {
   return kNotANumber;
 }
 
-/// The bits of a number that is in range; of an integer the nearest towards zero.
+/// Returns the bits of a number that is in range. For an integer type the number is rounded towards zero.
 uint64_t codeOf(const Field& field, double number) noexcept {
   const unsigned bits = digitsOf(field);
   if (field.type == Type::kFloat)
@@ -57,7 +57,7 @@ uint64_t codeOf(const Field& field, double number) noexcept {
     return number >= std::ldexp(1, static_cast<int>(bits)) ? onesOf(bits)
            : number <= 0                                   ? 0
                                                            : static_cast<uint64_t>(number);
-  // A double rounds up the greatest number of more than 53 bits, which would then wrap to the least one.
+  // A double rounds up the greatest number of more than 53 bits, and the result would wrap to the least number.
   const double half = std::ldexp(1, static_cast<int>(bits) - 1);
   const auto most = static_cast<int64_t>(onesOf(bits - 1));
   const int64_t whole = number >= half ? most : number <= -half ? -most - 1 : static_cast<int64_t>(number);
@@ -91,13 +91,13 @@ void putNumber(const Field& field, double number, uint8_t* bytes) noexcept {
   putCode(field, codeOf(field, number), bytes);
 }
 
-/// Sets one bit among those that the bytes of a field hold already; several fields share the bytes.
+/// Sets one bit and keeps the other bits, because several fields may share the bytes.
 void putBit(const Field& field, bool on, uint8_t* bytes) noexcept {
-  if (isText(field.type) && bytes[field.at] == 0) putCode(field, 0, bytes);  // a nibble of zeros is a letter too
+  if (isText(field.type) && bytes[field.at] == 0) putCode(field, 0, bytes);  // as text, zero is a letter
   if (on != field.inverted) putCode(field, rawOf(field, bytes).code | uint64_t{1} << field.bit, bytes);
 }
 
-/// Writes yes or no, as a bit or as the field's value.
+/// Writes yes or no, as one bit or as the whole number of the field.
 void putFlag(const Field& field, bool on, uint8_t* bytes) noexcept {
   return field.bit >= 0 ? putBit(field, on, bytes) : putNumber(field, on != field.inverted ? field.value : 0, bytes);
 }
@@ -106,7 +106,7 @@ uint64_t sumOf(const Field& field, const uint8_t* bytes) noexcept {
   return checksumOf(field.check, {bytes + field.from, static_cast<size_t>(field.to - field.from)});
 }
 
-/// True if a bit of a field is set, or its number is not zero; the opposite where the field is inverted.
+/// True if the bit of a field is set, or its number is not zero. The opposite if the field is inverted.
 bool isSet(const Field& field, const Raw& raw) noexcept {
   return (field.bit < 0 ? raw.number != 0 : (raw.code >> field.bit & 1) != 0) != field.inverted;
 }
@@ -115,14 +115,14 @@ bool isValue(const Field& field, const Raw& raw) noexcept {
   return field.type == Type::kFloat ? raw.number == field.value : raw.code == field.code;
 }
 
-/// Takes a button, a fault or a mark of calibration. A fault in any field is a fault of the report.
+/// Takes the flag of a button, of a fault or of calibration. If any fault field is set, the report has a fault.
 void takeFlag(const Field& field, bool set, State& state) noexcept {
   if (field.role == Role::kButton && set) state.buttons |= 1u << field.index;
   if (field.role == Role::kFault && set) state.fault = true;
   if (field.role == Role::kCalibrated) state.calibrated = set;
 }
 
-/// Takes a sequence number. All sequence numbers of one report are equal, or the report was torn.
+/// Takes a sequence number. If two sequence numbers of one report differ, the report is torn (half-written).
 Verdict takeSequence(const Field& field, uint64_t code, State& state) noexcept {
   const auto sequence = static_cast<uint32_t>(code);
   if (field.modulo != 0 && code >= field.modulo) return Verdict::kCorrupt;
@@ -132,7 +132,7 @@ Verdict takeSequence(const Field& field, uint64_t code, State& state) noexcept {
   return Verdict::kGood;
 }
 
-/// Judges a field whose content is known: a firmware number, a constant, a checksum.
+/// Checks a field whose content is known in advance: a firmware version, a constant or a checksum.
 Verdict judge(const Field& field, const Raw& raw, const uint8_t* bytes) noexcept {
   const bool good = field.role == Role::kChecksum ? raw.code == sumOf(field, bytes) : isValue(field, raw);
   if (good) return Verdict::kGood;
@@ -211,7 +211,7 @@ void putClock(const Field& field, double clock, uint8_t* bytes) noexcept {
   putNumber(field, field.type == Type::kFloat ? raw : std::fmod(std::max(raw, 0.0), turn), bytes);
 }
 
-/// Writes a field as the arm would write it.
+/// Writes one field as the arm would send it.
 void put(const Field& field, const State& state, uint8_t* bytes) noexcept {
   const auto flag = [&](bool on) {
     field.bit >= 0 ? putBit(field, on, bytes) : putNumber(field, on != field.inverted ? 1 : 0, bytes);
@@ -327,7 +327,7 @@ size_t write(const Report& report, std::span<uint8_t> bytes, const Put& put) noe
   if (report.id >= 0) *body++ = static_cast<uint8_t>(report.id);
   for (const Field& field : report.fields)
     if (field.role != Role::kChecksum) put(field, body);
-  for (const Field& field : report.fields)  // last, because it covers what the other fields wrote
+  for (const Field& field : report.fields)  // checksums last, because they cover the other fields
     if (field.role == Role::kChecksum) putCode(field, sumOf(field, body), body);
   return total;
 }

@@ -29,7 +29,7 @@ std::string shortText(double number) {
   return text;
 }
 
-/// How a value looks in a message.
+/// Returns a value as messages show it.
 std::string shown(const Json& value) {
   constexpr size_t kLongest = 40;
   std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);

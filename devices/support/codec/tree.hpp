@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A view of structured data that knows the path of every key, so that what is wrong in a device file can be named.
+/// A view of structured data that knows the path of every key, so that errors in a device file can name their place.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -9,38 +9,38 @@
 
 namespace hapticd::codec {
 
-/// One value and where it stands. A problem is noted with its path, and reading goes on with an allowed value, so that
-/// all problems of a file are reported at once.
+/// One value and its path. A problem is noted with the path, and reading continues with an allowed value, so that all
+/// problems of a file are reported at once.
 class Tree {
  public:
   bool has(const char* key) const;
-  Tree at(const char* key) const;  ///< a key that must exist; if it is missing, an allowed value is read from there
+  Tree at(const char* key) const;  ///< a key that must exist; if it is missing, its values are allowed defaults
   Tree item(size_t index) const;
-  size_t count() const;  ///< of a list
-  /// A number, or text such as 0x1A. @param unit for messages; "": it has none
+  size_t count() const;  ///< number of items of a list
+  /// Reads a number, or text such as 0x1A. @param unit unit for messages, or "" if there is none
   double number(double least, double most, const char* unit = "") const;
   double whole(double least, double most) const;
-  uint64_t bits(unsigned width) const;  ///< a whole number of up to 64 bits, exactly; negative: two's complement
+  uint64_t bits(unsigned width) const;  ///< an exact whole number of up to 64 bits; two's complement if negative
   bool boolean() const;
   std::string text() const;
-  bool only(std::span<const char* const> keys) const;  ///< a mapping with no other keys
-  void fail(const std::string& what) const;            ///< notes "path: what"
+  bool only(std::span<const char* const> keys) const;  ///< false, with a note, if it has other keys
+  void fail(const std::string& what) const;            ///< notes the problem "path: what"
   bool exists() const { return value_ != nullptr; }
-  size_t problems() const;  ///< problems of the whole document so far
+  size_t problems() const;  ///< number of problems noted so far in the whole document
 
  private:
   friend class Document;
   Tree(const void* value, std::string path, void* data) : value_(value), path_(std::move(path)), data_(data) {}
   bool isMapping() const;
-  const void* value_;  // nullptr: it is missing, which has been noted
+  const void* value_;  // nullptr if the value is missing, which has been noted
   std::string path_;
   void* data_;
 };
 
-/// Owns what a Tree looks at.
+/// Owns the data that a Tree shows.
 class Document {
  public:
-  /// @param name what messages call the document
+  /// @param name name of the document in messages
   Document(const std::string& json, std::string name);
   ~Document();
   Document(const Document&) = delete;

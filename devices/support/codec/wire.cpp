@@ -30,7 +30,7 @@ bool has(const Report& report, Role role) {
   return std::any_of(report.fields.begin(), report.fields.end(), [&](const Field& f) { return f.role == role; });
 }
 
-/// One field of a role for each joint.
+/// Notes a problem unless each joint has exactly one field of this role.
 void requireEach(const Tree& fields, const Report& report, size_t joints, Role role, const char* what) {
   for (size_t joint = 0; joint < joints; ++joint) {
     int found = 0;
@@ -43,7 +43,7 @@ void requireEach(const Tree& fields, const Report& report, size_t joints, Role r
   }
 }
 
-/// Reads the fields and, where all of them are known, checks that those are there which an arm needs.
+/// Reads the fields. If all of them are known, also checks that no field that an arm needs is missing.
 void readFields(const Tree& fields, size_t joints, bool input, bool sized, Report& report) {
   bool all_known = joints > 0;
   std::vector<bool> placed;
@@ -58,7 +58,7 @@ void readFields(const Tree& fields, size_t joints, bool input, bool sized, Repor
   requireEach(fields, report, joints, input ? Role::kPosition : Role::kTorque, input ? "position" : "torque");
   if (has(report, Role::kReference)) requireEach(fields, report, joints, Role::kReference, "reference");
   if (has(report, Role::kReference) != has(report, Role::kFollow))
-    fields.fail("references and \"follow\" belong together, expected both or none");
+    fields.fail("\"reference\" and \"follow\" belong together; expected fields of both, or of neither");
 }
 
 Report readReport(const Tree& tree, size_t joints, bool input) {
@@ -69,7 +69,7 @@ Report readReport(const Tree& tree, size_t joints, bool input) {
   const size_t before = tree.problems();
   report.size = static_cast<size_t>(tree.at("size").whole(1, kMaxReportBytes - 1));
   const bool sized = tree.problems() == before;
-  if (!sized) report.size = kMaxReportBytes - 1;  // notes this once, not once per field
+  if (!sized) report.size = kMaxReportBytes - 1;  // the size is unknown: notes this once, not once per field
   readFields(tree.at("fields"), joints, input, sized, report);
   return report;
 }
@@ -83,7 +83,7 @@ std::vector<uint8_t> bytesOf(const Tree& tree) {
 void readControl(const Tree& control, StartStep& step) {
   control.only(kControlKeys);
   step.is_control = true;
-  step.request_type = static_cast<uint8_t>(control.at("type").whole(0, 127));  // a report to the device is never read
+  step.request_type = static_cast<uint8_t>(control.at("type").whole(0, 127));  // 0 to 127 send to the device
   step.request = static_cast<uint8_t>(control.at("request").whole(0, 255));
   if (control.has("value")) step.value = static_cast<uint16_t>(control.at("value").whole(0, 65535));
   if (control.has("index")) step.index = static_cast<uint16_t>(control.at("index").whole(0, 65535));
@@ -96,7 +96,7 @@ StartStep readStep(const Tree& tree) {
   if (tree.has("send")) step.send = bytesOf(tree.at("send"));
   if (tree.has("expect")) step.expect = bytesOf(tree.at("expect"));
   if (!tree.has("control") && !tree.has("send") && !tree.has("expect"))
-    tree.fail("is empty, expected control, send or expect");
+    tree.fail("is empty; expected the key control, send or expect");
   if (tree.has("tries")) step.tries = static_cast<int>(tree.at("tries").whole(1, 1000));
   if (tree.has("wait")) step.wait = tree.at("wait").number(0, 10, "s");
   if (tree.has("timeout")) step.timeout = tree.at("timeout").number(0.001, 10);
@@ -124,11 +124,13 @@ Escape readEscape(const Tree& tree) {
       escape.plain[escape.count] = byteOf(pair.item(0));
       escape.code[escape.count] = byteOf(pair.item(1));
     }
-    if (tree.has("xor")) tree.at("xor").fail("beside codes, expected one of them");
-    if (tree.has("bytes")) tree.at("bytes").fail("beside codes, expected one of them");
+    if (tree.has("xor")) tree.at("xor").fail("cannot be used together with codes; remove one of the two");
+    if (tree.has("bytes")) tree.at("bytes").fail("cannot be used together with codes; remove one of the two");
     const auto end = escape.plain.begin() + static_cast<long>(escape.count);
     if (std::find(escape.plain.begin(), end, escape.mark) == end)
-      codes.fail("have none for the mark itself, expected one: it could not be sent");
+      codes.fail(
+          "no code stands for the escape mark itself; add one: [mark, code] (a byte equal to the mark could not be "
+          "sent otherwise)");
     return escape;
   }
   if (tree.has("xor")) escape.flip = static_cast<uint8_t>(tree.at("xor").whole(1, 255));
@@ -152,16 +154,17 @@ Framing readFraming(const Tree& tree) {
   if (!tree.has("escape")) return framing;
   framing.escape = readEscape(tree.at("escape"));
   if (framing.start < 0 && framing.end < 0)
-    tree.at("escape").fail("without marks, expected framing.start or framing.end: what else would be escaped");
+    tree.at("escape").fail("escapes need a mark; give framing.start or framing.end, or remove framing.escape");
   for (const int mark : {framing.start, framing.end})
-    if (mark == framing.escape.mark) tree.at("escape").fail("has the mark of start or end, expected another byte");
+    if (mark == framing.escape.mark)
+      tree.at("escape").fail("its mark is the same byte as framing.start or framing.end; give it another byte");
   for (const int mark : {framing.start, framing.end})
     if (mark >= 0 && framing.escape.count > 0 && !framing.escapes(static_cast<uint8_t>(mark)))
-      tree.at("escape").fail("has no code for the mark of start or end, expected one: it could not be sent");
+      tree.at("escape").fail("no code stands for the byte of framing.start or framing.end; add one to codes");
   return framing;
 }
 
-/// Who speaks when.
+/// Reads whether the arm sends by itself or answers, and how often.
 void readTimes(const Tree& tree, Wire& wire) {
   if (tree.has("exchange")) wire.exchange = choiceOf(tree.at("exchange"), kExchanges);
   wire.rate = tree.at("rate").number(50, kMaxRate, "Hz");
@@ -169,7 +172,9 @@ void readTimes(const Tree& tree, Wire& wire) {
   if (tree.has("watchdog")) wire.watchdog = tree.at("watchdog").number(0, 10, "s (20 ms are 0.02 s)");
   if (wire.watchdog > 0 && wire.keep_alive > wire.watchdog / 2)
     tree.at(tree.has("keep_alive") ? "keep_alive" : "watchdog")
-        .fail("keep_alive is more than half of the watchdog time, expected less: the motors would stutter");
+        .fail(
+            "keep_alive is more than half of the watchdog time; expected at most half, or the motors would switch off "
+            "between commands");
 }
 
 }  // namespace
@@ -202,8 +207,8 @@ Wire readWire(const std::string& json, size_t joints) {
     placeMarks(tree.at("output"), wire.framing, wire.framing.escape.used, wire.output);
   }
   if (wire.framing.escape.used && wire.output.bytes() > kMaxReportBytes / 2)
-    tree.at("output").at("size").fail("more than half of " + std::to_string(kMaxReportBytes) +
-                                      " bytes, expected less: with escapes it may double");
+    tree.at("output").at("size").fail("with framing.escape, a report may have at most half of " +
+                                      std::to_string(kMaxReportBytes) + " bytes, because escapes can double its size");
   document.check();
   return wire;
 }

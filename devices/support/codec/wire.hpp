@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The wire format of an arm as its device file gives it: reports, framing, start-up sequence and timing. Read once and
-/// checked then, so that the codec can trust every offset.
+/// The wire format of an arm as its device file gives it: reports, framing, start-up sequence and timing. It is checked
+/// when it is read, so that the codec can trust every offset.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -12,24 +12,24 @@
 
 namespace hapticd::codec {
 
-/// Who speaks first.
+/// Whether the arm sends reports by itself.
 enum class Exchange : uint8_t {
   kStream,  ///< the arm sends by itself
   kPoll,    ///< the arm answers each command
 };
 
-/// Bytes that may not stand inside a report are sent as the mark and another byte. HDLC and PPP flip a bit, SLIP has a
-/// code for each.
+/// How to send a byte that may not appear inside a report: as the escape mark and a second byte. In HDLC and PPP the
+/// second byte is the first with some bits flipped; SLIP has a code for each such byte.
 struct Escape {
   bool used = false;
   uint8_t mark = 0;
-  uint8_t flip = 0x20;  ///< exclusive or of what follows the mark, where there are no codes
-  size_t count = 0;     ///< of codes
+  uint8_t flip = 0x20;  ///< bits that are flipped in the byte after the mark; used if there are no codes
+  size_t count = 0;     ///< number of codes
   std::array<uint8_t, 8> plain{}, code{};
-  std::array<uint8_t, 16> also{};  ///< bytes that are escaped besides marks, where there are no codes
+  std::array<uint8_t, 16> also{};  ///< bytes that are escaped in addition to the marks, if there are no codes
   size_t also_count = 0;
 
-  /// The code that follows the mark for a byte, and the byte for a code.
+  /// encoded() returns the byte that follows the mark for `byte`; decoded() is its inverse.
   uint8_t encoded(uint8_t byte) const noexcept {
     for (size_t i = 0; i < count; ++i)
       if (plain[i] == byte) return code[i];
@@ -42,15 +42,16 @@ struct Escape {
   }
 };
 
-/// Reports inside a stream of bytes: packets start with bytes of the USB chip, reports start and end with a mark.
+/// How reports lie in a stream of bytes: each packet may begin with bytes of the USB chip, and each report may begin
+/// and end with a mark.
 struct Framing {
   bool used = false;
   size_t header = 0;         ///< bytes at the head of each USB packet that belong to the USB chip
   size_t packet = 64;        ///< bytes of one USB packet
-  int start = -1, end = -1;  ///< first and last byte of a report; -1: none
+  int start = -1, end = -1;  ///< marks: first and last byte of a report; -1 if there is no such mark
   Escape escape;
 
-  /// True for a byte that must not be sent as it is.
+  /// True for a byte that must be escaped.
   bool escapes(uint8_t byte) const noexcept {
     if (escape.count > 0)
       return std::find(escape.plain.begin(), escape.plain.begin() + escape.count, byte) !=
@@ -61,33 +62,33 @@ struct Framing {
   }
 };
 
-/// One step of the start-up sequence: a control request, or bytes that the arm must answer.
+/// One step of the start-up sequence: a control request, bytes to send, and bytes that must come as the answer.
 struct StartStep {
   bool is_control = false;
   uint8_t request_type = 0, request = 0;
   uint16_t value = 0, index = 0;
   std::vector<uint8_t> send, expect;
   int tries = 1;
-  double wait = 0;     ///< [s] after the step
-  double timeout = 1;  ///< [s] for the answer
+  double wait = 0;     ///< [s] pause after the step
+  double timeout = 1;  ///< [s] longest time until the answer
 };
 
 /// Everything about the wire except the transport's own addresses.
 struct Wire {
   Exchange exchange = Exchange::kStream;
-  double rate = 1000;        ///< [Hz] of reports
+  double rate = 1000;        ///< [Hz] rate of the arm's reports
   double keep_alive = 0.01;  ///< [s] longest pause between commands
-  double watchdog = 0;       ///< [s] after which the hardware cuts its motors by itself; 0: it does not
+  double watchdog = 0;       ///< [s] time without commands until the hardware switches its motors off; 0: never
   Framing framing;
   std::vector<StartStep> startup;
   Report input, output;
   uint8_t endpoint_in = 0x81, endpoint_out = 0x02;
-  /// The arm's own watchdog ends a force soon enough for a hand. A slower one does not count: then a guard process
-  /// stands by.
+  /// True if the arm's own watchdog ends a force soon enough to protect a hand. If not, the daemon starts a guard
+  /// process.
   bool cutsSoon() const noexcept { return watchdog > 0 && watchdog <= 0.1; }
-  /// Each report carries another clock value, so two reports with the same time are the same report. The clock advances
-  /// at least twice a report, wraps after more than two, and does not get coarser with the hours, as 32 bits of a float
-  /// do.
+  /// True if the arm's clock has a new value in each report, so that two reports with the same value are the same
+  /// report. For this the clock must advance at least twice per report, wrap after more than two reports, and not
+  /// become coarser as it grows, as a 32-bit float does.
   bool clockTells() const noexcept {
     return std::any_of(input.fields.begin(), input.fields.end(), [this](const Field& field) {
       const double ticks = 1 / (field.scale * rate);
@@ -98,8 +99,8 @@ struct Wire {
 };
 
 /// [main] Reads JSON text (the parameter `wire` of a device file). Throws std::invalid_argument with the key's path,
-/// its value and what was expected.
-/// @param joints of the arm: every one needs a position in and a torque out
+/// its value and what was expected. @param joints number of joints of the arm; each needs a position field in the input
+/// report and a torque field in the output report
 Wire readWire(const std::string& json, size_t joints);
 
 }  // namespace hapticd::codec

@@ -64,7 +64,7 @@ bool readTarget(const Tree& tree, size_t joints, bool input, Field& field) {
   return tree.problems() == before;
 }
 
-/// "u24": u, i or f and the bits; the two kinds of text.
+/// Reads a type such as "u24" (u, i or f, then the number of bits), or one of the two kinds of text.
 void readType(const Tree& tree, Field& field) {
   const size_t before = tree.problems();
   const std::string text = tree.text();
@@ -90,7 +90,7 @@ void readType(const Tree& tree, Field& field) {
   }
 }
 
-/// The first byte of a field, whose bits must fit into the report from there on.
+/// Reads the first byte of a field. The bits of the field must fit into the report from this byte on.
 double readByte(const Tree& at, const Report& report, unsigned bits) {
   const double byte = at.whole(0, kMaxReportBytes);
   const auto first = static_cast<size_t>(byte), last = first + (bits + 7) / 8 - 1;
@@ -106,7 +106,7 @@ double readByte(const Tree& at, const Report& report, unsigned bits) {
 void readPlace(const Tree& tree, const Report& report, Field& field) {
   const auto room = static_cast<double>(8 * report.size - field.bits);
   if (tree.has("bit_offset") && isText(field.type))
-    tree.at("bit_offset").fail("of text, expected it only with i, u and f types");
+    tree.at("bit_offset").fail("a text field has no bit_offset; only fields of type i, u or f have one");
   if (field.bits > 8 * report.size)
     return tree.at("type").fail("takes " + std::to_string(field.bits / 8) +
                                 " bytes, expected no more than the report's " + std::to_string(report.size));
@@ -124,25 +124,27 @@ void readNumber(const Tree& tree, const Report& report, Field& field) {
   std::tie(field.least, field.most) = rangeOf(field.type, field.bits);
   if (tree.has("bit")) {
     if (field.type == Type::kFloat || field.type == Type::kNibbles)
-      tree.at("bit").fail("of a " + tree.at("type").text() + ", expected a whole-number type");
+      tree.at("bit").fail("a field of type " + tree.at("type").text() +
+                          " has no single bits; expected a whole-number type");
     const double bits = field.type == Type::kNibble ? 4 : field.bits;
     field.bit = static_cast<int8_t>(tree.at("bit").whole(0, bits - 1));
   }
   if (tree.has("inverted")) field.inverted = tree.at("inverted").boolean();
 }
 
-/// A number has one scale and one offset, and a torque is never in degrees.
+/// Notes a problem if a key in degrees is used together with the key in SI units, or for a torque.
 void refuseDegrees(const Tree& tree, const Field& field) {
   for (const auto& [key, plain] : {std::pair{"scale_degrees", "scale"}, std::pair{"offset_degrees", "offset"}}) {
     if (!tree.has(key)) continue;
     if (field.role == Role::kTorque)
-      tree.at(key).fail("of a torque, expected " + std::string(plain) + " in N m: only angles have degrees");
+      tree.at(key).fail("a torque has no degrees; use " + std::string(plain) + " in N m");
     else if (tree.has(plain))
-      tree.at(key).fail("beside " + std::string(plain) + ", expected one of them");
+      tree.at(key).fail("cannot be used together with " + std::string(plain) + "; remove one of the two");
   }
 }
 
-/// A motor that can push only one way would draw the hand in where it should push it out.
+/// Notes a problem if the field of a torque cannot hold both signs: a motor that can push only in one direction would
+/// pull the hand into a surface.
 void requireBothSigns(const Tree& tree, const Field& field) {
   const auto [least, most] = rangeOf(field.type, field.bits);
   const double a = least * field.scale + field.offset, b = most * field.scale + field.offset;
@@ -150,8 +152,8 @@ void requireBothSigns(const Tree& tree, const Field& field) {
   char range[64];
   std::snprintf(range, sizeof range, "%g to %g N m", std::min(a, b), std::max(a, b));
   tree.at("type").fail("\"" + tree.at("type").text() + "\" is " + range +
-                       " with this scale and offset, expected both " +
-                       "signs: a signed type such as i16, or an offset that puts zero in the middle");
+                       " with this scale and offset; expected both " +
+                       "signs: use a signed type such as i16, or an offset that puts zero in the middle");
 }
 
 void readScale(const Tree& tree, Field& field) {
@@ -173,7 +175,8 @@ void readScale(const Tree& tree, Field& field) {
   if (tree.has("wraps")) {
     field.wraps = tree.at("wraps").boolean();
     if (field.wraps && (field.type == Type::kFloat || field.role != Role::kPosition))
-      tree.at("wraps").fail("true, expected it only with a whole-number position");
+      tree.at("wraps").fail(
+          "only a position with a whole-number type can wrap; remove this key, or correct is or type");
   }
 }
 
@@ -197,7 +200,7 @@ void readSequence(const Tree& tree, Field& field) {
     field.modulo = static_cast<uint64_t>(tree.at("modulo").whole(2, std::min(field.most + 1, 4294967296.0)));
 }
 
-/// The method by its name, or by the numbers of a CRC. @return false: the method is not known
+/// Reads the method, which is given by its name or by the numbers of a CRC. @return false if the method is not known
 bool readMethod(const Tree& tree, Field& field) {
   Check& check = field.check;
   check.bits = field.bits;
@@ -227,7 +230,7 @@ bool readMethod(const Tree& tree, Field& field) {
   return false;
 }
 
-/// The keys that change a sum or a CRC; a CRC by name fixes all of them.
+/// Reads the keys that change a sum or a CRC. A CRC that is given by its name allows none of them.
 void readMethodDetails(const Tree& tree, Check& check) {
   const bool crc = tree.at("method").text() == "crc", named = check.method == Checksum::kCrc && !crc;
   const auto forbid = [&](const char* key, bool allowed, const char* what) {
@@ -236,9 +239,9 @@ void readMethodDetails(const Tree& tree, Check& check) {
   };
   (void)forbid("polynomial", crc, "method crc");
   if (forbid("reflected", crc, "method crc")) check.reflected = tree.at("reflected").boolean();
-  if (forbid("initial", !named, "sum, xor and crc: a CRC by name has its own"))
+  if (forbid("initial", !named, "sum, xor and crc (a CRC given by its name has this value built in)"))
     check.initial = tree.at("initial").bits(check.bits);
-  if (forbid("final_xor", !named, "sum, xor and crc: a CRC by name has its own"))
+  if (forbid("final_xor", !named, "sum, xor and crc (a CRC given by its name has this value built in)"))
     check.final_xor = tree.at("final_xor").bits(check.bits);
   const bool words = check.method != Checksum::kCrc;
   if (forbid("negated", check.method == Checksum::kSum, "a sum")) check.negated = tree.at("negated").boolean();
@@ -249,8 +252,9 @@ void readChecksum(const Tree& tree, const Report& report, bool placed, Field& fi
   if (readMethod(tree, field)) readMethodDetails(tree, field.check);
   field.check.big_endian = field.big_endian;
   if (tree.has("over_id") && tree.at("over_id").boolean()) {
-    if (report.id < 0) tree.at("over_id").fail("true, but the report has no id");
-    if (field.check.word > 1) tree.at("over_id").fail("true, expected with words of 1 byte alone");
+    if (report.id < 0)
+      tree.at("over_id").fail("true, but the report has no id; remove over_id, or give the report an id");
+    if (field.check.word > 1) tree.at("over_id").fail("over_id works only with word: 1; remove one of the two");
     field.check = startedWith(field.check, static_cast<uint8_t>(std::max(report.id, 0)));
   }
   field.from = static_cast<uint16_t>(tree.at("from").whole(0, static_cast<double>(report.size - 1)));
@@ -261,16 +265,16 @@ void readChecksum(const Tree& tree, const Report& report, bool placed, Field& fi
     tree.at("type").fail("\"" + tree.at("type").text() + "\", expected u" + std::to_string(field.check.bits) + " for " +
                          tree.at("method").text());
   if (placed && field.at < field.to && field.at + field.bytes() > field.from)
-    tree.at("at").fail("lies inside the bytes that the checksum covers, expected it outside");
+    tree.at("at").fail("the checksum lies inside the bytes that it covers; expected a place outside of from ... to");
 }
 
-/// The clock of the arm: how many seconds one raw unit is.
+/// Reads the clock of the arm, whose scale is the length of one raw unit in s.
 void readTime(const Tree& tree, Field& field) {
   const Tree scale = tree.at("scale");
   const size_t before = tree.problems();
   field.scale = scale.number(0, 10);
   if (tree.problems() != before || field.scale > 0) return;
-  scale.fail("0, expected the seconds of one raw unit: 1.0e-6 of a clock in microseconds");
+  scale.fail("0, expected the length of one raw unit in s, such as 1.0e-6 for a clock in microseconds");
   field.scale = 1;
 }
 
@@ -288,7 +292,7 @@ ReadField readField(const Tree& tree, const Report& report, size_t joints, bool 
   const size_t before = tree.problems();
   readNumber(tree, report, field);
   read.placed = tree.problems() == before;
-  if (!read.target_known) return read;  // what else a field needs depends on its role
+  if (!read.target_known) return read;  // the role decides which other keys a field needs
   if (ofJoint(field.role)) readScale(tree, field);
   if (field.role == Role::kTorque && !input && tree.problems() == before) requireBothSigns(tree, field);
   if (field.role == Role::kConstant || field.role == Role::kFirmware) readConstant(tree, field);

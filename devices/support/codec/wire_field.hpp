@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// One field of a report as a device file describes it.
+/// Reads one field of a report from a device file.
 #pragma once
 #include <span>
 
@@ -11,15 +11,15 @@ namespace hapticd::codec {
 /// Every key that a field may have.
 std::span<const char* const> fieldKeys();
 
-/// Whether a field is known well enough to count it: its role, and its joint.
+/// A field, and how much of it is known: `target_known` says whether its role and its joint are valid.
 struct ReadField {
   Field field;
   bool target_known = false;
-  bool placed = false;  ///< whether its place and its number of bits are known
+  bool placed = false;  ///< true if its place and its number of bits are known
 };
 
-/// [main] Reads and checks one field; what is wrong is noted in the tree.
-/// @param joints of the arm; 0: not known
+/// [main] Reads and checks one field, and notes each problem in the tree.
+/// @param joints number of joints of the arm, 0 if unknown @param input true for a report from the arm
 ReadField readField(const Tree& tree, const Report& report, size_t joints, bool input);
 
 }  // namespace hapticd::codec

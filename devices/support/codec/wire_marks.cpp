@@ -11,7 +11,7 @@
 namespace hapticd::codec {
 namespace {
 
-/// One mark: its byte of the report, counted without the id.
+/// One mark, and the number of its byte in the report, counted without the id.
 struct Mark {
   const char* key;
   int value;
@@ -34,7 +34,7 @@ Field constantAt(const Mark& mark) {
   return field;
 }
 
-/// The byte of a mark as one constant of the report writes it.
+/// The value that one constant of the report gives to the byte `at`.
 uint8_t writtenAt(const Report& report, const Field& field, size_t at) {
   Report alone;
   alone.size = report.size;
@@ -44,7 +44,8 @@ uint8_t writtenAt(const Report& report, const Field& field, size_t at) {
   return bytes[at];
 }
 
-/// Bits of a mark's byte that the file gives: all of them must be those of the mark.
+/// Adds a constant for one mark if no field of the file has bits in its byte. If fields have bits there, they must
+/// write the bits of the mark; another field is noted as a problem.
 void placeMark(const Tree& tree, const Mark& mark, bool framed, Report& report) {
   uint8_t given = 0;
   for (size_t i = 0; i < report.fields.size(); ++i) {
@@ -61,11 +62,11 @@ void placeMark(const Tree& tree, const Mark& mark, bool framed, Report& report) 
         .fail((fixed ? "is " + hexOf(writtenAt(report, field, mark.at)) + " in byte " : "takes bits of byte ") +
               std::to_string(mark.at) + ", where framing." + mark.key + " puts its mark " + hexOf(mark.value) +
               ", expected " +
-              (fixed ? "the same number, or none: the mark is written without a constant"
-                     : "another place: size and at count the marks"));
+              (fixed ? "the same value, or no constant field here (framing writes the mark by itself)"
+                     : "another byte: the marks are bytes of the report, so `size` and `at` count them too"));
     return;
   }
-  // What the file says of this byte of a command without escapes is a head of its own.
+  // Without escapes, a field that the file gives for this byte of a command is the head of the command, and stays.
   if (given == 0 || framed) report.fields.push_back(constantAt(mark));
 }
 
@@ -76,8 +77,9 @@ void placeMarks(const Tree& tree, const Framing& framing, bool framed, Report& r
     return tree.at("size").fail("1, expected 2 or more: framing.start and framing.end are bytes of the report");
   if (framing.start >= 0 && report.id >= 0 && report.id != framing.start) {
     if (framed)
-      tree.at("id").fail(std::to_string(report.id) + " is the first byte, where framing.start puts its mark " +
-                         hexOf(framing.start) + ", expected no id: a constant at 1 tells kinds of reports apart");
+      tree.at("id").fail(
+          std::to_string(report.id) + " is the report id, and framing.start puts its mark " + hexOf(framing.start) +
+          " into the same first byte; remove id (a constant field at byte 1 can tell kinds of reports apart)");
   } else if (framing.start >= 0 && report.id < 0) {
     placeMark(tree, {"start", framing.start, 0}, framed, report);
   }

@@ -11,7 +11,7 @@
 namespace hapticd::codec {
 namespace {
 
-/// Letters and digits alone, in lower case: catalogues differ in the rest.
+/// Keeps only letters and digits, in lower case: catalogues differ in the other characters.
 std::string squeezed(const std::string& text) {
   std::string out;
   for (const char c : text)

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-/// What an engineer meant who wrote a type or a checksum as another language or catalogue does.
+/// Guesses which type or checksum is meant by a name from another programming language or catalogue.
 #pragma once
 #include <string>
 
 namespace hapticd::codec {
 
-/// [main] For "int24", "s24", "uint8_t" or "float" it is " (did you mean \"i24\"?)", or "".
+/// [main] For a type such as "int24", "s24" or "uint8_t", returns " (did you mean \"i24\"?)", or "" without a guess.
 std::string typeMeant(const std::string& text);
 
-/// [main] The same for "CRC-16/XMODEM", "xmodem" or "crc16-ccitt", with the name that this project uses.
+/// [main] The same for a checksum such as "CRC-16/XMODEM", "xmodem" or "crc16-ccitt", with this project's name.
 std::string methodMeant(const std::string& text);
 
 }  // namespace hapticd::codec

@@ -14,7 +14,7 @@ bool isFlag(Role role) {
          role == Role::kCalibrate || role == Role::kFollow;
 }
 
-/// True for a number that changes by itself: a switch on its bits would change with it.
+/// True for a field whose number changes with time: a flag in its bits would change with the number.
 bool isNumber(Role role) {
   return ofJoint(role) || role == Role::kSequence || role == Role::kStarts || role == Role::kTime ||
          role == Role::kChecksum;
@@ -26,14 +26,14 @@ bool exclusive(Role a, Role b) {
   return ofJoint(a) || ofJoint(b) || (isFlag(a) && isNumber(b)) || (isNumber(a) && isFlag(b));
 }
 
-/// Names a field: "fields[0] (position of joint 1)".
+/// Returns the name of a field for messages: "fields[0] (position of joint 1)".
 std::string nameOf(const Tree& fields, const Field& field, size_t i) {
   std::string name = "fields[" + std::to_string(i) + "] (" + fields.item(i).at("is").text();
   if (ofJoint(field.role)) name += " of joint " + std::to_string(field.index + 1);
   return name + ")";
 }
 
-/// The first byte in which both fields have a bit; the size of the report where there is none.
+/// Returns the first byte in which both fields use the same bit, or the size of the report if there is none.
 size_t firstShared(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
   size_t byte = 0;
   while (byte < a.size() && (a[byte] & b[byte]) == 0) ++byte;
@@ -85,7 +85,7 @@ void checkOverlaps(const Tree& fields, const Report& report, const std::vector<b
       const Tree tree = fields.item(later);
       tree.at(tree.has("at") ? "at" : "bit_offset")
           .fail("takes bits of byte " + std::to_string(byte) + ", which " + nameOf(fields, report.fields[i], i) +
-                " has already, expected bits of its own: correct at, bit_offset or type of one of them");
+                " uses already; correct at, bit_offset or type of one of the two fields");
       break;
     }
 }

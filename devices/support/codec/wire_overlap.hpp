@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Fields of a report that stand on each other's bits.
+/// Finds fields of a report that use the same bits.
 #pragma once
 #include <vector>
 
@@ -8,21 +8,22 @@
 
 namespace hapticd::codec {
 
-/// True if each joint has a field of this role.
+/// True for roles that belong to one joint, such as its position.
 constexpr bool ofJoint(Role role) noexcept {
   return role == Role::kPosition || role == Role::kVelocity || role == Role::kTorque || role == Role::kReference;
 }
 
-/// The bits of a report that a field reads or writes, as one byte per byte of the report, without the id. For a flag (a
-/// button, a fault) it is the one bit that the flag reads.
+/// Returns a mask of the bits of a report that a field reads or writes: one byte for each byte of the report, without
+/// the id. For a flag (a button, a fault) only the bit that the flag reads is set.
 std::vector<uint8_t> bitsTaken(const Field& field, size_t report_bytes);
 
-/// [main] Joints whose numbers have a byte that no checksum of the report covers; none where there is no checksum.
+/// [main] Returns the fields of joints with a byte that no checksum of the report covers. Returns none if the report
+/// has no checksum.
 std::vector<const Field*> outsideChecksum(const Report& report);
 
-/// [main] Notes each field that shares a bit with a joint's number, and each joint's number that shares one with
-/// another field. Bits of one status byte may stand side by side.
-/// @param placed of each field: its place is known, so that its bits mean something
+/// [main] Notes a problem for each field of a joint that shares a bit with another field. Flags may share a status
+/// byte.
+/// @param placed for each field, whether its place is known; other fields are not checked
 void checkOverlaps(const Tree& fields, const Report& report, const std::vector<bool>& placed);
 
 }  // namespace hapticd::codec

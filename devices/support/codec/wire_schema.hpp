@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The JSON Schema of a wire format, for editors. What the schema cannot say (fields that fit the report, one position
-/// a joint) readWire() checks.
+/// The JSON Schema of a wire format, for editors. readWire() checks the rules that the schema cannot express, such as
+/// that the fields fit into the report and that each joint has one position.
 #pragma once
 
 namespace hapticd::codec {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// An arm with joints that do not carry its tip, such as the thumb of an exoskeleton: they are measured and have
-/// motors, but no force at the tip reaches them. Their weight counts to the link that they hang on.
+/// An arm with further joints that do not carry its tip, such as the thumb of an exoskeleton. These joints are measured
+/// and have motors, but a force at the tip gives them no torque. Their weight is part of the link that they hang on.
 #pragma once
 #include <memory>
 
@@ -10,14 +10,14 @@ namespace hapticd::kinematics {
 
 class Passengers : public Arm {
  public:
-  /// @param others limits of the joints after those of `arm`. Throws std::invalid_argument.
+  /// @param others limits of the further joints, which come after the joints of `arm`. Throws std::invalid_argument.
   Passengers(std::unique_ptr<Arm> arm, const JointLimits& others);
 
   int jointCount() const noexcept override { return carrying_ + others_; }
   bool forward(const JointVector& q, Pose& tip) const noexcept override;
   bool jacobian(const JointVector& q, Jacobian& J) const noexcept override;
   bool gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept override;
-  /// The other joints stay where they are.
+  /// Leaves the further joints of q unchanged.
   bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept override;
   JointVector neutral() const noexcept override;
 

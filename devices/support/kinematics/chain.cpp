@@ -10,13 +10,13 @@
 namespace hapticd::kinematics {
 namespace {
 
-constexpr int kInverseSteps = 200;  ///< damped least squares converges in 5 to 30 iterations away from the limits
-constexpr double kInverseTolerance = 1e-14;  ///< [m]: the rounding error of a reach of one metre is 1e-16
+constexpr int kInverseSteps = 200;  ///< most iterations; away from joint limits, damped least squares needs 5 to 30
+constexpr double kInverseTolerance = 1e-14;  ///< [m] a smaller error ends the search (rounding at 1 m is 1e-16)
 constexpr int kInverseStarts = 10;
-constexpr double kAcceptedError = 1e-12;  ///< [m]
+constexpr double kAcceptedError = 1e-12;  ///< [m] largest error of a solution
 
-/// cos and sin of a link twist. Tables say 1.5708 or pi / 2 and mean a right angle, which cos(pi/2) = 6e-17 would
-/// tilt.
+/// Returns cos and sin of a link twist. Tables write a right angle as 1.5708 or pi / 2; it is made exact, because
+/// cos(pi/2) = 6e-17 would tilt the axis.
 void exactTwist(double alpha, double& cosine, double& sine) {
   const double turns = alpha / (M_PI / 2), whole = std::round(turns);
   if (std::abs(turns - whole) > 1e-12) {
@@ -32,17 +32,16 @@ void exactTwist(double alpha, double& cosine, double& sine) {
 void check(const ChainLink& link, size_t index) {
   const std::string who = "joint " + std::to_string(index + 1) + " of the chain: ";
   for (const double value : {link.a, link.alpha, link.d, link.theta, link.min, link.max, link.mass})
-    if (!std::isfinite(value))
-      throw std::invalid_argument(who + "a number that is not finite, expected finite numbers");
+    if (!std::isfinite(value)) throw std::invalid_argument(who + "a number is not finite; expected finite numbers");
   if (link.min > link.max) {
     char text[120];
     std::snprintf(text, sizeof text, "arm.limits[%zu]: %g to %g, expected the smaller one first", index, link.min,
                   link.max);
     throw std::invalid_argument(text);
   }
-  if (link.mass < 0) throw std::invalid_argument(who + "negative mass, expected 0 kg or more");
+  if (link.mass < 0) throw std::invalid_argument(who + "the mass is negative; expected 0 kg or more");
   if (!link.center.allFinite() || !link.inertia.allFinite())
-    throw std::invalid_argument(who + "centre or inertia that is not finite, expected finite numbers");
+    throw std::invalid_argument(who + "the centre or inertia is not finite; expected finite numbers");
 }
 
 }  // namespace
@@ -137,7 +136,7 @@ bool Chain::gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointV
   ChainFrames at;
   frames(q, at);
   tau.setZero(count_);
-  // This goes from the tip inwards: all that joint i carries is one mass at one point.
+  // From the tip to the base: everything that joint i carries acts like one mass at one point.
   double mass = 0;
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   for (int i = count_ - 1; i >= 0; --i) {
@@ -156,8 +155,8 @@ JointVector Chain::neutral() const noexcept {
 
 JointVector Chain::stepTowards(const Jacobian& J, const Eigen::Vector3d& error, double lambda,
                                const JointVector& q) const noexcept {
-  // A joint at its limit that the step would push further takes no part: if it were clamped afterwards, the other
-  // joints would stop short of the point that they can reach without it.
+  // A joint at its limit that the step would move further is left out of the step. If it were only clamped afterwards,
+  // the other joints would not reach the point, although they can reach it without this joint.
   Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMaxJoints> free = J.topRows<3>();
   JointVector trial = q;
   for (int round = 0; round <= count_; ++round) {
@@ -202,7 +201,8 @@ bool Chain::reach(const Eigen::Vector3d& position, JointVector& q) const noexcep
 
 bool Chain::inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept {
   if (!position.allFinite() || !q.allFinite()) return false;
-  // Starts from where the arm is; if limits stand in the way, also from the middle and from bent poses to either side.
+  // Starts from the present pose. If limits prevent a solution, also tries the middle pose and bent poses to either
+  // side.
   for (int attempt = 0; attempt < kInverseStarts; ++attempt) {
     JointVector x = attempt == 0 ? q : neutral();
     if (attempt > 1)

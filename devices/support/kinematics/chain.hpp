@@ -8,11 +8,11 @@
 
 namespace hapticd::kinematics {
 
-/// One joint and the link it carries, in the standard (distal) convention: Rot_z(theta) Trans_z(d) Trans_x(a)
-/// Rot_x(alpha), the joint's axis being z of the frame before it.
+/// One joint and the link that it carries, in the standard (distal) Denavit-Hartenberg convention: Rot_z(theta)
+/// Trans_z(d) Trans_x(a) Rot_x(alpha). The axis of the joint is z of the frame before it.
 struct ChainLink {
   double a = 0, alpha = 0, d = 0;  ///< [m], [rad], [m]
-  double theta = 0;                ///< [rad] added to the value of a revolute joint; the fixed angle of a sliding joint
+  double theta = 0;                ///< [rad] added to the position of a revolute joint; fixed angle of a sliding joint
   bool sliding = false;
   double min = -M_PI, max = M_PI;                     ///< [rad] or [m]
   double mass = 0;                                    ///< [kg]
@@ -26,9 +26,9 @@ struct ChainGeometry {
   Pose tool;  ///< pose of the tip in the last link's frame
 };
 
-/// Where the joints and links are for one q; axes and points in the device frame.
+/// The frames of all joints for one q, in the device frame.
 struct ChainFrames {
-  std::array<Eigen::Matrix3d, kMaxJoints + 1> R;  ///< orientation of frame i (0: base)
+  std::array<Eigen::Matrix3d, kMaxJoints + 1> R;  ///< orientation of frame i; frame 0 is the base
   std::array<Eigen::Vector3d, kMaxJoints + 1> o;  ///< origin of that frame; joint i turns about z of frame i
 };
 
@@ -41,10 +41,10 @@ class Chain : public Arm {
   bool forward(const JointVector& q, Pose& tip) const noexcept override;
   bool jacobian(const JointVector& q, Jacobian& J) const noexcept override;
   bool gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept override;
-  /// Position only; redundant joints stay near where they start and away from their limits.
+  /// Considers only the position of the tip. Redundant joints stay near their start and away from their limits.
   bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept override;
   JointVector neutral() const noexcept override;
-  std::span<const int32_t> parents() const noexcept override;  ///< the frames of the joints, and that of the tool
+  std::span<const int32_t> parents() const noexcept override;  ///< one link per joint frame, and one for the tool
   Eigen::Vector3d base() const noexcept override { return base_; }
   bool links(const JointVector& q, std::span<Pose> ends) const noexcept override;
 
@@ -53,8 +53,8 @@ class Chain : public Arm {
   /// [any] All frames of the chain.
   void frames(const JointVector& q, ChainFrames& at) const noexcept;
 
-  /// [any] The Jacobian of a point that the first `moving` joints carry, such as a wrist: the columns z x (point - o),
-  /// z of Thompson et al. 1999, Eq. 8; the columns of joints beyond are zero.
+  /// [any] The Jacobian of a point that only the first `moving` joints move, such as a wrist (Thompson et al. 1999,
+  /// Eq. 8). The column of a revolute joint is z x (point - o), then z; the columns of the other joints are zero.
   Jacobian jacobianAt(const ChainFrames& at, const Eigen::Vector3d& point, int moving) const noexcept;
 
  private:
@@ -63,7 +63,7 @@ class Chain : public Arm {
                           const JointVector& q) const noexcept;
   Eigen::Vector3d tipOf(const ChainFrames& at) const noexcept;
   std::array<ChainLink, kMaxJoints> links_{};
-  std::array<double, kMaxJoints> cos_alpha_{}, sin_alpha_{};  ///< exact for multiples of a right angle
+  std::array<double, kMaxJoints> cos_alpha_{}, sin_alpha_{};  ///< exact if alpha is a multiple of a right angle
   Eigen::Matrix3d R_base_, R_tool_;
   Eigen::Vector3d base_, tool_;
   int count_ = 0;

@@ -7,7 +7,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Mass, first moment and second moment about the origin of the device frame; those of several bodies add up.
+/// Mass, first moment and second moment of a body about the origin of the device frame. For several bodies they add up.
 struct Body {
   double mass = 0;
   Vector3d moment = Vector3d::Zero();
@@ -23,9 +23,9 @@ Body bodyOf(const ChainLink& link, const Matrix3d& R, const Vector3d& center) no
   return body;
 }
 
-/// Velocity (or acceleration) of a joint as a twist about the device origin.
+/// Velocity (or acceleration) of a body as a twist about the origin of the device frame.
 struct Twist {
-  Vector3d angular = Vector3d::Zero(), linear = Vector3d::Zero();  ///< linear: of the body point at the device origin
+  Vector3d angular = Vector3d::Zero(), linear = Vector3d::Zero();  ///< linear: of the body's point at that origin
 };
 
 Twist axisOf(const Chain& chain, const ChainFrames& at, size_t joint) noexcept {
@@ -34,7 +34,7 @@ Twist axisOf(const Chain& chain, const ChainFrames& at, size_t joint) noexcept {
   return {z, at.o[joint].cross(z)};
 }
 
-/// Momentum of a body about the device origin.
+/// Momentum of a body about the origin of the device frame.
 Twist momentum(const Body& body, const Twist& v) noexcept {
   return {body.inertia * v.angular + body.moment.cross(v.linear), body.mass * v.linear - body.moment.cross(v.angular)};
 }
@@ -50,7 +50,7 @@ void chainDynamics(const Chain& chain, const ChainFrames& at, const JointVector&
   const auto count = static_cast<size_t>(chain.jointCount());
   std::array<Twist, kMaxJoints> axes, forces;
   std::array<Body, kMaxJoints> bodies;
-  Twist v, a;  // velocity and velocity-product acceleration of the link reached so far
+  Twist v, a;  // of the current link: velocity, and acceleration for joint accelerations of zero
   for (size_t i = 0; i < count; ++i) {
     const ChainLink& link = chain.links()[i];
     axes[i] = axisOf(chain, at, i);

@@ -8,7 +8,7 @@ namespace hapticd::kinematics {
 
 using MassMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxJoints, kMaxJoints>;
 
-/// [any] M(q) and c(q, qd) of M qdd + c = tau - gravity; `at` has the frames of q.
+/// [any] Computes M(q) and c(q, qd) of the equation of motion M qdd + c = tau - gravity. @param at the frames for q
 void chainDynamics(const Chain& chain, const ChainFrames& at, const JointVector& qd, MassMatrix& M,
                    JointVector& c) noexcept;
 

@@ -9,18 +9,18 @@ namespace hapticd::kinematics {
 namespace {
 
 constexpr int kMaxNewton = 40;
-constexpr double kClosed = 1e-15;      ///< [m^2] residual of the closure: the rounding of lengths of 0.1 m
-constexpr double kAccepted = 1e-13;    ///< [m^2]
-constexpr double kLargestStep = 0.03;  ///< [m] keeps Newton on the platform's side of the base
+constexpr double kClosed = 1e-15;    ///< [m^2] a smaller residual of the closure ends the search; it is rounding error
+constexpr double kAccepted = 1e-13;  ///< [m^2] largest residual of a solution
+constexpr double kLargestStep = 0.03;  ///< [m] keeps Newton's method on the side of the base where the platform is
 
 }  // namespace
 
 Delta::Delta(const DeltaGeometry& geometry)
     : geometry_(geometry), R_device_arm_(geometry.base.orientation.normalized().toRotationMatrix()) {
   if (!(geometry.a > 0 && geometry.b > 0))
-    throw std::invalid_argument("delta: arm lengths a and b, expected more than 0 m");
+    throw std::invalid_argument("delta: arm lengths a and b must be more than 0 m");
   if (!(geometry.theta_min < geometry.theta_max))
-    throw std::invalid_argument("delta: angle limits, expected the smaller one first");
+    throw std::invalid_argument("delta: angle limits must have the smaller one first");
   for (size_t i = 0; i < 3; ++i) {
     cos_[i] = std::cos(geometry.phi[i]);
     sin_[i] = std::sin(geometry.phi[i]);
@@ -30,7 +30,8 @@ Delta::Delta(const DeltaGeometry& geometry)
   neutral_ = 0.5 * (limits_.min + limits_.max);
   middle_ = Eigen::Vector3d(0, 0, geometry.a * std::sin(neutral_[0]) + geometry.b);
   if (!solve(neutral_, middle_))
-    throw std::invalid_argument("delta: the arms do not meet in the middle of their range");
+    throw std::invalid_argument(
+        "delta: with these lengths the three arms do not meet in the middle of their range; correct arm.lengths");
 }
 
 Delta::Closure Delta::closure(size_t arm, const Eigen::Vector3d& p, double theta) const noexcept {
@@ -131,7 +132,7 @@ bool Delta::gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointV
   tau = -(geometry.platform_mass + 1.5 * geometry.rod_mass) * J.transpose() * g_arm;
   for (int i = 0; i < 3; ++i) {
     const auto n = static_cast<size_t>(i);
-    // the upper arm's centre is at half its length, and half of the rods' mass is at its end
+    // the upper arm's centre of mass is at half its length, and half of the rods' mass is at its end
     const double moment = geometry.a * (0.5 * geometry.arm_mass + 0.5 * geometry.rod_mass);
     const Eigen::Vector3d tangent(-std::sin(q[i]) * cos_[n], -std::sin(q[i]) * sin_[n], std::cos(q[i]));
     tau[i] -= moment * tangent.dot(g_arm);
@@ -155,8 +156,8 @@ bool Delta::inverse(const Eigen::Vector3d& position, JointVector& q) const noexc
     found[i] = std::atan2(p.z(), u) - std::acos(cosine);
     if (!(found[i] >= g.theta_min && found[i] <= g.theta_max)) return false;
   }
-  // A position has one set of angles, but these may also close with the platform behind the base: only poses that
-  // forward() gives back are in reach.
+  // A position has one set of angles, but these angles may also fit a platform behind the base. So a position is in
+  // reach only if forward() gives it back.
   Pose check;
   if (!forward(found, check) || (check.position - position).norm() > 1e-9) return false;
   q = found;

@@ -8,7 +8,7 @@
 
 namespace hapticd::kinematics {
 
-/// Lengths in m, named as in the literature. Arm frame i is turned by `phi[i]` about the arm's axis.
+/// Lengths in m, with the names of the literature. Arm frame i is turned by `phi[i]` about the axis of the device.
 struct DeltaGeometry {
   double a = 0.060;                 ///< driven upper arm
   double b = 0.1025;                ///< parallelogram
@@ -18,9 +18,9 @@ struct DeltaGeometry {
   double r = 0.040;                 ///< base: radius of the driven axes
   double s = -0.02309;              ///< base: tangential offset
   std::array<double, 3> phi{105 * M_PI / 180, -15 * M_PI / 180, -135 * M_PI / 180};
-  double theta_min = -0.6, theta_max = 1.7;                       ///< [rad] of the driven arms
-  double arm_mass = 0.05, rod_mass = 0.04, platform_mass = 0.08;  ///< [kg] of each arm and rod pair; of the platform
-  Pose base;  ///< arm axis z, toward the platform, in the device frame
+  double theta_min = -0.6, theta_max = 1.7;                       ///< [rad] limits of the driven arms
+  double arm_mass = 0.05, rod_mass = 0.04, platform_mass = 0.08;  ///< [kg] each upper arm; each rod pair; platform
+  Pose base;  ///< frame of the base in the device frame; its z points to the platform
 };
 
 class Delta : public Arm {
@@ -29,19 +29,19 @@ class Delta : public Arm {
   explicit Delta(const DeltaGeometry& geometry = {});
 
   int jointCount() const noexcept override { return 3; }
-  /// Newton's method from the middle of the workspace; false if the three parallelograms cannot meet.
+  /// Newton's method from the middle of the workspace. False if the three parallelograms cannot meet.
   bool forward(const JointVector& q, Pose& tip) const noexcept override;
   bool jacobian(const JointVector& q, Jacobian& J) const noexcept override;
-  /// Half of each rod pair moves with its upper arm, the other half with the platform.
+  /// Counts half of each rod pair's mass to its upper arm, and the other half to the platform.
   bool gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept override;
   bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept override;
   JointVector neutral() const noexcept override { return neutral_; }
-  std::span<const int32_t> parents() const noexcept override;  ///< to the elbows, then to the platform; the tip
+  std::span<const int32_t> parents() const noexcept override;  ///< upper arms, rods to the platform, the tip
   Eigen::Vector3d base() const noexcept override { return geometry_.base.position; }
   bool links(const JointVector& q, std::span<Pose> ends) const noexcept override;
 
  private:
-  /// Closure of one arm, g(p, theta) = 0, with its derivatives; p in the arm-axis frame.
+  /// The closure condition g(p, theta) = 0 of one arm, with its derivatives; p is in the frame of the base.
   struct Closure {
     double value, d_theta;
     Eigen::Vector3d d_p;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The extensions hdv.kinematics/1 and hdv.links/1 of a device module whose arm is a kinematics::Arm. For modules only:
-/// the kinematics library itself does not know the ABI.
+/// The extensions hdv.kinematics/1 and hdv.links/1 for a device module whose arm is a kinematics::Arm. Only modules
+/// include this header: the kinematics library itself does not depend on the ABI.
 #pragma once
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace hapticd::kinematics {
 
-/// C functions that call `const Arm& T::kinematics() const` of a device class T.
+/// C functions that call the kinematics of a device class T, which has `const Arm& kinematics() const`.
 template <class T>
 struct Extension {
   static const Arm& arm(const hdv_device* device) { return reinterpret_cast<const T*>(device)->kinematics(); }
@@ -21,7 +21,7 @@ struct Extension {
         sizeof(hdv_ext_kinematics), static_cast<uint32_t>(arm.jointCount()), &forward, &jacobian, &gravity, &inverse};
   }
 
-  /// Zero links: the arm cannot be drawn.
+  /// Returns link_count 0 if the arm cannot be drawn.
   static hdv_ext_links linksOf(const Arm& arm) {
     const auto parents = arm.parents();
     const Eigen::Vector3d base = arm.base();

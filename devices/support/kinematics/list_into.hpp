@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Lists of a device file, as arm.lengths, put into the members of a geometry.
+/// Puts a list of a device file, such as arm.lengths, into the members of a geometry.
 #pragma once
 #include <stdexcept>
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace hapticd::kinematics {
 
-/// [main] Fills in the numbers in their order; an empty list keeps the published ones. Throws std::invalid_argument
-/// with a message for the user where their count is wrong.
-/// @param id of the list, for the message
+/// [main] Assigns the numbers to the members in their order. An empty list changes nothing. Throws
+/// std::invalid_argument with a message for the user if the number of numbers is wrong.
+/// @param id name of the list, for the message
 template <class... Member>
 void assign(const std::vector<double>& from, const char* id, Member&... members) {
   if (from.empty()) return;

@@ -11,8 +11,9 @@ namespace {
 constexpr double kDegree = M_PI / 180;
 constexpr double kOpening = 55 * kDegree, kClosing = 65 * kDegree;
 
-/// Of the point (a c2 + b s3 out, a s2 - b c3 up), turned by q1: the tip with the link lengths for a and b, the centre
-/// of mass with the first moments.
+/// Returns the Jacobian of the point that is a c2 + b s3 away from the axis and a s2 - b c3 above the shoulder, turned
+/// by q1. With a and b the link lengths this point is the tip; with the first moments it is the (weighted) centre of
+/// mass.
 Eigen::Matrix3d planarJacobian(double a, double b, const PhantomAngles& at) noexcept {
   const auto [s1, c1, s2, c2, s3, c3] = at;
   const double r = a * c2 + b * s3;
@@ -27,7 +28,7 @@ double wrapped(double angle) noexcept {
   return std::remainder(angle, 2 * M_PI);
 }
 
-/// The turn of `angle` that is nearest to `reference`.
+/// Adds full turns to `angle`, so that the result is nearest to `reference`.
 double nearest(double angle, double reference) noexcept {
   return reference + wrapped(angle - reference);
 }
@@ -118,7 +119,7 @@ Eigen::Vector3d Phantom::base() const noexcept {
   return geometry_.origin + Eigen::Vector3d(0, geometry_.l2, -geometry_.l1);
 }
 
-/// Both angles of the links are absolute. The upper arm points along z of its frame, the forearm along -y of its own.
+/// The angles of both links are absolute. The upper arm points along z of its frame, the forearm along -y of its frame.
 bool Phantom::links(const JointVector& q, std::span<Pose> ends) const noexcept {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(q[0], Eigen::Vector3d::UnitY()));
   const auto raised = [&](double angle) {
@@ -138,7 +139,7 @@ bool Phantom::allowed(const JointVector& q) const noexcept {
 bool Phantom::inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept {
   const Eigen::Vector3d p = position - geometry_.origin + Eigen::Vector3d(0, -geometry_.l2, geometry_.l1);
   const double l1 = geometry_.l1, l2 = geometry_.l2, out = std::hypot(p.x(), p.z()), h = p.y();
-  const double turn = out > 0 ? std::atan2(p.x(), p.z()) : q[0];  // on the axis every turn fits, so this one stays
+  const double turn = out > 0 ? std::atan2(p.x(), p.z()) : q[0];  // on the axis every turn is a solution, so q1 stays
   // |p|^2 = l1^2 + l2^2 + 2 l1 l2 sin(q3 - q2); the limits leave one branch of the arcsine.
   const double s = (out * out + h * h - l1 * l1 - l2 * l2) / (2 * l1 * l2);
   if (!(std::abs(s) <= 1)) return false;
@@ -146,7 +147,7 @@ bool Phantom::inverse(const Eigen::Vector3d& position, JointVector& q) const noe
   const double elbow = std::atan2(-l2 * std::cos(open), l1 + l2 * s);
   JointVector best;
   double best_distance = HUGE_VAL;
-  for (const int side : {1, -1}) {  // the tip is in front of the vertical axis, or the arm reaches over it
+  for (const int side : {1, -1}) {  // the tip is in front of the vertical axis, or the arm reaches over the axis
     JointVector candidate(3);
     candidate[0] = wrapped(side > 0 ? turn : turn + M_PI);
     candidate[2] = nearest(std::atan2(h, side * out) - elbow + open, M_PI / 2);

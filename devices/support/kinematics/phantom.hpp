@@ -19,26 +19,27 @@ struct PhantomGeometry {
   Eigen::Vector3d origin{0, 0, 0};                              ///< [m] tip of the neutral pose, device frame
 };
 
-/// [main] Puts in the numbers of a device file; an empty list keeps the published ones. Throws std::invalid_argument
-/// with a message for the user.
+/// [main] Returns the geometry with the numbers of a device file. An empty list keeps the published numbers. Throws
+/// std::invalid_argument with a message for the user.
 /// @param lengths l1 l2 l3 l5 l6 [m]  @param masses ma mc mbe mdf [kg]
 PhantomGeometry phantomGeometry(const std::vector<double>& lengths, const std::vector<double>& masses,
                                 const Eigen::Vector3d& origin);
 
-/// Sines and cosines of the joint angles. Several functions below need them at one q, so they are worked out once.
+/// Sines and cosines of the joint angles. Several functions below need them for the same q, so they are computed once.
 struct PhantomAngles {
   double s1, c1, s2, c2, s3, c3;
   explicit PhantomAngles(const Eigen::Vector3d& q) noexcept;
 };
 
-/// Three joints. With c1 = cos q1, ...: r = l1 c2 + l2 s3 out from the axis and h = l1 s2 - l2 c3 up, turned by q1
-/// about the vertical. The published base frame (x out toward the user, y, z up) is the device frame with
-///   z = x_published, x = y_published, y = z_published,
-/// and, as there, the origin lies at the tip of the neutral pose q = 0 (upper arm level, forearm hanging), where the
-/// tip is l1 out and l2 down from the shoulder.
+/// An arm with three joints. With c1 = cos q1 and so on, the tip is r = l1 c2 + l2 s3 away from the vertical axis and
+/// h = l1 s2 - l2 c3 above the shoulder, turned by q1 about the vertical axis. The device frame follows from the
+/// published base frame (x out toward the user, y, z up):
+///   z = x_published, x = y_published, y = z_published.
+/// As in the publication, the origin lies at the tip of the neutral pose q = 0 (upper arm level, forearm hanging).
+/// There the tip is l1 out from the shoulder and l2 below it.
 ///
-/// The thimble or stylus turns freely in an unmeasured gimbal: orientation is the identity and the angular rows of J
-/// are zero, for no motor can make a torque at the tip.
+/// The thimble or stylus turns freely in a gimbal that is not measured. So the orientation is the identity, and the
+/// angular rows of J are zero, because no motor can make a torque at the tip.
 class Phantom : public Arm {
  public:
   explicit Phantom(const PhantomGeometry& geometry = {});
@@ -63,7 +64,7 @@ class Phantom : public Arm {
   Eigen::Matrix3d positionJacobian(const PhantomAngles& at) const noexcept;
   Eigen::Vector3d weight(const PhantomAngles& at, const Eigen::Vector3d& gravity) const noexcept;
 
-  static double largestOpening() noexcept;  ///< [rad] limit of q3 - q2: the links touch
+  static double largestOpening() noexcept;  ///< [rad] limit of q3 - q2, at which the links touch
   static double largestClosing() noexcept;  ///< [rad] limit of q2 - q3
 
  private:

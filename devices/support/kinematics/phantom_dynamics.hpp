@@ -5,24 +5,25 @@
 
 namespace hapticd::kinematics {
 
-/// Principal inertias [kg m^2] of the forearm (a), the parallel link (c), the upper arm with its motor (be), the short
-/// link with its motor (df) and the base, as published; masses and lengths are those of the geometry.
+/// Published principal inertias [kg m^2] of the forearm (a), the parallel link (c), the upper arm with its motor (be),
+/// the short link with its motor (df) and the base. Masses and lengths are in PhantomGeometry.
 struct PhantomInertia {
   Eigen::Vector3d a{0.4864e-4, 0.001843e-4, 0.4864e-4};
   Eigen::Vector3d c{0.959e-4, 0.959e-4, 0.0051e-4};
   Eigen::Vector3d be{11.09e-4, 10.06e-4, 0.591e-4};
   Eigen::Vector3d df{7.11e-4, 0.629e-4, 6.246e-4};
   double base_yy = 11.87e-4;
-  Eigen::Vector3d rotor{1.08e-6 * 13.3 * 13.3, 1.08e-6 * 11.2 * 11.2, 1.08e-6 * 11.2 * 11.2};  ///< at the joint side
+  Eigen::Vector3d rotor{1.08e-6 * 13.3 * 13.3, 1.08e-6 * 11.2 * 11.2, 1.08e-6 * 11.2 * 11.2};  ///< at the joints
 };
 
-/// M(q) qdd + c(q, qd) = tau - gravity. M depends on q2 and q3 through two cosines and two products, so its constants
-/// are worked out once.
+/// The equation of motion M(q) qdd + c(q, qd) = tau - gravity. M depends on q2 and q3 only through two cosines and two
+/// products, so the constant factors are computed once.
 class PhantomDynamics {
  public:
   PhantomDynamics(const PhantomGeometry& geometry, const PhantomInertia& inertia);
 
-  /// [rt] Mass matrix and Coriolis and centrifugal torques (Christoffel symbols of M, so that dM/dt - 2 C is skew).
+  /// [rt] Computes the mass matrix, and the Coriolis and centrifugal torques (with the Christoffel symbols of M, so
+  /// that dM/dt - 2 C is skew-symmetric).
   void evaluate(const Eigen::Vector3d& q, const Eigen::Vector3d& qd, Eigen::Matrix3d& M,
                 Eigen::Vector3d& c) const noexcept;
   void evaluate(const PhantomAngles& at, const Eigen::Vector3d& qd, Eigen::Matrix3d& M,

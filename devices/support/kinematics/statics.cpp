@@ -11,12 +11,12 @@ namespace {
 using Tall = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, kMaxJoints, 6>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr int kMaxSweeps = 30;  ///< one-sided Jacobi needs 5 to 8 sweeps for any 6 columns
+constexpr int kMaxSweeps = 30;  ///< bound; one-sided Jacobi needs 5 to 8 sweeps for any 6 columns
 
-/// A = U diag(s) V^T by one-sided Jacobi rotations: small singular values keep their relative accuracy, which an
-/// eigenvalue decomposition of J J^T would square away, and nothing is allocated.
+/// The singular value decomposition A = U diag(s) V^T by one-sided Jacobi rotations. Small singular values keep their
+/// relative accuracy, which an eigenvalue decomposition of J J^T would lose. It allocates nothing.
 struct Svd {
-  Tall US;  ///< columns u_i s_i
+  Tall US;  ///< U diag(s): the columns are u_i s_i
   Matrix6d V = Matrix6d::Identity();
   Eigen::Matrix<double, 6, 1> s;
 
@@ -49,7 +49,7 @@ struct Svd {
   }
 };
 
-/// J^T with angular columns divided by `length`, so that all six columns are in metres.
+/// Returns J^T with its angular columns multiplied by `length`, so that all six columns have the same unit.
 Tall scaledTranspose(const Jacobian& J, double length) noexcept {
   Tall A = J.transpose();
   A.rightCols<3>() *= length;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// An arm whose joints are the coordinates of its tip, and whose weight its vendor carries.
+/// An arm behind a vendor's library. Its joints are the coordinates of its tip, and the library carries its weight.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace hapticd::vendor_arm {
 template <class Arm>
 class CartesianArm : public Device {
  public:
-  double reach = 0;  ///< [m] to either side of the origin, on each axis
+  double reach = 0;  ///< [m] largest distance of the tip from the origin, on each axis
 
   hsp_status read(uint64_t, hdv_sample& sample) noexcept HSP_RT { return exchange_.read(sample); }
   hsp_status write(uint64_t, const hdv_command& command) noexcept HSP_RT { return exchange_.write(command); }
@@ -43,7 +43,7 @@ class CartesianArm : public Device {
   Exchange exchange_;
 
  private:
-  /// The handle can turn, but its turn is not measured.
+  /// The orientation is always the identity: the handle can turn, but its orientation is not measured.
   static hsp_status forward(const hdv_device*, const double* q, double position[3],
                             double orientation[4]) noexcept HSP_RT {
     std::copy_n(q, 3, position);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Between a thread that talks to a vendor's library and the daemon's servo: newest value wins in both directions, and
-/// neither waits for the other.
+/// Exchanges values between a thread that calls a vendor's library and the daemon's servo thread. In both directions
+/// the newest value wins, and no thread waits for the other.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -16,15 +16,16 @@
 namespace hapticd::vendor_arm {
 
 struct Seen {
-  uint64_t time_ns = 0, sequence = 0;  ///< CLOCK_MONOTONIC; grows with each new position; 0: no position has come yet
-  double position[3] = {};             ///< [m]
+  uint64_t time_ns = 0,
+           sequence = 0;    ///< CLOCK_MONOTONIC; number of the position; 0: none
+  double position[3] = {};  ///< [m]
   uint32_t buttons = 0;
   bool calibrated = false, fault = false, lost = false;
 };
 
 class Exchange {
  public:
-  /// [main] Nothing has been measured yet and no force is wanted.
+  /// [main] Goes back to the beginning: no position has come, and no force is wanted.
   void reset(double max_force) {
     max_force_ = max_force;
     cut_ = lost_ = false;
@@ -33,7 +34,7 @@ class Exchange {
     wanted_.back() = {}, wanted_.publish();
   }
 
-  /// [main] Waits for the first position for 2 s at most. @return whether there is one
+  /// [main] Waits for the first position, at most 2 s. @return true if it came
   bool awaitFirst() noexcept {
     constexpr int kTries = 200;
     constexpr std::chrono::milliseconds kPause(10);
@@ -45,14 +46,14 @@ class Exchange {
     return false;
   }
 
-  // ---- the vendor's side
+  // ---- for the thread that calls the vendor's library
   void show(const Seen& seen) noexcept {
     seen_.back() = seen;
     seen_.publish();
     ok_ = !seen.lost && !seen.fault;
   }
-  /// The force to apply now [N]: none while the arm is cut or unwell, or when the daemon's servo has fallen silent;
-  /// never beyond the bound.
+  /// The force to apply now [N], at most max_force. It is zero while a cut holds, while the arm is lost or has a fault,
+  /// and if the servo has sent no command for 20 ms.
   void force(double out[3]) noexcept {
     constexpr uint64_t kOldNs = 20'000'000;
     wanted_.update();
@@ -65,7 +66,7 @@ class Exchange {
     for (int i = 0; i < 3; ++i) out[i] = wanted.force[i] * share;
   }
 
-  // ---- the servo's side
+  // ---- for the servo thread
   hsp_status read(hdv_sample& sample) noexcept HSP_RT {
     seen_.update();
     const Seen& seen = seen_.front();
@@ -89,18 +90,18 @@ class Exchange {
     wanted_.publish();
     return HSP_OK;
   }
-  void cut() noexcept HSP_RT { cut_.store(true, std::memory_order_relaxed); }  ///< [any] allows no force until HDV_OFF
+  void cut() noexcept HSP_RT { cut_.store(true, std::memory_order_relaxed); }          ///< [any] no force until HDV_OFF
   bool lost() const noexcept HSP_RT { return lost_.load(std::memory_order_relaxed); }  ///< [any]
 
  private:
   struct Wanted {
-    uint64_t time_ns = 0;  ///< CLOCK_MONOTONIC when the wish was written
+    uint64_t time_ns = 0;  ///< CLOCK_MONOTONIC when the command was written
     double force[3] = {};  ///< [N]
   };
   TripleBuffer<Seen> seen_;
   TripleBuffer<Wanted> wanted_;
   std::atomic<bool> cut_{false}, lost_{false};
-  bool ok_ = true;  ///< the vendor's side
+  bool ok_ = true;  ///< arm is neither lost nor at fault; used only by the thread that calls the library
   double max_force_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A vendor's library, found at run time.
+/// A vendor's library that is loaded at run time.
 #pragma once
 #include <string>
 
@@ -11,10 +11,11 @@ class LoadedLibrary {
   LoadedLibrary(const LoadedLibrary&) = delete;
   LoadedLibrary& operator=(const LoadedLibrary&) = delete;
   ~LoadedLibrary();
-  /// [main] Throws std::runtime_error that names the cure where the library cannot be loaded.
+  /// [main] Throws std::runtime_error, whose text says how to fix it, if the library cannot be loaded.
   void load(const std::string& file);
   bool isLoaded() const { return library_ != nullptr; }
-  /// [main] Throws std::runtime_error where the library lacks it. @param expected what the library should be
+  /// [main] Finds a function of the library. Throws std::runtime_error if the library does not have it.
+  /// @param expected which library is needed, for the message
   template <class Function>
   void find(Function*& function, const char* name, const char* expected) const {
     function = reinterpret_cast<Function*>(address(name, expected));

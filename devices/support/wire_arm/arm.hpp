@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A device class for an arm behind a wire, whatever its transport (USB, VME): kinematics, samples, calibration.
+/// The device class for an arm that exchanges reports over a bus (USB, VME): kinematics, samples, calibration.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -25,7 +25,8 @@
 
 namespace hapticd::wire_arm {
 
-/// T adds kInfo, fields() and `std::unique_ptr<Transport> makeTransport() const`, and may replace address().
+/// Base class. A derived class T adds kInfo, fields() and `std::unique_ptr<Transport> makeTransport() const`, and may
+/// replace address().
 template <class T>
 class Arm : public Device, public Parameters {
  public:
@@ -59,7 +60,7 @@ class Arm : public Device, public Parameters {
   }
 
   hsp_status read(uint64_t now_ns, hdv_sample& to) noexcept HSP_RT {
-    constexpr uint64_t kHung = 20'000'000;  // the I/O thread itself is stuck in the kernel
+    constexpr uint64_t kHung = 20'000'000;  // [ns] an older sample means that the I/O thread is stuck
     link_->read(sample_);
     trouble_.store(sample_.trouble, std::memory_order_relaxed);
     to.time_ns = sample_.time;
@@ -67,8 +68,8 @@ class Arm : public Device, public Parameters {
     to.buttons = sample_.buttons;
     to.flags = (sample_.calibrated ? uint32_t{HDV_S_CALIBRATED} : 0u) | (velocity_ ? uint32_t{HDV_S_VELOCITY} : 0u) |
                (torque_ ? uint32_t{HDV_S_TORQUE} : 0u);
-    // The host judges silence, since it sees no new sequence number; by then the motors are off, and they come back in
-    // a ramp if it was short.
+    // For kStale it sets no flag: the host itself sees that no new sequence number comes. The motors are off by then,
+    // and after a short silence the torque ramps in again.
     if (sample_.trouble == Trouble::kUnplugged || sample_.trouble == Trouble::kAbsent)
       to.flags |= HDV_S_LOST;
     else if (sample_.trouble != Trouble::kNone && sample_.trouble != Trouble::kStale)
@@ -106,7 +107,7 @@ class Arm : public Device, public Parameters {
   }
   void close() { link_.reset(); }
 
-  /// The address of a device on USB; a class for another bus replaces it.
+  /// The USB address of the device. A class for another bus replaces this function.
   Address address() const { return addressOf(*this); }
 
   const kinematics::Arm& kinematics() const { return *arm_; }
@@ -153,12 +154,13 @@ class Arm : public Device, public Parameters {
   }
 
  protected:
-  const codec::Wire& format() const { return wire_; }  ///< set once the parameters were read
+  const codec::Wire& format() const { return wire_; }  ///< valid after the parameters were read
 
  private:
   size_t joints() const { return static_cast<size_t>(arm_->jointCount()); }
 
-  /// Made from the parameters alone; throws std::invalid_argument with all that is wrong, one problem per line.
+  /// Makes everything that depends only on the parameters. Throws std::invalid_argument with all problems, one per
+  /// line.
   void prepare() {
     std::string wrong;
     const auto attempt = [&wrong](const auto& part) {
@@ -168,7 +170,7 @@ class Arm : public Device, public Parameters {
         wrong += (wrong.empty() ? "" : "\n") + std::string(e.what());
       }
     };
-    joints_ = 0;  // unknown while the mechanism is wrong
+    joints_ = 0;  // stays 0 (unknown) if the mechanism is wrong
     attempt([&] { arm_ = makeMechanism(*this), joints_ = joints(); });
     bool wire_known = false;
     attempt([&] { wire_ = codec::readWire(wire, joints_), wire_known = true; });
@@ -189,7 +191,7 @@ class Arm : public Device, public Parameters {
                                 (may_be_one ? "1 or " : "") + std::to_string(joints_) + ", one per joint");
   }
 
-  /// Applies what the wire format means for the arm.
+  /// Reads the wire format, and checks that it fits the arm.
   void takeWire() {
     velocity_ = torque_ = follows_ = false;
     for (const codec::Field& field : wire_.output.fields) follows_ = follows_ || field.role == codec::Role::kFollow;
@@ -246,7 +248,7 @@ class Arm : public Device, public Parameters {
     std::snprintf(info.firmware, sizeof info.firmware, "%s", identity.firmware.c_str());
   }
 
-  /// This is also called before open() and after close(), when there is nothing to cut.
+  /// May also be called before open() and after close(); then it does nothing.
   static void cut(hdv_device* device) noexcept HSP_RT {
     if (Link* link = reinterpret_cast<T*>(device)->link_.get()) link->cut();
   }
@@ -299,7 +301,7 @@ class Arm : public Device, public Parameters {
   }
 
   hsp_status calibrateDevice() {
-    constexpr int kLongest = 30'000;  // ms: the user moves every joint past its index mark
+    constexpr int kLongest = 30'000;  // [ms] time for the user to move every joint past its index mark
     RealClock clock(0);
     link_->calibrateByDevice(true);
     for (int i = 0; i < kLongest && !sample_.calibrated; ++i) {

@@ -16,7 +16,7 @@ fs::path fileOf(const fs::path& folder, const Address& address, const Identity& 
   char ids[16];
   std::snprintf(ids, sizeof ids, "%04x-%04x-", address.vendor, address.product);
   std::string name = ids;
-  for (const char c : identity.serial)  // the device chose these characters, and none of them may leave the folder
+  for (const char c : identity.serial)  // these characters come from the device, and must not change the folder
     name += (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ? c : '_';
   return folder / (name + ".calibration");
 }
@@ -52,9 +52,9 @@ Result<void> storeZero(const fs::path& folder, const Address& address, const Ide
     out << kFormat << "\n" << epochOf(identity) << "\n";
     char text[32];
     for (size_t i = 0; i < count; ++i) std::snprintf(text, sizeof text, "%.17g", offset[i]), out << text << "\n";
-    if (!out.flush()) return Error{file.string() + ": cannot be written; the calibration holds for this run alone"};
+    if (!out.flush()) return Error{file.string() + ": cannot be written; the calibration is valid only for this run"};
   }
-  fs::rename(draft, file, error);  // the file is replaced whole or not at all
+  fs::rename(draft, file, error);  // so that the file is either replaced as a whole or not at all
   if (error) return Error{file.string() + ": cannot be written: " + error.message()};
   return {};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Zero positions that outlive a process, for arms whose encoders count from where they were switched on. They hold as
-/// long as the arm stays plugged in: another plugging-in or another boot of the machine makes them void.
+/// Stores zero positions in a file, for arms whose encoders are zero where they were switched on. A stored zero is
+/// valid as long as the arm stays plugged in, and the machine is not booted again.
 #pragma once
 #include <filesystem>
 
@@ -8,14 +8,15 @@
 
 namespace hapticd::wire_arm {
 
-/// [main] The folder $STATE_DIRECTORY, $XDG_STATE_HOME/hapticd or ~/.local/state/hapticd.
+/// [main] Returns $STATE_DIRECTORY, $XDG_STATE_HOME/hapticd or ~/.local/state/hapticd: the first that is set.
 std::filesystem::path stateFolder();
 
-/// [main] Writes the offsets of `count` joints.
+/// [main] Writes the zero offsets of `count` joints.
 Result<void> storeZero(const std::filesystem::path& folder, const Address& address, const Identity& identity,
                        const JointArray& offset, size_t count);
 
-/// [main] and I/O thread. Nothing is known of an arm that was never calibrated, or was plugged in since.
+/// [main] and I/O thread. Reads the zero offsets. The result is not calibrated if the arm was never calibrated, or was
+/// plugged in again since then.
 Zero loadZero(const std::filesystem::path& folder, const Address& address, const Identity& identity, size_t count);
 
 }  // namespace hapticd::wire_arm

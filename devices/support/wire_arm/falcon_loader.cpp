@@ -12,11 +12,12 @@ namespace hapticd::wire_arm {
 namespace {
 
 constexpr size_t kLargestFirmware = 1u << 20;
-constexpr size_t kPacket = 64, kHeader = 2;  ///< FTDI puts two bytes of modem status before each packet
+constexpr size_t kPacket = 64, kHeader = 2;  ///< [bytes] FTDI's chips begin each packet with two bytes of modem status
 constexpr Nanoseconds kAnswer = 20'000'000, kRunning = 50'000'000;
 constexpr int kHelloTries = 100;
 
-/// Requests of FTDI's chips: 0 resets, 1 sets modem lines, 3 the baud rate, 4 the format, 9 the latency timer.
+/// Requests of FTDI's chips: 0 resets, 1 sets the modem lines, 3 sets the baud rate, 4 sets the format of a byte, 9
+/// sets the latency timer.
 enum : uint8_t { kReset = 0, kLines = 1, kBaud = 3, kDataFormat = 4, kLatency = 9 };
 constexpr uint8_t kVendorOut = 0x40;
 
@@ -26,7 +27,7 @@ class Loader {
 
   bool upload() { return slow() && hello() && fast() && answers({0x41}, {0x41}, kHelloTries) && chunks(); }
 
-  /// Sets the line up as reports need it: 1 ms latency, full speed.
+  /// Sets the serial line up for reports: 1 ms latency, full speed.
   bool run() { return set(kLatency, 1) && set(kBaud, 0x2) && set(kLines, 0x0101); }
 
   void forget() {
@@ -50,7 +51,7 @@ class Loader {
   bool hello() { return answers({0x0a, 0x43, 0x0d}, {0x0a, 0x44, 0x2c, 0x0d}, kHelloTries); }
   bool fast() { return set(kLines, 0x0100) && set(kBaud, 0x15); }  // 140000 baud
 
-  /// Sends the bytes until the answer is right.
+  /// Sends the bytes again and again until the expected answer comes.
   bool answers(const std::vector<uint8_t>& bytes, const std::vector<uint8_t>& expected, int tries) {
     for (int i = 0; i < tries; ++i) {
       if (transport_.send(bytes) != Status::kOk) return false;
@@ -113,7 +114,7 @@ bool alreadyRuns(Transport& transport, const codec::Wire& wire) {
 
 Result<std::vector<uint8_t>> readFalconFirmware(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) return Error{file + ": cannot be read, expected the Falcon's firmware image"};
+  if (!in) return Error{file + ": cannot be read; expected the Falcon's firmware image"};
   std::vector<uint8_t> bytes(std::istreambuf_iterator<char>(in), {});
   if (bytes.empty() || bytes.size() > kLargestFirmware)
     return Error{file + ": " + std::to_string(bytes.size()) + " bytes, expected a firmware image of up to 1 MiB"};
@@ -125,14 +126,15 @@ Result<void> loadFalcon(Transport& transport, const codec::Wire& wire, const std
   if (loader.run() && alreadyRuns(transport, wire)) return {};
   if (firmware.empty())
     return Error{
-        "the Falcon has no firmware in its memory\n  it loses it with its power, and hapticd does not ship it\n"
+        "the Falcon has no firmware in its memory\n  it forgets its firmware without power, and hapticd does not "
+        "include the firmware\n"
         "  fix: name the image of the maker's driver as `firmware: FILE` in the device file"};
   for (int i = 0; i < kFalconTries; ++i) {
     loader.forget();
     if (loader.upload() && loader.run() && alreadyRuns(transport, wire)) return {};
   }
-  return Error{"the Falcon took no firmware in " + std::to_string(kFalconTries) +
-               " tries\n  it stays off\n  fix: unplug its power and USB, plug both in again; check the image"};
+  return Error{"the Falcon did not accept the firmware in " + std::to_string(kFalconTries) +
+               " tries\n  the arm stays off\n  fix: unplug its power and USB, plug both in again; check the image"};
 }
 
 }  // namespace hapticd::wire_arm

@@ -11,9 +11,9 @@ namespace {
 constexpr Nanoseconds kMillisecond = 1'000'000;
 constexpr Nanoseconds kSearchPause = 100 * kMillisecond;
 constexpr Nanoseconds kFirstReport = 1000 * kMillisecond;
-constexpr Nanoseconds kOld = 5 * kMillisecond;  ///< old reports that waited for a reader arrive within this time
-constexpr int kMostReportsAtOnce = 64;          ///< how many reports the kernel keeps for a hidraw device
-constexpr int kAbove = 1;                       ///< above the servo's priority, because a late sample is worth nothing
+constexpr Nanoseconds kOld = 5 * kMillisecond;  ///< reports that waited in the kernel arrive within this time
+constexpr int kMostReportsAtOnce = 64;          ///< number of reports that the kernel keeps for a hidraw device
+constexpr int kAbove = 1;                       ///< priority above the servo's, because a late sample is useless
 
 void pause(Nanoseconds time) noexcept {
   RealClock clock(0);
@@ -121,7 +121,7 @@ Result<void> Link::perform(const codec::StartStep& step) {
     if (matched == step.expect.size()) return pause(nanoseconds(step.wait)), Result<void>{};
   }
   return Error{"the device did not answer as the device file says after " + std::to_string(step.tries) +
-               " tries; wrong firmware?"};
+               " tries; check that its firmware is the version of the device file"};
 }
 
 Result<void> Link::start() {
@@ -136,7 +136,7 @@ Result<void> Link::start() {
   }
   stop();
   return Error{"opened, but " + std::string(describe(session_.trouble())) + "; expected " +
-               std::to_string(static_cast<int>(wire_.rate)) + " reports per second, the motors stay off"};
+               std::to_string(static_cast<int>(wire_.rate)) + " reports per second; the motors stay off"};
 }
 
 Result<void> Link::capture(hdv_take_transfer take, void* who) {
@@ -211,7 +211,8 @@ void Link::run() noexcept {
   (void)transport_->send({out_.data(), size});
 }
 
-/// Drops reports from before this thread began: the arm has moved since, and the next report would look like a jump.
+/// Drops reports that are older than this thread: the arm may have moved since then, so the next report would look like
+/// a jump.
 void Link::forgetOld() noexcept {
   size_t size = 0;
   for (const Nanoseconds until = monotonicNow() + kOld; monotonicNow() < until;)
@@ -230,8 +231,8 @@ void Link::serve(Nanoseconds now) noexcept {
   if (!open_) return;
   now = monotonicNow();
   const Nanoseconds wait = due_ > now ? due_ - now : 0;
-  // hidapi knows timeouts of whole milliseconds only. The arm's own reports end the wait in time; an arm that has
-  // answered sends none until it is asked again.
+  // hidapi knows only timeouts of whole milliseconds. The reports of a streaming arm end the wait in time. A polled arm
+  // that has answered sends no report until it is asked again, so there is no wait for it.
   if (answered_ && wire_.exchange == codec::Exchange::kPoll)
     pause(wait);
   else
@@ -261,8 +262,8 @@ void Link::receive(Nanoseconds wait) noexcept {
   if (fresh) tellServo();
 }
 
-/// A servo that the samples drive answers each at once, so its command need not wait until the next report ends a read.
-/// What the arm sends meanwhile waits in the kernel.
+/// If the samples pace the servo, the servo answers each sample at once. So this function waits for the wish instead of
+/// the next report. Reports that come meanwhile wait in the kernel.
 void Link::tellServo() noexcept {
   const uint32_t known = wished_.strikes();
   publish();
@@ -270,13 +271,13 @@ void Link::tellServo() noexcept {
     wished_.wait(known, monotonicNow() + period_ / 2);
 }
 
-/// When to ask a polled arm, so that its answer comes half-way between two reads of the servo: then each read finds a
-/// new sample, wherever the phases begin.
+/// Chooses when to ask a polled arm, so that its answer comes in the middle between two reads of the servo. Then each
+/// read finds a new sample, for any phase between the two loops.
 Nanoseconds Link::midway(Nanoseconds due) const noexcept {
-  constexpr int64_t kShare = 8;  // share of the error that a command corrects: a late one does not upset the phase
+  constexpr int64_t kShare = 8;  // each command corrects 1 / kShare of the error, so one late command changes little
   const auto period = static_cast<int64_t>(period_), at = static_cast<int64_t>(due);
   const auto read = static_cast<int64_t>(wishes_.front().time);
-  const bool follows = paced_.load(std::memory_order_relaxed);  // the servo reads when the answer comes
+  const bool follows = paced_.load(std::memory_order_relaxed);  // paced: the servo reads when the answer comes
   if (read == 0 || follows || wire_.exchange != codec::Exchange::kPoll) return due;
   const int64_t phase = ((at - read) % period + period) % period;
   return static_cast<Nanoseconds>(at - (phase - period / 2) / kShare);
@@ -300,12 +301,12 @@ void Link::lose(Trouble trouble) noexcept {
   session_.lose(monotonicNow(), trouble);
   transport_->close();
   open_ = false;
-  cut_left_.store(true);  // nobody is there to be told
+  cut_left_.store(true);  // there is no arm to which a cut could be sent
   publish();
 }
 
-/// Tries at once when the arm was lost, then ten times a second: if a device opens and fails again and again, this
-/// thread, which is above the servo's, must still sleep.
+/// Tries at once after the arm was lost, then ten times a second. If a device opens and fails again and again, this
+/// thread must still sleep, because its priority is above the servo's.
 void Link::lookForIt() noexcept {
   while (monotonicNow() < tried_at_ + kSearchPause && !stop_) pause(10 * kMillisecond);
   if (stop_) return;
@@ -322,23 +323,23 @@ void Link::lookForIt() noexcept {
       settings_.log(HSP_LOG_DEBUG, "still missing: " + refusal_);
     }
   } catch (const std::exception& e) {
-    open_ = false;  // there was no memory at worst: the next search may succeed
+    open_ = false;  // for example no memory: the next search may succeed
   }
 }
 
 void Link::tell() noexcept {
   const Trouble now = session_.trouble();
-  if (now == told_ || session_.sample().sequence == 0) return;  // before the first report, start() reports all trouble
+  if (now == told_ || session_.sample().sequence == 0) return;  // before the first report, start() reports the trouble
   told_ = now;
   try {
     if (now == Trouble::kNone)
       settings_.log(HSP_LOG_INFO, std::exchange(back_, "healthy"));
     else
       settings_.log(HSP_LOG_WARNING, std::string(describe(now)) +
-                                         "\n  its force is off until it is well again\n  fix: "
-                                         "hapticd device info FILE tells what it is, hapticd doctor what hinders it");
+                                         "\n  its force is off until it is healthy again\n  fix: "
+                                         "hapticd device info FILE shows the arm, hapticd doctor shows what is wrong");
   } catch (const std::exception& e) {
-    return;  // a message less
+    return;  // without memory there is no message
   }
 }
 
@@ -360,7 +361,7 @@ Result<JointArray> Link::calibrateAt(const JointArray& pose) {
     pause(kMillisecond);
   }
   zero_wanted_ = false;
-  return Error{"sends no reports, expected them while it is calibrated"};
+  return Error{"sends no reports; it must send reports while it is calibrated"};
 }
 
 Identity Link::identity() const {

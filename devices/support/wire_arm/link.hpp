@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The I/O thread of one arm: between a transport, which may block, and the servo thread, which may not. Newest value
-/// wins in both directions. A device that leaves is looked for until it is back.
+/// The I/O thread of one arm. It stands between a transport, which may block, and the servo thread, which may not. In
+/// both directions the newest value wins. If the device is unplugged, the thread searches for it until it is back.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -18,7 +18,7 @@
 
 namespace hapticd::wire_arm {
 
-/// The pose in which an arm is plugged in, before anybody calibrated it.
+/// Offsets that make the positions of an arm absolute. The default is an arm that is not calibrated.
 struct Zero {
   JointArray offset{};
   bool known = false;
@@ -27,9 +27,9 @@ struct Zero {
 struct LinkSettings {
   Address address;
   SessionSettings session;
-  std::function<void(int level, const std::string&)> log;  ///< [any thread] tells users what they should know
-  std::function<Zero(const Identity&)> zero;        ///< I/O thread: the offsets that an earlier calibration stored
-  std::function<Result<void>(Transport&)> prepare;  ///< more than wire.startup, such as a firmware upload; may be empty
+  std::function<void(int level, const std::string&)> log;  ///< [any thread] shows a message to the user
+  std::function<Zero(const Identity&)> zero;        ///< I/O thread: returns the offsets of an earlier calibration
+  std::function<Result<void>(Transport&)> prepare;  ///< for a firmware upload, after wire.startup; may be empty
 };
 
 class Link {
@@ -39,38 +39,41 @@ class Link {
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
 
-  /// [main] Finds, opens and starts up the device.
+  /// [main] Finds and opens the device, and runs its start-up sequence.
   Result<Identity> open();
   /// [main] Starts the thread and waits for the first report.
   Result<void> start();
-  /// [main] Open but not started: reads with the motors off and hands over every transfer, until `take` ends it.
+  /// [main] If open but not started: keeps the motors off and passes every transfer to `take`, until `take` ends the
+  /// capture.
   Result<void> capture(hdv_take_transfer take, void* who);
   /// [main] Switches the motors off and joins the thread.
   void stop();
-  /// [main]
+  /// [main] Closes the device.
   void close();
 
-  /// [rt] The newest sample. @return false if it is no newer than the last one
+  /// [rt] Returns the newest sample. @return false if it is the same as at the last call
   bool read(Sample& sample) noexcept HSP_RT;
-  /// [rt] Called between two exchanges: sends the newest wish at once, and sleeps until there is something new for
-  /// read(), or until `until`. From the first call on, this thread sends each wish when it comes.
+  /// [rt] Called between two ticks, if the samples of the arm pace the servo. Lets the newest wish go out at once, and
+  /// sleeps until read() has something new, or until `until`. From the first call on, the I/O thread sends each wish as
+  /// soon as it comes.
   void waitForNews(Nanoseconds until) noexcept;
-  /// [rt] Leaves the newest wish for the thread.
+  /// [rt] Gives the newest wish to the I/O thread.
   void write(const Wish& wish) noexcept HSP_RT;
 
-  /// [any] Frees the motors, whatever the wishes say, until endCut(); async-signal-safe, and one report late at most.
+  /// [any] Switches the motors off until endCut(), whatever the wishes say. Async-signal-safe. It takes effect with the
+  /// next report at the latest.
   void cut() noexcept;
-  /// [any] True if a cut has been sent to the arm, or there is no arm to send it to; async-signal-safe.
+  /// [any] False while a cut is still to be sent to the arm; true if there is no cut or no arm. Async-signal-safe.
   bool cutLeft() const noexcept { return !cut_.load() || cut_left_.load(); }
-  /// [any] How another process switches the motors off. False if no report has come yet, so that it may be another
-  /// device, or if there is no other way to reach it.
+  /// [any] Fills in how another process can switch the motors off. False if no report has come yet (it may be a wrong
+  /// device), or if another process cannot reach the device.
   bool silence(hdv_silence& how) const;
   /// [rt] Ends a cut: the next wish counts again.
   void endCut() noexcept HSP_RT { cut_.store(false, std::memory_order_relaxed); }
 
-  /// [main] Tells the device to find its zero (while true).
+  /// [main] While `wanted` is true, tells the device to find its zero.
   void calibrateByDevice(bool wanted) noexcept { calibrate_.store(wanted); }
-  /// [main] Makes positions read `pose` where the arm is now. @return offsets, to be stored
+  /// [main] Sets the zero so that the present positions of the arm are `pose`. @return the offsets, to be stored
   Result<JointArray> calibrateAt(const JointArray& pose);
   /// [main] The identity of the device that is open.
   Identity identity() const;
@@ -98,15 +101,15 @@ class Link {
   Session session_;
   TripleBuffer<Sample> samples_;
   TripleBuffer<Wish> wishes_;
-  Bell news_, wished_;  ///< wakes the servo for a sample or a trouble; wakes this thread for a wish
+  Bell news_, wished_;  ///< news_ wakes the servo for a sample or a trouble; wished_ wakes the I/O thread
   uint32_t heard_ = 0;  ///< the servo's count of news_ at its last read()
   os::Thread thread_;
-  std::atomic<bool> cut_{false}, cut_left_{false};  ///< the watchdog or a crash cut the motors; the cut was sent since
+  std::atomic<bool> cut_{false}, cut_left_{false};  ///< the watchdog or a crash cut the motors; this cut was sent
   bool cut_sent_ = false;
-  hdv_silence silence_{};  ///< for the device that was opened last
+  hdv_silence silence_{};  ///< how to reach the device that was opened last
   Descriptor way_in_;
-  std::atomic<bool> reported_{false};  ///< since it was opened
-  std::atomic<bool> paced_{false};     ///< the servo waits for samples
+  std::atomic<bool> reported_{false};  ///< a report came since the device was opened
+  std::atomic<bool> paced_{false};     ///< the samples of the arm pace the servo
   std::atomic<bool> stop_{false}, calibrate_{false}, zero_wanted_{false}, zero_done_{false};
   mutable std::mutex mutex_;  ///< guards identity_ and pose_; the servo thread never takes it
   Identity identity_;
@@ -114,8 +117,8 @@ class Link {
   bool open_ = false, answered_ = false;
   Trouble told_ = Trouble::kNone;
   std::string refusal_;           ///< why the device could not be opened again
-  std::string back_ = "healthy";  ///< what to report once it is well
-  Nanoseconds tried_at_ = 0;      ///< to open it again
+  std::string back_ = "healthy";  ///< message for the time when the arm is healthy again
+  Nanoseconds tried_at_ = 0;      ///< time of the last try to open the device again
   Nanoseconds due_ = 0, period_ = 0, sent_at_ = 0;
   uint64_t sent_wish_ = 0;
   std::array<uint8_t, codec::kMaxReportBytes + 1> in_{}, out_{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Kinematics of an arm from the parameters of its device file.
+/// Makes the kinematics of an arm from the parameters of its device file.
 #pragma once
 #include <array>
 #include <memory>

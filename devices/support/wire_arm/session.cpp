@@ -18,31 +18,31 @@ const char* describe(Trouble trouble) noexcept {
     case Trouble::kNone:
       return "healthy";
     case Trouble::kUnplugged:
-      return "unplugged; plug it in again";
+      return "the device is unplugged; plug it in again";
     case Trouble::kStalled:
-      return "stalled endpoint; the device is reopened, unplug it if this stays";
+      return "an endpoint of the device has stalled; the device is reopened, and if this does not help, unplug it";
     case Trouble::kBusError:
-      return "failing transfers; look at cable, hub or rack";
+      return "transfers on the bus fail; check the cable, the hub or the rack";
     case Trouble::kFirmware:
-      return "wrong firmware; the device file describes another version";
+      return "the firmware has another version than the device file; load that version, or correct the device file";
     case Trouble::kShort:
-      return "reports of a wrong size; the device file does not fit this device";
+      return "reports have a wrong size; the device file does not fit this device";
     case Trouble::kCorrupt:
-      return "corrupt reports; look at the cable, or the device file does not fit";
+      return "reports are corrupt; check the cable, and that the device file fits this device";
     case Trouble::kStale:
-      return "no new reports; look at power and cable";
+      return "no new reports come; check power and cable";
     case Trouble::kSlow:
-      return "too few reports per second; look at the hub, or correct wire.rate";
+      return "too few reports come per second; check the hub, or correct wire.rate";
     case Trouble::kJump:
       return "an encoder jumped; calibrate again";
     case Trouble::kHardware:
-      return "a fault reported by the hardware; switch it off and on";
+      return "the hardware reports a fault; switch it off and on";
     case Trouble::kAbsent:
       return "nobody answers on the bus; switch the rack on, or correct the address in the device file";
     case Trouble::kTorn:
-      return "reports that are never whole; the board stopped while it wrote one: reset it";
+      return "reports are never complete; the board stopped while it wrote one: reset it";
     case Trouble::kReset:
-      return "the board started anew; see why, and let it find its zero";
+      return "the board restarted and lost its zero; find out why it restarted, then calibrate again";
   }
   return "unknown trouble";
 }
@@ -67,7 +67,7 @@ void Session::attach(Nanoseconds now, const JointArray& zero, bool calibrated) n
   attached_at_ = sent_;
   good_at_ = now;
   last_bad_ = codec::Verdict::kGood;
-  // The arm is not healthy yet: the trouble ends, like every other, after some time of good reports.
+  // The arm is not healthy yet: as any trouble, this one ends after some time of good reports.
   raise(now, sample_.trouble == Trouble::kNone ? Trouble::kStale : sample_.trouble);
 }
 
@@ -101,7 +101,7 @@ bool Session::take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
     raise(now, Trouble::kFirmware);
     return true;
   }
-  if (verdict == codec::Verdict::kWrongId) return false;  // another report of the same device
+  if (verdict == codec::Verdict::kWrongId) return false;  // another kind of report of the same device
   if (verdict != codec::Verdict::kGood) return reject(verdict), false;
   if (startedAnew(now)) have_raw_ = false;
   if (have_raw_ && again()) return false;
@@ -118,19 +118,20 @@ bool Session::take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
   return true;
 }
 
-/// Ends a trouble after some time of good reports. The very first report need not wait: nothing was wrong before it.
+/// Ends a trouble after some time of good reports. The first report of all need not wait, because nothing was wrong
+/// before it.
 void Session::recover(Nanoseconds now) noexcept {
   if (sample_.trouble == Trouble::kJump) return;
   if (sample_.sequence == 0 || seconds(trouble_at_, now) >= settings_.health.recovery) sample_.trouble = Trouble::kNone;
 }
 
-/// True if this is the same report again, by its counter or, without one, by a clock that must have advanced.
+/// True if this is the same report again: its counter is the same or, without a counter, its clock has not advanced.
 bool Session::again() const noexcept {
   if (state_.has_sequence) return state_.sequence == last_sequence_;
   return state_.has_clock && clock_tells_ && state_.clock == last_clock_;
 }
 
-/// A board that restarts counts from elsewhere: what was known of its joints is void.
+/// Forgets the positions and the calibration if the board has restarted, because it now counts from another position.
 bool Session::startedAnew(Nanoseconds now) noexcept {
   const bool anew = state_.has_starts && have_raw_ && state_.starts != last_starts_;
   last_starts_ = state_.starts;
@@ -155,13 +156,13 @@ bool Session::follow(Nanoseconds now, const codec::State& state) noexcept {
       next[i] += turns;
     }
     if (std::abs(next[i] - raw_[i]) <= most) continue;
-    if (sample_.trouble != Trouble::kJump) calibrated_ = false;  // counts were lost, and the zero with them
+    if (sample_.trouble != Trouble::kJump) calibrated_ = false;  // encoder counts were lost, so the zero is wrong
     raise(now, Trouble::kJump);
   }
   raw_ = next;
   have_raw_ = true;
   if (sample_.trouble != Trouble::kJump) return true;
-  // An arm that knows its own zero may be trusted again after a while.
+  // An arm that finds its own zero is trusted again after some time.
   const bool absolute = settings_.calibration != Calibration::kPose;
   if (!absolute || seconds(trouble_at_, now) < settings_.health.recovery) {
     good_at_ = now;
@@ -186,7 +187,7 @@ void Session::publish(Nanoseconds now, const codec::State& state) noexcept {
 
 bool Session::tooSlow(Nanoseconds now) noexcept {
   if (settings_.health.least_rate <= 0 || reports_ <= kRateWindow) return false;
-  if (wire_.exchange == codec::Exchange::kPoll) {  // it cannot answer more commands than we sent
+  if (wire_.exchange == codec::Exchange::kPoll) {  // a polled arm sends at most one report per command
     const auto answers = static_cast<double>(reports_ - answered_[sent_ % kRateWindow]);
     return sent_ > attached_at_ + kRateWindow && answers < settings_.health.least_rate * (kRateWindow - 1);
   }
@@ -211,7 +212,7 @@ bool Session::watch(Nanoseconds now) noexcept {
   return sample_.trouble != before;
 }
 
-/// How much of the host's torque passes: all of it some time after everything was well again.
+/// Returns the share of the host's torque that is sent (0 to 1): it ramps up after a trouble is over.
 double Session::gain(Nanoseconds now, bool healthy) noexcept {
   if (!healthy) {
     healthy_at_ = 0;
@@ -230,7 +231,7 @@ size_t Session::command(Nanoseconds now, const Wish& wish, std::span<uint8_t> by
   order.follow = wish.follow;
   for (size_t i = 0; i < settings_.joints; ++i) {
     order.torque[i] = part * wish.torque[i];
-    // Starts from where the joint is: the arm's own loop comes in as softly as a torque does.
+    // References start at the present position of the joint, so that the arm's own loop ramps in like a torque.
     order.position[i] = raw_[i] + part * (wish.position[i] - zero_[i] - raw_[i]);
   }
   order.calibrate = calibrate_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// One arm's reports become samples, and the host's torques become commands, but never a torque without a healthy
-/// chain. Pure: bytes and time come in as arguments, so that every fault can be played in virtual time.
+/// Turns the reports of one arm into samples, and the host's torques into commands. A command has torques only if
+/// the arm and the host are healthy. Bytes and time are arguments, so that tests can play every fault in virtual time.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -17,21 +17,21 @@ namespace hapticd::wire_arm {
 
 using JointArray = std::array<double, codec::kMaxJoints>;
 
-/// When an arm counts as unhealthy.
+/// Bounds beyond which an arm counts as unhealthy.
 struct HealthLimits {
-  double stale = 0.015;       ///< [s] without a good report
-  double host_silent = 0.02;  ///< [s] without a command of the host; then the motors go off
-  double least_rate = 0.57;   ///< share of wire.rate, over kRateWindow reports; 0: it is not watched
-  double recovery = 0.2;      ///< [s] of health after which a trouble counts as over
-  double ramp = 0.25;         ///< [s] from no torque to full torque after a trouble
-  double max_speed = 100;     ///< [rad/s] of a joint; above it, an encoder jumped
+  double stale = 0.015;       ///< [s] longest time without a good report
+  double host_silent = 0.02;  ///< [s] longest time without a command of the host; then the motors go off
+  double least_rate = 0.57;   ///< least rate of reports, as a share of wire.rate, over kRateWindow reports; 0: no check
+  double recovery = 0.2;      ///< [s] time of good reports after which a trouble is over
+  double ramp = 0.25;         ///< [s] time from zero torque to full torque after a trouble
+  double max_speed = 100;     ///< [rad/s] largest speed of a joint; a faster change is a jump of its encoder
 };
 
 /// How an arm gets absolute positions.
 enum class Calibration : uint8_t {
   kNone,    ///< its encoders are absolute
-  kDevice,  ///< it finds its zero by itself (index pulse, homing) and says so
-  kPose,    ///< the user holds it in a known pose (inkwell, stop)
+  kDevice,  ///< the arm finds its zero by itself (index pulse, homing) and reports it
+  kPose,    ///< the user holds the arm in a known pose (inkwell, stop)
 };
 
 struct SessionSettings {
@@ -40,7 +40,7 @@ struct SessionSettings {
   HealthLimits health;
 };
 
-/// What the servo reads.
+/// The data that the servo reads.
 struct Sample {
   Nanoseconds time = 0;
   uint64_t sequence = 0;
@@ -50,11 +50,11 @@ struct Sample {
   JointArray position{}, velocity{}, torque{};
 };
 
-/// What the servo writes.
+/// The command that the servo writes.
 struct Wish {
   Nanoseconds time = 0;
   uint64_t sequence = 0;            ///< grows with every write
-  bool on = false, follow = false;  ///< with `follow`, positions are references in addition to the torques
+  bool on = false, follow = false;  ///< on: motors on; follow: `position` holds references in addition to the torques
   JointArray torque{}, position{};
 };
 
@@ -62,24 +62,25 @@ class Session {
  public:
   Session(const codec::Wire& wire, const SessionSettings& settings);
 
-  /// [any] The device was opened and started. @param zero positions [rad or m] to add; `calibrated`: they are right
+  /// [any] To be called when the device was opened and started. @param zero offsets [rad or m] to add to positions
+  /// @param calibrated true if `zero` is valid
   void attach(Nanoseconds now, const JointArray& zero, bool calibrated) noexcept;
-  /// [any] The transport failed.
+  /// [any] To be called when the transport failed.
   void lose(Nanoseconds now, Trouble trouble) noexcept;
   /// [any] Takes one transfer. True if there is a new sample.
   bool receive(Nanoseconds now, std::span<const uint8_t> bytes) noexcept;
-  /// [any] Judges the time since the last report. True if the verdict changed.
+  /// [any] Checks the time since the last report. True if the trouble changed.
   bool watch(Nanoseconds now) noexcept;
 
-  /// [any] The bytes of the next command: it has torques only if the arm is healthy and the wish is fresh.
+  /// [any] Writes the bytes of the next command. It has torques only if the arm is healthy and the wish is new.
   size_t command(Nanoseconds now, const Wish& wish, std::span<uint8_t> bytes) noexcept;
 
   const Sample& sample() const noexcept { return sample_; }
   Trouble trouble() const noexcept { return sample_.trouble; }
-  /// Tells the arm to find its zero, or takes its present place as `pose`.
+  /// calibrateByDevice() tells the arm to find its zero; calibrateAt() takes the present positions as `pose`.
   void calibrateByDevice(bool wanted) noexcept { calibrate_ = wanted; }
   void setZero(const JointArray& zero) noexcept;
-  /// Positions without the calibration.
+  /// Positions as the arm sends them, without the zero offsets.
   const JointArray& raw() const noexcept { return raw_; }
   uint64_t badReports() const noexcept { return bad_reports_; }
 
@@ -102,14 +103,14 @@ class Session {
   codec::Framer framer_;
   Sample sample_;
   codec::State state_;
-  JointArray raw_{}, zero_{}, turns_{}, span_{};  ///< span of a position that wraps; 0: it does not wrap
+  JointArray raw_{}, zero_{}, turns_{}, span_{};  ///< span_: range after which a position wraps, 0 if it does not wrap
   std::array<Nanoseconds, kRateWindow> arrivals_{};
-  std::array<uint64_t, kRateWindow> answered_{};  ///< how many reports had come before each of the last commands
+  std::array<uint64_t, kRateWindow> answered_{};  ///< number of reports before each of the last commands
   uint64_t reports_ = 0, bad_reports_ = 0;
   Nanoseconds good_at_ = 0, trouble_at_ = 0, healthy_at_ = 0;
   uint32_t last_sequence_ = 0, last_starts_ = 0, sent_ = 0, attached_at_ = 0;
   double last_clock_ = 0;
-  bool clock_tells_ = false;  ///< the arm's clock differs from report to report
+  bool clock_tells_ = false;  ///< the arm's clock has a new value in each report
   bool attached_ = false, have_raw_ = false, calibrated_ = false, calibrate_ = false;
   codec::Verdict last_bad_ = codec::Verdict::kGood;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What carries bytes to and from an arm. Implementations own one USB library each; tests put a fake one here.
+/// Carries bytes to and from an arm. Each implementation uses one library or driver; tests use a fake one.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -17,40 +17,40 @@ enum class Status : uint8_t {
   kOk,
   kNothing,  ///< nothing came within the time given
   kGone,     ///< unplugged
-  kStalled,  ///< the endpoint refuses
-  kAbsent,   ///< on a bus without plugs: nobody answers at the address
-  kFailed,   ///< another error of the bus: unplugging often begins with some of these
+  kStalled,  ///< the endpoint refuses transfers
+  kAbsent,   ///< on a bus without plugs: no board answers at the address
+  kFailed,   ///< another error of the bus; often the first sign that the device is unplugged
 };
 
 /// Which device to open.
 struct Address {
   uint16_t vendor = 0, product = 0;
-  int interface = -1;  ///< -1: any
-  std::string serial;  ///< empty: the first device that is free
+  int interface = -1;  ///< number of the USB interface, -1 for any
+  std::string serial;  ///< serial number; if empty, the first device that is free
   bool operator==(const Address&) const = default;
 };
 
 /// What a device says about itself when it is opened.
 struct Identity {
   std::string serial, product, firmware;
-  std::string epoch;  ///< changes whenever the device was plugged in anew
+  std::string epoch;  ///< changes each time the device is plugged in
 };
 
-/// [main] or the I/O thread, but only one at a time.
+/// Called from [main] or from the I/O thread, but never from both at once.
 class Transport {
  public:
   virtual ~Transport() = default;
-  /// Finds and opens the device; the error says what was looked for and what to do.
+  /// Finds and opens the device. The error says which device was searched for and what to do.
   virtual Result<Identity> open(const Address& address, const codec::Wire& wire) = 0;
   virtual void close() noexcept = 0;
-  /// Receives the next report or packet. @param size bytes written to `to`
+  /// Receives the next report or packet. @param size becomes the number of bytes in `to` @param wait longest time
   virtual Status receive(std::span<uint8_t> to, size_t& size, Nanoseconds wait) noexcept = 0;
   virtual Status send(std::span<const uint8_t> bytes) noexcept = 0;
   /// Sends a control request without data (USB set-up packets of a start-up sequence).
   virtual Status control(const codec::StartStep& step) noexcept = 0;
-  /// While the device is open, gives another way to it, for a process that outlives this one. Fills in all but the
-  /// bytes, whose size becomes the number of zeros before a report.
-  /// @return a descriptor of its own; nothing if there is none
+  /// While the device is open, opens another way to it, for a process that outlives this one. Fills in everything
+  /// except the bytes; `size` becomes the number of zeros to put before a report.
+  /// @return a new descriptor, or an empty one if there is no other way
   virtual Descriptor wayIn(hdv_silence&) noexcept { return {}; }
 };
 

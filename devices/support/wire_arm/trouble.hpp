@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What can go wrong between a healthy arm and the servo, and what to tell the user about it.
+/// The troubles that an arm or its connection can have, and their texts for the user.
 #pragma once
 #include <cstdint>
 
@@ -10,19 +10,19 @@ enum class Trouble : uint8_t {
   kUnplugged,  ///< the device left the bus
   kStalled,    ///< an endpoint refuses transfers
   kBusError,   ///< transfers fail for another reason
-  kFirmware,   ///< reports have a version that the device file does not describe
+  kFirmware,   ///< reports have another firmware version than the device file
   kShort,      ///< reports have a wrong size
   kCorrupt,    ///< reports have wrong marks, checksums or numbers
   kStale,      ///< no report came, or the same one came again and again
   kSlow,       ///< fewer reports come than the device file says
   kJump,       ///< a joint moved further than any hand moves it
   kHardware,   ///< the device reports a fault
-  kAbsent,     ///< nobody answers on the bus
-  kTorn,       ///< reports are never whole
-  kReset,      ///< the device restarted and forgot where it was
+  kAbsent,     ///< no board answers on the bus
+  kTorn,       ///< reports are never complete
+  kReset,      ///< the device restarted and forgot its positions
 };
 
-/// Words for a trouble: what failed, and what cures it.
+/// Returns a text for a trouble: what failed, and how to fix it.
 const char* describe(Trouble trouble) noexcept;
 
 }  // namespace hapticd::wire_arm

@@ -20,7 +20,7 @@ namespace {
 
 constexpr time_t kSendSeconds = 5;
 
-/// A connected socket, or -1.
+/// Returns a connected socket, or -1 with errno.
 int connected(const std::string& file) {
   sockaddr_un address{};
   if (!socketAddress(file, address)) return -1;
@@ -64,7 +64,7 @@ Result<Client> Client::connect(const std::string& file) {
                " with --name; only its user and group may connect"};
 }
 
-/// The kernel reports it as soon as the other end is closed, however its process ended.
+/// The kernel reports the end of the connection as soon as the daemon's end is closed, even if the daemon was killed.
 bool Client::ended() const {
   pollfd socket{fd_, 0, 0};
   return poll(&socket, 1, 0) > 0 && (socket.revents & (POLLHUP | POLLERR)) != 0;
@@ -80,7 +80,8 @@ Result<void> Client::say(const std::string& line, std::span<const int> descripto
     const ssize_t now =
         sendWith(fd_, std::string_view(out).substr(sent), sent == 0 ? descriptors : std::span<const int>());
     if (now < 0 && errno == EINTR) continue;
-    if (now < 0 && errno == EAGAIN) return Error{"the daemon at " + file_ + " accepts no request"};
+    if (now < 0 && errno == EAGAIN)
+      return Error{"the daemon at " + file_ + " does not take requests: it reads nothing from its socket"};
     if (now <= 0) break;
     sent += static_cast<size_t>(now);
   }
@@ -102,7 +103,7 @@ void Client::take(std::string_view bytes, std::vector<Descriptor> with) {
   }
 }
 
-/// @return false if nothing more will come
+/// Waits for more bytes. @return false if the connection has ended
 bool Client::receiveMore() {
   char buffer[4096];
   std::vector<Descriptor> with;
@@ -111,14 +112,14 @@ bool Client::receiveMore() {
   return got > 0 || (got < 0 && errno == EINTR);
 }
 
-/// The next line, of whatever kind.
+/// Returns the next line, whether it is an answer or news.
 Result<Reply> Client::receive(double seconds) {
   const Nanoseconds end = monotonicNow() + static_cast<Nanoseconds>(seconds * 1e9);
   while (lines_.empty()) {
     const Nanoseconds left = std::max<Nanoseconds>(end - monotonicNow(), 0);
     pollfd polled{fd_, POLLIN, 0};
     const int ready = poll(&polled, 1, static_cast<int>((left + 999'999) / 1'000'000));
-    if (ready < 0 && errno == EINTR) continue;  // a program may have handlers of its own
+    if (ready < 0 && errno == EINTR) continue;  // a signal handler of the program interrupted the call
     if (ready != 1 || !receiveMore()) return Error{"the daemon at " + file_ + " did not answer"};
   }
   Reply reply = std::move(lines_.front());
@@ -126,7 +127,7 @@ Result<Reply> Client::receive(double seconds) {
   return reply;
 }
 
-/// The answer to the last request. Answers to requests that were given up come before it.
+/// Returns the answer to the last request. Answers to earlier requests that timed out come first, and are dropped.
 Result<Reply> Client::answer(double seconds) {
   constexpr std::string_view kNews = R"({"event":)";
   const Nanoseconds end = monotonicNow() + static_cast<Nanoseconds>(seconds * 1e9);

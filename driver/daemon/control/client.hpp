@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The other end of the control socket: `hapticd ctl` and tests.
+/// The client's end of the control socket, for `hapticd ctl` and tests.
 #pragma once
 #include <sys/un.h>
 
@@ -16,17 +16,17 @@
 
 namespace hapticd::control {
 
-/// [any] False: the path is too long for a socket.
+/// [any] Fills in the address of a socket. Returns false if the path is too long for a socket.
 bool socketAddress(const std::string& file, sockaddr_un& address);
 
-/// [main] True if somebody serves the socket.
+/// [main] True if a process accepts connections at the socket.
 bool connectTo(const std::string& file);
 
-/// A connection for many requests. An answer whose request was given up, and lines that come unasked, are never taken
-/// for the answer to another request.
+/// A connection for many requests. It never takes a late answer to a request that timed out, or a line that the daemon
+/// sends by itself (news), for the answer to another request.
 class Client {
  public:
-  static constexpr size_t kMostNews = 4096;  ///< lines that are kept for hear(); beyond that the oldest are dropped
+  static constexpr size_t kMostNews = 4096;  ///< lines kept for hear(); if there are more, the oldest are dropped
 
   /// [main] @param file the socket of a running daemon
   static Result<Client> connect(const std::string& file);
@@ -40,17 +40,18 @@ class Client {
   Client& operator=(Client&&) = delete;
   ~Client();
 
-  /// [main] Sends one line and waits for its answer. @param seconds at most
+  /// [main] Sends one line and waits for its answer. @param seconds longest time to wait
   Result<std::string> ask(const std::string& line, double seconds = 10);
-  /// [main] The same, with descriptors that are sent with the line; they stay open here.
+  /// [main] Like ask(), but sends descriptors with the line; they stay open in this process.
   Result<std::string> askWith(const std::string& line, std::span<const int> descriptors, double seconds = 10);
-  /// [main] The same, and gives the descriptor that came with the answer.
+  /// [main] Like ask(), but also returns the descriptor that came with the answer.
   Result<Reply> askForMore(const std::string& line, double seconds = 10);
-  /// [main] Sends one line whose answer nobody waits for.
+  /// [main] Sends one line without waiting for its answer.
   void leave(const std::string& line);
-  /// [main] The next line that comes unasked. @param seconds to wait at most; it is an error if none came
+  /// [main] Returns the next line that the daemon sends by itself (news); an error if none comes in time.
+  /// @param seconds longest time to wait
   Result<std::string> hear(double seconds);
-  /// [any] The daemon has ended, or it ended this connection.
+  /// [any] True if the daemon has ended, or has closed this connection.
   bool ended() const;
 
  private:
@@ -62,13 +63,13 @@ class Client {
   void take(std::string_view bytes, std::vector<Descriptor> with);
   std::string file_;
   int fd_;
-  Reply begun_;              ///< a line whose end has not come yet
-  std::deque<Reply> lines_;  ///< not given out yet
-  std::deque<Reply> news_;   ///< lines that came unasked while an answer was waited for
-  size_t owed_ = 0;          ///< how many answers have not come yet
+  Reply begun_;              ///< the part of a line that has come so far
+  std::deque<Reply> lines_;  ///< received lines that no function has returned yet
+  std::deque<Reply> news_;   ///< news that came while ask() waited for an answer
+  size_t owed_ = 0;          ///< number of answers that have not come yet
 };
 
-/// [main] One request on a connection of its own. @param seconds at most
+/// [main] Sends one request on a new connection, and returns the answer. @param seconds longest time to wait
 Result<std::string> ask(const std::string& file, const std::string& line, double seconds = 10);
 
 }  // namespace hapticd::control

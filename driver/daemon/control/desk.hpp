@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Where requests are worked on: one thread beside that of the sockets, so that a request that takes long, or never
-/// ends, keeps no other line from being read.
+/// The thread that carries out requests. It is not the thread of the sockets, so that other lines are read even while a
+/// request takes long or never ends.
 #pragma once
 #include <condition_variable>
 #include <functional>
@@ -14,17 +14,17 @@
 
 namespace hapticd::control {
 
-/// What the sockets' thread hands to the desk, and what comes back.
+/// A piece of work that the sockets' thread gives to the desk, and (Done) its result.
 struct Job {
   enum class Kind { kAnswer, kNews, kLeft };
   Kind kind = Kind::kAnswer;
   Peer peer;
   std::string line;
-  std::vector<Descriptor> files = {};  ///< that came with the line
+  std::vector<Descriptor> files = {};  ///< descriptors that came with the line
 };
 struct Done {
   uint64_t peer = 0;
-  bool answers = false;  ///< a request; otherwise news
+  bool answers = false;  ///< true for the answer to a request, false for news
   Reply reply;
   Standing standing;
 };
@@ -33,12 +33,13 @@ class Desk {
  public:
   ~Desk() { stop(); }
 
-  /// [main] @param work does a job; false: it has no answer @param ring called after each, from the desk's thread
+  /// [main] Starts the desk's thread. @param work does a job, and returns false if the job has no result
+  /// @param ring called after each job with a result. Both are called from the desk's thread
   std::error_code start(std::function<bool(Job&, Done&)> work, std::function<void()> ring);
-  void stop();  ///< [main] ends after the present job; the rest is dropped
+  void stop();  ///< [main] ends the thread after the present job; other jobs are dropped
 
   void give(Job job);        ///< [any]
-  std::vector<Done> take();  ///< [any] what was done since the last call
+  std::vector<Done> take();  ///< [any] returns the results since the last call
 
  private:
   void run();

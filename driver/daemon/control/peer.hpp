@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Who asks over the control socket, and what goes back.
+/// The client that sends a request over the control socket, and the reply to it.
 #pragma once
 #include <sys/types.h>
 
@@ -11,15 +11,15 @@
 
 namespace hapticd::control {
 
-/// Who sends a request. The number is never used again.
+/// The client that sends a request. Each connection has another `id`; ids are not used again.
 struct Peer {
   uint64_t id = 0;
-  pid_t pid = 0;  ///< of the process that connected
+  pid_t pid = 0;  ///< process that connected
   uid_t uid = 0;
-  Nanoseconds asked = 0;  ///< CLOCK_MONOTONIC when the request's turn came
+  Nanoseconds asked = 0;  ///< CLOCK_MONOTONIC when the work on the request began
 };
 
-/// One line, without its end, and perhaps a descriptor that the client gets along with it.
+/// One line without its end, and perhaps a descriptor that is sent to the client with it.
 struct Reply {
   Reply() = default;
   Reply(std::string text) : line(std::move(text)) {}  // NOLINT: implicit by intent
@@ -28,10 +28,10 @@ struct Reply {
   Descriptor descriptor;
 };
 
-/// Why a connection is kept, apart from its requests.
+/// Why a connection is kept even if it sends no requests.
 struct Standing {
-  bool stays = false;    ///< something depends on it: it is never dropped for being silent
-  bool listens = false;  ///< it gets news
+  bool stays = false;    ///< something depends on the connection, so it may be silent for any time
+  bool listens = false;  ///< the client subscribed to news
 };
 
 }  // namespace hapticd::control

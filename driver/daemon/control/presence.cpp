@@ -22,7 +22,7 @@ bool isThere(const std::string& file) {
   return fs::exists(fs::symlink_status(file, unknown));
 }
 
-/// Looks every 10 ms. @return whether it became true in time
+/// Calls `done` every 10 ms. @return whether it returned true in time
 template <class Done>
 bool within(double seconds, Done&& done) {
   constexpr Nanoseconds kPause = 10'000'000;
@@ -38,7 +38,7 @@ bool within(double seconds, Done&& done) {
 bool lives(const std::string& socket) {
   const std::string lock = fs::path(socket).replace_extension(".lock").string();
   const int fd = open(lock.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
-  // Another user's lock cannot be opened; the socket disappears with the daemon.
+  // Another user's lock file cannot be opened. Then the socket decides: a daemon removes it at its end.
   if (fd < 0) return errno == EACCES && isThere(socket);
   const bool held = flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   close(fd);

@@ -20,11 +20,11 @@ using Kind = Request::Kind;
 
 constexpr int kMaxDepth = 8;
 constexpr size_t kMaxText = 4096;
-constexpr double kMaxPlace = 10;         ///< [m] no arm reaches farther
-constexpr double kFinestDrawing = 1e-5;  ///< [m] no screen shows less
-constexpr double kMostFrames = 1e15;     ///< that are counted exactly
+constexpr double kMaxPlace = 10;         ///< [m] largest coordinate: no arm reaches farther
+constexpr double kFinestDrawing = 1e-5;  ///< [m] smallest tolerance: no screen shows less
+constexpr double kMostFrames = 1e15;     ///< largest number of a frame: a double holds it exactly
 
-/// What a request must and may contain. Keys stand in this order: required ones, then optional ones.
+/// A kind of request: its word, the keys that it must have, and the keys that it may have.
 struct Form {
   const char* word;
   Kind kind;
@@ -71,10 +71,11 @@ std::string words() {
   return list;
 }
 
-/// What many programs write for a number that is not finite, which JSON does not have.
+/// Returns a hint if the line contains what many programs write for a number that is not finite: JSON has no such
+/// numbers.
 std::string noJsonNumber(std::string_view line) {
   for (const char* word : {"NaN", "nan", "Infinity", "inf"})
-    if (line.find(word) != std::string_view::npos) return std::string("; ") + word + " is no JSON number";
+    if (line.find(word) != std::string_view::npos) return std::string("; ") + word + " is not a number in JSON";
   return "";
 }
 
@@ -119,7 +120,7 @@ class Taker {
     }
     if (!good) complain(key, "a list of " + std::to_string(N) + " numbers within " + Json(bound).dump() + " of 0");
   }
-  /// Absolute paths, each once.
+  /// Reads a list of absolute paths without repetitions.
   void paths(const char* key, size_t most, std::vector<std::string>& to) {
     const Json* value = find(key);
     if (value == nullptr) return;
@@ -133,7 +134,7 @@ class Taker {
     }
     if (!good) complain(key, "a list of at most " + std::to_string(most) + " absolute paths, each once");
   }
-  /// The only word that may stand there. @param to becomes true where it does
+  /// Reads a key whose only permitted value is the word `only`. @param to becomes true if the key is there
   void word(const char* key, const char* only, bool& to) {
     const Json* value = find(key);
     if (value == nullptr) return;
@@ -171,7 +172,7 @@ std::string wrongKeys(const Json& json, const Form& form) {
   return "";
 }
 
-/// @return what is wrong with it
+/// Reads the "id" of a request. @return what is wrong with it, or ""
 std::string readId(const Json& json, std::string* id) {
   constexpr size_t kLongest = 128;
   const auto given = json.find("id");
@@ -194,8 +195,8 @@ void readOrientation(Taker& take, Request& request) {
   for (double& part : request.orientation) part /= length;
 }
 
-/// Watches a request while it is parsed. It may not be too deep, or have a key twice, since some readers take the first
-/// and others the last.
+/// Watches a request while it is parsed: it must not be nested too deeply, and must not have a key twice, because some
+/// readers take the first and others the last.
 class Watch {
  public:
   bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
@@ -207,10 +208,10 @@ class Watch {
     return !deep;
   }
   bool deep = false;
-  std::string twice;  ///< a key; "": none
+  std::string twice;  ///< a key that is given twice, or ""
 
  private:
-  std::vector<std::set<std::string>> keys_;  ///< the keys of the objects that are open
+  std::vector<std::set<std::string>> keys_;  ///< the keys so far of each open object
 };
 
 void readValues(Taker& take, Request& request) {
@@ -242,10 +243,10 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
   Watch watch;
   const Json json = Json::parse(line.begin(), line.end(), std::ref(watch), false);
   if (watch.deep || !json.is_object())
-    return Error{"expected a JSON object in one line, as {\"do\": \"status\"}" + noJsonNumber(line)};
+    return Error{"expected a JSON object in one line, such as {\"do\": \"status\"}" + noJsonNumber(line)};
   if (!watch.twice.empty())
     return Error{Json(watch.twice.substr(0, 64)).dump(-1, ' ', true, Json::error_handler_t::replace) +
-                 " is given twice, expected once"};
+                 " is given twice, expected each key once"};
   if (const std::string wrong = readId(json, id); !wrong.empty()) return Error{wrong};
   const auto word = json.find("do");
   const Form* form = word != json.end() && word->is_string() ? formOf(word->get_ref<const std::string&>()) : nullptr;

@@ -23,8 +23,8 @@ namespace hapticd::control {
 namespace {
 
 constexpr int kPollMs = 500;
-constexpr Nanoseconds kAcceptPause = 500'000'000;  ///< after a failure, such as a lack of free descriptors
-constexpr int kReadsATurn = 4;                     ///< so that no client keeps the others waiting
+constexpr Nanoseconds kAcceptPause = 500'000'000;  ///< [ns] pause after a failure, such as a lack of free descriptors
+constexpr int kReadsATurn = 4;                     ///< limit, so that no client keeps the others waiting
 
 Error cannot(const std::string& file, const std::string& what) {
   return Error{"cannot serve " + file + ": " + what + "\n  no other program can watch or change this run"};
@@ -42,7 +42,7 @@ Result<std::unique_ptr<Server>> Server::listen(const std::string& file, const st
   unlink(file.c_str());
   const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   int wake[2] = {-1, -1};
-  const mode_t mask = umask(0177);  // nobody else may connect before its group is set
+  const mode_t mask = umask(0177);  // only the owner may connect until the group is set
   const bool bound = fd >= 0 && bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
   umask(mask);
   constexpr int kBacklog = 16;
@@ -81,7 +81,7 @@ void Server::stop() {
 
 void Server::wake() {
   const char byte = 0;
-  [[maybe_unused]] const ssize_t woken = write(wake_[1], &byte, 1);  // the pipe is full, so the thread wakes up anyway
+  [[maybe_unused]] const ssize_t woken = write(wake_[1], &byte, 1);  // a full pipe also wakes the thread up
 }
 
 void Server::serve() {
@@ -90,7 +90,7 @@ void Server::serve() {
     const bool accepts = monotonicNow() >= accept_after_;
     polled.assign({{fd_, static_cast<short>(accepts ? POLLIN : 0), 0}, {wake_[0], POLLIN, 0}});
     for (const Client& client : clients_) {
-      // a client that does not read its answers is asked for no more
+      // no more requests are read from a client that does not read its answers
       const bool reads = client.out.empty() && !client.closing && client.in.size() <= kMaxRequestBytes;
       const short events = client.out.empty() ? (reads ? POLLIN : 0) : POLLOUT;
       polled.push_back({client.hung ? -1 : client.fd, events, 0});
@@ -114,12 +114,12 @@ bool Server::listened() const {
   return std::any_of(clients_.begin(), clients_.end(), [](const Client& c) { return c.standing.listens; });
 }
 
-/// True if the client is still owed an answer.
+/// True if an answer to the client is still to be made or sent.
 bool Server::owes(const Client& client) const {
   return client.asked || !client.out.empty() || client.in.find('\n') != std::string::npos;
 }
 
-/// One turn of one client.
+/// Reads, answers and sends what is possible now for one client.
 void Server::watch(Client& client, short events, Nanoseconds now) {
   bool good = (events & (POLLERR | POLLNVAL)) == 0;
   if (events != 0) client.heard = now;
@@ -150,7 +150,7 @@ size_t Server::count(bool seated) const {
       std::count_if(clients_.begin(), clients_.end(), [&](const Client& c) { return c.seated == seated; }));
 }
 
-/// Clients that wait for a place take the places of those that left, or that make room.
+/// Gives places to clients that wait: places of clients that left, or of clients that have been idle for long.
 void Server::seat(Nanoseconds now) {
   for (Client& client : clients_) {
     if (client.seated) continue;
@@ -198,7 +198,7 @@ void Server::queue(Client& client, Reply reply) {
   client.waiting += reply.line.size();
   const bool joins = !client.out.empty() && !client.out.back().descriptor && !reply.descriptor;
   if (joins) {
-    client.out.back().line += reply.line;  // one system call for many short lines
+    client.out.back().line += reply.line;  // so that one system call sends many short lines
   } else {
     client.out.push_back(std::move(reply));
   }
@@ -208,7 +208,7 @@ bool Server::receive(Client& client) {
   char buffer[4096];
   for (int i = 0; i < kReadsATurn && client.in.size() <= kMaxRequestBytes; ++i) {
     const ssize_t got = receiveWith(client.fd, buffer, client.given);
-    if (given() > kMostDescriptors) return false;  // a program needs few, and other programs need some too
+    if (given() > kMostDescriptors) return false;  // one program must not take all descriptors of the daemon
     if (got < 0 && (errno == EAGAIN || errno == EINTR)) break;
     if (got < 0) return false;
     if (got == 0) {
@@ -227,7 +227,7 @@ std::optional<Reply> Server::urgent(const Client& client, const std::string& lin
   return service_.urgent ? service_.urgent(client.peer, line) : std::nullopt;
 }
 
-/// Answers lines in their order: only one at a time is worked on.
+/// Answers the lines of a client in their order, one at a time.
 void Server::answerLines(Client& client) {
   size_t end = 0;
   while (!client.asked && client.waiting < kMaxWaiting && (end = client.in.find('\n')) != std::string::npos) {
@@ -248,21 +248,21 @@ void Server::answerLines(Client& client) {
   }
 }
 
-/// An urgent line behind a request that is still worked on is done now; it is answered in its turn.
+/// Carries out an urgent line at once, even if an earlier request is still worked on. The answer is sent in its turn.
 void Server::actAtOnce(Client& client) {
   if (!client.asked && client.seated) return;
   for (size_t end; (end = client.in.find('\n', client.scanned)) != std::string::npos; client.scanned = end + 1)
     (void)urgent(client, client.in.substr(client.scanned, end - client.scanned));
 }
 
-/// Descriptors of clients whose line waits for its turn.
+/// Returns how many descriptors of waiting lines the server holds.
 size_t Server::given() const {
   size_t sum = 0;
   for (const Client& client : clients_) sum += client.given.size();
   return sum;
 }
 
-/// The descriptors that a line names; they came in the order of the lines.
+/// Takes the descriptors that a line names. Descriptors come in the order of the lines.
 std::vector<Descriptor> Server::takeGiven(Client& client, const std::string& line) {
   std::vector<Descriptor> taken;
   const auto request = client.given.empty() ? Result<Request>(Error{}) : parseRequest(line);
@@ -280,7 +280,7 @@ void Server::ask(Client& client, std::string line) {
   desk_.give({Job::Kind::kAnswer, client.peer, std::move(line), std::move(files)});
 }
 
-/// The desk's thread.
+/// Does one job; called in the desk's thread.
 bool Server::work(Job& job, Done& done) {
   done.peer = job.peer.id;
   done.answers = job.kind == Job::Kind::kAnswer;
@@ -299,7 +299,7 @@ void Server::takeDone() {
   for (Done& done : desk_.take()) {
     const auto client =
         std::find_if(clients_.begin(), clients_.end(), [&](const Client& c) { return c.peer.id == done.peer; });
-    if (client == clients_.end()) continue;  // it did not wait
+    if (client == clients_.end()) continue;  // the client has left meanwhile
     client->standing = done.standing;
     (done.answers ? client->asked : client->listening) = false;
     if (!done.reply.line.empty() && !client->hung) queue(*client, std::move(done.reply));
@@ -318,7 +318,7 @@ bool Server::send(Client& client) {
     if (next.line.empty()) client.out.pop_front();
   }
   client.since = 0;
-  answerLines(client);  // lines that waited for room
+  answerLines(client);  // lines that waited until earlier answers were sent
   return true;
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// Serves the control socket from two ordinary threads: lines of JSON in, one line of JSON out for each. One thread has
-/// the sockets, another (desk.hpp) works on the requests in turn. What must wait behind nothing, such as a hold, is
-/// answered by the first, and has seats of its own where all others are taken. Everything is bounded: clients, the
-/// length of a request, what waits for a client that does not read, and how long half a line waits. An answer may carry
-/// a descriptor, and a client that subscribed gets lines that it did not ask for.
+/// Serves the control socket: each line of JSON from a client is answered by one line of JSON. One ordinary thread
+/// reads and writes the sockets; another (desk.hpp) works on one request after the other. The first thread itself
+/// answers urgent requests, such as a hold, also of clients for which there is no place yet. There are limits for the
+/// number of clients, the length of a request, the bytes that wait for a client that does not read, and the time to
+/// send a line. An answer may carry a descriptor. A client that subscribed also gets news, which are lines that it did
+/// not ask for.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -24,37 +25,38 @@ namespace hapticd::control {
 
 class Server {
  public:
-  /// What the server calls, all but `urgent` from the thread that works on requests; all but `answer` may be left out.
+  /// Functions that the server calls. The desk's thread calls all of them but `urgent`. All but `answer` may be empty.
   struct Service {
-    /// One line without its end, and the descriptors that it names (see `files` of a request).
+    /// Answers one line (without its end). `files` are the descriptors for the names in the request's `files`.
     std::function<Reply(const Peer&, const std::string& line, std::vector<Descriptor> files)> answer;
-    std::function<Standing(const Peer&)> standing;  ///< after each answer
-    /// Lines, each with its end, for a client that listens; "" for none. Called about every kNewsPeriod, and only while
-    /// the client has read all that came before.
+    std::function<Standing(const Peer&)> standing;  ///< called after each answer
+    /// Returns lines, each with its end, for a client that listens; "" if there is no news. Called about every
+    /// kNewsPeriod, but only if the client has read all earlier lines.
     std::function<std::string(const Peer&)> news;
-    std::function<void(const Peer&)> left;  ///< the connection is gone
-    /// From the thread of the sockets: does at once what must wait behind no other request, and answers; nothing: the
-    /// line is no such request. Where lines before it are still worked on, it is called again when their turn is over.
+    std::function<void(const Peer&)> left;  ///< called after the connection has ended
+    /// Called from the thread of the sockets. If the line is an urgent request, it does the request at once and returns
+    /// the answer; otherwise it returns nothing. If an earlier line of the client is still worked on, the function is
+    /// called a second time, when the line's turn has come.
     std::function<std::optional<Reply>(const Peer&, const std::string& line)> urgent;
   };
 
   static constexpr size_t kMaxClients = 32;
-  static constexpr size_t kMaxStanding = 16;  ///< of clients beyond those, only urgent requests are answered yet
-  static constexpr size_t kMaxStaying = 24;   ///< that whoever grants a standing shall let stay: others need places too
+  static constexpr size_t kMaxStanding = 16;  ///< clients without a place: only their urgent requests are answered
+  static constexpr size_t kMaxStaying = 24;   ///< most clients with Standing::stays, so that others find places
   static constexpr Nanoseconds kNewsPeriod = 20'000'000;
-  static constexpr size_t kMaxWaiting = 1 << 20;            ///< [bytes] for a client that does not read
-  static constexpr Nanoseconds kIdle = 2'000'000'000;       ///< then a client may be dropped if another waits
-  static constexpr Nanoseconds kPatience = 10'000'000'000;  ///< time for the rest of a line, or for room to answer
+  static constexpr size_t kMaxWaiting = 1 << 20;       ///< [bytes] kept for a client that does not read
+  static constexpr Nanoseconds kIdle = 2'000'000'000;  ///< [ns] a client idle for longer is dropped if another waits
+  static constexpr Nanoseconds kPatience = 10'000'000'000;  ///< [ns] time to send the rest of a line, or to read
 
-  /// [main] Binds the socket, readable and writable by the owner and by its group. An old socket that nobody serves is
-  /// replaced; one that is served is an error. @param group "": the process's own
+  /// [main] Binds the socket; its owner and its group may connect. An old socket that no process serves is replaced. It
+  /// is an error if a process serves it. @param group group of the socket; "" takes the group of the process
   static Result<std::unique_ptr<Server>> listen(const std::string& file, const std::string& group = "");
   ~Server();  ///< [main] stops and removes the socket
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
   std::error_code start(Service service);  ///< [main]
-  void stop();                             ///< [main] after it returns nothing more is answered
+  void stop();                             ///< [main] nothing is answered after it returns
 
  private:
   struct Client {
@@ -62,17 +64,17 @@ class Server {
     Peer peer;
     Standing standing;
     std::string in;
-    std::vector<Descriptor> given;  ///< came with the lines in `in`, in their order
-    std::list<Reply> out;           ///< with their line ends; a descriptor is sent with the first byte of its line
+    std::vector<Descriptor> given;  ///< descriptors that came with the lines in `in`, in their order
+    std::list<Reply> out;           ///< lines to send, with their ends; a descriptor goes with its line's first byte
     size_t waiting = 0;             ///< [bytes] in `out`
-    Nanoseconds since = 0;          ///< half a line, or an answer not yet taken, waits since then; 0: nothing waits
+    Nanoseconds since = 0;          ///< since when half a line, or an answer, waits for the client; 0: nothing waits
     Nanoseconds heard = 0;          ///< the last time that bytes were received or sent
-    bool closing = false;           ///< once `out` is gone
-    bool hung = false;              ///< nobody reads its answers; what it asked for is done all the same
-    bool seated = true;             ///< otherwise it waits for a place
+    bool closing = false;           ///< the connection ends when `out` has been sent
+    bool hung = false;              ///< the client has closed its end; its requests are still carried out
+    bool seated = true;             ///< it has a place; if false, it waits for one
     bool asked = false;             ///< one of its requests is worked on
     bool listening = false;         ///< its news are being collected
-    bool known = false;             ///< to those who work on requests
+    bool known = false;             ///< the desk's thread has had a request of this client
     size_t scanned = 0;             ///< [bytes] of `in` that were already searched for urgent requests
   };
   Server(std::string file, int fd, int wake_read, int wake_write)
@@ -105,10 +107,10 @@ class Server {
   int fd_;
   int wake_[2];
   Service service_;
-  std::list<Client> clients_;  ///< as they came
+  std::list<Client> clients_;  ///< in the order of their connections
   uint64_t last_id_ = 0;
   Nanoseconds news_due_ = 0;
-  Nanoseconds accept_after_ = 0;  ///< what the system refused is not asked for again and again
+  Nanoseconds accept_after_ = 0;  ///< after a failure of the system, no connection is accepted before this time
   std::atomic<bool> stop_{false};
   Desk desk_;
   os::Thread thread_;

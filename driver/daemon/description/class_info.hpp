@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What a plugin or module file says of itself, copied out of it: valid whether the file is loaded or not.
+/// The description that a plugin or module file gives of itself. It is a copy, so it is valid even if the file is not
+/// loaded.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -29,7 +30,7 @@ struct ClassInfo {
   std::vector<ParamInfo> params;
   std::filesystem::path file;
 
-  /// Index of a parameter, or -1.
+  /// Returns the index of a parameter, or -1 if there is none.
   int indexOf(const std::string& param) const;
   std::vector<std::string> paramIds() const;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A validated scene as plain data: what the files say, with every default filled in. Written by the loader (load.hpp),
-/// read by whoever sets up the daemon. Nothing here is used in the servo thread.
+/// A validated scene as plain data: the contents of its files, with every default filled in. The loader (load.hpp)
+/// writes it, and the set-up of the daemon reads it. The servo thread uses nothing of it.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -16,19 +16,19 @@ namespace hapticd::scene {
 
 using document::Place;
 
-/// Position [m] and orientation of a frame in its parent.
+/// Position [m] and orientation of a frame in its parent frame.
 struct Pose {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
 };
 
-/// One parameter that the file gives, ready for set(): checked against the table of the plugin or module.
+/// One parameter that the file gives. It is checked against the table of the plugin or module, and ready for set().
 struct Value {
   std::string id;
-  uint32_t index = 0;  ///< in the table
+  uint32_t index = 0;  ///< index in the table
   uint32_t kind = 0;   ///< HSP_REAL, ...
   double number = 0;
-  std::string text;  ///< paths are absolute
+  std::string text;  ///< text or absolute path
   std::vector<double> numbers;
   Place place;
 };
@@ -43,80 +43,80 @@ struct Model {
   std::string name, plugin;
   std::filesystem::path library;  ///< the .so that contains the plugin
   Pose pose;                      ///< pose of the model in the world at the start
-  bool kinematic = false;         ///< moved by `path`, not by its plugin
+  bool kinematic = false;         ///< true if `path` moves the model, not its plugin
   std::vector<PathPoint> path;
   std::vector<Value> parameters;
   Place place;
 };
 
-/// What lets forces through: a button of the device, which is held (dead-man switch), or toggles.
+/// How a button enables the forces: while it is held (dead-man switch), or by switching them on and off.
 enum class EnableMode { kHold, kToggle };
 struct Enable {
-  std::optional<int> button;  ///< none: forces are always let through
+  std::optional<int> button;  ///< if there is none, forces are always enabled
   EnableMode mode = EnableMode::kHold;
 };
 
-/// One motor for the model of its heat; numbers as data sheets give them.
+/// One motor, for the model of its heat. The numbers are those of data sheets.
 struct Motor {
   double ratio = 1;                              ///< joint torque divided by motor torque
   double torque_constant = 0, resistance = 0;    ///< [N m/A], [ohm] at 25 degC
-  double winding_housing = 1, housing_air = 10;  ///< [K/W]
-  double winding_time = 10, housing_time = 600;  ///< [s]
+  double winding_housing = 1, housing_air = 10;  ///< [K/W] thermal resistances
+  double winding_time = 10, housing_time = 600;  ///< [s] thermal time constants
   double max_temperature = 100, ambient = 25;    ///< [degC]
 };
 
-/// Limits of one device, applied between contact and motors, whatever the plugins say.
+/// Limits of one device. They are applied between the contact forces and the motors, whatever the plugins compute.
 struct Limits {
-  double force = 0;                ///< [N] 0: the device's own maximum
-  double torque = 0;               ///< [N m] on the hand; 0: the motors are the only limit
-  double slew = 2000;              ///< [N/s] fastest growth of force; 0: none
-  double torque_slew = 200;        ///< [N m/s] fastest growth of torque; 0: none. As `slew`, at 0.1 m from the tip
+  double force = 0;                ///< [N] largest force; 0: the device's own maximum
+  double torque = 0;               ///< [N m] largest torque on the hand; 0: only the motors limit it
+  double slew = 2000;              ///< [N/s] fastest growth of force; 0: no limit
+  double torque_slew = 200;        ///< [N m/s] fastest growth of torque; 0: no limit. 200 is `slew` at 0.1 m
   double power = 0;                ///< [W] most power that the arm gives to the hand; 0: no limit
   double impulse = 0;              ///< [N s] largest impulse within any tenth of a second; 0: no limit
-  std::optional<double> velocity;  ///< [m/s] a faster tip latches a fault; 0: no limit; none: 5, for real hardware
-  double workspace = 0;            ///< [m] radius about the world's origin of the device; outside forces fade; 0: none
-  std::optional<double> weight;    ///< [N] at the tip, most that carries the arm's weight; none: as large as `force`
-  double ramp_in = 0.25;           ///< [s] from zero to full force at the start and after a fault
-  double ramp_out = 0.02;          ///< [s] from full force to zero at a planned end; after a fault 2 ms at most
-  std::optional<bool> passivity;   ///< observer and controller; none: for arms never tried on hardware
+  std::optional<double> velocity;  ///< [m/s] a faster tip latches a fault; 0: no limit; default on hardware: 5
+  double workspace = 0;          ///< [m] radius about the origin of the device frame; outside, forces fade; 0: no limit
+  std::optional<double> weight;  ///< [N] largest force at the tip that carries the arm's weight; default: `force`
+  double ramp_in = 0.25;         ///< [s] time from zero to full force, at the start and after a fault
+  double ramp_out = 0.02;        ///< [s] time from full force to zero at a planned end; after a fault at most 2 ms
+  std::optional<bool> passivity;  ///< passivity control; default: on for arms never tried on hardware
   Enable enable;
-  std::vector<Motor> motors;  ///< in the order of the joints; none: their heat is not modelled
+  std::vector<Motor> motors;  ///< in the order of the joints; if empty, their heat is not modelled
 };
 
 /// Compliance control: measured joint torque drives a virtual mass and damper, rendered as positions.
 struct Admittance {
-  double mass = 1, damping = 10;  ///< [kg], [N s/m]
+  double mass = 1, damping = 10;  ///< [kg], [N s/m] of the virtual mass and damper
 };
 
-/// A joint as programs of the HDAPI know it: sign times the device's joint, and an offset.
+/// A joint as HDAPI programs see it: its angle is sign * (angle of the device's joint) + offset.
 struct HdJoint {
-  uint32_t joint = 0;  ///< of the device, counted from 0
+  uint32_t joint = 0;  ///< number of the device's joint, counted from 0
   double sign = 1;     ///< 1 or -1
   double offset = 0;   ///< [rad]
 };
 
-/// How programs of the HDAPI see an arm. Empty: as the device says of itself.
+/// How HDAPI programs see an arm. For what is empty, the device's own description is used.
 struct HdArm {
   std::string model, vendor, serial;
-  std::vector<HdJoint> joints;    ///< turret, thigh, shin, and the three of the gimbal
-  std::vector<uint32_t> buttons;  ///< the device's joints, in the order of the programs' joints
+  std::vector<HdJoint> joints;    ///< turret, thigh, shin, and the three joints of the gimbal
+  std::vector<uint32_t> buttons;  ///< numbers of the device's buttons, in the order of the programs' buttons
 };
 
 struct Device {
   std::string name, module;
   std::filesystem::path file, library;
-  Pose mount;  ///< the device frame in the world
+  Pose mount;  ///< pose of the device frame in the world
   Limits limits;
   std::optional<Admittance> admittance;
   std::optional<HdArm> hd;
   std::vector<Value> parameters;
-  bool chosen_by_default = false;  ///< the scene named none
+  bool chosen_by_default = false;  ///< true if the scene names no device
   Place place;
 };
 
 enum class Pace { kClock, kDevice };
 
-/// Which processor instructions the inner loops of shapes use. The last bits of results depend on it.
+/// Which processor instructions the inner loops of shapes use. The last bits of the results depend on them.
 enum class Instructions {
   kAuto,     ///< the fastest instructions that the processor has
   kPortable  ///< instructions that every processor has: the same bits on all machines
@@ -124,37 +124,37 @@ enum class Instructions {
 
 struct Velocity {
   std::string estimator = "window";  ///< window, butterworth, foaw, least_squares, kalman
-  double parameter = 3;              ///< what the estimator takes: samples, cut-off in Hz, or process noise
+  double parameter = 3;              ///< by estimator: number of samples, cut-off in Hz, or process noise
 };
 
 struct Servo {
-  double rate = 1000;                    ///< [Hz]
-  double activation_radius = 0.10;       ///< [m] surfaces nearer than this are traced
-  double hysteresis = 0.05;              ///< [m] beyond that radius, at which they are dropped again
-  Eigen::Vector3d gravity{0, -9.81, 0};  ///< [m/s^2] world
+  double rate = 1000;               ///< [Hz]
+  double activation_radius = 0.10;  ///< [m] surfaces nearer than this are traced
+  double hysteresis = 0.05;         ///< [m] a traced surface is dropped when it is farther than the radius plus this
+  Eigen::Vector3d gravity{0, -9.81, 0};  ///< [m/s^2] world frame
   Pace pace = Pace::kClock;
   Velocity velocity;
-  std::optional<double> spin_us;  ///< [us] busy wait before the deadline; none: chosen for the machine
+  std::optional<double> spin_us;  ///< [us] busy wait before the deadline; default: chosen for the machine
   Instructions instructions = Instructions::kAuto;
-  double budget_us = 0;  ///< [us] per tick for all shapes together; 0: four fifths of the period
+  double budget_us = 0;  ///< [us] time per tick for all shapes together; 0: four fifths of the period
 };
 
-/// Whether programs may push on the arms with forces of their own.
+/// Whether programs (clients) may push on the arms with their own forces.
 enum class ClientMode {
   kOff,     ///< they may not
-  kAdd,     ///< their forces are added to those of the models
+  kAdd,     ///< their forces are added to the forces of the models
   kInstead  ///< the models fade out while a program pushes
 };
-/// In whose axes the coordinates of HDAPI programs are.
+/// Frame whose axes the coordinates of HDAPI programs use.
 enum class ClientFrame { kWorld, kDevice };
 struct Clients {
   ClientMode mode = ClientMode::kOff;
-  double max_force = 0;    ///< [N] of one program; 0: as much as the device's limit allows
-  bool exclusive = false;  ///< one program an arm; otherwise their forces add up
-  double answer_time = 0;  ///< [s] after a tick began during which the servo waits for answers; 0: it does not wait
+  double max_force = 0;    ///< [N] largest force of one program; 0: only the device's limit counts
+  bool exclusive = false;  ///< true: one program per arm; false: the forces of several programs add up
+  double answer_time = 0;  ///< [s] time after the start of a tick for which the servo waits for answers; 0: none
   bool push = true;        ///< false: programs see what pushing programs see, but may not push
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< [m] origin of the HDAPI's coordinates, in the axes of `frame`
-  ClientFrame frame = ClientFrame::kWorld;           ///< whose axes those are: the world's, or the arm's mount
+  ClientFrame frame = ClientFrame::kWorld;           ///< the world's axes, or the axes of the arm's mount
 };
 
 struct Scene {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Plugins and device modules that are linked into this program instead of being loaded, for platforms without
-/// dlopen(). Each has an entry of its own name: hsp_entry_NAME or hdv_entry_NAME. hapticd_link_modules() of
-/// HapticdPlugin.cmake compiles them so and makes the program's list.
+/// dlopen(). Each has an entry with its own name: hsp_entry_NAME or hdv_entry_NAME. hapticd_link_modules() of
+/// HapticdPlugin.cmake compiles them in this way and makes the program's list.
 #pragma once
 #include <filesystem>
 #include <span>
@@ -14,7 +14,7 @@
 
 namespace hapticd::host {
 
-/// One of them. Its description has the path kBuiltInFolder/NAME, where a loaded one has its file.
+/// One built-in plugin or module. In its description, the path is kBuiltInFolder/NAME instead of a file.
 struct BuiltIn {
   std::string name;
   const hsp_entry* shapes = nullptr;
@@ -23,16 +23,17 @@ struct BuiltIn {
 
 constexpr const char* kBuiltInFolder = "(built in)";
 
-/// [main] Called before the first scene is read: says what this program contains. The list outlives every instance.
+/// [main] Sets the list of what this program contains. Call it before the first scene is read. The list must outlive
+/// every instance.
 void setBuiltIns(std::span<const BuiltIn> list);
 
-/// [main] The same with the list that hapticd_link_modules() made for this program. Other programs have no such list.
+/// [main] Sets the list that hapticd_link_modules() made for this program. Only programs with such a list can call it.
 void takeBuiltIns();
 
-/// [any] The built-in plugin or module of that path; nullptr if there is none.
+/// [any] Returns the built-in plugin or module with that path; nullptr if there is none.
 const BuiltIn* findBuiltIn(const std::filesystem::path& path);
 
-/// [any] Paths of all built-in files that hold classes of a kind.
+/// [any] Returns the paths of all built-in plugins or modules with classes of a kind.
 std::vector<std::filesystem::path> builtIns(Kind kind);
 
 }  // namespace hapticd::host

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-/// Which call of a device module a child process is in, told to its parent: a crash leaves no other trace of it.
+/// Tells a parent process which function of a device module its child is calling. After a crash of the child, nothing
+/// else shows it.
 #pragma once
 #include "host/child.hpp"
 
 namespace hapticd::host {
 
-/// [main] From now on calls of device modules at set-up are noted in `trail`; nullptr ends that. Used in a child only.
+/// [main] From now on the calls of device modules at set-up are noted in `trail`; nullptr ends that. Only for a child.
 void followCalls(Trail* trail) noexcept;
 
-/// [main] A module's function is about to be called. @param name in static storage
+/// [main] Notes that a module's function is about to be called. @param name name of the function, in static storage
 void tellCall(const char* name) noexcept;
 
 }  // namespace hapticd::host

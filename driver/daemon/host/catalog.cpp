@@ -32,7 +32,7 @@ std::vector<fs::path> sharedObjects(const fs::path& dir) {
   return found;
 }
 
-/// A name from a file must not lead out of the folders that are searched.
+/// True for a name without a path: a name from a file must not lead out of the searched folders.
 bool plainName(const std::string& name) {
   return !name.empty() && name.find('/') == std::string::npos && name.size() < 200 && name[0] != '.';
 }
@@ -47,7 +47,8 @@ std::string textOf(const std::vector<fs::path>& dirs) {
   return text;
 }
 
-/// Plugins and modules that ship with hapticd: `driver/demo` builds only two of them.
+/// True for the plugins and modules that ship with hapticd, even if this build lacks them (`driver/demo` builds only
+/// two).
 bool ships(const std::string& name) {
   constexpr const char* kShipped[] = {"mat_deformable", "nurbs_rigid", "pendulum", "push_button", "template",
                                       "simulated",      "usb_hid",     "usb_bulk", "vme",         "template_arm",
@@ -73,7 +74,7 @@ std::optional<fs::path> shippedFile(const fs::path& relative) {
 
 namespace {
 
-/// Folders that hold what ships with this program: beside it, and where it was installed.
+/// Returns the folders with the modules that ship with this program: beside the program, and in the installation.
 std::vector<fs::path> shippedRoots() {
   const fs::path beside = executableDir() / "..";
   std::vector<fs::path> roots;
@@ -120,8 +121,8 @@ const CatalogFile& Catalog::describeOnce(const fs::path& file) {
   if (const auto known = files_.find(file); known != files_.end()) return known->second;
   CatalogFile& entry = files_[file];
   entry.path = file;
-  // A library that is loaded is described as it is, even if its file has changed since, because it will be used, and
-  // its constructors have run already. A child process describes any other.
+  // A loaded library is described in this process, even if its file has changed since: the loaded code will be used,
+  // and its constructors have run already. Any other library is described in a child process.
   const std::shared_ptr<Library> loaded = Library::loaded(file);
   if (!loaded) entry.stamp = stampOf(file);
   auto classes = loaded ? describe(file) : describe_(file);
@@ -187,12 +188,12 @@ std::string Catalog::notFound(Kind kind, const std::string& name, const std::str
     for (const CatalogFile* file : files(kind))
       if (!file->error.empty()) text += "\n  not usable: " + file->error;
   text += "\n  searched:" + textOf(dirs(kind)) + "\n  fix: ";
-  if (reason.empty() && ships(name))  // of a checkout: the packages have all of them
-    return text + "it comes with hapticd but is not built here: cmake --build build/release --target modules";
-  text += "name an existing one, or add its folder to HAPTICD_PLUGIN_PATH";
+  if (reason.empty() && ships(name))  // happens only in a source checkout, since the packages contain all of them
+    return text + "it is part of hapticd but is not built here: run cmake --build build/release --target modules";
+  text += "write an existing name, or add the folder of the missing file to HAPTICD_PLUGIN_PATH";
   if (name.find('/') == name.npos && !name.ends_with(".so")) return text;
-  return text + "; a file is named by its class, such as " + fs::path(name).stem().string() +
-         ", and its folder by --plugin-path";
+  return text + "; write the name of the class, such as " + fs::path(name).stem().string() +
+         ", not of the file, and give the file's folder by --plugin-path";
 }
 
 }  // namespace hapticd::host

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Finds shape plugins and device modules and knows what they say of themselves. Built-in ones come first. Files are
-/// described in child processes and only when asked for: a scene that names one plugin makes this process load no
-/// other.
+/// Finds shape plugins and device modules, and knows their descriptions. Built-in ones come first. A file is described
+/// in a child process, and only if it is asked for. So a scene that names one plugin makes this process load only that
+/// plugin.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -18,56 +18,58 @@
 
 namespace hapticd::host {
 
-/// Where files are looked for, first match wins.
+/// The folders in which files are searched. The first match counts.
 struct SearchPath {
   std::vector<std::filesystem::path> plugins, devices;
 
-  /// [main] HAPTICD_PLUGIN_PATH (a colon list, both kinds), then ../lib/hapticd/{plugins,devices} seen from the
-  /// executable (build tree or relocated installation), then the directory of the installation.
+  /// [main] Returns the standard path: the folders of HAPTICD_PLUGIN_PATH (separated by colons, for both kinds), then
+  /// ../lib/hapticd/{plugins,devices} relative to the executable (build tree or moved installation), then the folders
+  /// of the installation.
   static SearchPath standard();
 
-  /// [main] Puts directories before all others, as --plugin-path and the daemon file do.
+  /// [main] Puts folders before all others, for --plugin-path and the daemon file.
   void prepend(const std::vector<std::filesystem::path>& dirs);
 };
 
-/// [main] True for what is built in, and for a file in a folder of shipped modules. Other files are foreign.
+/// [main] True if the library is built in, or is a file in a folder of shipped modules. Other files are foreign.
 bool ships(const std::filesystem::path& library);
 
-/// A file that looks like a plugin or module: its description, or the reason why there is none.
+/// A file that looks like a plugin or module, with its description, or the reason why it has none.
 struct CatalogFile {
   std::filesystem::path path;
-  std::optional<FileStamp> stamp;  ///< of the file that was described; nothing if the library was loaded
+  std::optional<FileStamp> stamp;  ///< stamp of the file that was described; nothing if the library was loaded
   std::vector<ClassInfo> classes;
-  std::string error;  ///< "": none
+  std::string error;  ///< why there is no description; "" if there is one
 };
 
 class Catalog {
  public:
-  /// How a file that is not loaded is described.
+  /// A function that describes a file that is not loaded.
   using Describe = std::function<Result<std::vector<ClassInfo>>(const std::filesystem::path&)>;
 
   explicit Catalog(SearchPath path = SearchPath::standard()) : path_(std::move(path)), describe_(describeInChild) {}
 
-  /// [main] Describes files in another way from now on.
+  /// [main] Sets the function by which files are described from now on.
   void describeBy(Describe describe) { describe_ = std::move(describe); }
 
-  /// [main] Forgets files that changed, failed, or were loaded when they were described, and where names were found. A
-  /// process that runs for days calls it before it looks again. Pointers given out before become invalid.
+  /// [main] Forgets files that have changed, that failed, or that were loaded when they were described, and forgets
+  /// where names were found. A process that runs for days calls it before it searches again. Earlier pointers become
+  /// invalid.
   void refresh();
 
-  /// [main] The plugin of that name or id. NAME.so is tried first; only if that fails, all files are described. The
-  /// message says why a NAME.so could not be used, and has the nearest names and the search path.
+  /// [main] Returns the plugin with that name or id. NAME.so is tried first; only if that fails, all files are
+  /// described. The error says why NAME.so could not be used, and contains the nearest names and the search path.
   Result<const ClassInfo*> shape(const std::string& name) { return find(Kind::kShape, name); }
   Result<const ClassInfo*> device(const std::string& name) { return find(Kind::kDevice, name); }
 
-  /// [main] Every .so of the search path, described; those that failed carry an error.
+  /// [main] Returns every .so file of the search path with its description, or with an error.
   std::vector<const CatalogFile*> files(Kind kind);
 
-  /// [main] Names of all classes of a kind.
+  /// [main] Returns the names of all classes of a kind.
   std::vector<std::string> names(Kind kind);
 
   const SearchPath& searchPath() const { return path_; }
-  /// Files described so far; tests use it to see that no other file was touched.
+  /// Returns the number of files described so far. Tests use it to see that no other file was touched.
   size_t described() const { return files_.size(); }
 
  private:
@@ -80,15 +82,16 @@ class Catalog {
 
   SearchPath path_;
   Describe describe_;
-  std::map<std::filesystem::path, CatalogFile> files_;  // its nodes stay in place: pointers to them are given out
-  std::map<std::pair<Kind, std::string>, const ClassInfo*> found_;  // a scene of 10,000 models asks for one name often
+  std::map<std::filesystem::path, CatalogFile> files_;              // a map, so that pointers to elements stay valid
+  std::map<std::pair<Kind, std::string>, const ClassInfo*> found_;  // a cache, for scenes with many models of one class
 };
 
-/// [main] The folder of the running executable.
+/// [main] Returns the folder of the running executable.
 std::filesystem::path executableDir();
 
-/// [main] A file of the shipped configuration ("devices/simulated-premium15.yaml"): beside the executable's tree, in
-/// the installation, or in the sources it was built from. Nothing if it is in none of them.
+/// [main] Returns the path of a file of the shipped configuration, such as "devices/simulated-premium15.yaml". It
+/// searches beside the executable's tree, in the installation, and in the sources from which it was built. Returns
+/// nothing if the file is in none of them.
 std::optional<std::filesystem::path> shippedFile(const std::filesystem::path& relative);
 
 }  // namespace hapticd::host

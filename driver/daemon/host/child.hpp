@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Work that may crash or hang, done by a child process.
+/// Runs work that may crash or hang in a child process.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -10,11 +10,13 @@
 
 namespace hapticd::host {
 
-/// [main] Runs `work` in a fork of this process, which must have one thread only, and returns its bytes. The error says
-/// how the child ended ("crashed: Segmentation fault", "took longer than 5 s") and is meant to follow "it ".
+/// [main] Runs `work` in a fork of this process and returns the bytes that `work` returns. This process must have only
+/// one thread. The error says how the child ended, such as "crashed: Segmentation fault" or "took longer than 5 s", and
+/// is meant to follow the word "it" in a message.
 Result<std::string> runInChild(const std::function<std::string()>& work, int limit_ms);
 
-/// How far a child came; its parent can read it even if the child crashes. Make it before the child.
+/// Shows how far a child has come with its work. The parent can read it even if the child crashes. It must be made
+/// before the child.
 class Trail {
  public:
   Trail();
@@ -22,22 +24,22 @@ class Trail {
   Trail(const Trail&) = delete;
   Trail& operator=(const Trail&) = delete;
 
-  /// [any] The child is at piece `item` of its work. @param call in static storage
+  /// [any] Notes that the child has reached piece `item` of its work. @param call name of a function, in static storage
   void mark(uint32_t item, const char* call) noexcept;
   uint32_t item() const noexcept;
-  const char* call() const noexcept;  ///< "": nothing was marked, or there is no memory for it
+  const char* call() const noexcept;  ///< "" if nothing was marked, or if there was no memory
 
  private:
   struct Mark;
-  Mark* mark_;  ///< in memory that both share; nullptr if there is none
+  Mark* mark_;  ///< in memory that parent and child share; nullptr if there was no memory
 };
 
-/// [any] Starts a program that ends with answerParent() and returns its bytes, with the same errors. It copies nothing
-/// of this process. A fork would, and then each thread's next write to a page would cause a page fault.
-/// @param arguments the program's path first
+/// [any] Starts a program that calls answerParent(), and returns the bytes that it sends. Errors are those of
+/// runInChild(). It does not copy the memory of this process, as a fork would: after a fork, each thread's next write
+/// to a page causes a page fault. @param arguments the program's path, then its arguments
 Result<std::string> runProgram(std::vector<std::string> arguments, int limit_ms);
 
-/// [main] Called in such a program: sends what `work` returns to the parent, and ends the program.
+/// [main] Called in a program started by runProgram(): sends what `work` returns to the parent, and ends the program.
 [[noreturn]] void answerParent(const std::function<std::string()>& work);
 
 }  // namespace hapticd::host

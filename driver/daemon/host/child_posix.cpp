@@ -30,7 +30,7 @@ using std::chrono::steady_clock;
 
 constexpr size_t kLargestAnswer = 64u << 20;
 constexpr int kThrew = 113;   ///< exit code of a child that an exception ended
-constexpr int kAnswerFd = 3;  ///< a started program answers here, because what it loads may print
+constexpr int kAnswerFd = 3;  ///< descriptor for the answer; stdout is not used, because loaded code may print
 constexpr int kFatal[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGQUIT, SIGHUP};
 
 bool writeAll(int fd, const std::string& bytes) {
@@ -43,25 +43,26 @@ bool writeAll(int fd, const std::string& bytes) {
   return true;
 }
 
-int answer_fd = -1;  ///< of a child; a terminate handler takes no argument
+int answer_fd = -1;  ///< in a child: where it answers. Global, because a terminate handler has no argument
 
-/// Ends the child because of the present exception, whose text replaces the answer.
+/// Ends the child because of the present exception. The text of the exception is sent in place of the answer.
 [[noreturn]] void endByException() {
   try {
     if (std::current_exception()) throw;
   } catch (const std::exception& e) {
     writeAll(answer_fd, e.what());
-  } catch (...) {  // nothing is known about it
+  } catch (...) {  // such an exception has no text
   }
   _exit(kThrew);
 }
 
-/// Does the child's work: it leaves no core file, and never returns to other code.
+/// Does the child's work and ends the process. A crash leaves no core file.
 [[noreturn]] void answer(const std::function<std::string()>& work, int fd) {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   answer_fd = fd;
-  // An exception from a constructor passes through dlopen() or ends there, as the compilers decide.
+  // It depends on the compiler whether an exception from a constructor passes through dlopen() or ends the process
+  // there.
   std::set_terminate(&endByException);
   try {
     _exit(writeAll(fd, work()) ? 0 : 1);
@@ -70,7 +71,7 @@ int answer_fd = -1;  ///< of a child; a terminate handler takes no argument
   }
 }
 
-/// A fork of this process, with the signals of a new program, and without output.
+/// The main function of a fork: it has the signals of a new program, and prints nothing.
 [[noreturn]] void childMain(const std::function<std::string()>& work, int fd) {
   for (const int signal : kFatal) ::signal(signal, SIG_DFL);
   if (const int null = open("/dev/null", O_RDWR | O_CLOEXEC); null >= 0) {
@@ -80,7 +81,7 @@ int answer_fd = -1;  ///< of a child; a terminate handler takes no argument
   answer(work, fd);
 }
 
-/// What posix_spawn is told: default signals, none blocked, no output, and `answer` as the only other file.
+/// Settings for posix_spawn: default signals, none of them blocked, no output, and `answer` as the only other file.
 class Surroundings {
  public:
   explicit Surroundings(int answer) {
@@ -113,7 +114,7 @@ class Surroundings {
   posix_spawnattr_t how_;
 };
 
-/// How long the child was ready but had no processor. 0 where the kernel does not count it.
+/// Returns how long the child was ready to run but had no processor; 0 if the kernel does not count this time.
 nanoseconds keptWaiting(pid_t child) {
   char path[32], words[96] = {};
   std::snprintf(path, sizeof path, "/proc/%d/schedstat", static_cast<int>(child));
@@ -126,13 +127,14 @@ nanoseconds keptWaiting(pid_t child) {
   return nanoseconds(waited);
 }
 
-/// The time that a child may take. Time that others took from it on a busy machine is added, up to ten times the limit.
+/// The time that a child may take. Time for which it waited for a processor on a busy machine is added, up to ten times
+/// the limit.
 class Allowance {
  public:
   Allowance(pid_t child, milliseconds limit)
       : child_(child), limit_(limit), begun_(steady_clock::now()), end_(begun_ + limit) {}
 
-  /// More than 0 while the child may go on.
+  /// Returns the remaining time; it is more than 0 while the child may go on.
   milliseconds left() {
     const auto now = steady_clock::now();
     if (now >= end_) end_ = begun_ + limit_ + std::min<nanoseconds>(keptWaiting(child_), 9 * limit_);
@@ -145,7 +147,7 @@ class Allowance {
   steady_clock::time_point begun_, end_;
 };
 
-/// Everything that the child writes until it closes the pipe; nothing if the time ends first.
+/// Reads everything that the child writes until it closes the pipe. Returns nothing if the time ends first.
 std::optional<std::string> readAll(int fd, Allowance& allowed) {
   std::string bytes;
   char buffer[16384];
@@ -164,7 +166,8 @@ std::optional<std::string> readAll(int fd, Allowance& allowed) {
   return std::nullopt;
 }
 
-/// How the child ended. A child that closed the pipe and outlives its time is ended; `in_time` says whether it was not.
+/// Waits for the end of the child, and returns its status. A child that closed the pipe but does not end in time is
+/// killed; then `in_time` becomes false.
 int waitFor(pid_t child, Allowance& allowed, bool& in_time) {
   constexpr auto kPause = milliseconds(1);
   int status = 0;
@@ -180,7 +183,7 @@ int waitFor(pid_t child, Allowance& allowed, bool& in_time) {
   }
 }
 
-/// The child's answer, or how it ended. Closes `fd`, the reading end.
+/// Returns the child's answer, or an error that says how the child ended. Closes `fd`, the reading end of the pipe.
 Result<std::string> hear(pid_t child, int fd, int limit_ms) {
   Allowance allowed(child, milliseconds(limit_ms));
   std::optional<std::string> told = readAll(fd, allowed);
@@ -200,8 +203,9 @@ Error notTried(const char* what, int code) {
   return Error{std::string("could not be tried: ") + what + ": " + std::strerror(code)};
 }
 
-/// Opens a pipe above the descriptors that the child gives to its standard streams and its answer. Otherwise a process
-/// that was started without 0, 1 or 2 would get one of these, and the child would overwrite it.
+/// Opens a pipe whose descriptors are above those of the child's standard streams and its answer. Otherwise, in a
+/// process that was started without descriptor 0, 1 or 2, the pipe would get this number, and the child would
+/// overwrite it.
 bool pipeBeyondStandard(int (&ends)[2]) {
   int low[2];
   if (pipe2(low, O_CLOEXEC) != 0) return false;
@@ -219,7 +223,8 @@ bool pipeBeyondStandard(int (&ends)[2]) {
 
 struct Trail::Mark {
   std::atomic<uint32_t> item{0};
-  std::atomic<const char*> call{""};  ///< a fork has its parent's literals at the same addresses
+  std::atomic<const char*> call{
+      ""};  ///< the pointer is valid in both processes: a fork has its parent's literals at the same addresses
 };
 
 Trail::Trail() : mark_(nullptr) {

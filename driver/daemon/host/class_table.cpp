@@ -14,7 +14,7 @@ std::string statusText(hsp_status status) {
     case HSP_E_ARG:
       return "a parameter or an argument is wrong";
     case HSP_E_STATE:
-      return "not in the state that this call needs";
+      return "the call is not allowed in the present state of the instance";
     case HSP_E_NOMEM:
       return "out of memory";
     case HSP_E_IO:
@@ -22,7 +22,7 @@ std::string statusText(hsp_status status) {
     case HSP_E_UNSUPPORTED:
       return "not supported";
     case HSP_E_NUMERIC:
-      return "there is no numeric answer";
+      return "the calculation has no valid result";
     default:
       return "status " + std::to_string(status) + ", which the ABI does not define";
   }

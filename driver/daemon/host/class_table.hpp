@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What shape plugins and device modules have in common when one of their classes is found and its parameters are set.
+/// Functions for classes of shape plugins and of device modules: they find a class and set its parameters.
 #pragma once
 #include <string>
 
@@ -11,23 +11,23 @@
 
 namespace hapticd::host {
 
-/// [any] Name of a status for messages.
+/// [any] Returns a status in words, for messages.
 std::string statusText(hsp_status status);
 
-/// [any] "HSP_E_NUMERIC", as the author of a module writes it.
+/// [any] Returns the name of a status in the ABI, such as "HSP_E_NUMERIC".
 std::string statusName(hsp_status status);
 
-/// [main] The status of a failed call, and what the module said about it, as the end of a message.
+/// [main] Returns the reason of a failed call, for the end of a message: what the module logged, or else its status.
 std::string reasonOf(hsp_status status, const Services& services);
 
-/// [main] The value in the form of the ABI; it points into `value`.
+/// [main] Returns the value in the form of the ABI; the result points into `value`.
 hsp_value toAbi(const scene::Value& value);
 
 /// [main] True if the class has every function of version 1.0, so that calling it is safe.
 bool complete(const hsp_class& shape);
 bool complete(const hdv_class& device);
 
-/// [any] A text of a plugin's table in printable form; "" if there is none.
+/// [any] Returns a text of a plugin's table; "" if the pointer is NULL.
 inline const char* textOf(const char* text) noexcept {
   return text != nullptr ? text : "";
 }
@@ -37,7 +37,7 @@ bool damps(const hsp_class& shape, uint32_t param) noexcept;
 /// [any] True if the parameter is a stiffness: a number in N/m.
 bool stiffens(const hsp_class& shape, uint32_t param) noexcept;
 
-/// [main] The class with that name (or id) in an entry; nullptr if there is none.
+/// [main] Returns the class with that name (or id) in an entry; nullptr if there is none.
 template <class Class, class Entry>
 const Class* findClass(const Entry& entry, const std::string& name) {
   for (uint32_t i = 0; i < entry.class_count; ++i) {
@@ -49,7 +49,7 @@ const Class* findClass(const Entry& entry, const std::string& name) {
   return nullptr;
 }
 
-/// [main] Sets all values on an instance. @param set the class's own function, bound to the instance
+/// [main] Sets all values on an instance. @param set calls set() of the class with the instance
 template <class Set>
 Result<void> setAll(const std::vector<scene::Value>& values, uint32_t param_count, Services& services, Set set) {
   for (const scene::Value& value : values) {

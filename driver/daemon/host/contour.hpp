@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Vertices of a deforming shape, on their way from its step to whoever draws it.
+/// Passes the vertices of a deforming shape from its step to the program that draws them.
 #pragma once
 #include <atomic>
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace hapticd::host {
 
-/// While somebody looks, the shape writes 60 times per second directly into one of three buffers, and one other thread
-/// takes the newest. Neither waits. While nobody looks, nothing is written.
+/// While a program asks for frames, the shape writes 60 frames per second directly into one of three buffers, and
+/// another thread takes the newest. Neither thread waits. If no program asks, nothing is written.
 class Contour {
  public:
   static constexpr double kRate = 60;  ///< [Hz]
@@ -19,16 +19,16 @@ class Contour {
     std::vector<float> xyz;  ///< [m] in the model's frame
   };
 
-  /// [main] This allocates the memory.
+  /// [main] Allocates the memory of all frames.
   explicit Contour(uint32_t vertices) : vertices_(vertices) {
-    for (int slot = 0; slot < 3; ++slot) {  // each becomes the back one in turn
+    for (int slot = 0; slot < 3; ++slot) {  // each of the three becomes the back buffer once
       frames_.back().xyz.resize(3 * std::size_t{vertices});
       frames_.update();
       frames_.publish();
     }
   }
 
-  /// [rt] Called before a step of dt [s]: where the step must write vertices; nullptr: nowhere.
+  /// [rt] Called before a step of dt [s]. Returns where the step must write vertices; nullptr if it must not.
   float* offer(double dt) noexcept HSP_RT {
     since_ += dt;
     offered_ = since_ >= 1 / kRate && wanted_.load(std::memory_order_relaxed) > 0;
@@ -44,7 +44,8 @@ class Contour {
     wanted_.fetch_sub(1, std::memory_order_relaxed);
   }
 
-  /// [any] Only one thread: the newest frame, valid until the next call. More are made as long as this is called.
+  /// [any] Called from one thread only. Returns the newest frame, which is valid until the next call. Frames are made
+  /// only as long as this is called.
   const Frame& newest() noexcept {
     wanted_.store(kPatience, std::memory_order_relaxed);
     frames_.update();
@@ -53,7 +54,7 @@ class Contour {
   uint32_t vertices() const noexcept { return vertices_; }
 
  private:
-  static constexpr int kPatience = 60;  ///< frames that are made for a reader that does not ask again
+  static constexpr int kPatience = 60;  ///< number of frames that are made after the last call of newest()
   uint32_t vertices_;
   TripleBuffer<Frame> frames_;
   std::atomic<int> wanted_{0};

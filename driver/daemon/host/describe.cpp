@@ -15,11 +15,11 @@
 namespace hapticd::host {
 namespace {
 
-constexpr int kLimitMs = 5000;         ///< constructors that take longer would hold up the daemon as well
-constexpr uint32_t kMaxParams = 4096;  ///< a table with more was misread
+constexpr int kLimitMs = 5000;         ///< longest time to load a file: slow constructors would delay the daemon too
+constexpr uint32_t kMaxParams = 4096;  ///< a table that claims more is damaged
 constexpr uint32_t kMaxChoices = 4096;
 
-/// A parameter of any minor version: members that the file lacks stay zero.
+/// Copies a parameter of any minor version of the ABI. Members that the file does not have stay zero.
 ParamInfo copyParam(const hsp_param& given) {
   hsp_param p{};
   std::memcpy(&p, &given, std::min<size_t>(given.struct_size, sizeof p));
@@ -31,16 +31,16 @@ ParamInfo copyParam(const hsp_param& given) {
   return info;
 }
 
-/// Nothing, or the reason why a table cannot be used to check files.
+/// Returns "", or the reason why this entry of a table cannot be used to check files.
 std::string wrongIn(const ParamInfo& p) {
-  if (p.id.empty()) return "a parameter without an id";
+  if (p.id.empty()) return "a parameter has no id";
   if (p.kind < HSP_REAL || p.kind > HSP_DATA) return p.id + ": kind " + std::to_string(p.kind) + " is unknown";
   const bool numeric = p.kind == HSP_REAL || p.kind == HSP_INT || p.kind == HSP_ARRAY;
   if (numeric && !(p.min <= p.max)) return p.id + ": its smallest value is above its largest";
   const bool given = (p.flags & HSP_P_REQUIRED) == 0 && (p.kind == HSP_REAL || p.kind == HSP_INT);
   if (given && !(p.def >= p.min && p.def <= p.max))
     return p.id + ": its default is outside of its range; expected a number between its smallest and its largest value";
-  if (p.kind == HSP_ENUM && p.choices.empty()) return p.id + ": no choices";
+  if (p.kind == HSP_ENUM && p.choices.empty()) return p.id + ": it has no choices";
   return "";
 }
 
@@ -56,10 +56,11 @@ ClassInfo copyClass(const Class& given, Kind kind, const std::filesystem::path& 
                  minor,
                  {},
                  file};
-  if (info.name.empty()) throw std::runtime_error("a class without a name");
+  if (info.name.empty()) throw std::runtime_error("one of its classes has no name");
   if (!complete(given)) throw std::runtime_error("class '" + info.name + "' lacks a required function");
   if (given.param_count > kMaxParams)
-    throw std::runtime_error("class '" + info.name + "' claims " + std::to_string(given.param_count) + " parameters");
+    throw std::runtime_error("class '" + info.name + "' claims " + std::to_string(given.param_count) +
+                             " parameters, which is too many");
   std::set<std::string> ids;
   for (uint32_t i = 0; i < given.param_count; ++i) {
     const ParamInfo param = copyParam(*HSP_AT(const hsp_param, given.params, given.params[0].struct_size, i));

@@ -18,7 +18,8 @@ const Extension* extensionOf(const hdv_class& device_class, hdv_device* device, 
   return found != nullptr && found->struct_size >= sizeof(Extension) ? found : nullptr;
 }
 
-/// Links that can be drawn: at least one, each beginning at an earlier one. nullptr: these cannot be drawn.
+/// Returns the links if they can be drawn, else nullptr: there must be at least one, and the parent of each must come
+/// before it.
 const hdv_ext_links* drawable(const hdv_ext_links* links) {
   if (links == nullptr || links->link_count == 0 || links->link_count > HDV_MAX_LINKS || links->parent == nullptr ||
       links->frames == nullptr)
@@ -28,7 +29,7 @@ const hdv_ext_links* drawable(const hdv_ext_links* links) {
   return links;
 }
 
-/// What open() said about the hardware is used for limits, so all of it must make sense.
+/// Returns what is wrong with the facts about the hardware that open() gave, or "". Limits depend on these facts.
 std::string wrongIn(const hdv_info& info, uint32_t kinematic_joints) {
   if (info.joint_count == 0 || info.joint_count > HDV_MAX_JOINTS)
     return "reports " + std::to_string(info.joint_count) + " joints, expected 1 to " + std::to_string(HDV_MAX_JOINTS);
@@ -42,7 +43,7 @@ std::string wrongIn(const hdv_info& info, uint32_t kinematic_joints) {
   for (const auto& [text, name] :
        {std::pair{info.serial, "serial"}, {info.firmware, "firmware"}, {info.product, "product"}})
     if (std::memchr(text, 0, sizeof info.product) == nullptr)
-      return std::string("fills all 64 bytes of hdv_info.") + name + ", expected at most 63 and a 0 behind them";
+      return std::string("fills all 64 bytes of hdv_info.") + name + ", expected at most 63 and a 0 after them";
   for (const double value : {info.rate_hz, info.max_force, info.continuous_force, info.max_stiffness, info.resolution_m,
                              info.damping, info.mass_kg})
     if (!std::isfinite(value) || value < 0)
@@ -133,7 +134,7 @@ Result<void> DeviceInstance::open() {
   absent_ = status < 0;
   if (absent_) return Error{who + "cannot be opened: " + reasonOf(status, services_)};
   open_ = true;
-  if (pace_ == nullptr && playback_ == nullptr) info_.capabilities &= ~uint32_t{HDV_C_PACING};  // claimed, not there
+  if (pace_ == nullptr && playback_ == nullptr) info_.capabilities &= ~uint32_t{HDV_C_PACING};  // no extension
   std::string wrong = wrongIn(info_, kinematics_->joint_count);
   if (wrong.empty() && playback_ == nullptr) wrong = wrongBetweenStops(*kinematics_, device_, info_);
   if (wrong.empty() && playback_ == nullptr) wrong = weightBeyondMotors(*kinematics_, device_, info_);

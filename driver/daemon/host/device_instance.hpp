@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// One instance of a device module, from create to destroy. Set-up calls may fail with a message; read and write are
-/// real time.
+/// One instance of a device module, from create() to destroy(). The calls of the set-up may fail with a message; read()
+/// and write() are real-time calls.
 #pragma once
 #include <memory>
 #include <string>
@@ -18,10 +18,10 @@
 
 namespace hapticd::host {
 
-/// Samples from another source than the hardware, which is never opened: a recording that is replayed.
+/// Samples of a recording that is replayed, in place of those of the hardware, which is not opened then.
 struct Playback {
-  hdv_info info{};      ///< what the device said of itself
-  hdv_sample sample{};  ///< what the next read gives
+  hdv_info info{};      ///< description that the device gave of itself
+  hdv_sample sample{};  ///< sample that the next read returns
   hsp_status read_status = HSP_OK, write_status = HSP_OK;
 };
 
@@ -33,13 +33,13 @@ class DeviceInstance {
   DeviceInstance(const DeviceInstance&) = delete;
   DeviceInstance& operator=(const DeviceInstance&) = delete;
 
-  /// [main] Used in place of the hardware; call it before open(). The playback outlives the instance.
+  /// [main] Uses a playback in place of the hardware. Call it before open(). The playback must outlive the instance.
   void playBack(const Playback* playback) { playback_ = playback; }
 
-  Result<void> open();                       ///< [main] finds the hardware
-  bool absent() const { return absent_; }    ///< the module found no hardware that it could open, in the last open()
+  Result<void> open();                       ///< [main] opens the hardware
+  bool absent() const { return absent_; }    ///< true if the last open() found no hardware
   Result<void> start(const hdv_start& how);  ///< [main]
-  void stop();                               ///< [main] motors off
+  void stop();                               ///< [main] switches the motors off
 
   hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
     if (playback_ == nullptr) {
@@ -55,21 +55,22 @@ class DeviceInstance {
     return class_->write(device_, now_ns, &command);
   }
 
-  /// [any] Frees the motors at once, by the module's own means; async-signal-safe. False if the module has none.
+  /// [any] Frees the motors at once by the module's cut(). Returns false if the module has no cut(). Async-signal-safe.
   bool cut() noexcept {
     if (cut_ == nullptr || playback_ != nullptr) return playback_ != nullptr;
     const Calling calling(owner_);
     cut_->cut(device_);
     return true;
   }
-  /// [any] True if the cut has been sent to the hardware, as far as the module knows; async-signal-safe.
+  /// [any] True if, as far as the module knows, the cut has been sent to the hardware. Async-signal-safe.
   bool cutLeft() const noexcept {
     if (silence_ == nullptr || silence_->left == nullptr || playback_ != nullptr) return true;
     return silence_->left(device_) != 0;
   }
-  /// [any] True if another process may switch the arm off.
+  /// [any] True if another process may be able to switch the motors off.
   bool silenceable() const noexcept { return silence_ != nullptr && silence_->how != nullptr && playback_ == nullptr; }
-  /// [any] How a process that outlives this one switches the motors off. False if it cannot, now or ever.
+  /// [any] Fills in how another process, which outlives this one, can switch the motors off. Returns false if no
+  /// process can, or not now.
   bool silence(hdv_silence& how) noexcept {
     how = {};
     how.struct_size = sizeof how;
@@ -78,21 +79,23 @@ class DeviceInstance {
     return silence_->how(device_, &how) != 0 && how.size <= sizeof how.bytes;
   }
 
-  /// [any] True if its samples can drive the loop: waitForSample() waits for them.
+  /// [any] True if the samples of the arm can drive the servo loop; then waitForSample() waits for them.
   bool canPace() const { return pace_ != nullptr && (info_.capabilities & HDV_C_PACING) != 0; }
-  /// [rt] Sleeps between two ticks until the arm has news, or until `until`. @return time of the next tick
+  /// [rt] Sleeps between two ticks until the arm has a new sample or a trouble, and at most until `until`.
+  /// @return time of the next tick
   uint64_t waitForSample(uint64_t until) noexcept {
     if (playback_ != nullptr) return until;
     const Calling calling(owner_);
     return pace_->wait(device_, until);
   }
 
-  /// [any] Why the arm was unwell at the last read, in words of static storage: "cause; cure". nullptr: unknown.
+  /// [any] Returns what was wrong with the arm at the last read, and how to fix it ("cause; cure"), as a text in static
+  /// storage; nullptr if it is unknown.
   const char* trouble() const noexcept HSP_RT {
     return trouble_ != nullptr && playback_ == nullptr ? trouble_->why(device_) : nullptr;
   }
 
-  /// The hand of a simulated arm; nullptr: the arm has none, or it is played back.
+  /// Returns the hand of a simulated arm; nullptr if the arm has none, or if it is played back.
   const hdv_ext_hand* hand() const {
     const bool simulated = (info_.capabilities & HDV_C_SIMULATED) != 0;
     return simulated && playback_ == nullptr ? hand_ : nullptr;
@@ -100,10 +103,11 @@ class DeviceInstance {
 
   const std::string& name() const { return name_; }
   const hdv_class& description() const { return *class_; }
-  const hdv_info& info() const { return info_; }                         ///< valid once open
+  const hdv_info& info() const { return info_; }                         ///< valid after open()
   const hdv_ext_kinematics& kinematics() const { return *kinematics_; }  ///< every module has it
   const hdv_ext_calibration* calibration() const { return calibration_; }
-  /// Where its links are, even for an arm that is played back; nullptr: the module does not say.
+  /// Returns the functions for the positions of the arm's links, even if the arm is played back; nullptr if the module
+  /// has none.
   const hdv_ext_links* links() const { return links_; }
   hdv_device* handle() const { return device_; }
 

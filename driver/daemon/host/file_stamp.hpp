@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Whether a file is still the one that was read.
+/// Finds out whether a file has changed since it was read.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace hapticd::host {
 
-/// Changes when a file is written or replaced: device, inode, size, time of the last change in s and ns.
+/// Numbers that change if a file is written or replaced: device, inode, size, and time of the last change in s and ns.
 using FileStamp = std::array<int64_t, 5>;
 
-/// [main] Nothing if there is no such file.
+/// [main] Returns the stamp of a file; nothing if there is no such file.
 std::optional<FileStamp> stampOf(const std::filesystem::path& file);
 
-/// One line that differs for another build of a file: its size, the time of its last change, and its real path.
+/// Returns one line that identifies a build of a file: its size, the time of its last change, and its real path.
 std::string identityText(const std::filesystem::path& real, const std::optional<FileStamp>& stamp);
 
-/// [main] The line of a file as it is on the disk.
+/// [main] Returns this line for a file as it is on the disk now.
 std::string identityOnDisk(const std::filesystem::path& file);
-/// [main] The line of a file as its code was loaded, whatever it has become since; "" if it was not loaded.
+/// [main] Returns this line for a file as it was when its code was loaded; "" if it was not loaded.
 std::string identityLoaded(const std::filesystem::path& file);
 
 }  // namespace hapticd::host

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What a module's kinematics answer: numbers, of a size that an arm can have, in the room that they have.
+/// Checks the results of a module's kinematic functions: they must be finite, must fit the size of an arm, and must not
+/// be written beyond the memory for them.
 #include <cstdio>
 #include <functional>
 #include <optional>
@@ -12,8 +13,8 @@
 namespace hapticd::host {
 namespace {
 
-constexpr double kFarthest = 100;  ///< [m] no arm reaches so far: these are millimetres, or a number that was never set
-constexpr double kUnit = 0.02;     ///< share of a quaternion's length: more than rounding causes
+constexpr double kFarthest = 100;  ///< [m] no arm reaches this far: such numbers are in mm, or were never set
+constexpr double kUnit = 0.02;     ///< allowed error of a quaternion's length; rounding causes less
 
 std::string fourDigits(double value) {
   char text[32];
@@ -35,21 +36,22 @@ std::string wrongTable(const hdv_ext_kinematics& kinematics) {
   return "";
 }
 
-/// What one function answered at the places where it was called.
+/// The results of one function at the places where it was called.
 struct Answers {
   const char* function;
   int asked = 0, refused = 0, no_numbers = 0;
-  hsp_status status = HSP_OK;  ///< of the last refusal
-  Joints at = Joints::Zero();  ///< the first place without a number
+  hsp_status status = HSP_OK;  ///< status of the last refusal
+  Joints at = Joints::Zero();  ///< first place at which the result was not finite
 
-  /// @return true for an answer that can be judged further
+  /// Counts a result. @return true if the result is finite, so that it can be checked further
   bool take(hsp_status answer, bool finite, const Joints& q) {
     ++asked;
     if (answer < 0) return ++refused, status = answer, false;
     if (!finite && no_numbers++ == 0) at = q;
     return finite;
   }
-  /// @param everywhere if it is false, one place without a number is one too many
+  /// @param everywhere true: it is an error only if no accepted place has a finite result; false: it is an error if any
+  /// has not
   std::string wrong(Eigen::Index joints, bool everywhere, const char* where) const {
     const std::string name = std::string("has kinematics whose ") + function + "() ";
     if (asked > 0 && refused == asked)
@@ -58,11 +60,11 @@ struct Answers {
     const bool too_many = everywhere ? no_numbers > 0 && no_numbers == asked - refused : no_numbers > 0;
     if (!too_many) return "";
     return name + "gives numbers that are not finite with the joints at " + placeText(at, joints) +
-           ", and says HSP_OK; expected numbers, or HSP_E_NUMERIC where there are none";
+           ", and says HSP_OK; expected finite numbers, or HSP_E_NUMERIC if there is no result";
   }
 };
 
-/// Something at one place from which no force may be computed; "" if there is nothing.
+/// Returns what is wrong with the tip at one place; "" if nothing is wrong.
 std::string wrongTip(const Tip& tip, const Joints& q, Eigen::Index joints) {
   const std::string at = " with the joints at " + placeText(q, joints);
   if (!(std::abs(tip.length - 1) <= kUnit))
@@ -70,23 +72,23 @@ std::string wrongTip(const Tip& tip, const Joints& q, Eigen::Index joints) {
            "; expected a unit quaternion w, x, y, z: 1, 0, 0, 0 for an arm that does not turn its tip";
   if (!(tip.position.norm() <= kFarthest))
     return "has kinematics whose forward() puts the tip " + fourDigits(tip.position.norm()) + " m away" + at +
-           "; expected metres";
+           ", farther than any arm reaches; the position must be in m";
   return "";
 }
 
 std::string overrun(const char* function, const char* room, Eigen::Index numbers) {
   return std::string("has kinematics whose ") + function + "() writes beyond the " + std::to_string(numbers) +
-         " numbers of " + room + ": see its joint_count and the order J[row * joint_count + joint]";
+         " numbers of " + room + "; check hdv_ext_kinematics.joint_count and the order J[row * joint_count + joint]";
 }
 
-/// Calls all three functions of the servo path at the places that `place` names.
+/// Calls the three functions that the servo thread uses at the places that `place` returns.
 std::string wrongAnswers(const KinematicsCalls& calls, const std::function<Joints(int)>& place, bool known_stops) {
   const Eigen::Index n = calls.joints();
   Answers forward{"forward"}, jacobian{"jacobian"}, gravity{"gravity"};
   for (int i = 0; i < kPlaces; ++i) {
     const Joints q = place(i);
     Tip tip;
-    tip.position.setConstant(std::nan(""));  // so that what is not written is not a number
+    tip.position.setConstant(std::nan(""));  // so that a number that forward() does not write is found
     const hsp_status status = calls.forward(q, tip);
     if (!forward.take(status, tip.position.allFinite() && std::isfinite(tip.length), q)) continue;
     if (std::string wrong = wrongTip(tip, q, n); !wrong.empty()) return wrong;
@@ -101,8 +103,10 @@ std::string wrongAnswers(const KinematicsCalls& calls, const std::function<Joint
   }
   const char* where = known_stops ? "between its stops" : "within 0.9 rad (or m) of zero";
   for (const Answers* one : {&forward, &jacobian, &gravity}) {
-    if (one == &forward && !known_stops && one->refused == one->asked) return "";  // it may have other joints there
-    if (one == &gravity && one->refused == one->asked) continue;  // its weight is unknown, and is not carried
+    if (one == &forward && !known_stops && one->refused == one->asked)
+      return "";  // the range of its joints may be elsewhere
+    if (one == &gravity && one->refused == one->asked)
+      continue;  // allowed: the weight is unknown then, and is not carried
     if (std::string wrong = one->wrong(n, !known_stops, where); !wrong.empty()) return wrong;
   }
   return "";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The four functions of a module's kinematics, called so that whoever examines them knows which one crashed, hung or
-/// wrote beyond its room.
+/// Calls the four kinematic functions of a module in such a way that a check knows which of them crashed, hung, or
+/// wrote beyond the memory for its results.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -17,7 +17,8 @@ namespace hapticd::host {
 
 using Joints = Eigen::Matrix<double, HDV_MAX_JOINTS, 1>;
 
-/// Room for `Most` numbers with a mark behind the first `used`, so that what a module writes beyond them is seen.
+/// Memory for `Most` numbers. All numbers after the first `used` are marked, so that it is seen if a module overwrites
+/// them.
 template <size_t Most>
 class MarkedRoom {
  public:
@@ -37,7 +38,7 @@ class MarkedRoom {
   }
 
  private:
-  static constexpr size_t kBeyond = 512;  ///< how many numbers a wrong row or joint count may write
+  static constexpr size_t kBeyond = 512;  ///< further numbers that a module with a wrong joint count may overwrite
   static constexpr double kMark = 8.25e77;
   size_t used_;
   std::array<double, Most + kBeyond> numbers_;
@@ -46,7 +47,7 @@ class MarkedRoom {
 struct Tip {
   Eigen::Vector3d position{0, 0, 0};
   Eigen::Quaterniond orientation{1, 0, 0, 0};
-  double length = 1;  ///< of the orientation as it was given
+  double length = 1;  ///< length of the quaternion that the module gave
 };
 
 class KinematicsCalls {
@@ -89,7 +90,7 @@ class KinematicsCalls {
   const hdv_device* device_;
 };
 
-/// "(0.1, -0.4)" for messages.
+/// Returns joint positions for messages, such as "(0.1, -0.4)".
 inline std::string placeText(const Joints& q, Eigen::Index joints) {
   std::string text = "(";
   for (Eigen::Index i = 0; i < joints; ++i) {

@@ -14,10 +14,10 @@ namespace {
 using Twist = Eigen::Matrix<double, 6, 1>;
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kStep = 1e-5;         ///< [rad or m] step of a difference: its error is some 1e-10 of the arm's size
-constexpr double kWrong = 0.02;        ///< share of the longest column: more than rounding and rough constants cause
-constexpr double kSmooth = 1e-3;       ///< share of it: if two differences differ by more, the place is at an edge
-constexpr double kLeastColumn = 1e-3;  ///< [m/rad] below this no column tells anything
+constexpr double kStep = 1e-5;    ///< [rad or m] step of the differences; their error is about 1e-10 of the arm's size
+constexpr double kWrong = 0.02;   ///< allowed error, as a share of the longest column; rounding causes less
+constexpr double kSmooth = 1e-3;  ///< if the differences for two steps differ by this share, J is not smooth
+constexpr double kLeastColumn = 1e-3;  ///< [m/rad] errors are compared at least with a column of this length
 
 std::optional<Tip> tipAt(const KinematicsCalls& calls, const Joints& q) {
   Tip tip;
@@ -26,7 +26,8 @@ std::optional<Tip> tipAt(const KinematicsCalls& calls, const Joints& q) {
   return tip;
 }
 
-/// Central difference of the tip's pose with respect to one joint: linear velocity above, angular velocity below.
+/// Returns the central difference of the tip's pose with respect to one joint: rows 0 to 2 are the linear velocity,
+/// rows 3 to 5 the angular velocity.
 std::optional<Twist> difference(const KinematicsCalls& calls, Joints q, Eigen::Index joint, double step) {
   q[joint] += step;
   const auto after = tipAt(calls, q);
@@ -87,7 +88,7 @@ std::string wrongAt(const KinematicsCalls& calls, const Joints& q) {
 }  // namespace
 
 std::string wrongJacobian(const hdv_ext_kinematics& kinematics, const hdv_device* device) {
-  if (kinematics.joint_count == 0 || kinematics.joint_count > HDV_MAX_JOINTS) return "";  // open() tells that
+  if (kinematics.joint_count == 0 || kinematics.joint_count > HDV_MAX_JOINTS) return "";  // open() reports this error
   const KinematicsCalls calls(kinematics, device);
   for (int i = 0; i < kPlaces; ++i)
     if (std::string wrong = wrongAt(calls, anyPlace(i)); !wrong.empty()) return wrong;

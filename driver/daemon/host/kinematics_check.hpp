@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Whether the kinematics of a device module agree with themselves. The torques of a force are J^T F: where J is not
-/// the derivative of the tip's position, a wall may draw the hand in.
+/// Checks that the kinematic functions of a device module agree with each other. The joint torques of a force F are
+/// J^T F. If J is not the derivative of the tip's position, a wall may pull the hand in.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,33 +10,37 @@
 namespace hapticd::host {
 
 /// [main] Compares the Jacobian with differences of forward() at a fixed set of joint positions, each within a radian
-/// (or a metre) of zero. Positions that forward() refuses, or where it is not smooth, are left out. The angular rows
-/// are judged only where the module gives any.
-/// @return what is wrong, for one message; empty: nothing was found
+/// (or a metre) of zero. It skips positions that forward() refuses, or at which forward() is not smooth. It checks the
+/// angular rows only if they are not all zero.
+/// @return what is wrong, for one message; "" if nothing was found
 std::string wrongJacobian(const hdv_ext_kinematics& kinematics, const hdv_device* device);
 
-/// [main] Problems that forbid forces, as far as they are known before the arm is open: an impossible joint count, a
-/// function that is missing, one that answers nowhere or with no number, an orientation without length, a tip farther
-/// away than any arm reaches, a function that writes beyond its room, and a wrong Jacobian.
-/// @return as wrongJacobian()
+/// [main] Finds problems that forbid forces, as far as they can be known before the arm is open: an impossible joint
+/// count, a missing function, a function that refuses all positions or gives numbers that are not finite, an
+/// orientation that is not a unit quaternion, a tip farther away than any arm reaches, a function that writes more
+/// numbers than it may, and a wrong Jacobian. @return as wrongJacobian()
 std::string wrongKinematics(const hdv_ext_kinematics& kinematics, const hdv_device* device);
 
-/// [main] The same between the stops of an open arm, where a run will call the functions: there every answer must be a
-/// number, and at least one place must have an answer.
+/// [main] Checks the same between the stops of an open arm, where a run will call the functions. Here every answer must
+/// be finite, and the functions must accept at least one place. @return as wrongJacobian()
 std::string wrongBetweenStops(const hdv_ext_kinematics& kinematics, const hdv_device* device, const hdv_info& info);
 
-/// [main] An inverse() that does not lead back to the tip, or leads where no arm reaches. It causes no fault in a run,
-/// but simulated hands and `device encode` go wrong because of it. @return as wrongJacobian()
+/// [main] Finds an inverse() whose joints do not give the same tip again, or that accepts a tip which no arm reaches.
+/// It causes no fault in a run, but simulated hands and `device encode` need a correct inverse(). @return as
+/// wrongJacobian()
 std::string wrongInverse(const hdv_ext_kinematics& kinematics, const hdv_device* device);
 
-/// [main] What causes no fault in a run, but is hardly intended: joints that turn the tip without angular rows, a
-/// tip farther away than a hand moves it, places without numbers, or torques that pull the arm down with its weight.
+/// [main] Finds things that cause no fault in a run but are probably mistakes: joints that turn the tip although the
+/// angular rows are zero, a tip farther away than a hand can move it, places with results that are not finite, or
+/// gravity torques that pull the arm down. @return one text for each
 std::vector<std::string> doubtsAboutKinematics(const hdv_ext_kinematics& kinematics, const hdv_device* device);
 
-/// [main] Joints whose motors cannot carry the arm's own weight at any place between its stops; "" if there are none.
+/// [main] Finds a joint whose motor cannot carry the arm's own weight at any place between its stops. @return what is
+/// wrong, for one message; "" if there is no such joint
 std::string weightBeyondMotors(const hdv_ext_kinematics& kinematics, const hdv_device* device, const hdv_info& info);
 
-/// [main] The same at half of all places and mountings: masses in other units. "" if there is nothing to tell.
+/// [main] Finds an arm that is too heavy for its motors at half or more of all places and mountings: probably its
+/// masses are in wrong units. @return as weightBeyondMotors()
 std::string heavyForMotors(const hdv_ext_kinematics& kinematics, const hdv_device* device, const hdv_info& info);
 
 }  // namespace hapticd::host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a run does not fault on, and yet no author of a module means.
+/// Finds mistakes in kinematics that cause no fault in a run.
 #include <cstdio>
 
 #include "host/class_table.hpp"
@@ -16,27 +16,28 @@ std::string metres(const Eigen::Vector3d& p) {
   return text;
 }
 
-/// inverse(forward(q)) must lead to the same tip, perhaps with other joints, and never where no arm reaches.
+/// Checks that inverse(forward(q)) gives joints with the same tip (the joints may differ), and that inverse() refuses a
+/// tip which no arm reaches.
 class InverseCheck {
  public:
   explicit InverseCheck(const KinematicsCalls& calls) : calls_(calls) {}
 
   void look(const Joints& q, const Tip& tip) {
     KinematicsCalls::JointRoom found(static_cast<size_t>(calls_.joints()));
-    const Joints elsewhere = 0.8 * q;  // a search that ends where it began finds nothing
+    const Joints elsewhere = 0.8 * q;  // a start away from q, so that an inverse() that changes nothing is found out
     std::copy_n(elsewhere.data(), calls_.joints(), found.data());
     ++asked_;
     const hsp_status status = calls_.inverse(tip.position, found);
     if (found.overrun()) return keep("writes beyond the joint_count numbers of q");
     if (status < 0) return ++refused_, status_ = status, void();
     if (!found.finite())
-      return keep("gives joints that are not numbers for " + metres(tip.position) + ", and says HSP_OK");
+      return keep("gives joints that are not finite for " + metres(tip.position) + ", and says HSP_OK");
     Joints back = Joints::Zero();
     std::copy_n(found.data(), calls_.joints(), back.data());
     Tip again;
     if (calls_.forward(back, again) < 0) return;
     const double off = (again.position - tip.position).norm();
-    constexpr double kOff = 1e-3;  // [m] a larger error than that of a search that stopped early
+    constexpr double kOff = 1e-3;  // [m] more than the error of an iteration that stops early
     if (!(off <= kOff))
       keep("gives joints " + placeText(back, calls_.joints()) + " for " + metres(tip.position) +
            ", where forward() puts the tip at " + metres(again.position));
@@ -56,7 +57,7 @@ class InverseCheck {
       return "its inverse() " + wrong_ + "; expected forward(inverse(p)) to be p, or HSP_E_NUMERIC out of reach";
     if (asked_ == 0 || refused_ < asked_) return "";
     return "its inverse() refuses every one of " + std::to_string(asked_) +
-           " tips that its own forward() gives, searched from joints nearby (" + statusName(status_) +
+           " tips that its own forward() gives, although the search starts at joints nearby (" + statusName(status_) +
            "); expected HSP_OK within the arm's limits";
   }
 
@@ -70,13 +71,13 @@ class InverseCheck {
   std::string wrong_;
 };
 
-/// How far forward() turns the tip while the joints move from one place to the next, and whether J shows it.
+/// True if moving a joint turns the tip by forward(), although the angular rows of the Jacobian are zero.
 bool turnsWithoutRows(const KinematicsCalls& calls, const Joints& q, const Tip& tip) {
   KinematicsCalls::JacobianRoom J(static_cast<size_t>(6 * calls.joints()));
   if (calls.jacobian(q, J) < 0) return false;
   const double* rows = J.data() + 3 * calls.joints();
   if (!std::all_of(rows, rows + 3 * calls.joints(), [](double value) { return value == 0; })) return false;
-  constexpr double kMoved = 1e-3, kTurns = 0.1;  // [rad or m], of one radian for each radian
+  constexpr double kMoved = 1e-3, kTurns = 0.1;  // [rad or m] step of a joint; least turn per step
   for (Eigen::Index joint = 0; joint < calls.joints(); ++joint) {
     Joints moved = q;
     moved[joint] += kMoved;
@@ -87,9 +88,9 @@ bool turnsWithoutRows(const KinematicsCalls& calls, const Joints& q, const Tip& 
   return false;
 }
 
-/// [N] How hard the torques that gravity() asks for lift the tip against gravity.
+/// Returns the force [N] against gravity that the torques of gravity() exert at the tip.
 double liftAt(const KinematicsCalls& calls, const Joints& q, const Eigen::Vector3d& down) {
-  constexpr double kRoom = 1e-6;  // [m^2] directions in which no joint moves the tip
+  constexpr double kRoom = 1e-6;  // [m^2] regularises directions in which no joint moves the tip
   const Eigen::Index n = calls.joints();
   KinematicsCalls::JacobianRoom room(static_cast<size_t>(6 * n));
   KinematicsCalls::JointRoom torque(static_cast<size_t>(n));
@@ -102,8 +103,8 @@ double liftAt(const KinematicsCalls& calls, const Joints& q, const Eigen::Vector
   return -force.dot(down.normalized());
 }
 
-/// Torques that pull an arm down with its weight have the wrong sign. Counterweights make some lifts negative, never
-/// nearly all.
+/// True if the torques of gravity() pull the arm down at nearly all places, so that they have the wrong sign.
+/// Counterweights may cause that only at some places.
 bool pullsDown(const KinematicsCalls& calls) {
   constexpr double kFelt = 0.05;  // [N]
   int felt = 0, down = 0;
@@ -116,8 +117,8 @@ bool pullsDown(const KinematicsCalls& calls) {
   return felt >= kPlaces && 10 * down >= 9 * felt;
 }
 
-/// Places at which forward() says HSP_OK and gives no number. Nobody knows the stops before the arm is opened, so one
-/// of them is no error yet.
+/// Finds places at which forward() says HSP_OK and gives numbers that are not finite. The stops are unknown before the
+/// arm is opened, so such a place is not an error yet.
 std::string placesWithoutNumbers(const KinematicsCalls& calls) {
   int without = 0;
   Joints first = Joints::Zero();
@@ -129,7 +130,8 @@ std::string placesWithoutNumbers(const KinematicsCalls& calls) {
   if (without == 0) return "";
   return "its forward() gives numbers that are not finite at " + std::to_string(without) + " of " +
          std::to_string(kPlaces) + " places within 0.9 rad (or m) of zero, first at " +
-         placeText(first, calls.joints()) + ", and says HSP_OK; expected numbers, or HSP_E_NUMERIC beyond its stops";
+         placeText(first, calls.joints()) +
+         ", and says HSP_OK; expected finite numbers, or HSP_E_NUMERIC beyond its stops";
 }
 
 }  // namespace
@@ -138,7 +140,7 @@ std::string wrongInverse(const hdv_ext_kinematics& kinematics, const hdv_device*
   const KinematicsCalls calls(kinematics, device);
   InverseCheck inverse(calls);
   bool any = false;
-  // An arm may reach less far than a radian or a metre, so its inverse() rightly refuses the outer places.
+  // If the arm moves by less than a radian or a metre, its inverse() is right to refuse the outer places.
   for (const double part : {1.0, 0.1}) {
     if (!inverse.refusedAll()) break;
     for (int i = 0; i < kPlaces; ++i) {
@@ -154,7 +156,7 @@ std::string wrongInverse(const hdv_ext_kinematics& kinematics, const hdv_device*
 }
 
 std::vector<std::string> doubtsAboutKinematics(const hdv_ext_kinematics& kinematics, const hdv_device* device) {
-  constexpr double kFar = 5;  // [m] no hand moves an arm so far
+  constexpr double kFar = 5;  // [m] no hand moves an arm this far
   const KinematicsCalls calls(kinematics, device);
   double farthest = 0;
   bool turns = true, any = false;
@@ -176,12 +178,12 @@ std::vector<std::string> doubtsAboutKinematics(const hdv_ext_kinematics& kinemat
   if (any && turns)
     doubts.push_back(
         "its forward() turns the tip, but rows 3 to 5 of its Jacobian are 0 everywhere: no torque of a shape reaches "
-        "the motors; expected these rows, or an orientation that stays as it is");
+        "the motors; expected angular rows, or an orientation that does not change");
   if (farthest > kFar) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", farthest);
     doubts.push_back("its forward() puts the tip " + std::string(text) +
-                     " m away, farther than a hand leads an arm; expected metres");
+                     " m away, farther than a hand can move an arm; the position must be in m");
   }
   return doubts;
 }
@@ -191,7 +193,7 @@ std::string weightBeyondMotors(const hdv_ext_kinematics& kinematics, const hdv_d
   Joints least = Joints::Constant(HUGE_VAL);
   for (int i = 0; i < kPlaces; ++i) {
     const Joints q = placeBetweenStops(i, info);
-    // The arm may be mounted in any way: this takes the lightest of six.
+    // The arm may be mounted in any way, so this takes the smallest torque of six mountings.
     for (Eigen::Index joint = 0; joint < calls.joints(); ++joint) {
       double lightest = HUGE_VAL;
       for (int way = 0; way < 6; ++way) {
@@ -208,8 +210,8 @@ std::string weightBeyondMotors(const hdv_ext_kinematics& kinematics, const hdv_d
       char text[240];
       std::snprintf(
           text, sizeof text,
-          "says by its gravity() that the arm's own weight asks joint %u for %.4g N m (or N) or more at every "
-          "place and in every mounting, and its motor gives %.4g; expected N m, kg and m",
+          "has a gravity() that asks joint %u for %.4g N m (or N) or more at every place and in every mounting, but "
+          "its motor gives only %.4g; masses must be in kg, lengths in m",
           i + 1, least[i], info.max_torque[i]);
       return text;
     }
@@ -240,8 +242,8 @@ std::string heavyForMotors(const hdv_ext_kinematics& kinematics, const hdv_devic
   std::snprintf(
       text, sizeof text,
       "the torques of gravity() are more than the motors give at %d of %d places and mountings, up to %.4g N m "
-      "(or N) at joint %u, where hdv_info.max_torque is %.4g: the arm would fall on the hand; expected N m, kg "
-      "and m",
+      "(or N) at joint %u, where hdv_info.max_torque is %.4g: the arm would fall on the hand; masses must be "
+      "in kg",
       beyond, asked, worst * info.max_torque[joint], joint + 1, info.max_torque[joint]);
   return text;
 }

@@ -14,10 +14,11 @@
 namespace hapticd::host {
 namespace {
 
-constexpr uint32_t kMaxClasses = 1024;  ///< a table with more in one file was misread
+constexpr uint32_t kMaxClasses = 1024;  ///< a file whose table claims more is damaged
 
-/// What is loaded now, by the file's real path: two spellings of one file give one library. A library that is no longer
-/// used keeps its code, and the loader gives it out again, however the file has changed.
+/// The libraries that are loaded now, by their real paths, so that two spellings of a path give the same library. The
+/// code of a library that is no longer used stays in memory: if the library is opened again, the system's loader
+/// returns this code, even if the file has changed.
 struct Registry {
   std::mutex mutex;
   std::map<std::filesystem::path, std::weak_ptr<Library>> loaded;
@@ -29,13 +30,14 @@ Registry& registry() {
   return instance;
 }
 
-/// The entry of a built-in plugin or module, which is of one of the two kinds.
+/// Returns the entry of a built-in plugin or module. It is an error if it has none of the wanted kind.
 Result<const void*> linked(const void* entry) {
-  if (entry == nullptr) return Error{"the built-in class of this name is of the other kind"};
+  if (entry == nullptr)
+    return Error{"the built-in class of this name is of the other kind (shape plugin or device module)"};
   return entry;
 }
 
-/// Magic and version of an entry; hsp_entry and hdv_entry have the same members.
+/// Checks the magic number and the version of an entry. hsp_entry and hdv_entry have the same members.
 template <class Entry>
 Result<const Entry*> checkedEntry(const Result<const void*>& symbol_at, const std::filesystem::path& file,
                                   const char* symbol, uint32_t magic, const char* what) {
@@ -45,10 +47,11 @@ Result<const Entry*> checkedEntry(const Result<const void*>& symbol_at, const st
   const auto* entry = static_cast<const Entry*>(*symbol_at);
   if (entry->magic != magic)
     return Error{file.string() + " is not a " + what + ": the data at " + symbol +
-                 " does not begin with the expected mark\n  fix: define it with HAPTICD_SHAPES or HAPTICD_DEVICES"};
+                 " does not begin with the magic number of the interface\n  fix: define it with HAPTICD_SHAPES or "
+                 "HAPTICD_DEVICES"};
   if (entry->abi_major != HSP_ABI_MAJOR)
     return Error{file.string() + ": built for version " + std::to_string(entry->abi_major) + "." +
-                 std::to_string(entry->abi_minor) + " of the interface; this hapticd speaks version " +
+                 std::to_string(entry->abi_minor) + " of the interface; this hapticd supports version " +
                  std::to_string(HSP_ABI_MAJOR) + "\n  fix: rebuild it against the headers of this hapticd"};
   if (entry->class_count == 0 || entry->class_count > kMaxClasses || entry->classes == nullptr)
     return Error{file.string() + ": its entry lists " + std::to_string(entry->class_count) +
@@ -69,7 +72,7 @@ Result<std::shared_ptr<Library>> Library::open(const std::filesystem::path& file
   std::weak_ptr<Library>& slot = all.loaded[real];
   if (std::shared_ptr<Library> loaded = slot.lock()) return loaded;
 
-  const auto stamp = stampOf(real);  // read first: a file that is replaced now is at worst taken for a new one
+  const auto stamp = stampOf(real);  // before loading: a file replaced in between is at worst taken for a new one
   const auto handle = loadFile(real);
   if (!handle) return Error{"cannot load " + real.string() + "\n  the loader says: " + handle.error()};
   all.first.emplace(real, stamp);

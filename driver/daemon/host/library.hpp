@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A loaded shared object. The same file is loaded once a process. Its code stays in memory to the end of the process:
-/// a plugin may have begun a thread, and one that returns into code that is gone ends the daemon.
+/// A loaded shared object. A process loads each file only once. The code stays in memory to the end of the process,
+/// because a plugin may have started a thread, and the daemon would crash if such a thread returned to unloaded code.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -13,14 +13,14 @@ namespace hapticd::host {
 
 class Library {
  public:
-  /// [main] Loads `file` (RTLD_NOW | RTLD_LOCAL). The message has the loader's own reason.
+  /// [main] Loads `file` (RTLD_NOW | RTLD_LOCAL). The error contains the message of the system's loader.
   static Result<std::shared_ptr<Library>> open(const std::filesystem::path& file);
-  /// [any] The library of `file` if it is loaded now; nullptr if it is not.
+  /// [any] Returns the library of `file`; nullptr if it is not loaded now.
   static std::shared_ptr<Library> loaded(const std::filesystem::path& file);
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
 
-  /// [main] The entry of a shape plugin or device module, checked for magic and major version.
+  /// [main] Returns the entry of a shape plugin or a device module. The magic number and the major version are checked.
   Result<const hsp_entry*> shapes() const;
   Result<const hdv_entry*> devices() const;
   bool exports(const char* symbol) const;  ///< [main]

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Loads code into this process. loader_posix.cpp does it by dlopen(); platform_none.cpp refuses, for programs that
-/// hold all their plugins.
+/// Loads code into this process. loader_posix.cpp uses dlopen(). platform_none.cpp refuses to load: it is for programs
+/// that contain all their plugins.
 #pragma once
 #include <filesystem>
 
@@ -8,10 +8,11 @@
 
 namespace hapticd::host {
 
-/// [main] Loads a file completely; it is never unloaded. @return a handle for symbolOf(), or the loader's own reason
+/// [main] Loads a file completely; it is never unloaded. @return a handle for symbolOf(), or the error of the system's
+/// loader
 Result<void*> loadFile(const std::filesystem::path& file);
 
-/// [main] The address of a symbol of a loaded file, or the loader's own reason.
+/// [main] Returns the address of a symbol of a loaded file, or the error of the system's loader.
 Result<const void*> symbolOf(void* handle, const char* symbol);
 
 }  // namespace hapticd::host

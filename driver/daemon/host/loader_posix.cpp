@@ -15,7 +15,7 @@ std::string loaderReason() {
   return reason != nullptr ? reason : "no reason given by the loader";
 }
 
-/// Remembers where the code of a library lies, so that a crash in one of its own threads can be named.
+/// Notes the addresses of a library's code, so that a crash in a thread of the library can be blamed on it.
 void keepCodeOf(void* handle) {
   link_map* loaded = nullptr;
   if (dlinfo(handle, RTLD_DI_LINKMAP, &loaded) != 0 || loaded == nullptr) return;

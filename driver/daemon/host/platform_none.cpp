@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// For programs that hold all their plugins: nothing is loaded, and no process is started.
+/// For programs that contain all their plugins: this version loads no files and starts no processes.
 #include <cstdlib>
 
 #include "host/child.hpp"
@@ -9,7 +9,7 @@
 namespace hapticd::host {
 namespace {
 
-constexpr const char* kNoFiles = "this program loads no files: its plugins are linked into it";
+constexpr const char* kNoFiles = "this program cannot load files: it contains all its plugins";
 
 }  // namespace
 
@@ -25,7 +25,7 @@ std::optional<FileStamp> stampOf(const std::filesystem::path&) {
   return std::nullopt;
 }
 
-// Where there are no children, nobody asks how far one came.
+// There are no child processes here, so a trail stays empty.
 Trail::Trail() : mark_(nullptr) {}
 Trail::~Trail() = default;
 void Trail::mark(uint32_t, const char*) noexcept {}

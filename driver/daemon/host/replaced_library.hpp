@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// A library whose file was written anew: the code in memory is still that of the file from before.
+/// Recognises a library whose file has been replaced, so that the code in memory is older than the file.
 #pragma once
 #include <filesystem>
 
 namespace hapticd::host {
 
-/// [any] Another file has taken the place of the one that this process loaded as `file`.
+/// [any] True if another file has replaced the one that this process loaded as `file`.
 bool replacedSinceLoaded(const std::filesystem::path& file);
 
 }  // namespace hapticd::host

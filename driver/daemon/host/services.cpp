@@ -11,10 +11,10 @@
 namespace hapticd::host {
 namespace {
 
-constexpr size_t kCacheLine = 64;          ///< so that blocks of two instances never share a cache line
-constexpr size_t kLargestAlign = 1 << 21;  ///< a huge page
+constexpr size_t kCacheLine = 64;  ///< [bytes] alignment, so that blocks of two instances never share a cache line
+constexpr size_t kLargestAlign = 1 << 21;  ///< [bytes] size of a huge page
 constexpr size_t kLargestBlock = std::min<uint64_t>(uint64_t{1} << 40, SIZE_MAX / 2);
-constexpr size_t kLongestMessage = 4096;  ///< so that a plugin that forgets its terminator does not flood the log
+constexpr size_t kLongestMessage = 4096;  ///< [bytes] limit, in case a plugin forgets the terminating zero
 
 thread_local bool t_servo_thread = false;
 
@@ -24,10 +24,10 @@ struct Record {
   std::array<char, 48> who;
   std::array<char, 204> text;
 };
-constexpr size_t kRecords = 64;  ///< read five times a second
+constexpr size_t kRecords = 64;  ///< messages in the ring, which is read five times a second
 std::atomic<uint32_t> lost_records{0};
 
-/// The process has one, because there is one servo thread.
+/// The ring of messages of the servo thread. A process has only one servo thread, so it needs only one ring.
 SpscRing<Record>& servoRecords() {
   static SpscRing<Record> ring(kRecords);
   return ring;
@@ -72,7 +72,7 @@ void Services::forgetError() {
 }
 
 void Services::markServoThread() {
-  (void)servoRecords();  // allocated before the thread's first tick
+  (void)servoRecords();  // allocates the ring before the thread's first tick
   t_servo_thread = true;
 }
 
@@ -114,7 +114,7 @@ void* Services::allocate(size_t bytes, size_t align) {
 
 void Services::release(void* block) {
   const auto found = blocks_.find(block);
-  if (found == blocks_.end()) return;  // it is not ours, or was returned before: freeing it would corrupt the heap
+  if (found == blocks_.end()) return;  // foreign, or released before: freeing it would corrupt the heap
   locked_bytes_ -= found->second.bytes;
   ::operator delete(block, std::align_val_t{found->second.align});
   blocks_.erase(found);

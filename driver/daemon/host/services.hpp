@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What the host offers to plugins and modules (hsp_host): logging, locked memory, a lossy ring of trace events.
+/// The services of the host for plugins and modules (hsp_host): logging, locked memory, and a ring of trace events,
+/// which may lose events.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -13,46 +14,47 @@
 
 namespace hapticd::host {
 
-/// Numbers that a shape traced from the servo thread. Only the shape knows what they mean.
+/// Numbers that a shape passed to trace() in the servo thread. Only the shape knows what they mean.
 struct TraceEvent {
   uint32_t event = 0;
   double a = 0, b = 0;
 };
 
-/// Services for one instance. Lives as long as the instance; not copied, because plugins keep the pointer.
+/// Services for one instance. The object lives as long as the instance. It cannot be copied, because plugins keep a
+/// pointer to it.
 class Services {
  public:
   using Log = std::function<void(int level, const std::string& who, const std::string& text)>;
 
-  /// [main] @param who name of the model or device, put before each message
+  /// [main] @param who name of the model or device, passed to the log with each message
   Services(std::string who, Log log);
   ~Services();
   Services(const Services&) = delete;
   Services& operator=(const Services&) = delete;
 
   const hsp_host* abi() const { return &abi_; }
-  /// [main] The newest message of level error, for set-up failures.
+  /// [main] Returns the newest message of level error, for failures of the set-up.
   std::string lastError() const;
-  /// [main] Forgets that message, so that the next call is not blamed for an older one.
+  /// [main] Forgets that message, so that a failure of the next call does not show an older message.
   void forgetError();
   /// [main] What the host itself has to say of the instance.
   void warn(const std::string& text) { write(HSP_LOG_WARNING, text.c_str()); }
   size_t lockedBytes() const { return locked_bytes_; }  ///< [main] how much alloc has given out
 
-  /// [any] Only one reader: the next event of the servo thread. False if there is none.
+  /// [any] Takes the next event of the servo thread. Returns false if there is none. There must be only one reader.
   bool takeEvent(TraceEvent& event) noexcept { return events_.pop(event); }
-  /// [any] True once, after the instance has asked to be activated again.
+  /// [any] Returns true once after the instance has asked to be activated again (request_restart).
   bool takeRestartRequest() noexcept { return restart_.exchange(false, std::memory_order_relaxed); }
 
-  /// [main] Marks the calling thread as the servo thread, for is_rt_thread. Messages that instances log on it wait in a
-  /// ring of records of fixed size, without a lock, until passOn() is called.
+  /// [main] Marks the calling thread as the servo thread, for is_rt_thread(). Messages that instances log in this
+  /// thread are kept in a ring without a lock until passOn() is called.
   static void markServoThread();
-  /// [main] One reader: passes on what was logged on the servo thread since the last call, and how many messages found
-  /// the ring full.
+  /// [main] Passes on the messages of the servo thread since the last call, and the number of messages that were lost
+  /// because the ring was full. There must be only one reader.
   static void passOn(const Log& log);
 
  private:
-  static constexpr size_t kEvents = 64;  ///< a click or two per tick, read about every 10 ms; the rest may be lost
+  static constexpr size_t kEvents = 64;  ///< enough for one or two clicks per tick, read about every 10 ms
   struct Block {
     size_t bytes, align;
   };
@@ -65,7 +67,7 @@ class Services {
   hsp_host abi_{};
   std::string who_;
   Log log_;
-  mutable std::mutex mutex_;  // log() is called from the main and the simulation thread
+  mutable std::mutex mutex_;  // because log() is called from the main and the simulation thread
   std::string last_error_;
   std::unordered_map<void*, Block> blocks_;
   size_t locked_bytes_ = 0;

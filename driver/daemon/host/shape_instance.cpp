@@ -14,7 +14,7 @@
 namespace hapticd::host {
 namespace {
 
-/// The extension, if its struct reaches at least to its last member of revision 1.
+/// Returns the extension if its struct contains all members of revision 1; otherwise nullptr.
 template <class Extension>
 const Extension* extensionOf(const hsp_class& shape_class, hsp_shape* shape, const char* name, size_t needed) {
   if (!HSP_HAS(&shape_class, extension) || shape_class.extension == nullptr) return nullptr;
@@ -22,10 +22,11 @@ const Extension* extensionOf(const hsp_class& shape_class, hsp_shape* shape, con
   return found != nullptr && found->struct_size >= needed ? found : nullptr;
 }
 
-constexpr uint32_t kMostSurfaces = 1'000'000;  ///< the search keeps tables of this size for each probe
-constexpr uint32_t kMostVertices = 1'000'000;  ///< of a drawing; 12 MB are kept three times
+constexpr uint32_t kMostSurfaces = 1'000'000;  ///< limit, since the search keeps an entry per surface and probe
+constexpr uint32_t kMostVertices = 1'000'000;  ///< limit for drawing: three buffers of 12 MB each
 
-/// Claims are bounds that the host works with: one that is not a number would disable its checks.
+/// Returns what is wrong with the claims of a report, or "". The host uses claims as bounds, and a claim that is not
+/// finite would disable its checks.
 std::string wrongIn(const hsp_report& report) {
   for (const double claim : {report.max_stiffness, report.max_force, report.size_m, report.max_jump})
     if (!std::isfinite(claim) || claim < 0)
@@ -36,13 +37,13 @@ std::string wrongIn(const hsp_report& report) {
   return "";
 }
 
-/// The place where the scene asks for it; "" for a model that no file has.
+/// Returns the place of the model in its scene file; "" for a model that is in no file.
 std::string placeOf(const scene::Model& model) {
   if (model.place.file.empty() || model.place.line == 0) return model.place.file;
   return model.place.file + ":" + std::to_string(model.place.line);
 }
 
-/// The largest damping among the parameters, whether given or by default.
+/// Returns the largest damping among the parameters; parameters that are not given count with their defaults.
 double dampingOf(const hsp_class& shape, const std::vector<scene::Value>& given) {
   double most = 0;
   for (uint32_t i = 0; i < shape.param_count; ++i) {

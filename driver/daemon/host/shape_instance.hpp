@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// One instance of a shape plugin, from create to destroy. Set-up calls may fail with a message; step() is real time.
+/// One instance of a shape plugin, from create() to destroy(). The calls of the set-up may fail with a message; step()
+/// is a real-time call.
 #pragma once
 #include <memory>
 #include <span>
@@ -26,7 +27,7 @@ class ShapeInstance {
   Result<void> activate(const hsp_activation& activation);  ///< [main]
   void deactivate();                                        ///< [main]
 
-  /// [rt] Adds to `step` the place where vertices must be written, if somebody looks.
+  /// [rt] Steps the shape. If a program asks for vertices, `step` also gets the place where the shape must write them.
   hsp_status step(hsp_step& step) noexcept HSP_RT {
     const Calling calling(owner_);
     if (contour_ == nullptr) return class_->step(shape_, &step);
@@ -40,7 +41,7 @@ class ShapeInstance {
     const Calling calling(owner_);
     class_->reset(shape_);
   }
-  /// [rt] Starts tracing a surface, or offers a second foot on it. Only for a shape with surfaces.
+  /// [rt] Starts tracing a surface, or offers a second foot point on it. Only for a shape with surfaces.
   void activate(const hsp_near& near) noexcept HSP_RT {
     const Calling calling(owner_);
     surfaces_->activate(shape_, &near);
@@ -49,31 +50,35 @@ class ShapeInstance {
     const Calling calling(owner_);
     surfaces_->deactivate(shape_, probe, surface);
   }
-  /// [sim] Surfaces near a point in the model frame; unsound answers are left out. @return how many are in `near`
+  /// [sim] Finds the surfaces near a point in the model frame; invalid answers are left out. @return how many are in
+  /// `near`
   size_t nearby(const double p_model[3], double radius_m, std::span<hsp_near> near) const noexcept;
-  /// [rt] [J] energy that the shape says it stores; 0: it does not say, or its answer is not an energy.
+  /// [rt] Returns the energy [J] that the shape stores, as the shape says; 0 if it does not say, or if its answer is
+  /// invalid.
   double storedEnergy() const noexcept HSP_RT {
     if (energy_ == nullptr) return 0;
     const Calling calling(owner_);
     const double stored = energy_->stored(shape_);
     return stored >= 0 ? stored : 0;
   }
-  /// [main] Triangles in the current shape, checked: every number is finite and every corner a vertex.
+  /// [main] Makes triangles of the shape in its current form. They are checked: every number is finite, and every
+  /// corner is the index of a vertex.
   hsp_status tessellate(double chord_error_m, hsp_mesh& mesh) const;
-  /// [main] A box around it in the model frame. False: the shape does not say, or its answer is not a box.
+  /// [main] Returns a box around the shape in the model frame. False if the shape does not say, or if its answer is not
+  /// a box.
   bool bounds(double min[3], double max[3]) const;
 
   const std::string& name() const { return name_; }
   const hsp_class& description() const { return *class_; }
   const hsp_report& report() const { return report_; }  ///< valid while active
-  /// [N s/m] The damping that was set on the shape: the largest of its parameters with that unit.
+  /// Returns the damping [N s/m] that was set on the shape: the largest of its parameters with this unit.
   double claimedDamping() const { return damping_; }
-  const hsp_ext_surfaces* surfaces() const { return surfaces_; }  ///< nullptr: the shape traces itself
+  const hsp_ext_surfaces* surfaces() const { return surfaces_; }  ///< nullptr if the shape traces itself
   uint32_t surfaceCount() const noexcept { return surface_count_; }
   const hsp_ext_geometry* geometry() const { return geometry_; }
   const hsp_ext_energy* energy() const { return energy_; }
   const Owner* owner() const noexcept { return owner_; }
-  Contour* contour() const { return contour_.get(); }  ///< nullptr: its steps write no vertices
+  Contour* contour() const { return contour_.get(); }  ///< nullptr if its steps write no vertices
   hsp_shape* handle() const { return shape_; }
   bool active() const { return active_; }
 
@@ -91,7 +96,7 @@ class ShapeInstance {
   const hsp_ext_energy* energy_ = nullptr;
   std::unique_ptr<Contour> contour_;
   double damping_ = 0;
-  uint32_t surface_count_ = 0;  ///< as it was at activation
+  uint32_t surface_count_ = 0;  ///< number of surfaces at activation
   bool active_ = false;
 };
 

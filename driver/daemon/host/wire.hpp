@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Numbers and texts as bytes between a process and its own child: same machine, same build.
+/// Packs numbers and texts into bytes for a process and its child. Both run on the same machine with the same build, so
+/// the bytes have no portable format.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -22,7 +23,7 @@ class Packer {
   std::string bytes_;
 };
 
-/// Reads what Packer wrote; a message that ends early gives zeros and good() = false.
+/// Reads what Packer wrote. If the bytes end too early, it returns zeros, and good() is false.
 class Unpacker {
  public:
   explicit Unpacker(const std::string& bytes) : bytes_(bytes) {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The servo's end of a lead: memory that a program outside writes whenever it likes, and whatever it likes. Nothing
-/// that is read there is trusted, and no state of it can hold the servo up.
+/// The servo's end of a lead, which is memory that another program writes at any time. The servo does not trust what it
+/// reads there, and whatever the program writes, the servo never waits for it.
 #pragma once
 #include <array>
 #include <atomic>
@@ -14,9 +14,10 @@
 
 namespace hapticd::link {
 
-constexpr double kLargestPush = 1e6;  ///< [N], [N m] a record with a larger number is refused
+constexpr double kLargestPush = 1e6;  ///< [N] or [N m] records with larger numbers are refused
 
-/// A record with a count before it that is odd while the record is written. It lives in shared memory, zeroed at first.
+/// A record in shared memory with a count before it (a seqlock): the count is odd while the record is being written.
+/// The memory is zeroed at first.
 template <class Record>
 class LeadSlot {
   static constexpr size_t kWords = sizeof(Record) / 8;
@@ -24,8 +25,9 @@ class LeadSlot {
   static_assert(std::atomic<uint64_t>::is_always_lock_free);
 
  public:
-  /// [rt] The record, if its count is not `seen`, which then becomes that count. It tries once: if a writer was killed
-  /// inside, or never stops writing, the previous record stays in force.
+  /// [rt] Reads the record if its count differs from `seen`, and sets `seen` to its count. It tries only once: if the
+  /// writer was killed while it wrote, or never stops writing, it returns false, and the previous record stays in
+  /// force.
   bool take(uint64_t& seen, Record& record) const noexcept HSP_RT {
     const uint64_t before = count_.load(std::memory_order_acquire);
     if (before == seen || before % 2 != 0) return false;
@@ -38,10 +40,10 @@ class LeadSlot {
     return true;
   }
 
-  /// [any] One writer.
+  /// [any] Writes the record. There must be only one writer.
   void put(const Record& record) noexcept HSP_RT {
     const auto words = std::bit_cast<std::array<uint64_t, kWords>>(record);
-    const uint64_t even = (count_.load(std::memory_order_relaxed) + 1) & ~uint64_t{1};  // also after one who was killed
+    const uint64_t even = (count_.load(std::memory_order_relaxed) + 1) & ~uint64_t{1};  // even after a killed writer
     count_.store(even + 1, std::memory_order_relaxed);
     for (size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_release);
     count_.store(even + 2, std::memory_order_release);
@@ -55,7 +57,7 @@ class LeadSlot {
 using PoseSlot = LeadSlot<hapticd_target>;
 using PushSlot = LeadSlot<hapticd_push>;
 
-/// What the servo tells programs that push: here the servo writes and they read.
+/// State for programs that push on an arm. Here the servo writes, and the programs read.
 using StateSlot = LeadSlot<hapticd_state>;
 using JacobianSlot = LeadSlot<hapticd_jacobian>;
 constexpr size_t kJacobianAt = 320;  ///< [bytes] offset of an arm's Jacobian from the beginning of its state

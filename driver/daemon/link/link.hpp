@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// The one narrow interface between the servo and the simulation side: arm state out (newest value wins, loss is fine),
-/// activation records in and model transforms out (reliable, ordered). Plain data only, so that another process or a
-/// network domain can stand between the two without a change on either side.
+/// The only interface between the servo and the simulation side (the proximity search). The servo sends the state of
+/// the arms, of which only the newest value matters, and the transforms of moving models. It receives activation
+/// records. Transforms and records keep their order. All of it is plain data, so that the two sides could run in
+/// different processes without a change.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -13,40 +14,40 @@
 
 namespace hapticd::link {
 
-constexpr Nanoseconds kSearchPeriod = 5'000'000;  ///< between two global searches
-constexpr uint32_t kMaxProbes = 8;                ///< arms (fingers) of one scene
+constexpr Nanoseconds kSearchPeriod = 5'000'000;  ///< [ns] time between two searches of the whole scene
+constexpr uint32_t kMaxProbes = 8;                ///< largest number of arms in a scene
 
-/// Where the probes are. Published by the servo every tick.
+/// Positions of the probes. The servo publishes them every tick.
 struct ArmState {
   Nanoseconds time_ns = 0;
   uint32_t probe_count = 0;
-  std::array<std::array<double, 3>, kMaxProbes> position{};  ///< [m] world
+  std::array<std::array<double, 3>, kMaxProbes> position{};  ///< [m] world frame
   std::array<bool, kMaxProbes> valid{};
 };
 
-/// An order from the simulation side to the tracers.
+/// A message from the proximity search to the shapes that trace surfaces.
 struct ActivationRecord {
   enum class Order : uint32_t {
-    kStart,  ///< the surface has come near: trace it
-    kOffer,  ///< it is traced already; here is the global foot, to be taken if it is nearer
-    kStop    ///< it has left the neighbourhood
+    kStart,  ///< the surface has come near: begin to trace it
+    kOffer,  ///< the surface is traced already: take the foot point of the search if it is nearer than the traced one
+    kStop    ///< the surface is no longer near: stop tracing it
   };
   uint32_t model = 0;
   Order order = Order::kStart;
   hsp_near near{};
 };
 
-/// Where a moving model is now.
+/// The present pose of a moving model.
 struct ModelTransform {
   uint32_t model = 0;
-  std::array<double, 3> position{};               ///< [m] world
-  std::array<double, 4> orientation{1, 0, 0, 0};  ///< w,x,y,z
+  std::array<double, 3> position{};               ///< [m] world frame
+  std::array<double, 4> orientation{1, 0, 0, 0};  ///< unit quaternion w,x,y,z
 };
 
-/// Both directions of one link. Each member has one writing thread and one reading thread.
+/// The queues of both directions. Each member has one writing thread and one reading thread.
 struct Link {
-  static constexpr size_t kRecords = 1 << 14;     ///< several searches' worth of a model of thousands of patches
-  static constexpr size_t kTransforms = 1 << 12;  ///< 5 ms of records of dozens of moving models at 10 kHz
+  static constexpr size_t kRecords = 1 << 14;     ///< enough for several searches of a model with thousands of patches
+  static constexpr size_t kTransforms = 1 << 12;  ///< enough for dozens of moving models in 5 ms at 10 kHz
 
   TripleBuffer<ArmState> arm;                        ///< servo to simulation
   SpscRing<ModelTransform> transforms{kTransforms};  ///< servo to simulation

@@ -22,11 +22,12 @@ namespace {
 constexpr size_t kFileBytes = 10 << 20, kOldFiles = 3;
 constexpr std::array kLevels{spdlog::level::debug, spdlog::level::info, spdlog::level::warn, spdlog::level::err};
 constexpr std::array kNames{"debug", "info", "warning", "error"};
-constexpr std::array kPriorities{"<7>", "<6>", "<4>", "<3>"};  // of syslog, read by journald at a line's beginning
+constexpr std::array kPriorities{"<7>", "<6>", "<4>",
+                                 "<3>"};  // syslog priorities, which journald reads at the beginning of a line
 
 enum class Target : uint8_t { kTerminal, kJournal, kPlain };
 
-/// journald names the stream that it gives to a service by device and inode.
+/// True if stderr goes to journald: it names the stream that it gives to a service by device and inode.
 bool isJournal() {
   const char* stream = std::getenv("JOURNAL_STREAM");
   struct stat status{};
@@ -39,7 +40,7 @@ Target targetOfStderr() {
   return isJournal() ? Target::kJournal : Target::kPlain;
 }
 
-/// The words of a level: spdlog's "warn" is a "warning" here, as in every other message of hapticd.
+/// Writes the name of a level: "warning", as in all messages of hapticd, and not "warn" as in spdlog.
 class LevelWord : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
@@ -58,7 +59,7 @@ std::unique_ptr<spdlog::formatter> pattern(const char* text) {
 
 std::unique_ptr<spdlog::formatter> patternFor(Target target, bool json) {
   if (json || target == Target::kJournal) return pattern("%v");
-  // The status line of a run is on the terminal: it is removed, and printed again below.
+  // The status line of a run is on the terminal. The message overwrites it, and the run prints it again below.
   if (target == Target::kTerminal) return pattern("\r\033[K%H:%M:%S.%e %^%*%$: %v");
   return pattern("%Y-%m-%d %H:%M:%S.%e %*: %v");
 }
@@ -103,7 +104,7 @@ std::string jsonLine(int32_t level, const std::string& who, const std::string& t
   return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// Every line of a message needs its priority, or journald takes the second line for information.
+/// Puts the priority before every line of a message, because journald takes a line without one for information.
 std::string journalLines(int32_t level, const std::string& text) {
   const std::string priority = kPriorities[static_cast<size_t>(level)];
   std::string lines = priority;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The daemon's log. One for the process; written by ordinary threads only, since it locks and calls the system. What
-/// the servo thread has to say reaches it through a ring that an ordinary thread empties (host::Services).
+/// The log of the process. Only ordinary threads write to it, because writing takes a lock and makes system calls.
+/// Messages of the servo thread go into a ring, which an ordinary thread empties (host::Services).
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,24 +9,26 @@
 
 namespace hapticd::log {
 
-/// Levels are those of the ABI: HSP_LOG_DEBUG to HSP_LOG_ERROR.
+/// Settings of the log. Levels are the numbers HSP_LOG_DEBUG to HSP_LOG_ERROR of the ABI.
 struct Settings {
   int32_t level = 1;  ///< the lowest level that is written; 1: HSP_LOG_INFO
-  std::string file;   ///< messages also go here, 10 MB at most, and three older files are kept; "": no file
-  bool json = false;  ///< one JSON object per line, {"time", "level", "who", "text"}, instead of words
+  std::string file;   ///< file for all messages, at most 10 MB; three older files are kept; "": no file
+  bool json = false;  ///< true: one JSON object per line, {"time", "level", "who", "text"}
 };
 
-/// [main] Opens the log, before the first thread that writes. Without it the log goes to stderr at level info.
+/// [main] Opens the log. Call it before other threads write messages. Without this call, messages of level info and
+/// above go to stderr.
 ///
-/// A terminal gets the time of day and colour (unless NO_COLOR is set); journald its own priorities, since it stamps
-/// the time itself; everything else the date and time. It fails if the file cannot be written.
+/// If stderr is a terminal, messages have the time of day and colours (unless NO_COLOR is set). For journald they have
+/// its priorities, and no time, because journald adds it. Otherwise they have date and time. It fails if the file
+/// cannot be written.
 Result<void> open(const Settings& settings);
 
-/// [any ordinary thread] Writes a message. Errors of writing are dropped: a full disk must not end a run.
-/// @param who the model, device or part that speaks; "": the daemon itself
+/// [any ordinary thread] Writes a message. If that fails, the message is lost: a full disk must not end a run.
+/// @param who the model, device or part that the message comes from; "" for the daemon itself
 void write(int32_t level, const std::string& who, const std::string& text);
 
-/// [main] The level of a name: "debug", "info", "warning", "error"; -1 for any other name.
+/// [main] Returns the level for a name: "debug", "info", "warning" or "error"; -1 for any other name.
 int32_t levelOf(const std::string& name);
 
 }  // namespace hapticd::log

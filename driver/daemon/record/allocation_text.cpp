@@ -6,14 +6,14 @@
 namespace hapticd::record {
 
 std::string allocationText(const RunReport& report, const AllocationShare& most) {
-  constexpr uint64_t kSome = 100, kRare = 20;  // ticks for one of them
+  constexpr uint64_t kSome = 100, kRare = 20;  // least number of allocations; least rate: one in this many ticks
   const uint64_t all = report.servo_allocations;
   if (all < kSome || all * kRare < report.ticks) return "";
   std::string text = fmt::format("warning: the servo thread allocated memory {} times in {} ticks", all, report.ticks);
   if (most.owner != nullptr)
     text += fmt::format(", mostly in the {} {} ({})", most.owner->device ? "device module" : "plugin",
                         most.owner->module, most.owner->name);
-  return text + ": it may have to wait for it, and then the tick is late\n  fix: make room " +
+  return text + ": an allocation may have to wait, and then the tick is late\n  fix: allocate the memory " +
          (most.owner == nullptr ? "before the run"
           : most.owner->device  ? "in start(); read(), write() and the kinematics may not allocate"
                                 : "in activate(); step() may not allocate") +

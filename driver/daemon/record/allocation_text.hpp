@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Whether the servo thread of a run allocated memory in its ticks: it may wait for it then.
+/// Reports whether the servo thread allocated memory in its ticks, since an allocation may have to wait.
 #pragma once
 #include <string>
 
@@ -8,8 +8,8 @@
 
 namespace hapticd::record {
 
-/// [any] A warning for people, "" where allocations do not grow with the ticks: an order causes a few.
-/// @param most the owner of the code that made most of them
+/// [any] Returns a warning for people; "" if there were only few allocations, as each order causes some.
+/// @param most owner of the code that made most of the allocations
 std::string allocationText(const RunReport& report, const AllocationShare& most);
 
 }  // namespace hapticd::record

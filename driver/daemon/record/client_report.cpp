@@ -6,14 +6,15 @@
 namespace hapticd::record {
 
 bool late(const ClientReport& client) {
-  constexpr uint64_t kEnough = 200;  // answers: fewer say little
+  constexpr uint64_t kEnough = 200;  // fewer answers are too few to judge
   return client.answers >= kEnough && client.sameTick() < kEnoughInTime;
 }
 
 std::string lateFix(double answer_time) {
-  const std::string priority = "give the program SCHED_FIFO 70 (group haptic) and a processor of its own";
+  const std::string priority = "give the program SCHED_FIFO priority 70 (group haptic) and its own processor";
   if (answer_time > 0) return priority;
-  return "clients: {mode: add, answer_time: 60e-6} in the scene, so that the servo listens for it; then " + priority;
+  return "clients: {mode: add, answer_time: 60e-6} in the scene, so that the servo waits for its answers; then " +
+         priority;
 }
 
 void add(std::vector<ClientReport>& all, const ClientReport& one) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The columns of a recorded row: named numbers at fixed places, so that a row is written by plain stores and read by
-/// any program that knows HDF5.
+/// The columns of a recorded row: named numbers at fixed offsets, so that a row can be written by simple stores, and
+/// read by any program that reads HDF5.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace hapticd::record {
 
 enum class ColumnType : uint8_t { kReal, kReal32, kCount, kWord, kInt };  ///< double, float, uint64, uint32, int32
 
-/// [any] Bytes of a number of this type; 0 for a value that is not in the enumeration.
+/// [any] Returns the size [bytes] of a number of this type; 0 for a value that is not in the enumeration.
 constexpr uint32_t bytesOf(ColumnType type) {
   switch (type) {
     case ColumnType::kReal:
@@ -34,10 +34,10 @@ struct Column {
   uint32_t offset = 0;  ///< [bytes] from the start of the row
 };
 
-/// Columns one after the other; numbers are aligned to their size, rows to 8 bytes.
+/// The layout of a row. Numbers are aligned to their size, and rows to 8 bytes.
 class RowLayout {
  public:
-  /// [main] Adds a column and gives back its offset in the row.
+  /// [main] Adds a column and returns its offset in the row.
   uint32_t add(const std::string& name, ColumnType type, const std::string& unit, const std::string& doc) {
     const uint32_t bytes = bytesOf(type), offset = (end_ + bytes - 1) / bytes * bytes;
     columns_.push_back({name, unit, doc, type, offset});
@@ -58,11 +58,11 @@ inline void put(std::byte* row, uint32_t offset, T value) noexcept HSP_RT {
   std::memcpy(row + offset, &value, sizeof value);
 }
 
-/// A table of a recording that grows by rows.
+/// A stream of a recording: a table that grows row by row.
 struct StreamSpec {
   std::string name;
   RowLayout layout;
-  uint64_t ring_rows = 0;  ///< rows that the black box keeps
+  uint64_t ring_rows = 0;  ///< number of rows that the black box keeps
 };
 
 }  // namespace hapticd::record

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Depth, force and cost of one model over a run, gathered in the servo thread without allocation.
+/// Statistics of the depth, force and cost of one model over a run, computed in the servo thread without allocation.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace hapticd::record {
 /// Ticks in which a model pushed although its answer reported no contact.
 struct Pushes {
   uint64_t ticks = 0;
-  double max_force = 0;  ///< [N] in those
+  double max_force = 0;  ///< [N] largest force in these ticks
   void add(double force_n) noexcept HSP_RT {
     ++ticks;
     max_force = std::max(max_force, force_n);
@@ -22,9 +22,10 @@ struct Pushes {
 
 class ContactStatistics {
  public:
-  static constexpr double kBuzzWindow = 0.02;  ///< [s] changes of depth faster than this are felt as buzz
+  static constexpr double kBuzzWindow = 0.02;  ///< [s] changes of depth within this time are felt as buzz
 
-  /// [rt] One tick. @param depth_m, force_n count only in contact and if finite @param step_ns 0: it was not measured
+  /// [rt] Adds a tick. @param depth_m and force_n count only in contact, and if they are finite
+  /// @param step_ns duration of the step; 0 if it was not measured
   void add(bool contact, double depth_m, double force_n, double dt, uint64_t step_ns) noexcept HSP_RT {
     if (step_ns > 0) step_us_.add(static_cast<double>(step_ns) * 1e-3);
     if (!contact || !std::isfinite(depth_m) || !std::isfinite(force_n)) {
@@ -41,35 +42,36 @@ class ContactStatistics {
     addToWindow(depth_m, dt);
   }
 
-  /// [rt] A tick in which it pushed although it traced no surface, so that no contact can be reported.
+  /// [rt] Adds a tick in which the model pushed although it traced no surface, so that no contact can be reported.
   void addUntraced(double force_n) noexcept HSP_RT { untraced_.add(force_n); }
-  /// [rt] The same with a surface and a depth_m of 0, as from a shape that never fills it in.
+  /// [rt] Adds a tick in which it pushed with a depth_m of 0, probably because the shape never fills depth_m in.
   void addDepthless(double force_n) noexcept HSP_RT { depthless_.add(force_n); }
-  /// [rt] The same with a depth_m below 0: it pushed from outside, as a magnet does, or the depth has the wrong sign.
+  /// [rt] Adds a tick in which it pushed with a depth_m below 0: from outside, as a magnet does, or because depth_m has
+  /// the wrong sign.
   void addOutside(double force_n) noexcept HSP_RT { outside_.add(force_n); }
 
-  /// [rt] A tick of contact in which its force drew the probe deeper in.
+  /// [rt] Adds a tick of contact in which the force pulled the probe deeper in.
   void addPull(double force_n) noexcept HSP_RT { pulls_.add(force_n); }
 
-  /// [rt] Whether the foot of a tick is proved. Not called in ticks without a foot.
+  /// [rt] Adds a tick with a foot point: whether it is proved to be the nearest one. Not called in ticks without one.
   void addFoot(bool held, bool degraded) noexcept HSP_RT {
     ++(degraded ? degraded_feet_ : held ? held_feet_ : nearest_feet_);
   }
 
   uint64_t contactTicks() const noexcept { return ticks_; }
-  const Pushes& untraced() const noexcept { return untraced_; }      ///< without a surface
-  const Pushes& depthless() const noexcept { return depthless_; }    ///< at a depth of exactly 0
-  const Pushes& outside() const noexcept { return outside_; }        ///< at a depth below 0
-  const Pushes& pulls() const noexcept { return pulls_; }            ///< into the surface, in contact
-  uint64_t nearestFeet() const noexcept { return nearest_feet_; }    ///< ticks whose foot is the nearest point
-  uint64_t heldFeet() const noexcept { return held_feet_; }          ///< of a held contact; another point is nearer
-  uint64_t degradedFeet() const noexcept { return degraded_feet_; }  ///< neither proved nor held
+  const Pushes& untraced() const noexcept { return untraced_; }    ///< pushes without a surface
+  const Pushes& depthless() const noexcept { return depthless_; }  ///< pushes at a depth of exactly 0
+  const Pushes& outside() const noexcept { return outside_; }      ///< pushes at a depth below 0
+  const Pushes& pulls() const noexcept { return pulls_; }          ///< pulls into the surface, in contact
+  uint64_t nearestFeet() const noexcept { return nearest_feet_; }  ///< ticks with a foot proved to be the nearest
+  uint64_t heldFeet() const noexcept { return held_feet_; }        ///< ticks of a held contact; another point is nearer
+  uint64_t degradedFeet() const noexcept { return degraded_feet_; }  ///< ticks with a foot neither proved nor held
   double meanDepth() const noexcept { return mean_; }                ///< [m]
   double stdDepth() const noexcept { return ticks_ > 1 ? std::sqrt(spread_ / static_cast<double>(ticks_ - 1)) : 0; }
   double maxDepth() const noexcept { return max_depth_; }
   double meanForce() const noexcept { return ticks_ > 0 ? force_sum_ / static_cast<double>(ticks_) : 0; }  ///< [N]
   double maxForce() const noexcept { return max_force_; }
-  /// [m] Root mean square of the depth about its mean inside windows of 20 ms.
+  /// Returns the root mean square [m] of the depth about its mean in windows of 20 ms.
   double buzz() const noexcept { return buzz_ticks_ > 0 ? std::sqrt(buzz_sum_ / static_cast<double>(buzz_ticks_)) : 0; }
   const Histogram& stepUs() const noexcept { return step_us_; }
 
@@ -83,7 +85,7 @@ class ContactStatistics {
     if (window_time_ >= kBuzzWindow) closeWindow();
   }
   void closeWindow() noexcept HSP_RT {
-    if (window_time_ >= kBuzzWindow) {  // a window that was broken off would count the impact itself as buzz
+    if (window_time_ >= kBuzzWindow) {  // a window that ended early would count the impact itself as buzz
       buzz_sum_ += window_spread_;
       buzz_ticks_ += static_cast<uint64_t>(window_ticks_);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The work that a model does on a hand, gathered in the servo thread without allocation. A wall gives back what was
-/// pressed into it and no more; a model that gives more drives the hand on, and makes it buzz or drift.
+/// The work that a model does on a hand, summed up in the servo thread without allocation. A wall gives back only the
+/// work that the hand did on it. A model that gives back more pushes the hand, and makes it buzz or drift.
 #pragma once
 #include <Eigen/Core>
 #include <cmath>
@@ -10,11 +10,12 @@
 
 namespace hapticd::record {
 
-/// Of one model on one probe.
+/// The work of one model on one probe.
 class ContactWork {
  public:
-  /// [rt] A tick. Between two ticks the force counts as their mean: for a spring that is what it stores, to the last
-  /// digits. @param number of the tick: after a gap nothing is counted  @param force [N], position [m] world
+  /// [rt] Adds a tick. Between two ticks the mean of their forces counts, which is exact for a spring.
+  /// @param number number of the tick; if ticks are missing before it, no work is counted
+  /// @param force [N] and position [m] in the world frame
   void add(uint64_t number, const Eigen::Vector3d& force, const Eigen::Vector3d& position) noexcept HSP_RT {
     if (number == next_) {
       const double work = 0.5 * (force + force_).dot(position - position_);
@@ -24,12 +25,12 @@ class ContactWork {
     force_ = force;
     position_ = position;
   }
-  double given() const noexcept { return given_; }  ///< [J] to the hand
-  double taken() const noexcept { return taken_; }  ///< [J] from it
+  double given() const noexcept { return given_; }  ///< [J] work done on the hand
+  double taken() const noexcept { return taken_; }  ///< [J] work that the hand did
 
  private:
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), position_ = Eigen::Vector3d::Zero();
-  uint64_t next_ = UINT64_MAX;  // tick that comes
+  uint64_t next_ = UINT64_MAX;  // number of the tick after the last one
   double given_ = 0, taken_ = 0;
 };
 

@@ -29,7 +29,7 @@ void makeRoom(const std::string& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
     if (isDump(entry.path().filename().string())) dumps.push_back(entry.path().string());
   if (dumps.size() < kKeptDumps) return;
-  std::sort(dumps.begin(), dumps.end());  // names are times
+  std::sort(dumps.begin(), dumps.end());  // the names contain the time, so this sorts by time
   for (size_t i = 0; i + kKeptDumps <= dumps.size(); ++i) fs::remove(dumps[i], error);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Where dumps of the black box are kept: named by their time, the newest of them only.
+/// The folder for dumps of the black box. Dumps are named by their time, and only the newest are kept.
 #pragma once
 #include <cstddef>
 #include <ctime>
@@ -7,11 +7,10 @@
 
 namespace hapticd::record {
 
-inline constexpr size_t kKeptDumps = 50;  ///< 0.3 GB at 1 kHz, 2 GB at 10 kHz: faults that repeat must not fill a disk
+inline constexpr size_t kKeptDumps = 50;  ///< limit, so that repeated faults do not fill a disk: 0.3 GB at 1 kHz
 
-/// [main] Makes the folder where it is missing, and room in it: dumps older than the newest `kKeptDumps` - 1 are
-/// removed. Files with other names, such as black boxes of crashes, stay. @return a new name for a dump of that time,
-/// not yet a file
+/// [main] Creates the folder if it is missing, and removes all but the newest `kKeptDumps` - 1 dumps. Files with other
+/// names, such as black boxes of crashes, are not removed. @return an unused file name for a dump of that time
 std::string nextDump(const std::string& folder, std::time_t now);
 
 }  // namespace hapticd::record

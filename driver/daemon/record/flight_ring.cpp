@@ -17,13 +17,13 @@ namespace hapticd::record {
 
 namespace {
 
-/// A file of `bytes` in memory, or memory without a file.
+/// Maps a new file of this size, or memory without a file if `file` is empty.
 Result<std::byte*> mapMemory(const std::string& file, size_t bytes) {
   void* memory = MAP_FAILED;
   if (file.empty()) {
     memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   } else {
-    unlink(file.c_str());  // a reader of an older file keeps what it has mapped
+    unlink(file.c_str());  // a process that has mapped an older file keeps it
     const int fd = open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0640);
     // allocated now, so that a full file system is an error here instead of a bus error in a tick
     const int full = fd < 0 ? errno : posix_fallocate(fd, 0, static_cast<off_t>(bytes));
@@ -50,7 +50,8 @@ void putText(std::byte* memory, uint64_t at, const std::string& bytes) {
   put(memory, at, bytes.data(), bytes.size());
 }
 
-/// Where the index and the rows of each stream are, after the skeleton. @param end of the file, which grows by them
+/// Returns the places of the index and the rows of each stream, after the skeleton. @param end end of the file, which
+/// is moved behind them
 std::vector<Place> placesOf(const std::vector<StreamSpec>& streams, const std::vector<uint32_t>& rows, uint64_t& end) {
   std::vector<Place> places;
   for (size_t i = 0; i < streams.size(); ++i) {
@@ -127,7 +128,7 @@ FlightRing::~FlightRing() {
 uint64_t FlightRing::copy(size_t stream, uint64_t first, uint64_t count, std::byte* rows) const noexcept {
   const Stream& s = streams_[stream];
   const uint64_t end = written(stream);
-  // the slot after the newest row may be half overwritten already
+  // the slot after the newest row may already be partly overwritten
   const auto overwritten = [&](uint64_t row, uint64_t head) { return head - row >= s.capacity; };
   if (first >= end || overwritten(first, end)) return 0;
   const uint64_t whole = std::min(count, end - first);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The black box: the newest rows of every stream in memory, written by the servo thread without a lock and read by any
-/// other thread or process. Kept in a mapped file, it outlives the process: what a crash leaves is itself a
-/// recording that needs no more writing.
+/// The black box: the newest rows of every stream in memory. The servo thread writes it without a lock, and any other
+/// thread or process may read it. It is in a mapped file, so it outlives the process: after a crash, the file is a
+/// valid recording.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -16,26 +16,27 @@ namespace hapticd::record {
 
 class FlightRing {
  public:
-  /// [main] Allocates and touches everything. @param file in a memory file system (/run, /dev/shm), so that it never
-  /// waits for a disk; empty: memory of this process alone
+  /// [main] Allocates and touches all memory. @param file path in a memory file system (/run, /dev/shm), so that no
+  /// write waits for a disk; if it is empty, the memory belongs to this process only
   static Result<std::unique_ptr<FlightRing>> create(const std::vector<StreamSpec>& streams, const About& about,
                                                     const std::string& file = "");
   ~FlightRing();
   FlightRing(const FlightRing&) = delete;
   FlightRing& operator=(const FlightRing&) = delete;
 
-  /// [rt] The row to fill next. Only one thread writes a stream.
+  /// [rt] Returns the row to fill next. Only one thread may write a stream.
   std::byte* next(size_t stream) noexcept HSP_RT {
     return reinterpret_cast<std::byte*>(streams_[stream].filled.data());
   }
-  /// [rt] Where that row will be, so that it can be fetched into the cache before it is written.
+  /// [rt] Returns where commit() will copy that row to, so that this memory can be fetched into the cache before.
   const std::byte* place(size_t stream) const noexcept HSP_RT {
     return streams_[stream].rows + streams_[stream].position * streams_[stream].row_bytes;
   }
-  /// [rt] The row is complete, so readers may have it.
+  /// [rt] Called when the row is complete: makes it visible to readers.
   void commit(size_t stream) noexcept HSP_RT {
     Stream& s = streams_[stream];
-    // Release on each word: a reader that sees a word also sees the count before it, and knows whose place it took.
+    // Release on each word: a reader that sees a word of the new row also sees the count before it, and so knows that
+    // the old row in this place is being overwritten.
     std::byte* row = s.rows + s.position * s.row_bytes;
     for (size_t i = 0; i < s.filled.size(); ++i)
       std::atomic_ref<uint64_t>(reinterpret_cast<uint64_t*>(row)[i]).store(s.filled[i], std::memory_order_release);
@@ -43,27 +44,29 @@ class FlightRing {
     std::atomic_ref<uint64_t>(s.header->rows).store(++s.written, std::memory_order_release);
   }
 
-  /// [any] Rows ever written.
+  /// [any] Returns the number of rows written since the start.
   uint64_t written(size_t stream) const noexcept {
     return std::atomic_ref<uint64_t>(streams_[stream].header->rows).load(std::memory_order_acquire);
   }
   uint64_t capacity(size_t stream) const noexcept { return streams_[stream].capacity; }
   uint32_t rowBytes(size_t stream) const noexcept { return streams_[stream].row_bytes; }
 
-  /// [any] Copies up to `count` rows from number `first` on. @return how many are complete; 0: `first` was overwritten
+  /// [any] Copies up to `count` rows, beginning at row number `first`. @return how many were copied completely; 0 if
+  /// row `first` has been overwritten
   uint64_t copy(size_t stream, uint64_t first, uint64_t count, std::byte* rows) const noexcept;
 
   const std::vector<StreamSpec>& specs() const { return specs_; }
   const About& about() const { return about_; }
 
-  /// [main] Writes the rows that are kept now as a recording file, oldest first. The servo continues meanwhile.
+  /// [main] Writes the rows that are in the ring now to a recording, oldest first. The servo continues meanwhile.
   Result<void> dump(const std::string& file) const;
 
-  /// [any] The memory of the ring, which is a valid recording at any time. A signal handler can write(2) it to a file.
+  /// [any] Returns the memory of the ring. It is a valid recording at any time, so a signal handler can write it to a
+  /// file with write(2).
   const std::byte* image() const noexcept { return memory_; }
   size_t imageBytes() const noexcept { return bytes_; }
 
-  void removeFile();  ///< [main] a run that ended well leaves nothing behind
+  void removeFile();  ///< [main] removes the file; called if the run ended well
 
  private:
   struct Stream {
@@ -71,7 +74,7 @@ class FlightRing {
     std::byte* rows = nullptr;
     uint32_t row_bytes = 0;
     uint64_t capacity = 0, position = 0, written = 0;
-    std::vector<uint64_t> filled;  ///< number of the row that is being written
+    std::vector<uint64_t> filled;  ///< words of the row that is being filled
   };
   FlightRing() = default;
   std::vector<StreamSpec> specs_;

@@ -14,7 +14,7 @@ static_assert(std::endian::native == std::endian::little, "rows are stored as th
 constexpr uint8_t kDataspace = 1, kLinkInfo = 2, kDatatype = 3, kFillValue = 5, kLink = 6, kLayout = 8, kGroupInfo = 10,
                   kAttribute = 12, kContinuation = 16;
 
-/// Little-endian numbers one after the other.
+/// Appends little-endian numbers to a text.
 class Bytes {
  public:
   template <class T>
@@ -46,7 +46,7 @@ std::string withChecksum(std::string bytes) {
   return Bytes().text(bytes).u32(sum).take();
 }
 
-/// An object header of version 2; flags 2: its size takes four bytes.
+/// Returns an object header of version 2. The flags are 2, which means that its size field has four bytes.
 std::string objectHeader(const std::string& messages) {
   return withChecksum(Bytes().text("OHDR").u8(2).u8(2).u32(messages.size()).text(messages).take());
 }
@@ -54,7 +54,8 @@ std::string objectHeader(const std::string& messages) {
 std::string numberType(ColumnType type) {
   const uint32_t bytes = bytesOf(type), bits = 8 * bytes;
   if (type == ColumnType::kReal || type == ColumnType::kReal32) {
-    // class 1 version 1: little-endian IEEE, mantissa normalised with an implied first bit, sign in the top bit
+    // class 1, version 1: little-endian IEEE numbers with an implied first bit of the mantissa and the sign in the top
+    // bit
     const bool wide = type == ColumnType::kReal;
     return Bytes()
         .u8(0x11)
@@ -80,7 +81,7 @@ std::string textType(uint64_t length) {
   return Bytes().u8(0x13).u8(kNullPaddedUtf8).u8(0).u8(0).u32(length).take();
 }
 
-/// A compound of version 3: member offsets take as few bytes as the row's size does.
+/// Returns a compound type of version 3. Offsets of members have as many bytes as the row's size needs.
 std::string compoundType(const RowLayout& layout) {
   const uint32_t size = layout.rowBytes();
   const int offset_bytes = size < 0x100 ? 1 : size < 0x10000 ? 2 : 3;
@@ -170,14 +171,14 @@ std::string group(const std::vector<Link>& links, const std::vector<std::pair<st
 }
 
 std::string textDataset(uint64_t address, uint64_t length) {
-  constexpr uint32_t kNoFill = 0x0A;  // written at once
+  constexpr uint32_t kNoFill = 0x0A;  // the data are written at once
   return objectHeader(message(kDataspace, scalarSpace()) + message(kDatatype, textType(length)) +
                       message(kFillValue, Bytes().u8(3).u8(kNoFill).take()) +
                       message(kLayout, Bytes().u8(3).u8(1).u64(address).u64(length).take()));
 }
 
 std::string TableHeader::bytes() const {
-  constexpr uint32_t kGrowingFill = 0x0B;  // space is allocated as it is needed, and is zero where nothing was written
+  constexpr uint32_t kGrowingFill = 0x0B;  // space is allocated when it is needed, and is zero until it is written
   return objectHeader(
       message(kDataspace, Bytes().u8(2).u8(1).u8(1).u8(1).u64(rows).u64(UINT64_MAX).take()) +
       message(kFillValue, Bytes().u8(3).u8(kGrowingFill).take()) +
@@ -204,7 +205,7 @@ std::string ChunkIndex::bytes(size_t level) const {
     key(out, row);
     out.u64(child);
   }
-  // the key after the last child is its bound; a full node keeps the first key of its right neighbour as the bound
+  // the key after the last child is its upper bound; in a full node, it is the first key of the right neighbour
   key(out, node.right == kNowhere ? (chunks_ + 1) * chunk_rows_ : node.entries.back().first + fullChild(level));
   std::string text = out.take();
   text.resize(kNodeBytes, '\0');

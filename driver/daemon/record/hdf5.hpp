@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// The part of the HDF5 file format (HDF Group, "File Format Specification Version 3.0") that a recording needs,
-/// written byte by byte: superblock 2, compact groups, one-dimensional chunked tables of compounds, fixed-length texts.
-/// Any HDF5 library from 1.8 on reads it. Written here because a library that keeps its index in memory leaves a file
-/// that cannot be opened when the process is killed; here every state of the file between two writes is a valid file.
+/// Writes the part of the HDF5 file format (HDF Group, "File Format Specification Version 3.0") that a recording needs:
+/// superblock version 2, compact groups, one-dimensional chunked tables of compounds, and texts of fixed length. Every
+/// HDF5 library from 1.8 on can read it. The HDF5 library itself is not used, because it keeps its index in memory: if
+/// the process is killed, its file cannot be opened. Here the file is valid between any two writes.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,40 +13,40 @@
 
 namespace hapticd::record::hdf5 {
 
-constexpr uint64_t kNowhere = UINT64_MAX;  ///< the undefined address
+constexpr uint64_t kNowhere = UINT64_MAX;  ///< HDF5's undefined address
 constexpr uint32_t kSuperblockBytes = 48;
 
-/// [any] Jenkins' lookup3 of the bytes, with which HDF5 guards its metadata.
+/// [any] Returns the checksum that HDF5 uses for its metadata: Jenkins' lookup3.
 uint32_t checksum(const std::string& bytes);
 
-/// [main] The superblock says where the root group is and where the file ends.
+/// [main] Returns the superblock, which contains the address of the root group and the end of the file.
 std::string superblock(uint64_t root_address, uint64_t end_of_file);
 
 struct Link {
   std::string name;
-  uint64_t address;  ///< of the object header
+  uint64_t address;  ///< address of the object header
 };
 
-/// [main] A group has its links, and its texts as attributes.
+/// [main] Returns the object header of a group with links and with texts as attributes.
 std::string group(const std::vector<Link>& links, const std::vector<std::pair<std::string, std::string>>& attributes);
 
-/// [main] A dataset that is one text of fixed length at `address`.
+/// [main] Returns the object header of a dataset that is one text of fixed length at `address`.
 std::string textDataset(uint64_t address, uint64_t length);
 
-/// A table of rows in chunks. Its description has a block of its own, so that the header, which changes as the table
-/// grows, fits into one page and one write.
+/// The object header of a table of rows in chunks. It changes as the table grows, so it must fit into one page and one
+/// write. So the description of the columns is in a separate block.
 struct TableHeader {
   uint64_t rows = 0, index_address = kNowhere;
   uint32_t chunk_rows = 1, row_bytes = 8;
   uint64_t description_address = 0, description_bytes = 0;
 
-  /// [main] Its size is always the same.
+  /// [main] Returns the bytes of the header, whose number is always the same.
   std::string bytes() const;
 };
-std::string tableDescription(const RowLayout& layout);  ///< [main] for TableHeader::description_address
+std::string tableDescription(const RowLayout& layout);  ///< [main] block for TableHeader::description_address
 
-/// The chunks of one table as a B-tree that grows at its right edge. Nodes keep their size and place. Only the last of
-/// each level is ever rewritten, and a node is written before anything points to it.
+/// The index of the chunks of one table: a B-tree that grows at its right edge. Nodes keep their size and place. Only
+/// the last node of each level is rewritten, and a node is written before anything points to it.
 class ChunkIndex {
  public:
   static constexpr uint32_t kFanOut = 64;  ///< entries per node, HDF5's default
@@ -54,14 +54,14 @@ class ChunkIndex {
 
   ChunkIndex(uint32_t chunk_rows, uint64_t chunk_bytes) : chunk_rows_(chunk_rows), chunk_bytes_(chunk_bytes) {}
 
-  /// A node to be written at an address.
+  /// A node and the address at which it must be written.
   struct Write {
     uint64_t address;
     std::string bytes;
   };
 
-  /// [main] Adds the next chunk. @param newNode gives the address of a node of kNodeBytes
-  /// @return what to write, in this order
+  /// [main] Adds the next chunk. @param newNode returns the address of kNodeBytes for a new node
+  /// @return the nodes to write, in this order
   template <class NewNode>
   std::vector<Write> add(uint64_t chunk_address, NewNode&& newNode) {
     std::vector<Write> writes;
@@ -76,7 +76,7 @@ class ChunkIndex {
  private:
   struct Node {
     uint64_t address = kNowhere, left = kNowhere, right = kNowhere;
-    std::vector<std::pair<uint64_t, uint64_t>> entries;  ///< first row and address of the child
+    std::vector<std::pair<uint64_t, uint64_t>> entries;  ///< first row and address of each child
   };
 
   template <class NewNode>
@@ -101,7 +101,7 @@ class ChunkIndex {
     levels_[level].entries.emplace_back(first_row, child);
   }
   std::string bytes(size_t level) const;
-  uint64_t fullChild(size_t level) const;  ///< rows below one entry of a full node
+  uint64_t fullChild(size_t level) const;  ///< number of rows below one entry of a full node
 
   uint32_t chunk_rows_;
   uint64_t chunk_bytes_, chunks_ = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A histogram of fixed size for times from 1 ns to minutes: adding is real time, quantiles are within 2 %.
+/// A histogram of fixed size for times from 1 ns to about a minute. Adding a value is a real-time call; quantiles are
+/// exact to 2 %.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -10,7 +11,7 @@
 
 namespace hapticd::record {
 
-/// Thirty-two linear steps in each power of two of a value in microseconds, from 2^-10 to 2^26 us.
+/// The buckets divide each power of two into 32 equal steps, for values from 2^-10 to 2^26 us.
 class Histogram {
  public:
   static constexpr int kSteps = 32, kLowest = -10, kHighest = 26;
@@ -23,7 +24,7 @@ class Histogram {
     if (value > max_) max_ = value;
   }
 
-  /// [any] The value below which a share q of all values lies; 0 when empty. Never above max().
+  /// [any] Returns the value below which a share q of all values lies, at most max(); 0 if the histogram is empty.
   double quantile(double q) const noexcept {
     const double wanted = std::max(1.0, q * static_cast<double>(total_));
     uint64_t seen = 0;
@@ -38,13 +39,13 @@ class Histogram {
   uint64_t total() const noexcept { return total_; }
   uint64_t count(int bucket) const noexcept { return counts_[static_cast<size_t>(bucket)]; }
 
-  /// The lower edge of a bucket; edgeOf(kBuckets) is the upper edge of the last.
+  /// Returns the lower edge of a bucket. edgeOf(kBuckets) is the upper edge of the last bucket.
   static double edgeOf(int bucket) noexcept {
     const double fraction = static_cast<double>(bucket % kSteps) / kSteps;
     return std::ldexp(1 + fraction, kLowest + bucket / kSteps);
   }
 
-  /// [rt] The bucket that counts a value.
+  /// [rt] Returns the number of the bucket for a value.
   static int bucketOf(double value) noexcept HSP_RT {
     if (!(value > 0)) return 0;
     int exponent = 0;

@@ -12,13 +12,13 @@ namespace {
 
 constexpr uint64_t kFirstObject = 1024;
 constexpr uint64_t kPage = 4096;
-constexpr uint64_t kTableSlot = 256;  ///< table headers are in slots of this size, so that none crosses a page
+constexpr uint64_t kTableSlot = 256;  ///< [bytes] size of a slot for a table header, so that none crosses a page
 
 uint64_t aligned(uint64_t address, uint64_t to) {
   return (address + to - 1) / to * to;
 }
 
-/// Puts `part` at `address` of the file.
+/// Writes `part` at `address` of the file.
 void place(std::string& file, uint64_t address, const std::string& part) {
   if (file.size() < address + part.size()) file.resize(address + part.size(), '\0');
   std::memcpy(file.data() + address, part.data(), part.size());

@@ -13,8 +13,9 @@ namespace hapticd::record {
 
 namespace {
 
-/// Of the lines "1: FLOCK ADVISORY WRITE 4711 08:01:131073 0 EOF" the process with the file's number. File systems in
-/// layers give other device numbers there than to fstat, so these are not compared; two such files: neither is named.
+/// Finds the process that holds a lock on the file with this inode, in lines of /proc/locks such as "1: FLOCK ADVISORY
+/// WRITE 4711 08:01:131073 0 EOF". Device numbers are not compared, because layered file systems give other numbers
+/// there than fstat(). So if two locked files have this inode, it returns no process.
 int holderOf(unsigned long long inode) {
   std::ifstream locks("/proc/locks");
   const std::string ending = ":" + std::to_string(inode);

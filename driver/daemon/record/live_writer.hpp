@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-/// Whether somebody still writes a recording: its writer holds a lock on the file as long as it has it open, and the
-/// kernel drops the lock however that process ends.
+/// Finds out whether a process is still writing a recording. The writer holds a lock on the file as long as the file is
+/// open, and the kernel releases the lock even if the process is killed.
 #pragma once
 #include <optional>
 
 namespace hapticd::record {
 
-/// [main] The process that writes the file behind a descriptor; 0: there is one that cannot be seen from here; nothing:
-/// nobody writes it.
+/// [main] Returns the number of the process that writes the file of a descriptor; 0 if there is such a process but it
+/// cannot be seen from here; nothing if there is none.
 std::optional<int> writerOf(int fd);
 
 }  // namespace hapticd::record

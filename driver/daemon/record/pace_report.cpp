@@ -6,30 +6,31 @@
 namespace hapticd::record {
 namespace {
 
-constexpr uint64_t kFew = 10;  ///< any machine is late in some ticks
+constexpr uint64_t kFew = 10;  ///< fewer slow ticks are not reported, because any machine is late in some ticks
 
-/// How many values are above a bound; those in the bound's own bucket do not count.
+/// Returns how many values are above a bound. Values in the same bucket as the bound do not count.
 uint64_t above(const Histogram& h, double bound) {
   uint64_t count = 0;
   for (int i = Histogram::bucketOf(bound) + 1; i < Histogram::kBuckets; ++i) count += h.count(i);
   return count;
 }
 
-/// Names a model whose steps compute longer than a period. Once a step was slow, the servo thread is measured by
-/// processor time alone: a shape that sleeps is seen by its longest step.
+/// Names a model whose steps compute for longer than a period. After a slow step, the steps are measured by processor
+/// time only, so a shape that sleeps shows only in its longest step.
 std::string slowText(const ModelReport& model, double period_us, uint64_t least_part) {
   const Histogram& step = model.contact.stepUs();
   const uint64_t slow = above(step, period_us);
   if (slow < kFew || slow * least_part < step.total()) return "";
   const double typical = step.quantile(1 - 0.5 * static_cast<double>(slow) / static_cast<double>(step.total()));
-  return fmt::format("slow: {} took {:.2g} ms in {} ticks; the period is {:.2g} ms: see hapticd plugin check\n",
-                     model.name, typical * 1e-3, slow, period_us * 1e-3);
+  return fmt::format(
+      "slow: {} took {:.2g} ms in {} ticks; the period is {:.2g} ms: find the cause with hapticd plugin check\n",
+      model.name, typical * 1e-3, slow, period_us * 1e-3);
 }
 
-/// Names the model whose longest step alone kept the loop from its period, however few such steps there were.
+/// Names the model whose longest step alone delayed the loop, even if it happened only once.
 std::string heldUpText(const RunReport& report, double period_us) {
   constexpr double kVirtual =
-      50;  // periods: on a busy machine the wall clock makes a step long through no fault of its own
+      50;  // [periods] in virtual time, since steps are measured by the wall clock, also while other programs run
   if (!report.virtual_time && report.missed_ticks == 0) return "";
   const ModelReport* slowest = nullptr;
   for (const ModelReport& model : report.models)
@@ -38,8 +39,8 @@ std::string heldUpText(const RunReport& report, double period_us) {
   if (most <= period_us * (report.virtual_time ? kVirtual : 1)) return "";
   const std::string missed = fmt::format("{} ticks were missed, and ", report.missed_ticks);
   return fmt::format(
-      "slow: {}{} took {:.2g} ms in its longest step; the period is {:.2g} ms: hapticd plugin check tells whether it "
-      "waits, or the machine had no time for it\n",
+      "slow: {}{} took {:.2g} ms in its longest step; the period is {:.2g} ms: hapticd plugin check shows whether it "
+      "waits, or whether the machine was busy with something else\n",
       report.virtual_time ? "" : missed, slowest->name, most * 1e-3, period_us * 1e-3);
 }
 
@@ -50,7 +51,7 @@ std::string paceText(const RunReport& report, double asked_hz) {
   const double period_us = 1e6 / asked_hz;
   const uint64_t late = above(report.compute_us, period_us), all = report.compute_us.total();
   std::string text;
-  // In virtual time only the wall clock is known, which includes what others took from a busy machine.
+  // In virtual time only the wall clock is known. It includes the time of other programs on a busy machine.
   for (const ModelReport& model : report.models) text += slowText(model, period_us, report.virtual_time ? 20 : 1000);
   if (report.virtual_time && late >= kFew && late * 20 >= all)
     text += fmt::format(
@@ -62,8 +63,8 @@ std::string paceText(const RunReport& report, double asked_hz) {
     for (const ModelReport& model : report.models)
       if (const double most = model.contact.stepUs().max(); most > period_us)
         text += fmt::format(
-            "slow: {} of {} ticks took longer than the period of {:.2g} ms, and {} up to {:.2g} ms, though it computes "
-            "little: hapticd plugin check tells whether it waits\n",
+            "slow: {} of {} ticks took longer than the period of {:.2g} ms, and {} up to {:.2g} ms, although it "
+            "computes little: hapticd plugin check shows whether it waits\n",
             late, all, period_us * 1e-3, model.name, most * 1e-3);
   return text.empty() ? heldUpText(report, period_us) : text;
 }

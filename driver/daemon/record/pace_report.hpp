@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Whether the shapes of a run leave the servo its period: in virtual time nothing else would show it.
+/// Reports whether the shapes of a run need more time than the period of the servo. In virtual time nothing else would
+/// show it.
 #pragma once
 #include <string>
 
@@ -7,9 +8,9 @@
 
 namespace hapticd::record {
 
-/// [any] Lines for people, "" where nothing is slow. They name models whose steps take longer than a whole period, and
-/// runs in virtual time that could not keep up with a real clock. A busy machine causes a few slow ticks.
-/// @param asked_hz rate that the scene asks for
+/// [any] Returns lines for people; "" if nothing is slow. The lines name models whose steps take longer than a whole
+/// period, and say if a run in virtual time could not keep up with a real clock. A few slow ticks do not count, because
+/// a busy machine causes them. @param asked_hz rate that the scene asks for
 std::string paceText(const RunReport& report, double asked_hz);
 
 }  // namespace hapticd::record

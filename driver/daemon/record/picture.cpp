@@ -15,7 +15,7 @@ namespace hapticd::record {
 
 namespace {
 
-constexpr double kOver = 640, kBeside = 300, kHeight = 120;  ///< [px] over time, histogram
+constexpr double kOver = 640, kBeside = 300, kHeight = 120;  ///< [px] over time, histogram; height
 constexpr size_t kBins = 40;
 constexpr const char *kDepth = "#1b6ca8", *kForce = "#b5432a", *kTime = "#3a7d44", *kPlace = "#6a4c93";
 
@@ -23,13 +23,14 @@ constexpr const char *kDepth = "#1b6ca8", *kForce = "#b5432a", *kTime = "#3a7d44
 struct Quantity {
   std::string title, unit, colour;
   std::function<double(const Sample&)> value;
-  std::function<bool(const Sample&)> counts;  ///< in the histogram
+  std::function<bool(const Sample&)> counts;  ///< true for samples that count in the histogram
   std::string counted;                        ///< a text such as "% of the ticks in contact"
   bool logarithmic = false;
-  double least = -HUGE_VAL;  ///< values below are drawn at the foot
+  double least = -HUGE_VAL;  ///< smaller values are drawn at the bottom edge
 };
 
-/// Finite values from smallest to largest, or 0 to 1. @param counted takes only those in the histogram
+/// Returns an axis from the smallest to the largest finite value, or from 0 to 1 if there are none. @param counted true
+/// to use only the values in the histogram
 Axis axisOf(const Quantity& q, const std::vector<Sample>& samples, bool counted) {
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (const Sample& sample : samples) {
@@ -37,7 +38,7 @@ Axis axisOf(const Quantity& q, const std::vector<Sample>& samples, bool counted)
     if (!std::isfinite(value) || (counted && !q.counts(sample))) continue;
     low = std::min(low, std::max(value, q.least)), high = std::max(high, value);
   }
-  if (!(high >= low) || (low == 0 && high == 0)) low = 0, high = 1;  // a panel of zeros alone has no scale of its own
+  if (!(high >= low) || (low == 0 && high == 0)) low = 0, high = 1;  // if all values are 0, they give no scale
   return axisOver(fmt::format("[{}]", q.unit), q.logarithmic ? std::max(low, 0.1) : low, high, q.logarithmic);
 }
 
@@ -69,7 +70,8 @@ Panel histogramOf(const Quantity& q, const std::vector<Sample>& samples) {
   return panel;
 }
 
-/// Parts of the time in which `name` gives the same words, except "". Parts less than a pixel apart are joined.
+/// Returns the intervals of time in which `name` returns the same words, except "". Intervals less than a pixel apart
+/// are joined.
 std::vector<Span> spansOf(const std::vector<Sample>& samples, const std::function<std::string(const Sample&)>& name) {
   std::vector<Span> spans;
   const double pixel = (samples.back().t - samples.front().t) / kOver;
@@ -97,7 +99,7 @@ std::vector<Span> modelSpans(const std::vector<Sample>& samples, const RunNotes&
   return spans;
 }
 
-/// Where the limits took more than a hundredth of the force that the models asked for.
+/// Returns the intervals of time in which the limits reduced the force of the models by more than 1 %.
 std::vector<Span> limitSpans(const std::vector<Sample>& samples) {
   std::vector<Span> spans = spansOf(samples, [](const Sample& s) {
     return s.asked_n - s.force_n > std::max(0.01, 0.01 * s.asked_n) ? std::string("made smaller by limits") : "";
@@ -106,7 +108,8 @@ std::vector<Span> limitSpans(const std::vector<Sample>& samples) {
   return spans;
 }
 
-/// The beginning of each fault; if there are many, the first ones. The end of a run is not a fault.
+/// Returns marks at the beginning of each fault; if there are many faults, only of the first ones. The end of a run is
+/// not a fault.
 std::vector<Mark> faultMarks(const std::vector<Sample>& samples, const RunNotes& notes) {
   constexpr size_t kMost = 12;
   constexpr uint32_t kStopped = 8;
@@ -122,7 +125,8 @@ std::vector<Mark> faultMarks(const std::vector<Sample>& samples, const RunNotes&
   return marks;
 }
 
-/// The panel shows no more outside than three times what is inside: a hand far away would flatten every touch.
+/// Returns the smallest depth [mm] that is drawn: distances outside are drawn up to three times the largest depth.
+/// Otherwise, if the hand is far away, every contact would look flat.
 double leastDepth(const std::vector<Sample>& samples) {
   double deepest = 0.5e-3;
   for (const Sample& s : samples)
@@ -132,7 +136,7 @@ double leastDepth(const std::vector<Sample>& samples) {
 
 std::vector<Quantity> quantitiesOf(const RunReport& report, const std::vector<Sample>& samples, bool positions) {
   const auto always = [](const Sample&) { return true; };
-  // Ticks count as in the report: while forces are held at zero, also at the end of a run, nothing is felt.
+  // As in the report, ticks with a fault do not count as contact: the force is zero then, also at the end of a run.
   const auto in_contact = [](const Sample& s) { return s.depth_m > 0 && s.fault == 0; };
   const bool simulated = report.virtual_time;
   std::vector<Quantity> all = {{"penetration depth", "mm", kDepth, [](const Sample& s) { return s.depth_m * 1e3; },
@@ -149,14 +153,14 @@ std::vector<Quantity> quantitiesOf(const RunReport& report, const std::vector<Sa
   return all;
 }
 
-/// Says what a negative depth means: a curve that rests on the foot of its panel looks like a tip at rest.
+/// Says what a negative depth means: without this note, a curve at the bottom edge would look like a tip at rest.
 std::string distanceNote(double low, const std::vector<Sample>& samples) {
   const auto below = [low](const Sample& s) { return s.depth_m * 1e3 < low; };
   if (std::none_of(samples.begin(), samples.end(), below)) return " (negative: distance from the nearest model)";
-  return fmt::format(" (negative: distance; beyond {:g} mm drawn at the foot)", -low);
+  return fmt::format(" (negative: distance; more than {:g} mm drawn at the bottom edge)", -low);
 }
 
-/// What the panel of the forces shows besides the force itself.
+/// Adds to the panel of the forces: the force that the models asked for, the times of limits, and the limit.
 void addAsked(Panel& panel, const std::vector<Sample>& samples, const RunNotes& notes) {
   const auto asked = [](const Sample& s) { return s.asked_n; };
   if (std::any_of(samples.begin(), samples.end(), [](const Sample& s) { return std::isfinite(s.asked_n); }))

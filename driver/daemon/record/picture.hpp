@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A picture of a run: depth, force and lateness over time, each with a scale and a histogram of its own.
+/// A picture of a run: depth, force and lateness over time, each with its own scale and histogram.
 #pragma once
 #include <array>
 #include <string>
@@ -14,28 +14,29 @@ namespace hapticd::record {
 /// One tick to draw.
 struct Sample {
   double t = 0;        ///< [s]
-  double depth_m = 0;  ///< negative: distance outside; nan: nothing is traced
-  int model = -1;      ///< the model of that depth, index in RunNotes::models; -1: none
-  double force_n = 0;  ///< as sent
-  double asked_n = 0;  ///< force of the models, before the limits; nan: unknown
-  uint32_t fault = 0;  ///< fault of the arm, 0: none
+  double depth_m = 0;  ///< [m] penetration depth; negative outside; nan if nothing is traced
+  int model = -1;      ///< model of that depth, as an index into RunNotes::models; -1 if there is none
+  double force_n = 0;  ///< [N] force that was sent to the arm
+  double asked_n = 0;  ///< [N] force of the models, before the limits; nan if it is unknown
+  uint32_t fault = 0;  ///< fault of the arm; 0 if there is none
   double lateness_us = 0, compute_us = 0;
-  std::array<double, 3> position_m{};  ///< position of the tip, drawn if asked for; nan: unknown
+  std::array<double, 3> position_m{};  ///< position of the tip; nan if it is unknown
 };
 
-/// What a picture shows by name.
+/// Names and marks for a picture.
 struct RunNotes {
   std::vector<std::string> models;
-  double force_limit_n = 0;                               ///< limits.force of the arm; 0 or not finite: not drawn
-  bool positions = false;                                 ///< adds a row for each coordinate of the tip
-  std::vector<std::pair<double, std::string>> moments{};  ///< [s] times, and what happened then: "ring is silenced"
-  std::string arm{};                                      ///< whose samples these are, if there are several arms
+  double force_limit_n = 0;  ///< limits.force of the arm; not drawn if it is 0 or not finite
+  bool positions = false;    ///< true to add a row for each coordinate of the tip
+  std::vector<std::pair<double, std::string>> moments{};  ///< [s] times, with texts such as "ring is silenced"
+  std::string arm{};                                      ///< name of the arm of the samples, if there are several arms
 };
 
-/// Short words for a fault of a recording, "too fast". It is a servo::Fault, whose numbers recordings keep.
+/// Returns short words for a fault of a recording, such as "too fast". @param fault a servo::Fault as a number
 std::string nameOfFault(uint32_t fault);
 
-/// [main] Draws the run as SVG. Of a long run each pixel column shows the range of its values, so that no peak is lost.
+/// [main] Draws the run as an SVG file. In a long run, each column of pixels shows the range of its values, so that no
+/// peak is lost.
 Result<void> drawRun(const RunReport& report, const std::vector<Sample>& samples, const RunNotes& notes,
                      const std::string& file);
 

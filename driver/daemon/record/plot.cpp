@@ -10,7 +10,7 @@ namespace hapticd::record {
 
 namespace {
 
-constexpr double kTop = 36;  ///< [px] for the picture's title
+constexpr double kTop = 36;  ///< [px] height for the picture's title
 
 }  // namespace
 

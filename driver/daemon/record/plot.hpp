@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Plots: panels with axes, curves, bars, named points and marks. All pictures of the project are made of them. Names
-/// stand around a panel, never on top of what is drawn in it.
+/// Plots: panels with axes, curves, bars, named points and marks. All pictures of the project use them. Names are
+/// around a panel, and never cover its curves.
 #pragma once
 #include <string>
 #include <utility>
@@ -10,37 +10,37 @@
 
 namespace hapticd::record {
 
-/// Points in order; a NaN interrupts the line. Where many points share a pixel column their range is drawn, so that no
-/// peak is lost.
+/// A curve through points in their order; a NaN interrupts it. If many points fall into the same column of pixels,
+/// their range is drawn, so that no peak is lost.
 struct Curve {
-  std::string name;  ///< "": not in the legend
+  std::string name;  ///< name in the legend; "" for none
   std::string colour;
   std::vector<double> x, y;
   double width = 1.6;
-  bool dots = false;  ///< draws one dot per point and no line
+  bool dots = false;  ///< true: draws a dot for each point, and no line
 };
 
-/// A histogram: counts[i] from edges[i] to edges[i + 1].
+/// A histogram: a bar of height counts[i] from edges[i] to edges[i + 1].
 struct Bars {
   std::string colour;
   std::vector<double> edges, counts;
 };
 
-/// A named line across the panel, at a moment or a bound.
+/// A named line across the panel: at a moment (on the x axis) or at a bound (on the y axis).
 struct Mark {
   double at = 0;
   std::string name, colour = "#c0392b";
 };
 
-/// A named point; its label stands beside it, its name in the legend.
+/// A named point. Its label is drawn beside it, and its name is in the legend.
 struct NamedPoint {
   double x = 0, y = 0;
   std::string label, name, colour = "#222";
-  double half = 3.5;             ///< [px]
+  double half = 3.5;             ///< [px] half of its size
   double x_low = 0, x_high = 0;  ///< an interval of x, drawn if it has a length
 };
 
-/// A part of the x axis during which something holds, drawn as a strip at the foot of the panel.
+/// An interval of the x axis in which something is true, drawn as a strip at the bottom of the panel.
 struct Span {
   double from = 0, to = 0;
   std::string name, colour;
@@ -56,17 +56,17 @@ struct Panel {
   std::vector<Curve> curves{};
   std::vector<Bars> bars{};
   std::vector<NamedPoint> points{};
-  std::vector<Mark> moments{}, bounds{};  ///< along x, along y
-  std::vector<Span> spans{};              ///< only one of the same name is in the legend
-  double height = 200;                    ///< [px] of the area between the axes
+  std::vector<Mark> moments{}, bounds{};  ///< at values of x; at values of y
+  std::vector<Span> spans{};              ///< spans with the same name are in the legend once
+  double height = 200;                    ///< [px] height of the area between the axes
 };
 
-/// A colour for each of a few things.
+/// Returns one of several colours, which repeat for larger indices.
 const std::string& colourOf(size_t index);
 
 class Picture {
  public:
-  /// @param widths of the columns [px]; panels fill them row by row
+  /// @param widths [px] widths of the columns; panels fill the columns row by row
   Picture(std::string title, std::vector<double> widths) : title_(std::move(title)), widths_(std::move(widths)) {}
   void add(Panel panel) { panels_.push_back(std::move(panel)); }
   std::string svg() const;

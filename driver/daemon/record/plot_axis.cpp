@@ -10,9 +10,9 @@ namespace hapticd::record {
 
 namespace {
 
-constexpr double kLeast = 1e-300;  ///< stands for what a logarithmic axis cannot show
+constexpr double kLeast = 1e-300;  ///< used in place of values that a logarithmic axis cannot show
 
-/// The smallest of 1, 2, 5 times a power of ten that cuts `span` into at most `most` pieces.
+/// Returns the smallest step (1, 2 or 5 times a power of ten) that divides `span` into at most `most` pieces.
 double stepOf(double span, size_t most) {
   const double raw = span / static_cast<double>(std::max<size_t>(most, 1));
   const double power = std::pow(10, std::floor(std::log10(raw)));
@@ -29,7 +29,7 @@ std::vector<double> linearTicks(double low, double high, size_t most) {
   return at;
 }
 
-/// Places `factors` of every `stride`-th decade within the range.
+/// Returns ticks at `factors` times every `stride`-th power of ten within the range.
 std::vector<double> decadeTicks(const Axis& axis, const std::vector<double>& factors, int stride) {
   std::vector<double> at;
   const int first = static_cast<int>(std::floor(std::log10(axis.low) + 1e-9));
@@ -61,7 +61,7 @@ std::vector<double> Axis::ticks(size_t most) const {
     if (const auto at = decadeTicks(*this, factors, 1); at.size() >= 2 && at.size() <= most) return at;
   for (int stride = 2; stride < 100; ++stride)
     if (const auto at = decadeTicks(*this, {1}, stride); at.size() >= 2 && at.size() <= most) return at;
-  return linearTicks(low, high, most);  // the range is less than the distance of two round numbers
+  return linearTicks(low, high, most);  // the range is smaller than the distance between two such values
 }
 
 Axis axisOver(const std::string& label, double low, double high, bool logarithmic) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// An axis of a plot: its range, where its ticks are, and how their numbers are written.
+/// An axis of a plot: its range, the places of its ticks, and the text of their numbers.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -8,22 +8,23 @@
 namespace hapticd::record {
 
 struct Axis {
-  std::string label;  ///< with its unit, "depth [mm]"
+  std::string label;  ///< name with unit, such as "depth [mm]"
   double low = 0, high = 1;
   bool logarithmic = false;
 
-  /// 0 at the low end, 1 at the high end; values beyond the ends lie outside 0 to 1.
+  /// Returns the place of a value on the axis: 0 at the low end, 1 at the high end, outside of 0 to 1 beyond the ends.
   double share(double value) const;
-  /// The value at a share of the axis.
+  /// Returns the value at a place from 0 to 1 on the axis.
   double at(double share) const;
-  /// Round values within the range, at least two and at most about `most`.
+  /// Returns round values within the range, at least two and at most about `most`.
   std::vector<double> ticks(size_t most) const;
 };
 
-/// An axis that holds everything from `low` to `high`, with ends at round values. An end at zero stays there.
+/// Returns an axis that contains `low` to `high`, with ends at round values. If `low` or `high` is zero, that end is
+/// zero.
 Axis axisOver(const std::string& label, double low, double high, bool logarithmic = false);
 
-/// The number beside a tick: 0.5, 200, 20k.
+/// Returns the number beside a tick, such as 0.5, 200 or 20k.
 std::string tickText(double value);
 
 }  // namespace hapticd::record

@@ -12,7 +12,7 @@ namespace {
 constexpr const char *kGrid = "#e4e4e4", *kInk = "#444", *kAxis = "#888";
 constexpr double kTitle = 18, kLabel = 20, kBelow = 36;
 
-/// [px] About the width of the text as written; a character of UTF-8 counts once.
+/// Returns about the width [px] of a text; a character of several bytes in UTF-8 counts once.
 double widthOf(const std::string& text, double size) {
   const auto characters = std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
   return 0.56 * size * static_cast<double>(characters);
@@ -35,7 +35,7 @@ PanelDrawing::PanelDrawing(const Panel& panel, double width) : panel_(panel), wi
   placeMoments();
 }
 
-/// Names go from left to right, and start a new row where the next does not fit.
+/// Places the names of the legend from left to right. A name that does not fit begins a new row.
 void PanelDrawing::placeLegend() {
   double at = 0;
   for (size_t i = 0; i < entries_.size(); ++i) {
@@ -47,7 +47,7 @@ void PanelDrawing::placeLegend() {
   if (!entries_.empty()) ++legend_rows_;
 }
 
-/// Each name stands above its line, in the first row where it meets no other.
+/// Places each name of a moment above its line, in the first row in which it does not overlap another name.
 void PanelDrawing::placeMoments() {
   std::vector<double> ends;
   for (size_t i = 0; i < panel_.moments.size(); ++i) {
@@ -175,7 +175,7 @@ void PanelDrawing::drawBars(Svg& svg, const Bars& bars) const {
                     bars.colour.c_str());
 }
 
-/// Draws points, then their labels, each at the nearest place where it covers no point and no other label.
+/// Draws points, then their labels. Each label gets the nearest place at which it covers no point and no other label.
 void PanelDrawing::drawPoints(Svg& svg) const {
   std::vector<Box> taken;
   for (const NamedPoint& p : panel_.points) {

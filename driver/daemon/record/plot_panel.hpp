@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Where the parts of one panel stand, and their drawing: names above it, ticks beside it, the legend below.
+/// Places and draws the parts of one panel: names above it, axis ticks beside it, and the legend below it.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,7 +12,7 @@ namespace hapticd::record {
 class PanelDrawing {
  public:
   PanelDrawing(const Panel& panel, double width);
-  double height() const;  ///< [px] of everything
+  double height() const;  ///< [px] height of the panel with names and legend
   void draw(Svg& svg, double left, double top) const;
 
  private:
@@ -49,7 +49,7 @@ class PanelDrawing {
   std::vector<Entry> entries_;
   std::vector<Placed> legend_, moments_;
   size_t legend_rows_ = 0, moment_rows_ = 0;
-  mutable double left_ = 0, top_ = 0;  // of the area between the axes, while it is drawn
+  mutable double left_ = 0, top_ = 0;  // [px] corner of the area between the axes, while it is drawn
 };
 
 }  // namespace hapticd::record

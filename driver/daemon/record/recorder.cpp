@@ -10,8 +10,8 @@ namespace hapticd::record {
 namespace {
 
 constexpr size_t kBufferBytes = 1 << 20;
-constexpr Nanoseconds kPause =
-    20'000'000;  ///< time between two looks: a kill can cost the file so much, but not the black box
+constexpr Nanoseconds kPause = 20'000'000;  ///< [ns] time between two copies. If the process is killed, the file lacks
+                                            ///< rows of this time; the black box has them
 
 }  // namespace
 
@@ -40,7 +40,8 @@ void Recorder::stop() {
 }
 
 void Recorder::drain() {
-  // The first stream's rows are the ticks, written after everything else of their tick, so their number is taken first.
+  // The rows of the first stream are the ticks. They are written after all other rows of their tick, so their number is
+  // read first: then the other streams have all rows of these ticks.
   std::vector<uint64_t> ends;
   for (size_t i = 0; i < next_.size(); ++i) ends.push_back(ring_.written(i));
   for (size_t i = 0; i < next_.size() && !failed(); ++i) follow(i, ends[i]);
@@ -55,7 +56,7 @@ void Recorder::follow(size_t stream, uint64_t end) {
   const uint64_t at_once = std::max<uint64_t>(rows_.size() / ring_.rowBytes(stream), 1);
   while (next_[stream] < end) {
     const uint64_t got = ring_.copy(stream, next_[stream], std::min(at_once, end - next_[stream]), rows_.data());
-    if (got == 0) {  // those rows were overwritten: continue with rows that will still be there when they are copied
+    if (got == 0) {  // the rows were overwritten: continue with newer rows, which are not overwritten while it copies
       const uint64_t newest = ring_.written(stream), kept = ring_.capacity(stream) / 2;
       const uint64_t resume = std::max(next_[stream] + 1, newest > kept ? newest - kept : 0);
       recording_->lost(stream, resume - next_[stream]);

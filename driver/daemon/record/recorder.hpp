@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Follows the black box of a running servo and writes every row to a file, in an ordinary thread. The servo never
-/// waits for it: it has as long as the black box keeps a row, seconds, and what it misses is counted.
+/// Copies every row of a running servo's black box to a file, in an ordinary thread. The servo never waits for it. The
+/// black box keeps a row for seconds; rows that are overwritten before they are copied are lost, and counted.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -20,19 +20,21 @@ class Recorder {
   static Result<std::unique_ptr<Recorder>> create(const FlightRing& ring, const std::string& file);
   ~Recorder() { stop(); }
 
-  std::error_code start();  ///< [main] starts to follow the black box in a thread of its own
+  std::error_code start();  ///< [main] starts the thread that copies rows
 
-  /// [main] Copies what is there now. Runs in virtual time call it between ticks, often enough to lose nothing.
+  /// [main] Copies all rows that are there now. Runs in virtual time call it between ticks, often enough to lose no
+  /// rows.
   void drain();
 
-  /// [main] Ends the thread, copies the rest, closes the file. @return what went wrong with the file
+  /// [main] Ends the thread, copies the remaining rows, and closes the file. @return an error if the file could not be
+  /// written
   Result<void> finish();
 
   uint64_t rows(size_t stream) const { return recording_->rows(stream); }  ///< [main] after finish()
-  uint64_t lost() const;                                                   ///< [main] rows of all streams together
-  /// [any] True if the black box may overwrite rows that are not yet in the file, unless the servo waits.
+  uint64_t lost() const;                                                   ///< [main] lost rows of all streams
+  /// [any] True if the servo must wait, because the black box could overwrite rows that are not yet in the file.
   bool behind() const noexcept HSP_RT;
-  /// [any] True if the file cannot be written, so that nothing more is recorded; finish() says why.
+  /// [any] True if the file cannot be written, so that nothing more is recorded. finish() returns the reason.
   bool failed() const { return failed_.load(std::memory_order_relaxed); }
 
  private:
@@ -42,7 +44,7 @@ class Recorder {
 
   const FlightRing& ring_;
   std::unique_ptr<RecordingFile> recording_;
-  std::vector<std::atomic<uint64_t>> next_;  ///< row of each stream
+  std::vector<std::atomic<uint64_t>> next_;  ///< number of the next row to copy, of each stream
   std::vector<std::byte> rows_;
   std::string error_;
   std::atomic<bool> stop_{false}, failed_{false};

@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr uint64_t kMostAbout = 64u << 20;  ///< [bytes] a scene of ten thousand models is 2 MB
+constexpr uint64_t kMostAbout = 64u << 20;  ///< [bytes] for comparison: a scene of 10,000 models has 2 MB
 
 template <class T>
 std::optional<T> at(std::span<const std::byte> bytes, uint64_t address) {
@@ -73,7 +73,7 @@ double RecordedStream::number(uint64_t index, const Column& column) const {
 Result<std::unique_ptr<Recording>> Recording::open(const std::string& file) {
   const auto fd = openRegular(file);
   if (!fd) return Error{file + ": " + fd.error()};
-  const std::optional<int> writer = writerOf(*fd);  // before anything is read: it may end at any time
+  const std::optional<int> writer = writerOf(*fd);  // before reading: the writer may end at any time
   struct stat info{};
   const auto size = fstat(*fd, &info) == 0 ? static_cast<size_t>(info.st_size) : 0;
   void* memory = size == 0 ? MAP_FAILED : mmap(nullptr, size, PROT_READ, MAP_SHARED, *fd, 0);
@@ -87,7 +87,7 @@ Result<std::unique_ptr<Recording>> Recording::open(const std::string& file) {
   if (auto read = recording->read({static_cast<const std::byte*>(memory), size}); !read)
     return Error{file + ": " + read.error()};
   if (!recording->closed_) recording->writer_ = writer;
-  if (writer) recording->damage_.clear();  // rows that came since its length was asked for
+  if (writer) recording->damage_.clear();  // not damaged: the writer added rows after the length was read
   return recording;
 }
 
@@ -114,13 +114,13 @@ Result<void> Recording::read(std::span<const std::byte> bytes) {
     return Error{other ? "has the format " + magic + ", expected " + kRecordingFormat
                        : std::string("is not a recording, expected a file that --record wrote")};
   }
-  if (header->stream_count > kMaxStreams) return Error{"names more streams than possible: it is damaged"};
+  if (header->stream_count > kMaxStreams) return Error{"is damaged: it names more streams than possible"};
   closed_ = header->closed != 0;
   black_box_ = header->ring != 0;
   for (uint32_t i = 0; i < header->stream_count; ++i) {
     const StreamHeader& from = header->streams[i];
     if (from.row_bytes == 0 || from.row_bytes > kMaxRowBytes || from.row_bytes % 8 != 0 || from.chunk_rows == 0)
-      return Error{"has a stream with rows of an impossible size: it is damaged"};
+      return Error{"is damaged: it has a stream with rows of an impossible size"};
     RecordedStream& stream = streams_.emplace_back();
     stream.name_.assign(from.name, strnlen(from.name, sizeof from.name));
     stream.row_bytes_ = from.row_bytes;
@@ -131,7 +131,7 @@ Result<void> Recording::read(std::span<const std::byte> bytes) {
   const uint64_t about_bytes = header->about_bytes;
   if (about_bytes > kMostAbout || header->about_address > bytes.size() ||
       about_bytes > bytes.size() - header->about_address)
-    return Error{"ends inside its description: it is damaged"};
+    return Error{"is damaged: it ends inside its description"};
   about_.assign(reinterpret_cast<const char*>(bytes.data() + header->about_address), about_bytes);
   if (auto blocks = readBlocks(bytes, header->blocks_address); !blocks) return blocks;
   return readColumns();
@@ -141,11 +141,12 @@ Result<void> Recording::readBlocks(std::span<const std::byte> bytes, uint64_t ad
   while (const auto block = at<BlockHeader>(bytes, address)) {
     const uint64_t from = address + sizeof *block;
     if (block->magic != BlockHeader::kMagic || block->bytes > bytes.size() - from)
-      break;  // the writer was cut off here
+      break;  // the writer was killed here, or the file was cut
     address = from + block->bytes;
     if (block->stream == BlockHeader::kIndex || block->stream >= streams_.size()) continue;
     RecordedStream& stream = streams_[block->stream];
-    if (block->bytes / stream.row_bytes_ < stream.chunk_rows_) return Error{"has a short block: it is damaged"};
+    if (block->bytes / stream.row_bytes_ < stream.chunk_rows_)
+      return Error{"is damaged: it has a block that is too short"};
     stream.chunks_.push_back(bytes.data() + from);
   }
   for (RecordedStream& stream : streams_) {
@@ -164,11 +165,11 @@ Result<void> Recording::readBlocks(std::span<const std::byte> bytes, uint64_t ad
   return {};
 }
 
-/// A writer says how many rows there are after it has written them, so rows that are missing existed once.
-/// @param stopped where no more blocks could be read
+/// Notes that rows are missing. A writer stores the number of rows only after it has written the rows, so missing rows
+/// were lost later. @param stopped address at which no more blocks could be read
 void Recording::noteDamage(const RecordedStream& stream, uint64_t space, uint64_t stopped,
                            std::span<const std::byte> bytes) {
-  if (!damage_.empty()) return;  // the first stream has the ticks
+  if (!damage_.empty()) return;  // only for the first stream, which has the ticks
   const uint64_t size = bytes.size();
   const auto block = at<BlockHeader>(bytes, stopped);
   const bool cut = !block || block->magic == BlockHeader::kMagic;
@@ -181,10 +182,10 @@ void Recording::noteDamage(const RecordedStream& stream, uint64_t space, uint64_
 Result<void> Recording::readColumns() {
   const Json about = document::parseJson(about_);
   if (!about.is_object() || !about.contains("columns") || !about["columns"].is_object())
-    return Error{"does not describe its columns: it is damaged"};
+    return Error{"is damaged: it does not describe its columns"};
   for (RecordedStream& stream : streams_) {
     const Json list = about["columns"].value(stream.name_, Json::array());
-    if (!list.is_array()) return Error{"does not describe the columns of " + stream.name_ + ": it is damaged"};
+    if (!list.is_array()) return Error{"is damaged: the columns of its stream " + stream.name_ + " are not described"};
     for (const Json& entry : list) {
       const auto text = [&](const char* key) {
         return entry.is_object() && entry.contains(key) && entry[key].is_string() ? entry[key].get<std::string>() : "";
@@ -193,7 +194,7 @@ Result<void> Recording::readColumns() {
       const bool has_offset = entry.is_object() && entry.contains("offset") && entry["offset"].is_number_unsigned();
       const uint64_t offset = has_offset ? entry["offset"].get<uint64_t>() : UINT64_MAX;
       if (!type || offset > stream.row_bytes_ || bytesOf(*type) > stream.row_bytes_ - offset)
-        return Error{"has a column of " + stream.name_ + " that is not in its rows: it is damaged"};
+        return Error{"is damaged: a column of its stream " + stream.name_ + " lies outside of the rows"};
       stream.columns_.push_back({text("name"), text("unit"), text("doc"), *type, static_cast<uint32_t>(offset)});
     }
   }

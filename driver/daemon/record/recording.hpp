@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Reads a recording or a black box, whatever state its writer left it in. Nothing in the file is trusted: sizes,
-/// places and numbers are checked before they are used.
+/// Reads a recording or a black box, even one whose writer crashed. It does not trust the file: sizes, addresses and
+/// numbers are checked before they are used.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -21,14 +21,14 @@ class RecordedStream {
   const std::vector<Column>& columns() const { return columns_; }
   uint32_t rowBytes() const { return row_bytes_; }
   uint64_t rows() const { return rows_; }
-  uint64_t lost() const { return lost_; }       ///< rows that its writer could not keep
+  uint64_t lost() const { return lost_; }       ///< rows that the writer lost
   const std::byte* row(uint64_t index) const {  ///< [any] index < rows()
     const uint64_t at = first_ + index, in_ring = ring_rows_ == 0 ? at : at % ring_rows_;
     return chunks_[in_ring / chunk_rows_] + (in_ring % chunk_rows_) * row_bytes_;
   }
   const Column* find(const std::string& name) const;
 
-  /// [any] A number of a row as a double; counts above 2^53 are rounded.
+  /// [any] Returns a number of a row as a double; counts above 2^53 are rounded.
   double number(uint64_t index, const Column& column) const;
 
  private:
@@ -44,7 +44,7 @@ class Recording {
  public:
   /// [main] Maps the file and checks it.
   static Result<std::unique_ptr<Recording>> open(const std::string& file);
-  /// [main] The same for memory that outlives the object. @param name for messages
+  /// [main] Reads a recording from memory, which must outlive the object. @param name name of the recording in messages
   static Result<std::unique_ptr<Recording>> parse(std::span<const std::byte> bytes, const std::string& name);
   ~Recording();
   Recording(const Recording&) = delete;
@@ -53,12 +53,13 @@ class Recording {
   const std::string& aboutJson() const { return about_; }
   const std::vector<RecordedStream>& streams() const { return streams_; }
   const RecordedStream* stream(const std::string& name) const;
-  bool closed() const { return closed_; }  ///< its writer ended in order
-  /// The process that still wrote it when it was opened; 0: one that cannot be seen from here.
+  bool closed() const { return closed_; }  ///< true if its writer ended normally
+  /// Returns the process that was still writing the file when it was opened; 0 if this process cannot be seen from
+  /// here, nothing if there was none.
   std::optional<int> writer() const { return writer_; }
-  /// "" or how rows that it should have were lost after they were written: the file was cut, or changed.
+  /// Returns how rows were lost after they were written, because the file was cut or changed; "" if none were.
   const std::string& damage() const { return damage_; }
-  bool blackBox() const { return black_box_; }  ///< it has the newest rows in a circle, not a whole run
+  bool blackBox() const { return black_box_; }  ///< true if it contains only the newest rows, in a ring
 
  private:
   Recording() = default;

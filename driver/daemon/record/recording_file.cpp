@@ -18,9 +18,9 @@ Result<std::unique_ptr<RecordingFile>> RecordingFile::create(const std::string& 
   const int fd = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (fd < 0) return Error{file + ": cannot be written: " + std::strerror(errno)};
   std::unique_ptr<RecordingFile> recording(new RecordingFile(file, fd));
-  // The lock is held while the file is open: two writers would leave a file that nobody can read.
+  // The lock is held while the file is open, because two writers would make the file unreadable.
   if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    return Error{file + ": another run records into it, expected another file"};
+    return Error{file + ": another run records into it, expected the name of another file"};
   if (ftruncate(fd, 0) != 0 && errno != EINVAL) return Error{file + ": cannot be written: " + std::strerror(errno)};
   std::vector<uint32_t> chunk_rows;
   for (const StreamSpec& stream : streams) {
@@ -57,7 +57,8 @@ Result<void> RecordingFile::append(size_t number, const std::byte* rows, uint64_
   return {};
 }
 
-/// First comes the space, then the file's end in the superblock, then the index, so each state between is a valid file.
+/// Begins a chunk. It writes first the space, then the new end of the file in the superblock, then the index. So the
+/// file is valid after each of these writes.
 Result<void> RecordingFile::beginChunk(Stream& stream, uint32_t number) {
   stream.chunk_address = newBlock(number, uint64_t{stream.chunk_rows} * stream.row_bytes);
   const auto writes = stream.index.add(stream.chunk_address,

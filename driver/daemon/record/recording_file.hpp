@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Writes a recording that grows, by an ordinary thread. Killed at any time, it leaves a file with all rows up to the
-/// last publish().
+/// Writes a recording that grows, in an ordinary thread. If the process is killed at any time, the file contains all
+/// rows up to the last publish().
 #pragma once
 #include <memory>
 #include <string>
@@ -16,20 +16,21 @@ class RecordingFile {
  public:
   static constexpr uint64_t kChunkBytes = 256 * 1024;
 
-  /// [main] Replaces the file. @param chunk_bytes about how many bytes of rows are stored together
+  /// [main] Creates the file, or replaces it. @param chunk_bytes approximate size of the chunks in which rows are
+  /// stored
   static Result<std::unique_ptr<RecordingFile>> create(const std::string& file, const std::vector<StreamSpec>& streams,
                                                        const About& about, uint64_t chunk_bytes = kChunkBytes);
-  ~RecordingFile();  ///< [main] closes it without marking it as complete
+  ~RecordingFile();  ///< [main] closes the file without marking it as complete
   RecordingFile(const RecordingFile&) = delete;
   RecordingFile& operator=(const RecordingFile&) = delete;
 
-  /// [main] Appends rows; they are part of the file from the next publish() on. After an error nothing more is written.
+  /// [main] Appends rows. The next publish() makes them part of the file. After an error nothing more is written.
   Result<void> append(size_t stream, const std::byte* rows, uint64_t count);
 
-  /// [main] Notes that rows are missing between the last and the next.
+  /// [main] Notes that rows are missing between the last appended row and the next.
   void lost(size_t stream, uint64_t count) { streams_[stream].lost += count; }
 
-  Result<void> publish();  ///< [main] makes what was appended part of the file
+  Result<void> publish();  ///< [main] makes the appended rows part of the file
   Result<void> close();    ///< [main] publishes, marks the file as complete and closes it
 
   uint64_t rows(size_t stream) const { return streams_[stream].rows; }

@@ -66,8 +66,9 @@ std::string contactText(const ContactStatistics& c, const RunReport& report, con
   return text;
 }
 
-/// A field has no surface, and a magnet pulls from outside. But a shape with a surface that forgets the flag or the
-/// depth is felt, while the report says that it is not.
+/// Reports pushes without a contact. They are right for a field, which has no surface, and for a magnet, which pulls
+/// from outside. But if a shape with a surface does not set the flag or the depth, it is felt and the report shows no
+/// contact.
 std::string oddPushesText(const ModelReport& model) {
   const auto told = [&](const char* word, const Pushes& pushes, const char* how, const char* follows) {
     if (pushes.ticks == 0) return std::string();
@@ -75,52 +76,51 @@ std::string oddPushesText(const ModelReport& model) {
                        how, pushes.max_force, follows);
   };
   const ContactStatistics& c = model.contact;
-  const std::string untraced = told("warning", c.untraced(), "without HSP_OUT_TRACED", "no contact is told of these");
+  const std::string untraced = told("warning", c.untraced(), "without HSP_OUT_TRACED", "these do not count as contact");
   const std::string outside =
-      told("outside", c.outside(), "from outside (depth_m below 0)", "contacts are told inside only");
-  // It does fill in a depth. What lingers outside for a moment, as friction may, need not be reported.
+      told("outside", c.outside(), "from outside (depth_m below 0)", "only ticks inside count as contact");
+  // The shape does fill depth_m in. A short push from outside, as by friction, need not be reported.
   if (c.contactTicks() > 0) return untraced + (c.outside().ticks > c.contactTicks() ? outside : "");
-  return untraced + told("warning", c.depthless(), "with depth_m left at 0", "no contact is told of these") + outside;
+  return untraced + told("warning", c.depthless(), "with depth_m left at 0", "these do not count as contact") + outside;
 }
 
-/// A detent and a magnet pull during a part of a contact; a force of the wrong sign pulls during most of it.
+/// Warns of a force that pulls during most of the contact: its sign is probably wrong. A detent or a magnet pulls only
+/// during a part of a contact.
 std::string pullText(const ModelReport& model) {
   const Pushes& pulls = model.contact.pulls();
   const uint64_t ticks = model.contact.contactTicks();
   if (2 * pulls.ticks <= ticks) return "";
   return fmt::format(
-      "  warning   {} pulled the hand in during {:.0f} % of its contact, with up to {:.2f} N: has its force the wrong "
-      "sign? hapticd plugin check tells\n",
+      "  warning   {} pulled the hand in during {:.0f} % of its contact, with up to {:.2f} N: its force may have the "
+      "wrong sign; test it with hapticd plugin check\n",
       model.name, 100 * static_cast<double>(pulls.ticks) / static_cast<double>(ticks), pulls.max_force);
 }
 
-/// [m] written in a unit that reads well.
+/// Returns a length [m] as text in a convenient unit.
 std::string lengthText(double length) {
   return length < 1e-3 ? fmt::format("{:.3g} um", length * 1e6) : fmt::format("{:.3g} mm", length * 1e3);
 }
 
-/// A depth given in mm shows as a depth that no arm reaches.
+/// Warns of a depth that no arm reaches: it is probably in mm.
 std::string deepText(const ModelReport& model) {
   constexpr double kDeep = 0.5;  // [m]
   const double deepest = model.contact.maxDepth();
   if (!(deepest > kDeep)) return "";
   return fmt::format(
-      "  warning   {} says a depth of {:.3g} m, deeper than an arm reaches: is its depth_m in m? a depth in mm would "
-      "be "
-      "{:.3g} m; hapticd plugin check tells\n",
+      "  warning   {} reports a depth of {:.3g} m, deeper than an arm reaches: depth_m must be in m (if it is in mm, "
+      "the depth was {:.3g} m); test it with hapticd plugin check\n",
       model.name, deepest, deepest * 1e-3);
 }
 
-/// What gives more than was pressed into it drives the hand. One run shows what its hand happened to do, so that little
-/// of it is left to chance: contacts are sampled, and one that is switched off and on has its own account.
+/// Warns of a model that does more work on the hand than the hand did on it, and so pushes the hand. Small differences
+/// are not reported: contacts are sampled, and a model may be switched off and on.
 std::string energyText(const ModelReport& model) {
   constexpr double kTold = 2e-3, kShare = 0.1;  // [J]
   const double net = model.given_j - model.taken_j;
   if (model.moves || !(net > std::max(kTold, kShare * model.taken_j))) return "";
   return fmt::format(
-      "  warning   {} gave the hand {:.3g} mJ more than it took ({:.3g} mJ): a surface gives back what was pressed "
-      "into "
-      "it, and no more; hapticd plugin check looks for where\n",
+      "  warning   {} gave the hand {:.3g} mJ more than it took ({:.3g} mJ): a surface must not give "
+      "back more work than was done on it; find the cause with hapticd plugin check\n",
       model.name, net * 1e3, model.taken_j * 1e3);
 }
 
@@ -131,7 +131,7 @@ std::string modelText(const ModelReport& model, const RunReport& report) {
   for (const ArmContact& arm : model.arms) text += contactText(arm.contact, report, " by " + arm.device);
   text += oddPushesText(model) + pullText(model) + energyText(model) + deepText(model);
   if (model.degraded_ticks > 0)
-    text += fmt::format("  degraded  {} ticks, to level {} of 3, so that the tick's budget holds; residual up to {}\n",
+    text += fmt::format("  degraded  {} ticks, down to level {} of 3, to keep the tick's budget; residual up to {}\n",
                         model.degraded_ticks, model.coarsest, lengthText(model.residual_m));
   if (c.heldFeet() + c.degradedFeet() > 0)
     text += fmt::format("  feet      {} nearest, {} held in contact, {} not proved\n", c.nearestFeet(), c.heldFeet(),
@@ -143,7 +143,7 @@ std::string modelText(const ModelReport& model, const RunReport& report) {
   return text;
 }
 
-/// Models that answered more coarsely than they were asked to, even without contact.
+/// Reports models with coarser answers than asked for, even if they had no contact.
 std::string degradedText(const RunReport& report) {
   uint64_t models = 0, most = 0;
   for (const ModelReport& model : report.models) {
@@ -164,7 +164,7 @@ bool felt(const ContactStatistics& contact) {
 std::string untouchedText(const RunReport& report) {
   const bool touched = std::any_of(report.models.begin(), report.models.end(),
                                    [](const ModelReport& model) { return felt(model.contact); });
-  // What silenced a model says more about the reason.
+  // If a model was silenced, its fault explains the missing contact better.
   const bool silenced = std::any_of(report.faults.begin(), report.faults.end(),
                                     [](const std::string& fault) { return fault.rfind("model ", 0) == 0; });
   if (touched || silenced || report.ticks == 0) return "";
@@ -180,13 +180,14 @@ std::string limitText(const LimitReport& device, uint64_t ticks) {
   return text + ")\n";
 }
 
-/// A hand that leans on a stop feels the stop and no model, so nobody must look for that force in the scene.
+/// Reports joints at a stop: a hand that leans on a stop feels a force that does not come from the scene.
 std::string stopText(const StopReport& stop, const RunReport& report) {
   constexpr double kTold = 0.1;  // [s] shorter times at a stop are bumps
   const double seconds = report.rate_hz > 0 ? static_cast<double>(stop.ticks) / report.rate_hz : 0;
   if (seconds < kTold) return "";
-  return fmt::format("stop of {}: joint {} (q{}) stood at the end of its range for {:.1f} s: the arm goes no further\n",
-                     stop.device, stop.joint + 1, stop.joint, seconds);
+  return fmt::format(
+      "stop of {}: joint {} (q{}) stood at the end of its range for {:.1f} s: the arm cannot go farther\n", stop.device,
+      stop.joint + 1, stop.joint, seconds);
 }
 
 Json clientJson(const ClientReport& client) {
@@ -207,16 +208,17 @@ Json clientJson(const ClientReport& client) {
 
 std::string clientText(const ClientReport& client, double answer_time) {
   std::string text = fmt::format(
-      "program {} on {}: {} answers, {:.1f} % in their tick, {:.1f} % in the next; silent {} times; force max {:.2f} "
-      "N\n",
+      "program {} on {}: {} answers, {:.1f} % in the same tick, {:.1f} % in the next; silent {} times; "
+      "force max {:.2f} N\n",
       client.program, client.device, client.answers, 100 * client.sameTick(), 100 * client.nextTick(), client.silences,
       client.largest_n);
   if (client.bounded > 0)
-    text += fmt::format("  it asked for up to {:.3g} N: {} answers were cut to its bound\n", client.asked_n,
-                        client.bounded);
+    text += fmt::format("  it asked for up to {:.3g} N: {} answers were reduced to its largest allowed force\n",
+                        client.asked_n, client.bounded);
   if (client.refused > 0) text += fmt::format("  {} answers were refused: {}\n", client.refused, client.why);
   if (!late(client)) return text;
-  return text + "  one tick of delay cuts the stiffest stable wall to a third\n  fix: " + lateFix(answer_time) + "\n";
+  return text +
+         "  one tick of delay reduces the stiffness of a stable wall to a third\n  fix: " + lateFix(answer_time) + "\n";
 }
 
 }  // namespace
@@ -258,7 +260,7 @@ std::string summary(const RunReport& report) {
                                  report.seconds, report.virtual_time ? " of virtual time" : "", report.rate_hz,
                                  report.overruns, report.missed_ticks);
   if (report.virtual_time && report.wall_seconds > 0) {
-    text += fmt::format("  {:.2f} s on the wall: {:.0f} times faster than real time\n", report.wall_seconds,
+    text += fmt::format("  computed in {:.2f} s, {:.0f} times faster than real time\n", report.wall_seconds,
                         report.seconds / report.wall_seconds);
   } else {
     text += timeLine("lateness", report.lateness_us);

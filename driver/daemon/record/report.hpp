@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a run was like: the numbers of `--report`, and the same for people.
+/// The report of a run: the numbers for `--report`, and the summary for people.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace hapticd::record {
 
-/// What one arm felt of a model.
+/// The contact of one arm with a model.
 struct ArmContact {
   std::string device;
   ContactStatistics contact;
@@ -21,53 +21,53 @@ struct ArmContact {
 
 struct ModelReport {
   std::string name, plugin;
-  ContactStatistics contact;        ///< of the arm that is deepest in each tick
-  uint64_t degraded_ticks = 0;      ///< in which it answered coarser than asked, for a tick's budget
-  uint32_t coarsest = 0;            ///< level of accuracy, 0: as asked
-  double residual_m = 0;            ///< largest error that a coarser answer told
-  double given_j = 0, taken_j = 0;  ///< [J] work that its forces did on the hands, and that these did against them
-  bool moves = false;               ///< by its plugin, with energy of its own
-  std::vector<ArmContact> arms{};   ///< of each, where there are several
+  ContactStatistics contact;        ///< contact of the arm that is deepest in each tick
+  uint64_t degraded_ticks = 0;      ///< ticks with a coarser answer, to keep the tick's budget
+  uint32_t coarsest = 0;            ///< coarsest level of accuracy; 0 is full accuracy
+  double residual_m = 0;            ///< [m] largest error that a coarser answer reported
+  double given_j = 0, taken_j = 0;  ///< [J] work of its forces on the hands; work of the hands against them
+  bool moves = false;               ///< true if its plugin moves it, so that it has energy of its own
+  std::vector<ArmContact> arms{};   ///< contact of each arm, if there are several arms
 };
 
-/// In how many ticks limits made the force of one device smaller than the scene asked for.
+/// Counts the ticks in which limits reduced the force of one device.
 struct LimitReport {
   std::string device;
-  uint64_t any = 0;                                     ///< ticks in which at least one limit did so
-  std::vector<std::pair<std::string, uint64_t>> ticks;  ///< for each limit, the ticks in which it did so
+  uint64_t any = 0;                                     ///< ticks in which at least one limit reduced it
+  std::vector<std::pair<std::string, uint64_t>> ticks;  ///< by limit: ticks in which it reduced the force
 };
 
-/// How long a joint stood at the end of its range.
+/// Counts the ticks in which a joint stood at the end of its range.
 struct StopReport {
   std::string device;
-  uint32_t joint = 0;  ///< counted from 0, as the columns are
+  uint32_t joint = 0;  ///< counted from 0, as in the columns
   uint64_t ticks = 0;
 };
 
 struct RunReport {
   std::string scene;
-  double seconds = 0, rate_hz = 0;  ///< simulated or real time of the run; ticks per second that were achieved
+  double seconds = 0, rate_hz = 0;  ///< simulated or real duration of the run; achieved ticks per second
   double wall_seconds = 0;          ///< time that passed on the wall clock
   bool virtual_time = false;
   uint64_t ticks = 0, overruns = 0, missed_ticks = 0;
   Histogram lateness_us, compute_us;
-  Histogram arms_us;               ///< the arms' part of compute: physics of simulated arms, traffic of others
-  long page_faults = 0;            ///< those of the servo thread after its warm-up
-  uint64_t servo_allocations = 0;  ///< the same
+  Histogram arms_us;               ///< the arms' part of compute: physics of simulated arms, transfers of others
+  long page_faults = 0;            ///< page faults of the servo thread after its warm-up
+  uint64_t servo_allocations = 0;  ///< allocations of the servo thread after its warm-up
   uint64_t resident_bytes = 0;
-  double start_ms = 0;  ///< from the start of the program to the first tick
+  double start_ms = 0;  ///< [ms] time from the start of the program to the first tick
   std::vector<ModelReport> models;
   std::vector<LimitReport> limits;  ///< one per device
   std::vector<StopReport> stops;    ///< joints that stood at a stop
   std::vector<std::string> faults;
-  std::vector<ClientReport> clients;  ///< programs that pushed
-  double answer_time = 0;             ///< [s] how long the servo listened for them
+  std::vector<ClientReport> clients;  ///< programs that pushed on arms
+  double answer_time = 0;             ///< [s] how long the servo waited for their answers
 };
 
-/// [main] Writes the report as JSON, whole or not at all.
+/// [main] Writes the report as JSON, completely or not at all.
 Result<void> writeJson(const RunReport& report, const std::string& file);
 
-/// [main] The report as text for a terminal.
+/// [main] Returns the report as text for a terminal.
 std::string summary(const RunReport& report);
 
 }  // namespace hapticd::record

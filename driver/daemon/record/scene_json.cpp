@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has no infinity and no NaN, so texts stand for them.
+/// Returns a number as JSON. Infinity and NaN become texts, because JSON has no such numbers.
 Json real(double value) {
   if (std::isfinite(value)) return value;
   return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
@@ -95,7 +95,7 @@ scene::Model toModel(const Json& json) {
   return model;
 }
 
-/// The numbers of each motor in the order of scene::Motor.
+/// Returns the numbers of each motor in the order of scene::Motor.
 Json motorsJson(const std::vector<scene::Motor>& motors) {
   Json json = Json::array();
   for (const scene::Motor& m : motors)
@@ -135,7 +135,7 @@ scene::Limits toLimits(const Json& json) {
   limits.ramp_in = toReal(json.at("ramp_in"));
   limits.ramp_out = toReal(json.at("ramp_out"));
   if (const Json& passivity = json.at("passivity"); !passivity.is_null()) limits.passivity = passivity.get<bool>();
-  // Recordings older than these limits were made without them.
+  // Older recordings do not have these limits.
   const auto later = [&](const char* key) { return json.contains(key) ? json.at(key) : Json(); };
   const auto bound = [&](const char* key) { return json.contains(key) ? toReal(json.at(key)) : 0.0; };
   limits.torque_slew = bound("torque_slew");
@@ -239,13 +239,13 @@ Json clientsJson(const scene::Clients& clients) {
           {"frame", clients.frame == scene::ClientFrame::kDevice ? "device" : "world"}};
 }
 
-/// Recordings older than this member do not have it.
+/// Reads the settings for clients. Older recordings do not have them.
 scene::Clients toClients(const Json& json) {
   if (!json.contains("clients")) return {};
   const Json& clients = json.at("clients");
   const int mode = clients.at("mode");
   if (mode < 0 || mode > static_cast<int>(scene::ClientMode::kInstead))
-    throw std::runtime_error("clients: no such mode");
+    throw std::runtime_error("clients: unknown mode");
   return {static_cast<scene::ClientMode>(mode),
           toReal(clients.at("max_force")),
           clients.at("exclusive"),

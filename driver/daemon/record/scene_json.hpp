@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A loaded scene as JSON and back, to the last bit: a recording carries it, so that a replay needs no YAML file, no
-/// daemon file and no option of the recorded run.
+/// Converts a loaded scene to JSON and back without any loss. A recording contains this JSON, so that a replay needs
+/// neither the YAML files nor the options of the recorded run.
 #pragma once
 #include <string>
 
@@ -10,6 +10,6 @@
 namespace hapticd::record {
 
 std::string sceneToJson(const scene::Scene& scene);                ///< [main]
-Result<scene::Scene> sceneFromJson(const std::string& json_text);  ///< [main] an error says what is missing
+Result<scene::Scene> sceneFromJson(const std::string& json_text);  ///< [main] its error says what is missing
 
 }  // namespace hapticd::record

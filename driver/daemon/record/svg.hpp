@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A small writer of SVG: just what plots need. Coordinates in pixels, y down.
+/// A small writer of SVG with the functions that plots need. Coordinates are in pixels, and y points down.
 #pragma once
 #include <fmt/format.h>
 
@@ -31,13 +31,13 @@ class Svg {
     text_ += fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\"/>\n", x, y,
                          width, height, fill);
   }
-  /// @param anchor start, middle or end
+  /// Writes a text. @param anchor start, middle or end: the part of the text that is at x
   void label(double x, double y, const std::string& words, const char* anchor = "start", const char* colour = "#444",
              int size = 12) {
     text_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\" font-size=\"{}\">{}</text>\n",
                          x, y, anchor, colour, size, escaped(words));
   }
-  /// A polyline through points x0, y0, x1, y1, ...
+  /// Draws a polyline through the points x0, y0, x1, y1, ...
   void curve(const std::vector<double>& xy, const char* colour, double width = 1) {
     text_ += fmt::format(
         "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" points=\"", colour, width);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A device file with problems, as far as it could be read: for those who look for more of them.
+/// Reads files with problems as far as possible, so that further checks can find more problems in them.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -9,11 +9,12 @@
 
 namespace hapticd::scene {
 
-/// [main] The device with the parameters that are right; nothing if its file is none or its module is unknown.
+/// [main] Returns the device with those parameters that are right; nothing if the file is not a device file, or if its
+/// module is unknown.
 std::optional<Device> deviceDraft(const std::filesystem::path& file, host::Catalog& catalog);
 
-/// [main] A scene with problems, as far as it could be read: a model with a problem keeps what is right. Nothing where
-/// the file is no scene.
+/// [main] Returns the scene with everything that is right, also in models with a problem; nothing if the file is not a
+/// scene.
 std::optional<Scene> sceneDraft(const std::filesystem::path& file, host::Catalog& catalog);
 
 }  // namespace hapticd::scene

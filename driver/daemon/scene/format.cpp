@@ -37,32 +37,35 @@ constexpr Key kServoKeys[] = {
     real<&Servo::activation_radius>("activation_radius", {1e-6, 1e3, "m"}, "0.1",
                                     "Surfaces nearer to the probe than this are traced."),
     real<&Servo::hysteresis>("hysteresis", {0, 1e3, "m"}, "0.05",
-                             "Distance beyond the radius at which a traced surface is dropped again."),
+                             "A traced surface is dropped when it is farther than activation_radius plus this."),
     vector3<&Servo::gravity>("gravity", {-1000, 1000, "m/s^2"}, "[0, -9.81, 0]",
                              "Gravity in the world frame (y is up)."),
-    choice<&Servo::pace>("pace", kPaces, "clock",
-                         "What drives the loop: a clock, or the samples of the first arm that can."),
+    choice<&Servo::pace>(
+        "pace", kPaces, "clock",
+        "What starts a tick: clock, or device (each sample of the first arm that can drive the loop)."),
     object<&Servo::velocity>("velocity", kVelocity, "The velocity estimator."),
     real<&Servo::spin_us>("spin_us", {0, 1000, "us"}, nullptr,
                           "Busy wait before each deadline; default: chosen for the machine."),
-    choice<&Servo::instructions>("instructions", kInstructions, "auto",
-                                 "auto: the fastest that the processor has; portable: the same bits on every machine."),
+    choice<&Servo::instructions>(
+        "instructions", kInstructions, "auto",
+        "Processor instructions of the inner loops. auto: the fastest that this processor has; "
+        "portable: those of every processor, so that results have the same bits everywhere."),
     real<&Servo::budget_us>("budget_us", {0, 1e6, "us"}, "0",
-                            "CPU time of all shapes in a tick; 0: four fifths of the period."),
+                            "CPU time per tick for all shapes together; 0: four fifths of the period."),
 };
 constexpr Table kServo{kServoKeys};
 
 constexpr Key kModelKeys[] = {
     required(name<&ModelText::name>("name", "Name of the model; unique in a scene.")),
     required(name<&ModelText::plugin>("plugin", "Shape plugin; `hapticd plugin list` names them.")),
-    object<&ModelText::pose>("pose", kPose, "Frame of the model in the world at the start."),
+    object<&ModelText::pose>("pose", kPose, "Pose of the model in the world at the start."),
     any<&ModelText::parameters>("parameters", "a mapping of the plugin's parameters",
                                 "Parameters of the plugin; `hapticd plugin info NAME` documents them."),
     any<&ModelText::motion>("motion", "one of static, kinematic, dynamic",
-                            "static, kinematic (moved along `path`) or dynamic (moved by its plugin)."),
+                            "How the model moves: static, kinematic (along `path`) or dynamic (by its plugin)."),
     any<&ModelText::path>("path", "the path of a file",
                           "CSV file t,x,y,z,qw,qx,qy,qz of a kinematic model; poses between rows are interpolated. "
-                          "Without one it rests at its pose until a program leads it."),
+                          "Without a path, the model rests at its pose until a program leads it."),
 };
 
 constexpr Key kAdmittanceKeys[] = {
@@ -73,50 +76,55 @@ constexpr Table kAdmittance{kAdmittanceKeys};
 
 constexpr Key kDeviceReferenceKeys[] = {
     required(file<&DeviceReference::file>("file", "Device file.")),
-    name<&DeviceReference::name>("name", "Name in this scene instead of the file's; two arms of one kind need it."),
-    object<&DeviceReference::mount>("mount", kPose, "Frame of the device in the world instead of the file's."),
+    name<&DeviceReference::name>("name",
+                                 "Name in this scene instead of the device file's name; if two arms use the same "
+                                 "file, they need different names."),
+    object<&DeviceReference::mount>("mount", kPose, "Pose of the device in the world, instead of the device file's."),
     object<&DeviceReference::admittance>("admittance", kAdmittance,
-                                         "Compliance control in this scene, instead of the file's."),
+                                         "Compliance control in this scene, instead of the device file's."),
     any<&DeviceReference::hand>("hand", "a mapping of the hand's parameters",
-                                "Settings of the simulated hand that replace the file's."),
+                                "Settings of the simulated hand that replace the device file's."),
 };
 
 constexpr Key kClientsKeys[] = {
-    required(choice<&Clients::mode>("mode", kClientModes, nullptr,
-                                    "off: no program pushes; add: forces of programs are added to those of the models; "
-                                    "instead: the models fade out while a program pushes.")),
+    required(
+        choice<&Clients::mode>("mode", kClientModes, nullptr,
+                               "off: programs may not push; add: forces of programs are added to the forces of the "
+                               "models; instead: the models fade out while a program pushes.")),
     real<&Clients::max_force>("max_force", {0, 1000, "N"}, "0",
-                              "Largest force of one program; 0: as much as the device's limit."),
-    boolean<&Clients::exclusive>("exclusive", "false", "One program per arm; a second is refused."),
+                              "Largest force of one program; 0: only the device's limit counts."),
+    boolean<&Clients::exclusive>("exclusive", "false",
+                                 "true: only one program may push on an arm; a second is refused."),
     real<&Clients::answer_time>(
         "answer_time", {0, 200e-6, "s"}, "0",
-        "The servo listens so long after a tick began for programs that answered the last ticks, "
-        "so that their answers count in the same tick; 0: it waits for nobody."),
-    boolean<&Clients::push>("push", "true", "false: programs may look on, and none may push."),
+        "How long after the start of a tick the servo waits for programs that answered the last ticks, "
+        "so that their answers count in the same tick; 0: it does not wait."),
+    boolean<&Clients::push>("push", "true", "false: programs may read the state of the arms, but may not push."),
     vector3<&Clients::origin>("origin", kMeters, "[0, 0, 0]",
-                              "Where the coordinates of OpenHaptics programs have their origin, in the axes of frame."),
+                              "Origin of the coordinates of OpenHaptics programs, in the axes of `frame`."),
     choice<&Clients::frame>(
         "frame", kClientFrames, "world",
-        "Axes of OpenHaptics programs: world, or device (as the arm's mount is turned and placed)."),
+        "Frame of the coordinates of OpenHaptics programs: world, or device (the mount of the arm)."),
 };
 
 constexpr Key kSceneKeys[] = {
     required(integer<&SceneText::version>("hapticd", kVersion, nullptr, "Version of the format.")),
     object<&SceneText::servo>("servo", kServo, "Rate and settings of the servo loop."),
     any<&SceneText::device>("device", "the path of a device file",
-                            "Device file; with no device named, the simulated Premium 1.5 is used."),
+                            "Device file; if the scene names no device, the simulated Premium 1.5 is used."),
     any<&SceneText::devices>("devices", "a list of device files", "Several device files, each with its own probe."),
     any<&SceneText::hand>("hand", "a mapping of the hand's parameters",
                           "Settings of the simulated hand that replace the device file's."),
     any<&SceneText::clients>("clients", "off, add, instead or a mapping with mode",
-                             "Whether programs may push on the arms; off unless given."),
+                             "Whether programs may push on the arms; default: off."),
     required(list<&SceneText::models>("models", kModelTable, {0, kMaxModels}, "The models of the scene.")),
 };
 
 constexpr std::string_view kEnableModes[] = {"hold", "toggle"};
 constexpr Key kEnableKeys[] = {
-    required(integer<&Enable::button>("button", {0, 31}, nullptr,
-                                      "Button of the device, counted from 0: the wire format's button: 1 is 0 here.")),
+    required(
+        integer<&Enable::button>("button", {0, 31}, nullptr,
+                                 "Button of the device, counted from 0 (`button: 1` of the wire format is 0 here).")),
     choice<&Enable::mode>(
         "mode", kEnableModes, "hold",
         "hold: forces only while the button is down (dead-man switch); toggle: each press turns forces on or off."),
@@ -140,38 +148,42 @@ constexpr Table kMotor{kMotorKeys};
 constexpr Key kLimitKeys[] = {
     real<&Limits::force>("force", {0, 1000, "N"}, nullptr,
                          "Largest force on the hand, above 0; default: the device's own maximum."),
-    real<&Limits::torque>("torque", {0, 1000, "N m"}, "0", "Largest torque on the hand; 0: the motors' limit alone."),
+    real<&Limits::torque>("torque", {0, 1000, "N m"}, "0", "Largest torque on the hand; 0: only the motors limit it."),
     real<&Limits::slew>("slew", {0, 1e6, "N/s"}, "2000", "Fastest growth of the force; 0: no limit."),
     real<&Limits::torque_slew>("torque_slew", {0, 1e6, "N m/s"}, "200", "Fastest growth of the torque; 0: no limit."),
     real<&Limits::power>("power", {0, 1e4, "W"}, "0", "Largest power that the arm gives to the hand; 0: no limit."),
     real<&Limits::impulse>(
         "impulse", {0, 100, "N s"}, "0",
-        "Largest impulse within any 0.1 s; it bounds a constant force to five times as many N; 0: no limit."),
-    real<&Limits::velocity>("velocity", {0, 100, "m/s"}, nullptr,
-                            "A faster tip latches a fault; 0: no limit; default: 5 m/s for real hardware."),
+        "Largest impulse within any 0.1 s; a constant force is limited to five times this number, in N; 0: no limit."),
+    real<&Limits::velocity>(
+        "velocity", {0, 100, "m/s"}, nullptr,
+        "Largest speed of the tip; a faster tip latches a fault; 0: no limit; default: 5 m/s for real "
+        "hardware, no limit for simulated arms."),
     real<&Limits::workspace>("workspace", {0, 100, "m"}, "0",
                              "Forces fade outside this radius about the device's origin; 0: no limit."),
     real<&Limits::weight>("weight", {0, 1000, "N"}, nullptr,
                           "Largest force at the tip that carries the arm's own weight; 0: the weight is not carried; "
-                          "default: as `force`."),
+                          "default: the same as `force`."),
     real<&Limits::ramp_in>("ramp_in", {0, 10, "s"}, "0.25",
                            "Time from zero to full force at the start and after a fault."),
     real<&Limits::ramp_out>("ramp_out", {0, 0.02, "s"}, "0.02",
-                            "Time from full force to zero at a planned end; after a fault 2 ms at most."),
+                            "Time from full force to zero at a planned end; after a fault it is at most 2 ms."),
     boolean<&Limits::passivity>("passivity", nullptr,
                                 "Passivity observer and controller; default: on for arms never tried on hardware."),
-    object<&Limits::enable>("enable", kEnable, "A button of the device that lets forces through."),
+    object<&Limits::enable>("enable", kEnable, "A button of the device that enables the forces."),
     list<&Limits::motors>("motors", kMotor, {0, 16}, "Motors in the order of the joints, for the model of their heat."),
 };
 constexpr Table kLimits{kLimitKeys};
 
 constexpr Key kHdKeys[] = {
-    name<&HdText::model>("model", "HD_DEVICE_MODEL_TYPE; some programs look for names that they know."),
-    name<&HdText::vendor>("vendor", "HD_DEVICE_VENDOR."),
-    name<&HdText::serial>("serial", "HD_DEVICE_SERIAL_NUMBER."),
+    name<&HdText::model>("model", "Answer to HD_DEVICE_MODEL_TYPE; some programs accept only certain names."),
+    name<&HdText::vendor>("vendor", "Answer to HD_DEVICE_VENDOR."),
+    name<&HdText::serial>("serial", "Answer to HD_DEVICE_SERIAL_NUMBER."),
     any<&HdText::joints>("joints", "up to 6 lists [joint, sign, offset]",
-                         "Turret, thigh, shin and the gimbal's three: joint of the device from 0, 1 or -1, rad."),
-    any<&HdText::buttons>("buttons", "a list of buttons", "Buttons of the device, from 0, in the order of theirs."),
+                         "Joints in OpenHaptics's order: turret, thigh, shin and the three of the gimbal. Each has the "
+                         "number of the device's joint (from 0), the sign (1 or -1) and the offset in rad."),
+    any<&HdText::buttons>("buttons", "a list of buttons",
+                          "Numbers of the device's buttons (from 0), in the order of OpenHaptics's buttons."),
 };
 constexpr Table kHd{kHdKeys};
 
@@ -179,14 +191,14 @@ constexpr Key kDeviceKeys[] = {
     required(integer<&DeviceText::version>("hapticd-device", kVersion, nullptr, "Version of the format.")),
     required(name<&DeviceText::module>("module", "Device module; `hapticd device list` names them.")),
     name<&DeviceText::name>("name", "Name of the device; default: the file's name."),
-    object<&DeviceText::mount>("mount", kPose, "Frame of the device in the world."),
-    object<&DeviceText::limits>("limits", kLimits, "Limits between contact and motors; no plugin can exceed them."),
+    object<&DeviceText::mount>("mount", kPose, "Pose of the device in the world."),
+    object<&DeviceText::limits>("limits", kLimits, "Limits of what is sent to the motors; no plugin can exceed them."),
     object<&DeviceText::admittance>("admittance", kAdmittance,
                                     "Compliance control, for arms that measure joint torques."),
     any<&DeviceText::parameters>("parameters", "a mapping of the module's parameters", "Parameters of the module."),
     any<&DeviceText::hand>("hand", "a mapping of the hand's parameters",
                            "The simulated hand: the module's parameters that begin with `hand.`."),
-    object<&DeviceText::hd>("hd", kHd, "How programs of OpenHaptics see the arm; default: as it says of itself."),
+    object<&DeviceText::hd>("hd", kHd, "How OpenHaptics programs see the arm; default: the module's own description."),
 };
 
 constexpr Key kDaemonServoKeys[] = {
@@ -198,7 +210,7 @@ constexpr Table kDaemonServo{kDaemonServoKeys};
 
 constexpr Key kDaemonLimitKeys[] = {
     real<&Daemon::force>("force", {0.01, 1000, "N"}, nullptr,
-                         "Largest force of every device of this machine; it bounds the device files."),
+                         "Largest force of any device of this machine, whatever its device file allows."),
 };
 constexpr Table kDaemonLimits{kDaemonLimitKeys};
 

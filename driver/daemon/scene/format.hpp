@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The three file formats as tables, and the plain structs that reading fills. Meaning is checked later (load.cpp).
+/// The tables of the three file formats, and the plain structs that the reader fills. load.cpp checks the contents.
 #pragma once
 #include <optional>
 #include <vector>
@@ -13,7 +13,7 @@ namespace hapticd::scene {
 using document::Node;
 using document::Table;
 
-/// Most models of one scene, and most arms (one probe each).
+/// Largest numbers of models and of arms (one probe each) in one scene.
 constexpr double kMaxModels = 20000, kMaxDevices = 8;
 
 struct ModelText {
@@ -23,7 +23,7 @@ struct ModelText {
   const Node *parameters = nullptr, *motion = nullptr, *path = nullptr;
 };
 
-/// An arm as the scene names it: its file, and the settings that this scene overrides.
+/// An arm in a scene file: the path of its device file, and the settings that the scene replaces.
 struct DeviceReference {
   std::filesystem::path file;
   std::string name;
@@ -42,7 +42,7 @@ struct SceneText {
 /// The modes of `clients`, in the order of ClientMode.
 inline constexpr std::string_view kClientModes[] = {"off", "add", "instead"};
 
-/// How programs of the HDAPI see the arm; its lists are read later.
+/// The key `hd` of a device file: how HDAPI programs see the arm. Its lists are read later.
 struct HdText {
   std::string model, vendor, serial;
   const Node *joints = nullptr, *buttons = nullptr;
@@ -68,8 +68,8 @@ extern const Table kSceneTable, kModelTable, kClientsTable, kDeviceReferenceTabl
 
 /// A format, and the key with which its files begin.
 struct Format {
-  const char* key;   ///< "hapticd"
-  const char* name;  ///< "scene"
+  const char* key;   ///< such as "hapticd"
+  const char* name;  ///< such as "scene"
   const char* doc;
   const Table* table;
 };

@@ -9,8 +9,8 @@ namespace hapticd::scene {
 using namespace document;
 namespace {
 
-constexpr size_t kMaxPathBytes = 256u << 20;  ///< an hour at 1 kHz and more
-constexpr double kFarthest = 1e6;             ///< [m]
+constexpr size_t kMaxPathBytes = 256u << 20;  ///< enough for an hour of rows at 1 kHz
+constexpr double kFarthest = 1e6;             ///< [m] largest coordinate
 constexpr size_t kPoseColumns = 8;
 
 const CsvRules kRules{{"t,x,y,z,qw,qx,qy,qz", "t,x,y,z"}, true, true, kFarthest};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The motion of a kinematic model: CSV with a header t,x,y,z,qw,qx,qy,qz (or t,x,y,z alone).
+/// Reads the motion of a kinematic model from a CSV file with the header t,x,y,z,qw,qx,qy,qz (or only t,x,y,z).
 #pragma once
 #include <filesystem>
 #include <vector>
@@ -11,10 +11,11 @@ namespace hapticd::scene {
 
 using document::Problems;
 
-/// [main] Reads and checks a path: finite numbers, growing times, unit quaternions (normalised within 1e-3).
+/// [main] Reads a path and checks it: numbers must be finite, times must grow, and quaternions must have length 1
+/// within 1e-3; they are normalised.
 std::vector<PathPoint> readKinematicPath(const std::filesystem::path& file, Problems& problems);
 
-/// [main] The same from a text, for tests and fuzzing.
+/// [main] Does the same with a text, for tests and fuzzing.
 std::vector<PathPoint> parseKinematicPath(const std::string& text, const std::string& file, Problems& problems);
 
 }  // namespace hapticd::scene

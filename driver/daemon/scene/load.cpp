@@ -15,7 +15,7 @@ void checkRoot(const Node& root, Reader& in, host::Catalog& catalog, std::option
   if (format == nullptr) {
     detail::hasFormat(root, nullptr, in);
   } else if (format->table == &kSceneTable) {
-    // A hand is checked against the arm that `run` takes where the scene names none.
+    // If the scene names no arm, its hand is checked against the default arm of `hapticd run`.
     const bool default_arm = root.find("hand") != nullptr;
     auto loaded = detail::loadScene(root, in, catalog, {.default_device = default_arm, .device_file = {}});
     if (scene != nullptr) *scene = std::move(loaded);
@@ -51,7 +51,7 @@ bool detail::hasFormat(const Node& root, const char* wanted, Reader& in) {
     in.problem(root, format->key, std::string("this is a ") + format->name + " file, expected a " + name + " file");
   } else if (root.find("format") != nullptr) {
     in.problem(root, "format",
-               "this looks like a model file, which the plugin reads; expected a " +
+               "this looks like a model file, which only its plugin reads; expected a " +
                    (wanted ? name : "scene, device or daemon") + " file that names it");
   } else {
     std::vector<std::string> keys;

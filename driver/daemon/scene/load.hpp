@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Scene, device and daemon files into checked descriptions. All problems are collected, never only the first.
+/// Reads scene, device and daemon files into checked descriptions. It collects all problems, not only the first.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -14,11 +14,11 @@ namespace hapticd::scene {
 
 using document::Problems;
 
-/// What is to be done with the scene's devices.
+/// Options for the devices of a scene.
 struct LoadOptions {
-  /// False: with no device named, none is taken either (`hapticd trace` needs no arm).
+  /// True: a scene that names no device gets the default device. False: it gets none (`hapticd trace` needs no arm).
   bool default_device = true;
-  /// Replaces the devices that the scene names; empty: the scene's own are used.
+  /// A device file that replaces the scene's devices. If it is empty, the scene's own devices are used.
   std::filesystem::path device_file;
 };
 
@@ -35,28 +35,30 @@ struct LoadedDaemon {
   Problems problems;
 };
 
-/// [main] A scene file with everything it names: device files, parameters against the plugins' tables, paths.
+/// [main] Reads a scene file and everything that it names: device files, paths, and parameters, which are checked
+/// against the plugins' tables.
 Loaded load(const std::filesystem::path& file, host::Catalog& catalog, const LoadOptions& options = {});
 
-/// [main] A device file.
+/// [main] Reads a device file.
 LoadedDevice loadDevice(const std::filesystem::path& file, host::Catalog& catalog);
 
-/// [main] A daemon file.
+/// [main] Reads a daemon file.
 LoadedDaemon loadDaemon(const std::filesystem::path& file);
 
-/// [main] Loads any of the three formats, told apart by their first key. Used by `hapticd check`.
-/// @param scene receives a scene without problems; nullptr: not wanted
+/// [main] Reads a file of any of the three formats, which it recognises by their version keys. For `hapticd check`.
+/// @param scene receives the scene if the file is a scene without problems; may be nullptr
 Problems checkFile(const std::filesystem::path& file, host::Catalog& catalog, std::optional<Scene>* scene = nullptr);
 
-/// [main] The same for a text; `file` gives messages its name and paths their folder. Fuzzing starts here.
+/// [main] Does the same with a text; fuzzing calls it. `file` is the name in messages, and its folder is where relative
+/// paths begin.
 Problems checkText(const std::string& text, const std::filesystem::path& file, host::Catalog& catalog,
                    std::optional<Scene>* scene = nullptr);
 
-/// [main] JSON Schema of a format ("scene", "device", "daemon"), for editors; "" for any other name.
-/// With a catalog, the parameters of every plugin found are part of it.
+/// [main] Returns the JSON Schema of a format ("scene", "device" or "daemon"), for editors; "" for any other name.
+/// If a catalog is given, the schema contains the parameters of every plugin that was found.
 std::string jsonSchema(const std::string& format, host::Catalog* catalog);
 
-/// The device file that is used for a scene without one.
+/// The device file for a scene that names no device.
 constexpr const char* kDefaultDevice = "devices/simulated-premium15.yaml";
 
 }  // namespace hapticd::scene

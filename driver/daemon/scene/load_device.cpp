@@ -23,13 +23,15 @@ void readHand(const Node& node, const std::string& key, const host::ClassInfo& i
   if (hasHand(info))
     reader.read(node, key, "hand");
   else
-    in.problem(node, key,
-               "module " + info.name + " has no simulated hand, expected this key only with a module that has one");
+    in.problem(
+        node, key,
+        "module " + info.name +
+            " has no simulated hand; remove this key, or use a module with hand.* parameters, such as simulated");
 }
 
 constexpr size_t kHdJoints = 6, kHdButtons = 32;
 
-/// [joint, sign, offset]; the last two may be left out.
+/// Reads [joint, sign, offset]; sign and offset may be left out.
 HdJoint readHdJoint(const Node& node, const std::string& key, Reader& in) {
   HdJoint joint;
   if (!node.isSequence() || node.items.empty() || node.items.size() > 3) {
@@ -46,7 +48,7 @@ HdJoint readHdJoint(const Node& node, const std::string& key, Reader& in) {
   return joint;
 }
 
-/// A short list.
+/// Reports a problem and returns false if the node is not a list of at most `most` items.
 bool isShortList(const Node& list, const std::string& key, size_t most, const char* of, Reader& in) {
   if (list.isSequence() && list.items.size() <= most) return true;
   in.problem(list, key,
@@ -68,15 +70,14 @@ HdArm readHd(const HdText& text, Reader& in) {
   return arm;
 }
 
-/// Somebody who writes 0 means no force, but no limit would mean the opposite.
+/// Refuses a limit of 0 N: who writes it means "no force", but elsewhere 0 means "no limit".
 void refuseNoForce(const Node& root, Reader& in) {
   const Node* limits = root.find("limits");
   const Node* force = limits != nullptr && limits->isMap() ? limits->find("force") : nullptr;
   if (force == nullptr || !force->isScalar() || document::toNumber(force->scalar) != 0.0) return;
-  in.problem(
-      *force, "limits.force",
-      "0 N is not a limit that an arm can keep; expected above 0, such as 0.5 N to begin with. Leave it out for the "
-      "device's own maximum; to run without a force: models: []");
+  in.problem(*force, "limits.force",
+             "0 N is not a limit that an arm can keep; expected a number above 0, such as 0.5 to begin with. Leave "
+             "the key out for the device's own maximum. To run without any force, write models: [] in the scene");
 }
 
 }  // namespace

@@ -58,7 +58,8 @@ class SceneLoader {
                       "), expected each name once");
   }
 
-  /// The plugin's table, looked up once per name: ten thousand models of an unknown plugin give one message.
+  /// Returns the plugin's table. Each name is looked up only once, so that ten thousand models of an unknown plugin
+  /// give only one long message.
   const host::ClassInfo* pluginOf(const ModelText& text, const std::string& key) {
     if (text.plugin.empty()) return nullptr;
     const Node* at = text.node->find("plugin");
@@ -95,24 +96,27 @@ class SceneLoader {
     addPath(key, path, model);
   }
 
-  /// `motion:` beside `plugin:` is for the host and, if the plugin has such a parameter, for the plugin too.
+  /// Reads the model's key `motion`. It is meant for the host, and also for the plugin if it has such a parameter.
   void readMotion(const Node& node, const std::string& key, const host::ClassInfo& info, ParameterReader& reader) {
     const int index = info.indexOf("motion");
     if (index >= 0) return reader.readOne(node, key, static_cast<uint32_t>(index));
     const auto choice = in_.choice(node, key, kMotions);
     if (choice && kMotions[*choice] == "dynamic" && (info.flags & HSP_C_MOVES) == 0)
-      in_.problem(node, key, "plugin " + info.name + " cannot be dynamic, expected static or kinematic");
+      in_.problem(node, key,
+                  "plugin " + info.name +
+                      " does not move its models, so motion cannot be dynamic; expected static or kinematic");
   }
 
   void addPath(const std::string& key, const Node* path, Model& model) {
     if (path != nullptr && !model.kinematic)
-      return in_.problem(*path, key + ".path",
-                         "the model does not follow its path, expected motion: kinematic beside it");
-    if (!model.kinematic || path == nullptr) return;  // without a path it rests until a program leads it
+      return in_.problem(
+          *path, key + ".path",
+          "the model does not follow its path, because it is not kinematic; add motion: kinematic to the model");
+    if (!model.kinematic || path == nullptr) return;  // without a path, the model rests until a program leads it
     if (const auto file = in_.existingFile(*path, key + ".path")) model.path = readKinematicPath(*file, in_.problems());
   }
 
-  /// A mode alone, or a mapping that contains it.
+  /// Reads `clients`: a mode alone, or a mapping that contains the mode.
   void readClients(const Node& node) {
     if (node.isMap()) return in_.object(node, "clients", kClientsTable, &scene_.clients);
     const std::vector<std::string> modes(std::begin(kClientModes), std::end(kClientModes));
@@ -131,7 +135,8 @@ class SceneLoader {
     if (text_.device == nullptr && text_.devices == nullptr && options_.default_device) addDefault(root);
     if (text_.hand != nullptr && !scene_.devices.empty() && !hand_used_)
       in_.problem(*text_.hand, "hand",
-                  "none of the scene's devices has a simulated hand, expected one whose module has hand.* parameters");
+                  "none of the scene's devices has a simulated hand; remove this key, or use a device whose module has "
+                  "hand.* parameters");
   }
 
   void addList(const Node& list) {
@@ -142,7 +147,7 @@ class SceneLoader {
     for (size_t i = 0; i < list.items.size(); ++i) addNamed(list.items[i], "devices[" + std::to_string(i) + "]");
   }
 
-  /// A path, or a mapping with a path and the settings that this scene overrides.
+  /// Adds a device: the node is a path, or a mapping with a path and the settings that this scene replaces.
   void addNamed(const Node& node, const std::string& key) {
     DeviceReference reference;
     const size_t before = in_.problems().size();
@@ -158,22 +163,22 @@ class SceneLoader {
     size_t same = 0;
     for (const Device& device : scene_.devices) same += device.name == name ? 1 : 0;
     if (same > 1)
-      in_.problem(
-          node, key,
-          "another device is named \"" + name + "\" too, expected different names: write {file: ..., name: ...}");
+      in_.problem(node, key,
+                  "another device is named \"" + name +
+                      "\" too, expected different names: write {file: FILE, name: NAME} in place of one path");
   }
 
   void addDefault(const Node& root) {
     const auto file = host::shippedFile(kDefaultDevice);
     if (!file)
       return in_.problem(root, "device",
-                         std::string("no device is named, and the simulated one (") + kDefaultDevice +
-                             ") is not installed; expected device: FILE");
+                         std::string("the scene names no device, and the default device file (") + kDefaultDevice +
+                             ") is not installed; add device: FILE");
     addDevice({*file, "", {}, nullptr});
     if (!scene_.devices.empty()) scene_.devices.back().chosen_by_default = true;
   }
 
-  /// The name of the new device; "" if its file has problems.
+  /// Adds a device. @return its name; "" if its file has problems
   std::string addDevice(const DeviceReference& reference) {
     bool has_hand = false;
     auto device = loadDeviceFile(reference, catalog_, in_.problems(), &in_, text_.hand, &has_hand);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The parts of loading that scene, device and daemon files share. Inside driver/daemon/scene only.
+/// Functions that the loaders of scene, device and daemon files share. Only for driver/daemon/scene.
 #pragma once
 #include <optional>
 #include <string>
@@ -12,21 +12,21 @@ namespace hapticd::scene::detail {
 
 using document::Reader;
 
-/// The format whose key the document has, or nullptr.
+/// Returns the format whose version key the document has, or nullptr.
 const Format* formatOf(const Node& root);
 
-/// True if the document has the wanted format; otherwise a problem says what it is and what was expected.
+/// Returns true if the document has the wanted format; otherwise reports what it is and what was expected.
 bool hasFormat(const Node& root, const char* wanted, Reader& in);
 
-/// Reads what a scene file's tree says. Problems go to `in`.
+/// Reads the tree of a scene file. Problems go to `in`.
 std::optional<Scene> loadScene(const Node& root, Reader& in, host::Catalog& catalog, const LoadOptions& options);
 
-/// One device from its file, with what a scene says otherwise.
-/// @param scene_in reader of the scene that overrides; @param hand the scene's `hand:` for all its devices
+/// Reads a device file, and replaces what the scene says otherwise.
+/// @param scene_in reader of the scene; @param hand the scene's `hand:` for all its devices
 std::optional<Device> loadDeviceFile(const DeviceReference& reference, host::Catalog& catalog, Problems& problems,
                                      Reader* scene_in, const Node* hand, bool* has_hand);
 
-/// Reads what a device file's tree says.
+/// Reads the tree of a device file.
 std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceReference& reference, host::Catalog& catalog,
                                  Reader* scene_in, const Node* hand, bool* has_hand);
 

@@ -10,9 +10,9 @@ namespace hapticd::scene {
 using namespace document;
 namespace {
 
-constexpr size_t kShownProblems = 8;  ///< most problems of one array: the others would say the same
+constexpr size_t kShownProblems = 8;  ///< most problems reported for one array, because more would say the same
 
-/// True if some id begins with "id.".
+/// True if the id is the name of a group: the id of some parameter begins with "id.".
 bool isGroup(const host::ClassInfo& info, const std::string& id) {
   for (const host::ParamInfo& param : info.params)
     if (param.id.size() > id.size() && param.id.compare(0, id.size(), id) == 0 && param.id[id.size()] == '.')
@@ -20,7 +20,7 @@ bool isGroup(const host::ClassInfo& info, const std::string& id) {
   return false;
 }
 
-/// The ids of a group without the group's name: "script" of "hand.script"; all of them for "".
+/// Returns the ids of a group without the group's name, such as "script" for "hand.script"; for "" all ids.
 std::vector<std::string> idsIn(const host::ClassInfo& info, const std::string& group) {
   std::vector<std::string> ids;
   for (const std::string& id : info.paramIds())
@@ -55,7 +55,7 @@ void ParameterReader::read(const Node& node, const std::string& key, const std::
                             document::mappingMeant(node));
   for (const Entry& entry : node.entries) {
     if (!skip.empty() && entry.key.scalar == skip) continue;
-    if (node.find(entry.key.scalar) != &entry.value) continue;  // given twice: told when the file was parsed
+    if (node.find(entry.key.scalar) != &entry.value) continue;  // given twice: the parser has reported it
     const std::string id = joined(prefix, entry.key.scalar), path = joined(key, entry.key.scalar);
     const int index = info_.indexOf(id);
     if (index >= 0 && entry.value.isNull())
@@ -87,7 +87,7 @@ void ParameterReader::nothing(const Entry& entry, const std::string& key, uint32
 void ParameterReader::unknown(const Entry& entry, const std::string& key, const std::string& id) {
   std::vector<std::string> ids = info_.paramIds();
   if (ids.empty()) return in_->problem(entry.key, key, "unknown key: " + info_.name + " has no parameters");
-  // Within a group only this group's names are suggested: names of other groups would be as unknown here.
+  // Within a group only names of this group are suggested, because names of other groups are not valid here.
   const std::string group = id.substr(0, id.find('.') == id.npos ? 0 : id.rfind('.'));
   if (!group.empty()) std::erase_if(ids, [&](const std::string& one) { return one.rfind(group + ".", 0) != 0; });
   in_->problem(entry.key, key,
@@ -98,7 +98,8 @@ void ParameterReader::unknown(const Entry& entry, const std::string& key, const 
 void ParameterReader::readOne(const Node& node, const std::string& key, uint32_t index) {
   const host::ParamInfo& param = info_.params[index];
   if (given_[index] != 0)
-    return in_->problem(node, key, "given twice (first in line " + std::to_string(given_[index]) + "), expected once");
+    return in_->problem(
+        node, key, "given twice (first in line " + std::to_string(given_[index]) + "), expected each parameter once");
   given_[index] = node.line;
   seen_[index] = true;
   Value value;
@@ -138,7 +139,7 @@ bool ParameterReader::readValue(const Node& node, const std::string& key, const 
     case HSP_DATA:
       return value.text = toJson(node), true;
     default:
-      in_->problem(node, key, "has a kind that this hapticd does not know; a newer one is needed");
+      in_->problem(node, key, "has a kind that this hapticd does not know; install a newer hapticd");
       return false;
   }
   value.number = number.value_or(0);
@@ -146,7 +147,7 @@ bool ParameterReader::readValue(const Node& node, const std::string& key, const 
 }
 
 bool ParameterReader::readPath(const Node& node, const std::string& key, Value& value) {
-  // A device node appears when the device is plugged in, so it is checked when it is opened.
+  // A file in /dev appears only when the device is plugged in, so it is not checked here but when it is opened.
   if (info_.kind == host::Kind::kDevice && node.isScalar() && node.scalar.rfind("/dev/", 0) == 0)
     return value.text = node.scalar, true;
   const auto file = in_->existingFile(node, key);
@@ -154,7 +155,8 @@ bool ParameterReader::readPath(const Node& node, const std::string& key, Value& 
   return file.has_value();
 }
 
-/// Units such as "m, rad, m, rad" are one per column of a row of four. A single unit holds for all columns.
+/// Returns the unit of each column: "m, rad, m, rad" has one unit for each column of four. A single unit is the unit of
+/// all columns.
 static std::vector<std::string> unitsOf(const host::ParamInfo& param) {
   std::vector<std::string> units(1);
   for (const char c : param.unit) {

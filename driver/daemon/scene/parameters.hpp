@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The parameters of a model or device, checked against the table of its plugin or module.
+/// Reads the parameters of a model or device, and checks them against the table of its plugin or module.
 #pragma once
 #include <vector>
 
@@ -18,18 +18,19 @@ class ParameterReader {
   ParameterReader(Reader& in, const host::ClassInfo& info)
       : in_(&in), info_(info), given_(info.params.size()), seen_(info.params.size()) {}
 
-  /// Continues with nodes of another file, whose values replace earlier ones.
+  /// Continues with nodes of another file. Their values replace earlier values.
   void overrideFrom(Reader& in);
 
-  /// Reads a mapping; nested mappings flatten to dotted ids. @param key where it stands, "models[2].parameters"
+  /// Reads a mapping; names in nested mappings become ids with dots. @param key key of the mapping, such as
+  /// "models[2].parameters"
   /// @param prefix put before each id, "hand" for a mapping that holds the hand.* parameters
-  /// @param skip an entry of the mapping that is not a parameter
+  /// @param skip name of an entry of the mapping that is not a parameter
   void read(const Node& node, const std::string& key, const std::string& prefix = "", const std::string& skip = "");
 
-  /// Reads one parameter that stands by itself.
+  /// Reads one parameter that is not part of a mapping of parameters.
   void readOne(const Node& node, const std::string& key, uint32_t index);
 
-  /// Reports required parameters that nobody gave. @param at where they should stand
+  /// Reports required parameters that are missing. @param at node where they were expected
   void requireAll(const Node& at, const std::string& key);
 
   std::vector<Value> take() { return std::move(values_); }
@@ -44,8 +45,8 @@ class ParameterReader {
   Reader* in_;
   const host::ClassInfo& info_;
   std::vector<Value> values_;
-  std::vector<int> given_;  // line of each parameter in the file being read, right or wrong; 0: not given
-  std::vector<bool> seen_;  // in any file
+  std::vector<int> given_;  // line of each parameter in the file being read, even if its value is wrong; 0: not given
+  std::vector<bool> seen_;  // true for parameters that were given in any file
 };
 
 }  // namespace hapticd::scene

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The tables have a default as YAML; as JSON it is the same node.
+/// Converts a default value of the tables from YAML to JSON.
 Json defaultOf(const std::string& yaml) {
   Problems none;
   const auto node = parseText(yaml, "default", none);
@@ -84,7 +84,7 @@ Json schemaOf(const Table& table) {
   return json;
 }
 
-/// The type of a parameter, without its bounds, default and description.
+/// Returns the JSON Schema type of a parameter, without its bounds, default and description.
 Json typeOf(const host::ParamInfo& param) {
   Json json = Json::object();
   switch (param.kind) {
@@ -132,7 +132,7 @@ Json schemaOf(const host::ParamInfo& param) {
   return json;
 }
 
-/// Puts a parameter at the place that its dotted id names.
+/// Puts a parameter at the place for its id, whose parts are separated by dots.
 void place(Json& object, const std::string& id, const host::ParamInfo& param) {
   Json& properties = object["properties"];
   const size_t dot = id.find('.');
@@ -180,7 +180,7 @@ void addPaths(Json& scene) {
   model["path"]["type"] = "string";
 }
 
-/// What the lists of `hd` contain.
+/// Adds the contents of the lists in `hd` to the schema of a device.
 void addHd(Json& device) {
   Json& hd = device["properties"]["hd"]["properties"];
   const Json joint{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 1}, {"maxItems", 3}};

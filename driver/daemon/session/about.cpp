@@ -42,7 +42,7 @@ std::string machine() {
   return uname(&name) == 0 ? std::string(name.sysname) + " " + name.release + " " + name.machine : "";
 }
 
-/// The folder to which paths in the scene, and of models that are added during the run, are relative.
+/// Returns the folder to which paths are relative, in the scene and in models that are added during the run.
 std::string folderOf(const std::filesystem::path& file) {
   std::error_code unknown;
   return std::filesystem::absolute(file, unknown).parent_path().string();
@@ -74,7 +74,7 @@ Json infoJson(const hdv_info& info) {
           {"product", std::string(info.product, strnlen(info.product, sizeof info.product))}};
 }
 
-/// How the links of an arm are connected, for programs that draw it.
+/// Describes how the links of an arm are connected, for programs that draw it.
 Json linksJson(Arm& arm) {
   const hdv_ext_links* links = arm.device().links();
   if (links == nullptr) return Json();
@@ -107,7 +107,7 @@ hdv_info toInfo(const Json& json) {
   return info;
 }
 
-/// Every file on which the scene's forces depend.
+/// Lists every file on which the forces of the scene depend.
 Json filesJson(const scene::Scene& scene) {
   constexpr uint32_t kPath = HSP_PATH;
   std::set<std::string> files;
@@ -122,7 +122,7 @@ Json filesJson(const scene::Scene& scene) {
   return list;
 }
 
-/// Streams by their numbers, as in the file's own header.
+/// Lists the streams in the order of their numbers, with name and size of a row.
 Json streamsJson(const std::vector<record::StreamSpec>& streams) {
   Json list = Json::array();
   for (size_t i = 0; i < streams.size(); ++i)
@@ -217,9 +217,10 @@ Result<RecordedRun> readAbout(const std::string& json_text) {
         if (model.at("name") == other.name) useFormerDefaults(other, model.at("id"), model.at("version"));
     const bool possible = std::isfinite(run.facts.rate) && run.facts.rate > 0 && run.facts.period_ns > 0;
     if (!possible || run.devices.size() != run.scene.devices.size())
-      return Error{"its rate or its devices are impossible: it is damaged"};
+      return Error{"its description has an impossible rate or impossible devices: the recording is damaged"};
     for (const hdv_info& info : run.devices)
-      if (info.joint_count > HDV_MAX_JOINTS) return Error{"a device has more joints than possible: it is damaged"};
+      if (info.joint_count > HDV_MAX_JOINTS)
+        return Error{"its description has a device with too many joints: the recording is damaged"};
     return run;
   } catch (const std::exception& error) {
     return Error{std::string("its description cannot be read: ") + error.what()};

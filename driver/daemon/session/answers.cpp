@@ -27,13 +27,14 @@ const scene::Value* given(const scene::Model& model, uint32_t index) {
   return found != model.parameters.end() ? &*found : nullptr;
 }
 
-/// The table has the default of an array as text, "[0, 1, 0]", which is JSON; without one it is empty.
+/// Returns the default of a parameter. For an array, the plugin's table has it as JSON text such as "[0, 1, 0]", or
+/// empty.
 Json defaultOf(const hsp_param& param) {
   Json numbers = Json::parse(host::textOf(param.def_text), nullptr, false);
   return numbers.is_array() ? numbers : Json::array();
 }
 
-/// A parameter's value in JSON: choices and switches by their names.
+/// Returns a parameter's value in JSON: the word of a choice, true or false for a switch.
 Json valueJson(const scene::Model& model, const hsp_param& param, uint32_t index) {
   const scene::Value* value = given(model, index);
   switch (param.kind) {
@@ -74,7 +75,7 @@ Json liveParameters(const Session& session, uint32_t place) {
   return live;
 }
 
-/// Where a model is: a moving model has rows, a resting one is listed with the place that it came to.
+/// Returns the pose of a model: of a moving model from its newest row, otherwise the pose in which it rests.
 Json poseJson(const Session& session, uint32_t place) {
   PoseRow row;
   if (session.runner.telemetry().flight()->newestPose(place, row))
@@ -85,7 +86,7 @@ Json poseJson(const Session& session, uint32_t place) {
   return {{"position", {p.x(), p.y(), p.z()}}, {"orientation", {q.w(), q.x(), q.y(), q.z()}}};
 }
 
-/// The programs that push on an arm, and how well they keep up.
+/// Lists the programs that push on an arm, with the counts of their answers.
 Json pushersJson(const Session& session, uint32_t index) {
   Json list = Json::array();
   for (const Leads::Pusher& pusher : session.leads.pushers(index)) {
@@ -222,7 +223,7 @@ std::string snapshotAnswer(const Session& session) {
   const record::FlightRing& ring = session.runner.telemetry().flight()->ring();
   const auto mode = session.leads.mayPush() ? session.runner.scene().clients.mode : scene::ClientMode::kOff;
   Json next = Json::object(), models = Json::array(), devices = Json::array();
-  // This comes before the poses, so that a reader that starts there misses no motion of what it is told here.
+  // Read before the poses, so that a reader that starts at these rows misses no motion of the models listed here.
   for (size_t i = 0; i < ring.specs().size(); ++i) next[ring.specs()[i].name] = ring.written(i);
   for (uint32_t i = 0; i < session.places.size(); ++i)
     if (session.places[i].taken) models.push_back(modelJson(session, i));
@@ -286,13 +287,13 @@ std::string noForceWhy(const Session& session, uint32_t index) {
            (endsByItself(fault) ? "" : clear);
   if (!arm.foundPressed()) return "";
   return "device " + device +
-         ": the button of limits.enable was down when the run began, so it enables nothing\n  fix: let it go "
-         "once, then press it";
+         ": the button of limits.enable was down when the run began, so it does not enable forces\n  fix: release "
+         "it, then press it";
 }
 
 namespace {
 
-/// The program that pushes or pushed on an arm with the most refused answers.
+/// Adds the program that pushes or pushed on an arm and had the most refused answers.
 void addRefused(const Session& session, uint32_t arm, Json& json) {
   uint64_t most = 0;
   for (const Leads::Pusher& pusher : session.leads.pushers(arm)) {
@@ -306,7 +307,7 @@ void addRefused(const Session& session, uint32_t arm, Json& json) {
   }
 }
 
-/// For an event of a lead: which program it is, and what it does.
+/// For an event of a lead: adds the program, and what it leads.
 void addProgram(const Session& session, const hapticd_event& event, Json& json) {
   const bool push = event.model < 0 && event.code == static_cast<uint32_t>(Order::Led::kForce);
   if (event.kind == HAPTICD_REFUSED && push) return addRefused(session, static_cast<uint32_t>(event.probe), json);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Requests of programs that read along or lead: events, subscriptions, leads.
+/// Requests of programs that read rows, subscribe to events, or lead.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -18,7 +18,7 @@ Result<uint32_t> RequestHandler::armOf(const std::string& device) const {
   return refuse("unknown", noSuchDevice(runner_.scene(), device));
 }
 
-/// For the status page, and for the report of the run.
+/// Passes the news of a pushing program to the status page, the log and the report of the run.
 void RequestHandler::tellOfPusher(uint32_t arm, const Leads::Pusher& pusher, Leads::News news) {
   if (news == Leads::News::kBegins) return runner_.namePusher(arm, pusher.place, pusher.pid, pusher.program);
   runner_.forgetPusher(arm, pusher.place, news == Leads::News::kLeft ? PusherLog::End::kLeft : PusherLog::End::kUnlead);
@@ -33,7 +33,7 @@ Result<Leads::Target> RequestHandler::pushOf(const std::string& device) const {
     return refuse("unsupported",
                   "the scene lets programs watch, but not push\n  fix: clients: {push: true} in the scene");
   if (!leads_.mayPush())
-    return refuse("unsupported", "a reload took the permission to push back: " + scene_file_ +
+    return refuse("unsupported", "the scene of the last reload does not let programs push: " + scene_file_ +
                                      "\n  fix: clients: add (or instead) in the scene, and hapticd ctl reload");
   if (!runner_.arms()[*arm]->clients().possible())
     return refuse("unsupported",
@@ -41,7 +41,7 @@ Result<Leads::Target> RequestHandler::pushOf(const std::string& device) const {
   return Leads::Target{Order::Led::kForce, *arm, "device \"" + device + "\""};
 }
 
-/// What a request wants to lead, if that can be led at all.
+/// Returns the target that a request wants to lead, or why it cannot be led.
 Result<Leads::Target> RequestHandler::leadOf(const Request& request) const {
   if (!request.force.empty()) return pushOf(request.force);
   if (request.hand.empty()) {
@@ -62,21 +62,26 @@ Result<Leads::Target> RequestHandler::leadOf(const Request& request) const {
   if (!arm) return Error{arm.error()};
   const std::string name = "device \"" + request.hand + "\"";
   if (!runner_.arms()[*arm]->simulated())
-    return refuse("unsupported", name + " is not simulated: its hand is a person's");
+    return refuse("unsupported",
+                  name + " is not simulated, so a person holds it; only the hand of a simulated arm can be led");
   if (!runner_.arms()[*arm]->hand().guided())
     return refuse("unsupported",
-                  "the hand of " + name + " follows a script\n  fix: hand: {script: guided} in the scene");
+                  "the hand of " + name + " follows a script or a path\n  fix: hand: {script: guided} in the scene");
   return Leads::Target{Order::Led::kHand, *arm, "the hand of " + name};
 }
 
 Result<std::string> RequestHandler::lead(const control::Peer& peer, const Request& request) {
   if (runner_.virtualTime())
-    return refuse("unsupported",
-                  "the run is in virtual time, which programs cannot follow\n  fix: start it without --virtual-time");
+    return refuse(
+        "unsupported",
+        "the run is in virtual time, which programs cannot follow\n  fix: start the run without --virtual-time");
   const auto target = leadOf(request);
   if (!target) return Error{target.error()};
   if (!stays(peer) && staying() >= control::Server::kMaxStaying)
-    return refuse("too_many", "too many programs lead or listen already: " + std::to_string(staying()));
+    return refuse(
+        "too_many",
+        "no further program can lead or listen\n  fix: end one of the programs that lead or listen; there are now " +
+            std::to_string(staying()));
   runner_.nameLeader(peer.pid, programOf(peer.pid));
   auto memory = leads_.begin(*target, peer);
   if (!memory) return refuse("busy", memory.error());
@@ -88,7 +93,7 @@ Result<std::string> RequestHandler::lead(const control::Peer& peer, const Reques
                      why.empty() ? "" : ",\"no_force\":" + nlohmann::json(why).dump());
 }
 
-/// Memory that all who ask for it share; it is made for the first of them.
+/// Attaches shared memory to the answer. The memory is made at the first request, and later requests get the same.
 Result<void> RequestHandler::attach(std::unique_ptr<SealedMemory>& kept, const char* name, size_t bytes,
                                     SealedMemory::Writers writers) {
   if (!kept) {
@@ -135,7 +140,7 @@ Result<std::string> RequestHandler::eventsAfter(double after) const {
   const Flight& flight = *runner_.telemetry().flight();
   uint64_t first = static_cast<uint64_t>(after);
   const uint64_t end = flight.ring().written(kEvents);
-  if (after == 0 && end > kMost) first = end - kMost;  // the newest
+  if (after == 0 && end > kMost) first = end - kMost;  // only the newest events
   const auto events = flight.events(first, kMost);
   std::string list;
   for (const hapticd_event& event : events) list += (list.empty() ? "" : ",") + eventText(session(), event);
@@ -144,7 +149,10 @@ Result<std::string> RequestHandler::eventsAfter(double after) const {
 
 Result<std::string> RequestHandler::subscribe(const control::Peer& peer) {
   if (!stays(peer) && staying() >= control::Server::kMaxStaying)
-    return refuse("too_many", "too many programs lead or listen already: " + std::to_string(staying()));
+    return refuse(
+        "too_many",
+        "no further program can lead or listen\n  fix: end one of the programs that lead or listen; there are now " +
+            std::to_string(staying()));
   const uint64_t next = runner_.telemetry().flight()->ring().written(kEvents);
   listeners_[peer.id] = next;
   return fmt::format(R"({{"ok":true,"next":{}}})", next);

@@ -7,8 +7,8 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr double kStalled = 0.25;  ///< [s] without a tick: no machine that can keep a rate is ever so late
-constexpr uint32_t kWhy = 16;      ///< of the code of HAPTICD_REFUSED, see client.h
+constexpr double kStalled = 0.25;  ///< [s] a longer gap between two ticks means that the process was stopped
+constexpr uint32_t kWhy = 16;      ///< factor of the reason in the code of HAPTICD_REFUSED, see client.h
 
 uint32_t codeOf(Order::Led led, Follow::Refusal why) noexcept HSP_RT {
   return static_cast<uint32_t>(led) + kWhy * static_cast<uint32_t>(why);
@@ -108,7 +108,7 @@ void EventFinder::look(double t, uint32_t index, const Arm& arm) noexcept HSP_RT
   const auto number = static_cast<int32_t>(index);
   if (const Fault fault = arm.limiter().fault(); fault != note.fault) {
     note.fault = fault;
-    if (fault != Fault::kStopped)  // otherwise nobody held it: the run ends as planned
+    if (fault != Fault::kStopped)  // kStopped here is the planned end of the run; a hold is noted in order()
       add(fault != Fault::kNone ? HAPTICD_FAULT : HAPTICD_CLEARED, -1, number, static_cast<uint32_t>(fault),
           fault != Fault::kNone ? arm.limiter().measured() : 0);
   }
@@ -124,11 +124,11 @@ const char* whyRefused(const hapticd_event& event) {
     case Follow::Refusal::kNotFinite:
       return "a number is not finite";
     case Follow::Refusal::kTime:
-      return "its time lies ahead or before 0, expected seconds of CLOCK_MONOTONIC, or 0";
+      return "its time is in the future or negative; expected seconds of CLOCK_MONOTONIC, or 0";
     case Follow::Refusal::kFar:
-      return "its position is farther than 10 m from the world's origin, expected m";
+      return "its position is farther than 10 m from the world's origin; the value must be in m";
     case Follow::Refusal::kNotUnit:
-      return "its orientation is not of unit length, expected a quaternion w, x, y, z";
+      return "its orientation does not have length 1; expected a unit quaternion w, x, y, z";
     case Follow::Refusal::kNone:
       break;
   }

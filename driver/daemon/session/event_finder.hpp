@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Finds what happened in a tick: the changes that a person or a program wants to be told of, out of states that are
-/// there every tick. Runs in the servo thread.
+/// Finds the events of a tick: compares the states of this tick with the last one, and reports changes that a user or a
+/// program wants to know. Runs in the servo thread.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,26 +19,27 @@ namespace hapticd::servo {
 
 class EventFinder {
  public:
-  static constexpr double kFreeFor = 0.05;       ///< [s] away from a model before another touch is reported
-  static constexpr double kRefusedPeriod = 1.0;  ///< [s] between two reports about a leader that is refused
-  static constexpr size_t kMost = 64;            ///< events that one tick reports; more are dropped
+  /// [s] the probe must be outside this long before another touch is reported
+  static constexpr double kFreeFor = 0.05;
+  static constexpr double kRefusedPeriod = 1.0;  ///< [s] between two reports about refused records of a leader
+  static constexpr size_t kMost = 64;            ///< most events of one tick; more are dropped
 
-  /// [main] @param places most models that there may be @param arms of the scene
+  /// [main] @param places most models that the run can have @param arms number of arms
   EventFinder(size_t places, size_t arms) : models_(places), arms_(arms) {}
 
-  /// [rt] An order that the tick obeys.
+  /// [rt] Called for each order that this tick obeys.
   void order(const Order& order) noexcept HSP_RT;
-  /// [rt] After a tick at t [s].
+  /// [rt] Called after a tick at t [s]: finds its events.
   void tick(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
 
-  /// [rt] Events of this tick, without their number; the next call of forget() forgets them.
+  /// [rt] Returns the events of this tick, not yet numbered; valid until forget().
   std::span<const hapticd_event> found() const noexcept { return {found_.data(), count_}; }
-  void forget() noexcept HSP_RT { count_ = 0; }  ///< [rt]
+  void forget() noexcept HSP_RT { count_ = 0; }  ///< [rt] removes the events of this tick
 
  private:
-  /// How a model was a tick ago.
+  /// The state of a model one tick ago.
   struct ModelNote {
-    std::array<double, link::kMaxProbes> touched = never();  ///< [s] the last time that a probe was inside
+    std::array<double, link::kMaxProbes> touched = never();  ///< [s] by probe: time when it was last inside
     uint32_t level = 0;
     Trouble trouble = Trouble::kNone;
     bool leaving = false;
@@ -49,7 +50,7 @@ class EventFinder {
     uint64_t refused = 0;
     double refused_told = -kRefusedPeriod;
   };
-  struct ArmNote : RefusedNote {  // for the leader of the hand
+  struct ArmNote : RefusedNote {  // RefusedNote: for the leader of the hand
     Fault fault = Fault::kNone;
     RefusedNote pushes;
   };
@@ -65,17 +66,17 @@ class EventFinder {
   template <class Note>
   bool refused(double t, uint64_t now, Note& note) noexcept HSP_RT;
 
-  double last_t_ = std::numeric_limits<double>::quiet_NaN();  ///< [s] of the tick before
+  double last_t_ = std::numeric_limits<double>::quiet_NaN();  ///< [s] time of the last tick
   std::vector<ModelNote> models_;
   std::vector<ArmNote> arms_;
   std::array<hapticd_event, kMost> found_{};
   size_t count_ = 0, leaving_ = 0;
 };
 
-/// [main] For a refused target of a model or a hand: what was wrong with it; "" for another event.
+/// [main] Returns why the target of a lead was refused, for such an event; "" for other events.
 const char* whyRefused(const hapticd_event& event);
 
-/// [main] "click", as in JSON; "" for a number that means none.
+/// [main] Returns the name of an event in JSON, such as "click"; "" if there is no such event.
 const char* nameOfEvent(uint32_t kind);
 
 }  // namespace hapticd::servo

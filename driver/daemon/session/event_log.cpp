@@ -16,8 +16,8 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr size_t kAtOnce = 256;    ///< events that are read at a time
-constexpr double kBegins = 0.005;  ///< [s] nobody moves a tip to a surface so soon: it was inside already
+constexpr size_t kAtOnce = 256;    ///< events that are read in one go
+constexpr double kBegins = 0.005;  ///< [s] a touch this early means that the tip was inside at the start
 
 }  // namespace
 
@@ -93,9 +93,9 @@ void EventLog::note(const hapticd_event& event) {
 }
 
 EventLog::Message EventLog::messageOfSwitch(size_t arm) const {
-  return {
-      HSP_LOG_WARNING, arm < devices_.size() ? devices_[arm] : "",
-      "the button of limits.enable was down when the run began, so it enables nothing; let it go once, then press it"};
+  return {HSP_LOG_WARNING, arm < devices_.size() ? devices_[arm] : "",
+          "the button of limits.enable was down when the run began, so it does not enable forces; release it, then "
+          "press it"};
 }
 
 std::string EventLog::model(const hapticd_event& event) const {
@@ -132,16 +132,16 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
       if (event.t < kBegins)
         return {HSP_LOG_WARNING, who,
                 device(event) +
-                    " begins inside it, so it is pushed at once, over limits.ramp_in; expected outside: move "
-                    "the model, the arm (mount) or the hand (hand)"};
+                    " is inside this model at the start, so a force begins at once (over limits.ramp_in)\n  fix: move "
+                    "the model, the arm (mount) or the hand (hand), so that the tip starts outside"};
       return {HSP_LOG_DEBUG, who, fmt::format("{} touches it at {:.4f} s", device(event), event.t)};
     case HAPTICD_SILENCED:
       return {HSP_LOG_ERROR, "", silenceReason(event, who)};
     case HAPTICD_DEGRADED:
       return {HSP_LOG_WARNING, who,
-              fmt::format("answers coarser (level {:.0f}), since the ticks took too long", event.value)};
+              fmt::format("answers less accurately (level {:.0f}), because ticks took too long", event.value)};
     case HAPTICD_RESTORED:
-      return {HSP_LOG_INFO, who, "answers as exactly as before"};
+      return {HSP_LOG_INFO, who, "answers with its full accuracy again"};
     case HAPTICD_CAME:
       return {HSP_LOG_INFO, who, "is in the scene now"};
     case HAPTICD_LEFT:
@@ -164,21 +164,22 @@ EventLog::Message EventLog::messageOfArm(const hapticd_event& event) const {
     return {HSP_LOG_INFO, device(event),
             held ? "the hold is over; its forces come back" : "the fault is over; its forces come back"};
   const auto fault = static_cast<Fault>(event.code);
-  if (fault == Fault::kStopped)  // only an order to hold counts: the end of a run is no event
-    return {HSP_LOG_WARNING, device(event), "it is held: its forces ended and stay off until: hapticd ctl clear"};
+  if (fault == Fault::kStopped)  // from an order to hold; the end of a run makes no event
+    return {HSP_LOG_WARNING, device(event),
+            "it is held; its forces ended and stay off until it is cleared\n  fix: hapticd ctl clear"};
   const char* trouble = event.probe >= 0 && arm < arms_.size() ? arms_[arm]->troubleOf(fault) : nullptr;
   return {HSP_LOG_ERROR, "", "fault: " + faultMessage(device(event), fault, event.value, trouble)};
 }
 
 EventLog::Message EventLog::messageOfLeader(const hapticd_event& event) const {
   if (event.model < 0 && event.code == static_cast<uint32_t>(Order::Led::kForce))
-    return {HSP_LOG_DEBUG, "", ""};  // the log of those who push tells more
+    return {HSP_LOG_DEBUG, "", ""};  // PusherLog reports more about programs that push
   const std::string what = event.model >= 0 ? model(event) : device(event);
   if (event.kind == HAPTICD_REFUSED)
     return {HSP_LOG_WARNING, what,
             fmt::format("{:.0f} record{} of its leader {} refused so far{}{}", event.value, event.value == 1 ? "" : "s",
                         event.value == 1 ? "was" : "were", *whyRefused(event) != 0 ? ": " : "", whyRefused(event))};
-  return {HSP_LOG_INFO, what, leaderOf(event) + (event.kind == HAPTICD_JOINED ? " leads it" : " leads it no more")};
+  return {HSP_LOG_INFO, what, leaderOf(event) + (event.kind == HAPTICD_JOINED ? " leads it" : " no longer leads it")};
 }
 
 }  // namespace hapticd::servo

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Writes into the daemon's log what the servo tells of itself, when it happens: faults, silenced and degraded models,
-/// models and leaders that come and go.
+/// Writes the events of the servo into the daemon's log when they happen: faults, silenced and degraded models, models
+/// and leaders that come and go.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -20,20 +20,21 @@ class EventLog {
  public:
   using Arms = std::vector<std::unique_ptr<Arm>>;
 
-  /// [main] @param places most models that there may be @param devices names of the arms, in order
+  /// [main] @param places most models that the run can have @param devices names of the arms, in order
   EventLog(size_t places, std::vector<std::string> devices, const Arms& arms)
       : models_(places), devices_(std::move(devices)), arms_(arms) {}
 
-  /// [any] A model takes a place; "": it has left, and earlier events still have its name.
+  /// [any] Called when a model takes a place, or with "" when it has left. Earlier events keep the old name.
   void name(uint32_t place, const std::string& model);
 
   /// [main] Writes the events since the last call.
   void tell(const Flight& flight);
 
-  /// [any] The name of a process that is about to lead; it may be gone when its event is reported.
+  /// [any] Notes the name of a process that is about to lead, because the process may be gone when its event is
+  /// reported.
   void leads(pid_t pid, const std::string& program);
 
-  /// [any] A program begins to push on an arm, or stops pushing.
+  /// [any] Called when a program begins to push on an arm, and when it has stopped.
   void pushes(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
   void pushesNoMore(uint32_t arm, uint32_t place, PusherLog::End how);
 
@@ -42,11 +43,11 @@ class EventLog {
     int32_t level;  ///< HSP_LOG_DEBUG, ...
     std::string who, text;
   };
-  /// [main] What an event means, in words.
+  /// [main] Returns the message for an event.
   Message messageOf(const hapticd_event& event) const;
-  /// [main] Keeps what the words of later events depend on: whether an arm is held.
+  /// [main] Notes what the messages of later events depend on: whether an arm is held.
   void note(const hapticd_event& event);
-  /// [main] The message for an arm whose enable switch was found pressed.
+  /// [main] Returns the message for an arm whose enable switch is down since the start.
   Message messageOfSwitch(size_t arm) const;
 
  private:

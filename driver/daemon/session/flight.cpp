@@ -52,7 +52,7 @@ bool Flight::read(uint64_t tick, TickRow& row, ArmRow& arm) const {
 }
 
 bool Flight::newestPose(uint32_t model, PoseRow& row) const {
-  constexpr uint64_t kMostAtOnce = 1024;  // most models that move in one tick
+  constexpr uint64_t kMostAtOnce = 1024;  // looks back over this many rows at most
   const uint64_t end = ring_->written(kPoses);
   for (uint64_t back = 1; back <= std::min(end, kMostAtOnce); ++back)
     if (ring_->copy(kPoses, end - back, 1, reinterpret_cast<std::byte*>(&row)) == 1 && row.model == model) return true;
@@ -75,7 +75,7 @@ void Flight::push(FlightStream stream, const Row& row) noexcept HSP_RT {
 
 void Flight::begin(Nanoseconds now, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
   now_ = now;
-  // The rows of this tick were last touched seconds ago: fetched while the tick works, they cost it nothing.
+  // The memory of this tick's rows was last used seconds ago. Prefetching it while the tick works makes writing fast.
   constexpr uint32_t kCacheLine = 64;
   for (const FlightStream stream : {kTicks, kContacts}) {
     const std::byte* row = ring_->place(stream);
@@ -120,7 +120,7 @@ void Flight::tick(double t, double dt, Nanoseconds late, Nanoseconds spent, cons
   std::byte* to = ring_->next(kTicks);
   std::memcpy(to, &row, sizeof row);
   for (uint32_t i = 0; i < arms.size(); ++i) tickArm(columns_[i], *arms[i], core, i, to);
-  ring_->commit(kTicks);  // last, so that whoever sees the tick sees all of it
+  ring_->commit(kTicks);  // last, so that a reader that sees the tick sees all its rows
   ++tick_;
 }
 
@@ -160,7 +160,7 @@ void Flight::tickArm(const ArmColumns& columns, const Arm& arm, const Core& core
 }
 
 void Flight::links(double t, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
-  constexpr double kPeriod = 1.0 / 60;  // [s] no screen shows more
+  constexpr double kPeriod = 1.0 / 60;  // [s] as often as screens draw
   if (t < links_due_) return;
   links_due_ = t + kPeriod;
   std::array<Arm::LinkEnd, HDV_MAX_LINKS> ends;
@@ -170,7 +170,7 @@ void Flight::links(double t, const std::vector<std::unique_ptr<Arm>>& arms) noex
 }
 
 void Flight::motors(double t, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
-  constexpr double kPeriod = 0.1;  // [s] copper is slow
+  constexpr double kPeriod = 0.1;  // [s] temperatures change slowly
   if (t < motors_due_) return;
   motors_due_ = t + kPeriod;
   for (uint32_t arm = 0; arm < arms.size(); ++arm) {
@@ -222,7 +222,8 @@ void Flight::contacts(const Core& core, TickRow& tick) noexcept HSP_RT {
       row.step_us = static_cast<float>(static_cast<double>(model.step_ns) * 1e-3);
       row.gain = static_cast<float>(model.guard.gain());
       push(kContacts, row);
-      if (!contact.traced || row.depth <= tick.depth) continue;  // not a number, so the first one is the deepest
+      // The comparison is false for the first contact, because tick.depth is NaN.
+      if (!contact.traced || row.depth <= tick.depth) continue;
       tick.depth = row.depth;
       tick.model = static_cast<int32_t>(index);
     }

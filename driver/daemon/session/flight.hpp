@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Fills the black box: one row a tick with what came in and what went out, and a row for each contact, moving model,
-/// activation record and order of that tick. What is here is enough to run the servo again bit for bit.
+/// Fills the black box: one row per tick with its inputs and outputs, and a row for each contact, moving model,
+/// activation record and order of that tick. These rows are enough to repeat the run bit for bit.
 #pragma once
 #include <array>
 #include <memory>
@@ -15,9 +15,8 @@
 
 namespace hapticd::servo {
 
-/// The streams of a recording, in the order of the file. Pushes stay empty if no program
-/// may push, links if no arm says where its links are, motors if no device file describes
-/// them.
+/// The streams of a recording, in the order of the file. kPushes is empty if no program may push, kLinks if no arm
+/// reports its links, and kMotors if no device file describes motors.
 enum FlightStream : size_t {
   kTicks,
   kContacts,
@@ -32,7 +31,7 @@ enum FlightStream : size_t {
   kFlightStreams
 };
 
-/// Columns of every tick, before those of the arms.
+/// The first columns of a row of kTicks; the columns of the arms follow.
 struct TickRow {
   uint64_t tick = 0, time_ns = 0;
   double t = 0, dt = 0, depth = 0;
@@ -40,7 +39,7 @@ struct TickRow {
   int32_t model = -1, status = 0;
 };
 
-/// Columns of one arm in a tick, before those of its joints.
+/// The columns of one arm in a row of kTicks; the columns of its joints follow.
 struct ArmRow {
   uint64_t sequence = 0, sample_ns = 0;
   int32_t read_status = 0, write_status = 0;
@@ -74,14 +73,14 @@ struct OrderRow {
   double value = 0, seconds = 0, position[3] = {}, orientation[4] = {};
 };
 
-/// The record of a leader that the tick took.
+/// A leader's record that the tick accepted.
 struct LeadRow {
   uint64_t tick = 0;
-  uint32_t led = 0, target = 0;  ///< Order::Led; model or arm
+  uint32_t led = 0, target = 0;  ///< Order::Led; number of the model or the arm
   hapticd_target wanted{};
 };
 
-/// The answer of a pushing program that the tick took.
+/// A pushing program's answer that the tick accepted.
 struct PushRow {
   uint64_t tick = 0;
   uint32_t arm = 0, place = 0;
@@ -95,35 +94,36 @@ struct LinkRow {
   Arm::LinkEnd end{};
 };
 
-/// A motor's state by the model of its heat, 10 times per second.
+/// The modelled heat of a motor, 10 times per second.
 struct MotorRow {
   uint64_t tick = 0;
   uint32_t arm = 0, joint = 0;
   double winding = 0, share = 0;
 };
 
-/// Columns of one arm that programs may push on, behind those of its joints.
+/// Further columns of an arm on which programs may push, after the columns of its joints.
 struct ClientColumns {
   double force[3] = {}, torque[3] = {};
 };
 
-/// [main] The streams of a run. @param rate [Hz] @param seconds that the black box keeps @param moving models that move
+/// [main] Returns the streams of a run. @param rate [Hz] @param seconds length of the black box [s] @param moving
+/// number of models that can move
 std::vector<record::StreamSpec> flightStreams(const scene::Scene& scene, const std::vector<std::unique_ptr<Arm>>& arms,
                                               double rate, double seconds, size_t moving);
 
 class Flight {
  public:
   /// [main] @param ring with the streams that flightStreams() gave for these arms
-  /// @param places how many models there may be at most
+  /// @param places most models that the run can have
   Flight(std::unique_ptr<record::FlightRing> ring, const std::vector<std::unique_ptr<Arm>>& arms, size_t places);
 
-  /// [rt] Before a tick: its time, and the faults that hold already.
+  /// [rt] Called before a tick: notes its time, and the faults that are latched already.
   void begin(Nanoseconds now, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
 
-  /// [rt] An order that the tick obeys.
+  /// [rt] Called for each order that this tick obeys.
   void order(const Order& order) noexcept HSP_RT;
 
-  /// [rt] After it.
+  /// [rt] Called after a tick: writes its rows.
   void tick(double t, double dt, Nanoseconds late, Nanoseconds spent, const Core& core,
             const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
 
@@ -131,20 +131,21 @@ class Flight {
   const record::FlightRing& ring() const { return *ring_; }
   uint64_t ticks() const noexcept { return ring_->written(kTicks); }  ///< [any]
 
-  /// [main] The oldest tick that is kept.
+  /// [main] Returns the number of the oldest tick that is kept.
   uint64_t oldest() const noexcept;
-  /// [main] One tick and its first arm. False if it is no longer kept, or does not exist yet.
+  /// [main] Reads one tick and its first arm. Returns false if the tick is no longer kept, or has not been yet.
   bool read(uint64_t tick, TickRow& row, ArmRow& arm) const;
-  /// [any] The newest pose of a model that moves. False if none is kept.
+  /// [any] Reads the newest pose of a model that moves. Returns false if no pose is kept.
   bool newestPose(uint32_t model, PoseRow& row) const;
-  /// [any] At most `most` events from number `first` on; `first` becomes the number of the first one given. Events that
-  /// are no longer kept are left out.
+  /// [any] Returns at most `most` events, from number `first` on. Events that are no longer kept are skipped: `first`
+  /// becomes the number of the first event that is returned.
   std::vector<hapticd_event> events(uint64_t& first, size_t most) const;
 
  private:
-  /// Where the columns of one arm begin in a row, and how many joints it has.
+  /// Offsets of the columns of one arm in a row of kTicks, and its number of joints.
   struct ArmColumns {
-    uint32_t arm = 0, position = 0, velocity = 0, measured = 0, command = 0, joints = 0, client = 0;  ///< 0: none
+    /// 0 if there is no such column.
+    uint32_t arm = 0, position = 0, velocity = 0, measured = 0, command = 0, joints = 0, client = 0;
   };
   void tickArm(const ArmColumns& columns, const Arm& arm, const Core& core, uint32_t index,
                std::byte* row) noexcept HSP_RT;
@@ -164,7 +165,7 @@ class Flight {
   std::vector<uint32_t> faults_before_;
   Nanoseconds now_ = 0;
   uint64_t tick_ = 0;
-  double links_due_ = 0, motors_due_ = 0;  ///< [s]
+  double links_due_ = 0, motors_due_ = 0;  ///< [s] times when the next rows are due
   EventFinder events_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The columns of every stream of a run.
+/// Defines the columns of every stream of a recording, with units and descriptions.
 #include <algorithm>
 #include <cmath>
 
@@ -24,35 +24,35 @@ void quaternion(RowLayout& layout, const std::string& prefix, const std::string&
   for (const char* part : kQuaternion) layout.add(prefix + part, ColumnType::kReal, "", doc);
 }
 
-/// Everything in the order of TickRow.
+/// The columns in the order of TickRow.
 void tickColumns(RowLayout& layout) {
   layout.add("tick", ColumnType::kCount, "", "number of the tick from 0");
   layout.add("time_ns", ColumnType::kCount, "ns", "deadline of the tick on the clock of the run");
-  layout.add("t", ColumnType::kReal, "s", "since the first tick");
-  layout.add("dt", ColumnType::kReal, "s", "since the tick before; a multiple of the period after missed ones");
+  layout.add("t", ColumnType::kReal, "s", "time since the first tick");
+  layout.add("dt", ColumnType::kReal, "s", "time since the last tick; several periods if ticks were missed");
   layout.add("depth", ColumnType::kReal, "m",
-             "deepest contact; negative: distance of the nearest foot; nan: none traced");
-  layout.add("lateness_us", ColumnType::kReal32, "us", "wake-up after the deadline");
-  layout.add("compute_us", ColumnType::kReal32, "us", "time that the tick took");
-  layout.add("model", ColumnType::kInt, "", "model of that depth, -1: none");
+             "depth of the deepest contact; negative: distance to the nearest surface; nan: no model is traced");
+  layout.add("lateness_us", ColumnType::kReal32, "us", "how long after its deadline the tick began");
+  layout.add("compute_us", ColumnType::kReal32, "us", "how long the tick took");
+  layout.add("model", ColumnType::kInt, "", "model of the depth above, -1: none");
   layout.add("status", ColumnType::kInt, "", "worst status of a step, hsp_status");
 }
 
-/// Everything in the order of ArmRow.
+/// The columns in the order of ArmRow.
 void armColumns(RowLayout& layout, const std::string& arm) {
-  layout.add(arm + "sequence", ColumnType::kCount, "", "grows with each new sample");
+  layout.add(arm + "sequence", ColumnType::kCount, "", "number of the sample; grows with each new sample");
   layout.add(arm + "sample_ns", ColumnType::kCount, "ns", "time of the sample");
-  layout.add(arm + "read_status", ColumnType::kInt, "", "answer of the device's read, hsp_status");
-  layout.add(arm + "write_status", ColumnType::kInt, "", "answer of its write");
-  layout.add(arm + "flags", ColumnType::kWord, "", "of the sample, HDV_S_*");
-  layout.add(arm + "buttons", ColumnType::kWord, "", "bit i: button i is down");
-  layout.add(arm + "fault_before", ColumnType::kWord, "", "fault that held before the tick, 0: none");
-  layout.add(arm + "fault", ColumnType::kWord, "", "fault after the tick, 0: none");
+  layout.add(arm + "read_status", ColumnType::kInt, "", "status of the device's read(), hsp_status");
+  layout.add(arm + "write_status", ColumnType::kInt, "", "status of the device's write(), hsp_status");
+  layout.add(arm + "flags", ColumnType::kWord, "", "flags of the sample, HDV_S_*");
+  layout.add(arm + "buttons", ColumnType::kWord, "", "bit i is set if button i is down");
+  layout.add(arm + "fault_before", ColumnType::kWord, "", "latched fault before the tick, 0: none");
+  layout.add(arm + "fault", ColumnType::kWord, "", "latched fault after the tick, 0: none");
   layout.add(arm + "mode", ColumnType::kWord, "", "command: 0 motors off, 1 torque");
-  layout.add(arm + "valid", ColumnType::kWord, "", "1: the sample was good");
-  vector(layout, arm, "m", "tip, world frame");
+  layout.add(arm + "valid", ColumnType::kWord, "", "1 if the sample was good, otherwise 0");
+  vector(layout, arm, "m", "position of the tip, world frame");
   quaternion(layout, arm, "orientation of the tip, world frame");
-  vector(layout, arm + "v", "m/s", "estimated velocity of the tip, 0 where nothing uses it");
+  vector(layout, arm + "v", "m/s", "estimated velocity of the tip, world frame; 0 if nothing uses it");
   vector(layout, arm + "f", "N", "force of the models on the hand, before the limits, world frame");
   vector(layout, arm + "t", "N m", "torque of the models on the hand, before the limits, world frame");
   vector(layout, arm + "sent_f", "N", "force as sent to the device, world frame");
@@ -73,19 +73,19 @@ RowLayout contactColumns() {
   layout.add("tick", ColumnType::kCount, "", "number of the tick");
   layout.add("model", ColumnType::kWord, "", "index in about.models");
   layout.add("probe", ColumnType::kWord, "", "arm");
-  layout.add("feature", ColumnType::kWord, "", "surface or medial element of the foot");
-  layout.add("iterations", ColumnType::kWord, "", "evaluations spent");
+  layout.add("feature", ColumnType::kWord, "", "surface or medial element of the foot point");
+  layout.add("iterations", ColumnType::kWord, "", "number of evaluations of the surface in the step");
   layout.add("flags", ColumnType::kWord, "", "HSP_OUT_*");
-  layout.add("status", ColumnType::kInt, "", "of the model's step, hsp_status");
-  layout.add("depth", ColumnType::kReal, "m", "> 0 inside, minus the distance outside");
+  layout.add("status", ColumnType::kInt, "", "status of the model's step, hsp_status");
+  layout.add("depth", ColumnType::kReal, "m", "penetration depth; negative: distance outside");
   layout.add("u", ColumnType::kReal, "", "parameter of the foot");
   layout.add("v", ColumnType::kReal, "", "parameter of the foot");
   vector(layout, "p", "m", "foot point, world frame");
-  vector(layout, "n", "", "outward unit normal there, world frame");
+  vector(layout, "n", "", "outward unit normal at the foot point, world frame");
   vector(layout, "f", "N", "force of this model, world frame");
   vector(layout, "t", "N m", "torque of this model, world frame");
-  layout.add("step_us", ColumnType::kReal32, "us", "time of the model's step, 0: not measured");
-  layout.add("gain", ColumnType::kReal32, "", "factor on the force: fades in and out");
+  layout.add("step_us", ColumnType::kReal32, "us", "how long the model's step took, 0: not measured");
+  layout.add("gain", ColumnType::kReal32, "", "factor on the force while it fades in or out, 0 to 1");
   return layout;
 }
 
@@ -94,10 +94,10 @@ RowLayout poseColumns() {
   layout.add("tick", ColumnType::kCount, "", "number of the tick");
   layout.add("model", ColumnType::kWord, "", "index in about.models");
   layout.add("reserved", ColumnType::kWord, "", "0");
-  vector(layout, "", "m", "of a moving model, world frame");
-  quaternion(layout, "", "orientation");
-  vector(layout, "v", "m/s", "velocity of the frame's origin");
-  vector(layout, "w", "rad/s", "angular velocity, world frame");
+  vector(layout, "", "m", "position of the model, world frame");
+  quaternion(layout, "", "orientation of the model, world frame");
+  vector(layout, "v", "m/s", "velocity of the model's origin, world frame");
+  vector(layout, "w", "rad/s", "angular velocity of the model, world frame");
   return layout;
 }
 
@@ -105,106 +105,115 @@ RowLayout activationColumns() {
   RowLayout layout;
   layout.add("tick", ColumnType::kCount, "", "number of the tick that took the record");
   layout.add("model", ColumnType::kWord, "", "index in about.models");
-  layout.add("order", ColumnType::kWord, "", "0 start tracing, 1 a better foot, 2 stop tracing");
-  layout.add("surface", ColumnType::kWord, "", "of the model");
+  layout.add("order", ColumnType::kWord, "", "0 start tracing, 1 use a better foot point, 2 stop tracing");
+  layout.add("surface", ColumnType::kWord, "", "number of the surface in the model");
   layout.add("probe", ColumnType::kWord, "", "arm");
   layout.add("u", ColumnType::kReal, "", "parameter of the foot");
   layout.add("v", ColumnType::kReal, "", "parameter of the foot");
-  layout.add("distance", ColumnType::kReal, "m", "as the search found it");
+  layout.add("distance", ColumnType::kReal, "m", "distance from the probe to the foot point, as the search found it");
   return layout;
 }
 
 RowLayout orderColumns() {
   RowLayout layout;
-  layout.add("tick", ColumnType::kCount, "", "number of the tick that obeyed");
-  layout.add("kind", ColumnType::kWord, "",
-             "1 enable, 2 disable, 3 move, 4 set, 5 clear, 6 hold, 7 adopt, 8 release; by the servo itself: 9 "
-             "accuracy, 10 overran, 11 cut; 12 lead, 13 unlead");
-  layout.add("target", ColumnType::kWord, "", "model, or arm of 5, 6, 11 and of leads that are not of a model");
-  layout.add("param", ColumnType::kWord, "",
-             "of a set: index in the plugin's table; 12, 13: what is led, as in leads, 2 a force");
-  layout.add("reserved", ColumnType::kWord, "", "12, 13 of a force: which of the arm's places; otherwise 0");
-  layout.add("value", ColumnType::kReal, "",
-             "of a set; 9: the level; 12, 13: process of the leader; 11: 1 found before the tick, 0 in it");
-  layout.add("seconds", ColumnType::kReal, "s", "that a move takes; 11: that the servo was stuck");
-  vector(layout, "", "m", "where a move goes, world frame");
-  quaternion(layout, "", "where a move goes");
+  layout.add("tick", ColumnType::kCount, "", "number of the tick that obeyed the order");
+  layout.add(
+      "kind", ColumnType::kWord, "",
+      "1 enable, 2 disable, 3 move, 4 set, 5 clear, 6 hold, 7 adopt, 8 release, 12 lead, 13 unlead; by the servo "
+      "itself: 9 accuracy, 10 overran, 11 cut");
+  layout.add(
+      "target", ColumnType::kWord, "",
+      "number of the model; number of the arm for kinds 5, 6, 11, and for 12 and 13 if a hand or a force is led");
+  layout.add(
+      "param", ColumnType::kWord, "",
+      "kind 4: index of the parameter in the plugin's table; kinds 12, 13: 0 a model is led, 1 a hand, 2 a force");
+  layout.add("reserved", ColumnType::kWord, "",
+             "kinds 12, 13 of a force: place of the program on the arm; otherwise 0");
+  layout.add(
+      "value", ColumnType::kReal, "",
+      "kind 4: new value; 9: accuracy level; 12, 13: process id of the leader; 11: 1 if the cut was found before "
+      "the tick, 0 if in it");
+  layout.add("seconds", ColumnType::kReal, "s", "kind 3: duration of the move; 11: how long the servo was stuck");
+  vector(layout, "", "m", "kind 3: position after the move, world frame");
+  quaternion(layout, "", "kind 3: orientation after the move, world frame");
   return layout;
 }
 
-/// Everything in the order of LeadRow.
+/// The columns in the order of LeadRow.
 RowLayout leadColumns() {
   RowLayout layout;
   layout.add("tick", ColumnType::kCount, "", "number of the tick that took the record");
-  layout.add("led", ColumnType::kWord, "", "0 a model, 1 the hand of a simulated arm");
-  layout.add("target", ColumnType::kWord, "", "model, or arm");
-  vector(layout, "", "m", "where the leader wanted it, world frame");
-  quaternion(layout, "", "wanted orientation");
-  vector(layout, "v", "m/s", "wanted velocity");
-  vector(layout, "w", "rad/s", "wanted angular velocity");
-  layout.add("time", ColumnType::kReal, "s", "CLOCK_MONOTONIC for which it was said, 0: for the tick");
+  layout.add("led", ColumnType::kWord, "", "what is led: 0 a model, 1 the hand of a simulated arm");
+  layout.add("target", ColumnType::kWord, "", "number of the model, or of the arm");
+  vector(layout, "", "m", "position that the leader wants, world frame");
+  quaternion(layout, "", "orientation that the leader wants, world frame");
+  vector(layout, "v", "m/s", "velocity that the leader wants, world frame");
+  vector(layout, "w", "rad/s", "angular velocity that the leader wants, world frame");
+  layout.add("time", ColumnType::kReal, "s",
+             "CLOCK_MONOTONIC time at which the leader wants this pose, 0: in this tick");
   return layout;
 }
 
-/// Everything in the order of PushRow.
+/// The columns in the order of PushRow.
 RowLayout pushColumns() {
   RowLayout layout;
   layout.add("tick", ColumnType::kCount, "", "number of the tick that took the answer");
-  layout.add("arm", ColumnType::kWord, "", "that is pushed on");
-  layout.add("place", ColumnType::kWord, "", "of the program among those that push on this arm");
-  layout.add("answers", ColumnType::kCount, "", "number of the tick that is answered");
+  layout.add("arm", ColumnType::kWord, "", "arm on which the program pushes");
+  layout.add("place", ColumnType::kWord, "", "place of the program among the programs that push on this arm");
+  layout.add("answers", ColumnType::kCount, "", "number of the tick that the program answers");
   vector(layout, "f", "N", "force that the program wants, before its bound and its ramp, world frame");
   vector(layout, "t", "N m", "torque that the program wants, before its ramp, world frame");
-  layout.add("woke_ns", ColumnType::kCount, "ns", "CLOCK_MONOTONIC when the program woke, 0: unknown");
-  layout.add("written_ns", ColumnType::kCount, "ns", "CLOCK_MONOTONIC when it wrote, 0: unknown");
+  layout.add("woke_ns", ColumnType::kCount, "ns", "CLOCK_MONOTONIC time when the program woke, 0: unknown");
+  layout.add("written_ns", ColumnType::kCount, "ns", "CLOCK_MONOTONIC time when the program wrote, 0: unknown");
   return layout;
 }
 
-/// Everything in the order of LinkRow.
+/// The columns in the order of LinkRow.
 RowLayout linkColumns() {
   RowLayout layout;
-  layout.add("tick", ColumnType::kCount, "", "number of the tick; 60 times a second");
+  layout.add("tick", ColumnType::kCount, "", "number of the tick; a row 60 times a second");
   layout.add("arm", ColumnType::kWord, "", "arm");
-  layout.add("link", ColumnType::kWord, "", "number of the link; about.devices tells where it begins");
+  layout.add("link", ColumnType::kWord, "", "number of the link; about.devices says where the link begins");
   vector(layout, "", "m", "far end of the link, world frame");
-  quaternion(layout, "", "orientation of its body");
+  quaternion(layout, "", "orientation of the link, world frame");
   return layout;
 }
 
-/// Everything in the order of MotorRow.
+/// The columns in the order of MotorRow.
 RowLayout motorColumns() {
   RowLayout layout;
-  layout.add("tick", ColumnType::kCount, "", "number of the tick; 10 times a second");
+  layout.add("tick", ColumnType::kCount, "", "number of the tick; a row 10 times a second");
   layout.add("arm", ColumnType::kWord, "", "arm");
-  layout.add("joint", ColumnType::kWord, "", "that the motor moves");
-  layout.add("winding", ColumnType::kReal, "degC", "temperature of its winding, by the model of limits.motors");
-  layout.add("share", ColumnType::kReal, "", "that the hottest motor of the arm leaves of every force, 0 to 1");
+  layout.add("joint", ColumnType::kWord, "", "joint that the motor moves");
+  layout.add("winding", ColumnType::kReal, "degC", "temperature of the motor's winding, calculated by limits.motors");
+  layout.add("share", ColumnType::kReal, "", "share of every force that the hottest motor of the arm allows, 0 to 1");
   return layout;
 }
 
-/// Everything in the order of ClientColumns.
+/// The columns in the order of ClientColumns.
 void clientColumns(RowLayout& layout, const std::string& arm) {
   vector(layout, arm + "client_f", "N", "force of programs on the hand, bounded and ramped, before the limits");
   vector(layout, arm + "client_t", "N m", "torque of programs on the hand, ramped, before the limits");
 }
 
-/// Everything in the order of hapticd_event.
+/// The columns in the order of hapticd_event.
 RowLayout eventColumns() {
   RowLayout layout;
   layout.add("tick", ColumnType::kCount, "", "number of the tick");
-  layout.add("t", ColumnType::kReal, "s", "since the first tick");
+  layout.add("t", ColumnType::kReal, "s", "time since the first tick");
   std::string kinds = "what happened:";
   for (uint32_t kind = 1; kind < HAPTICD_EVENT_KINDS; ++kind)
     kinds += std::string(kind > 1 ? ", " : " ") + std::to_string(kind) + " " + nameOfEvent(kind);
   layout.add("kind", ColumnType::kWord, "", kinds);
-  layout.add("model", ColumnType::kInt, "", "number of the model, -1: none");
-  layout.add("probe", ColumnType::kInt, "", "arm, -1: none");
-  layout.add("code", ColumnType::kWord, "", "which fault, why silenced, or what is led; see the header client.h");
-  layout.add("value", ColumnType::kReal, "", "what was measured; see the header client.h");
+  layout.add("model", ColumnType::kInt, "", "number of the model, -1 if there is none");
+  layout.add("probe", ColumnType::kInt, "", "number of the arm, -1 if there is none");
+  layout.add("code", ColumnType::kWord, "",
+             "number of the fault, of the reason of a silence, or of what is led; see the header client.h");
+  layout.add("value", ColumnType::kReal, "", "measured value; see the header client.h");
   return layout;
 }
 
-/// An arm in the rows of ticks; its columns depend on what it measures.
+/// Adds the columns of an arm to the rows of ticks. They depend on what the arm measures.
 void addArm(RowLayout& layout, const std::string& arm, const hdv_info& info, bool pushed) {
   while (layout.rowBytes() % 8 != 0) layout.add(arm + "reserved", ColumnType::kWord, "", "0");
   armColumns(layout, arm);
@@ -221,7 +230,8 @@ void addArm(RowLayout& layout, const std::string& arm, const hdv_info& info, boo
 
 std::vector<StreamSpec> flightStreams(const scene::Scene& scene, const std::vector<std::unique_ptr<Arm>>& arms,
                                       double rate, double seconds, size_t moving) {
-  // A row more than is kept: the one being written. Contacts beyond four models at a time shorten what is kept of them.
+  // One row more than is kept, for the row that is being written. If more than four models are in contact at a time,
+  // the kept contacts cover a shorter time.
   constexpr uint64_t kModelsAtOnce = 4, kFewest = 1024, kRecords = 16384, kNone = 2;
   const auto ticks = static_cast<uint64_t>(std::ceil(seconds * rate)) + 1;
   const uint64_t models = std::clamp<uint64_t>(scene.models.size(), 1, kModelsAtOnce);
@@ -230,7 +240,7 @@ std::vector<StreamSpec> flightStreams(const scene::Scene& scene, const std::vect
   streams[kTicks] = {"ticks", {}, ticks};
   streams[kContacts] = {"contacts", contactColumns(),
                         std::max(kFewest, ticks * models * std::max<uint64_t>(arms.size(), 1))};
-  // A moving model may also be added during a run: one second is kept of such poses.
+  // A moving model may also be added during a run: there is room for one second of its poses.
   const auto second = static_cast<uint64_t>(rate);
   streams[kPoses] = {"poses", poseColumns(),
                      std::max({kFewest, second, ticks * std::min<uint64_t>(moving, kModelsAtOnce)})};

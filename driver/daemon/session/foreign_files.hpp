@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Programs of another user: the daemon may be allowed to read what that user is not, so they pass their files open.
+/// Files of programs of another user. The daemon may have rights to read files which that user has not, so such
+/// programs open their files and send the descriptors.
 #pragma once
 #include "base/passed_files.hpp"
 #include "control/peer.hpp"
@@ -7,10 +8,10 @@
 
 namespace hapticd::servo {
 
-/// [any] True if the peer has rights of its own, so that what the daemon may read is not meant for it.
+/// [any] True if the peer is neither the daemon's user nor root, so that the daemon must not open files for it.
 bool isForeign(const control::Peer& peer);
 
-/// [main] The model with paths that a plugin can open: those of copies of the passed files.
+/// [main] Returns the model with file names that a plugin can open: they name copies of the files that were sent.
 scene::Model withPaths(scene::Model model, const PassedFiles& files);
 
 }  // namespace hapticd::servo

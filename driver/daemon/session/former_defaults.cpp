@@ -13,18 +13,18 @@ struct FormerDefault {
   const char* plugin_id;
   const char* version;  ///< the last version that had this default
   const char* id;
-  uint32_t index;  ///< in the plugin's table
+  uint32_t index;  ///< of the parameter, in the plugin's table
   double value;
 };
 
-/// Before 1.1 contacts were not held: the nearest face was felt.
+/// Before version 1.1, contacts were not held: the nearest face was always felt.
 constexpr FormerDefault kFormer[] = {
     {"org.hapticd.shape.nurbs_rigid", "1.0", "contact_hysteresis", 6, 0},
     {"org.hapticd.shape.pendulum", "1.0", "contact_hysteresis", 6, 0},
     {"org.hapticd.shape.push_button", "1.0", "contact_hysteresis", 6, 0},
 };
 
-/// Contacts of parts were held from the beginning.
+/// True if the model is a part: contacts of parts were always held.
 bool isPart(const scene::Model& model) {
   return std::any_of(model.parameters.begin(), model.parameters.end(), [](const scene::Value& value) {
     return value.kind == HSP_PATH && std::filesystem::path(value.text).extension() == ".hpart";

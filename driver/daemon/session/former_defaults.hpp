@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Defaults of parameters that newer versions of a plugin have changed.
+/// Old defaults of parameters, for recordings of plugin versions that had other defaults than today.
 #pragma once
 #include <string>
 
@@ -7,8 +7,8 @@
 
 namespace hapticd::servo {
 
-/// [main] Gives a recorded model the defaults that its plugin had then, where the scene gave no value, so that an old
-/// recording gives the same answers. @param plugin_id, version of the plugin that made the recording
+/// [main] For an old recording: sets parameters for which the scene gave no value to the defaults that the plugin had
+/// in that version, so that a replay gives the same forces. @param version of the plugin in the recorded run
 void useFormerDefaults(scene::Model& model, const std::string& plugin_id, const std::string& version);
 
 }  // namespace hapticd::servo

@@ -16,15 +16,15 @@
 namespace hapticd::servo {
 namespace {
 
-constexpr double kChordShare = 0.005;                       ///< share of a model's size: fine enough for a screen
-constexpr std::size_t kMostMemory = std::size_t{64} << 20;  ///< [bytes] that a drawing takes beside the servo's
-constexpr double kDefaultChord = 1e-3;                      ///< [m] for a model that does not say its size
+constexpr double kChordShare = 0.005;  ///< default chord error as a share of the model's size: fine enough for a screen
+constexpr std::size_t kMostMemory = std::size_t{64} << 20;  ///< [bytes] largest memory for the triangles of one drawing
+constexpr double kDefaultChord = 1e-3;  ///< [m] default chord error if the model does not report its size
 
 bool tooLong(const std::string& text) {
   return text.size() > control::Server::kMaxWaiting;
 }
 
-/// Appends a list of coordinates, as long as an answer may be. False if one is not a number.
+/// Appends a list of coordinates until the answer is too long. Returns false if a coordinate is not finite.
 bool appendPlaces(std::string& text, const float* xyz, std::size_t count) {
   for (std::size_t i = 0; i < count && !tooLong(text); ++i) {
     if (!std::isfinite(xyz[i])) return false;
@@ -34,14 +34,14 @@ bool appendPlaces(std::string& text, const float* xyz, std::size_t count) {
 }
 
 constexpr const char* kNoTriangles =
-    "the model has no triangles to draw: its plugin offers none (extension hsp.geometry/1); it is felt all the same";
-constexpr const char* kNotANumber = "a vertex of the model is not a number";
+    "the model cannot be drawn, because its plugin gives no triangles (extension hsp.geometry/1); it can still be felt";
+constexpr const char* kNotANumber = "a vertex of the model is not a finite number";
 
 bool allFinite(const float* numbers, std::size_t count) {
   return std::all_of(numbers, numbers + count, [](float number) { return std::isfinite(number); });
 }
 
-/// @param tolerance as asked for; afterwards the one that was used
+/// Makes the triangles of a shape. @param tolerance as asked for; becomes the one that was used
 Result<hsp_mesh> cut(const host::ShapeInstance& shape, double& tolerance) {
   if (shape.geometry() == nullptr) return Error{kNoTriangles};
   const double size = shape.report().size_m;
@@ -54,8 +54,8 @@ Result<hsp_mesh> cut(const host::ShapeInstance& shape, double& tolerance) {
 
 Error tooMany(const hsp_mesh& mesh, std::size_t most, double tolerance) {
   return Error{
-      fmt::format("{} vertices and {} triangles are more than the {} bytes of an answer\n"
-                  "  fix: a tolerance coarser than {:g} m",
+      fmt::format("{} vertices and {} triangles do not fit into the {} bytes of an answer\n"
+                  "  fix: ask for a tolerance larger than {:g} m",
                   mesh.vertex_count, mesh.triangle_count, most, tolerance)};
 }
 
@@ -70,7 +70,7 @@ std::string featureName(const host::ShapeInstance& shape, uint32_t feature) {
   const int64_t needed = names->feature(shape.handle(), feature, text.data(), text.size());
   text.resize(std::min<uint64_t>(needed > 0 ? static_cast<uint64_t>(needed) : 0, kLongest));
   for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';  // it goes to terminals
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';  // names are printed on terminals
   return text;
 }
 
@@ -118,16 +118,18 @@ Result<std::string> geometryInMemory(const host::ShapeInstance& shape, double to
 Result<std::string> verticesAnswer(const host::ShapeInstance& shape, double after) {
   if (shape.contour() == nullptr)
     return Error{
-        "the model's steps write no vertices\n"
-        "  fix: for a soft body, display_tolerance: 0.001 among its parameters in the scene"};
+        "the model writes no vertices while it runs\n"
+        "  fix: if it is a soft body, set display_tolerance: 0.001 among its parameters in the scene"};
   const host::Contour::Frame& frame = shape.contour()->newest();
   std::string text = fmt::format(R"({{"ok":true,"frame":{})", frame.number);
   if (static_cast<double>(frame.number) > after) {
     text += R"(,"xyz":[)";
     if (!appendPlaces(text, frame.xyz.data(), frame.xyz.size())) return Error{kNotANumber};
     if (tooLong(text))
-      return Error{fmt::format("{} vertices are more than the {} bytes of an answer", frame.xyz.size() / 3,
-                               control::Server::kMaxWaiting)};
+      return Error{
+          fmt::format("{} vertices do not fit into the {} bytes of an answer\n"
+                      "  fix: a larger display_tolerance among the model's parameters in the scene",
+                      frame.xyz.size() / 3, control::Server::kMaxWaiting)};
     text += "]";
   }
   return text + "}";

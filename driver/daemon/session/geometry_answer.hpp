@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A model as it looks now, for a viewer at the other end of the control socket.
+/// Answers with the shape of a model as it is now, for programs that draw it.
 #pragma once
 #include <string>
 
@@ -9,22 +9,23 @@
 
 namespace hapticd::servo {
 
-/// [main] The triangles of an active model in its own frame, a soft body's as it is pressed now: one line of JSON with
-/// xyz [m] and triangles, both flat lists. @param tolerance chord error [m]; 0: 5/1000 of the model's size. Fails if
-/// the model has no triangles, or more than one answer may hold.
+/// [main] Returns the triangles of an active model in its own frame, of a soft body as it is deformed now: one line of
+/// JSON with xyz [m] and triangles, both flat lists. Fails if the model has no triangles, or more than fit into one
+/// answer. @param tolerance chord error [m]; 0: 5/1000 of the model's size
 Result<std::string> geometryAnswer(const host::ShapeInstance& shape, double tolerance);
 
-/// [main] The same as read-only memory, whose size only the machine bounds: f32 xyz [m], then f32 unit normals of the
-/// model where it has such ("normals" of the answer), then u32 triangles. The answer is one line of JSON: bytes,
-/// vertices, triangles, normals, tolerance. @param memory gets the descriptor
+/// [main] Returns the triangles in read-only memory, for models of any size: f32 xyz [m], then f32 unit normals if the
+/// model has them ("normals" in the answer), then u32 triangles. The answer is one line of JSON: bytes, vertices,
+/// triangles, normals, tolerance. @param memory gets the descriptor of the memory
 Result<std::string> geometryInMemory(const host::ShapeInstance& shape, double tolerance, Descriptor& memory);
 
-/// [main] The newest vertices that the steps of an active model have written, one line of JSON: frame, counted from 1,
-/// and xyz [m], in the model's frame and the order of geometryAnswer() at tolerance 0; without xyz where that frame is
-/// not newer than `after`. More are written for a second after each call. Fails where the model's steps write none.
+/// [main] Returns the newest vertices of an active model that deforms: one line of JSON with the number of the drawing
+/// ("frame", counted from 1) and xyz [m], in the model's coordinates and in the order of geometryAnswer() at tolerance
+/// 0. There is no xyz if the number is not larger than `after`. After each call the model writes new vertices for one
+/// second. Fails if the model writes no vertices.
 Result<std::string> verticesAnswer(const host::ShapeInstance& shape, double after);
 
-/// [main] The name of a feature of an active model's contacts, one line of JSON; null where it has none.
+/// [main] Returns the name of a feature of an active model, as one line of JSON; null if the feature has no name.
 std::string featureAnswer(const host::ShapeInstance& shape, uint32_t feature);
 
 }  // namespace hapticd::servo

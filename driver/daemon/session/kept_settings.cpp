@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Lists parameters by their names instead of in the order of the file.
+/// Turns a list of parameters into an object by their names, so that the order in the file does not matter.
 Json byName(const Json& values) {
   Json named = Json::object();
   for (const Json& value : values)
@@ -22,7 +22,7 @@ Json byName(const Json& values) {
   return named;
 }
 
-/// Keys of two objects whose values differ; objects within them give their own keys.
+/// Collects the keys whose values differ between two objects, also in objects within them.
 void compare(const Json& a, const Json& b, const std::string& prefix, std::set<std::string>& found) {
   if (a == b) return;
   if (!a.is_object() || !b.is_object()) {

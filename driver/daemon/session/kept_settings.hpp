@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a scene says that a reload cannot change while the servo runs.
+/// Finds the settings of a scene that a reload cannot change while the servo runs.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace hapticd::servo {
 
-/// [main] Keys in which the wanted scene differs from the running one, models excepted, in the scenes' own words:
-/// "servo.rate", "clients.max_force", "ARM: limits.force".
+/// [main] Returns the keys, except those of models, whose values differ between the running scene and the wanted one,
+/// such as "servo.rate", "clients.max_force", "ARM: limits.force".
 std::vector<std::string> keptSettings(const scene::Scene& running, const scene::Scene& wanted);
 
 }  // namespace hapticd::servo

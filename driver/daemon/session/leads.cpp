@@ -25,7 +25,8 @@ bool same(const Leads::Target& a, const Leads::Target& b) {
 
 }  // namespace
 
-/// A new place each time, since the force of the last program there may still ramp out.
+/// Chooses a place for a program. Each time the next free one, because the force of the last program in a place may
+/// still ramp out.
 Result<void> Leads::findPlace(Target& target, const control::Peer& peer) {
   const auto others = pushers(target.index);
   if (exclusive_ && !others.empty())
@@ -40,7 +41,8 @@ Result<void> Leads::findPlace(Target& target, const control::Peer& peer) {
         std::any_of(others.begin(), others.end(), [&](auto& other) { return other.place == target.place; });
     if (!taken) return {};
   }
-  return Error{target.name + " is pushed on by " + std::to_string(others.size()) + " programs already, the limit"};
+  return Error{target.name + " is pushed on by " + std::to_string(others.size()) +
+               " programs already, which is the most"};
 }
 
 Result<Descriptor> Leads::begin(Target target, const control::Peer& peer) {
@@ -48,7 +50,7 @@ Result<Descriptor> Leads::begin(Target target, const control::Peer& peer) {
     if (auto found = findPlace(target, peer); !found) return Error{found.error()};
   } else if (const auto pid = leader(target.led, target.index)) {
     return Error{target.name + " is led by process " + std::to_string(*pid) +
-                 " already; a lead ends with unlead, or with the connection that asked for it"};
+                 " already; that lead ends with the request unlead, or when the program's connection ends"};
   }
   auto memory = SealedMemory::create("hapticd-lead", HAPTICD_LEAD_BYTES, SealedMemory::Writers::kAll);
   if (!memory) return Error{memory.error()};
@@ -57,13 +59,13 @@ Result<Descriptor> Leads::begin(Target target, const control::Peer& peer) {
   Order order = orderOf(Order::Kind::kLead, target);
   order.value = peer.pid;
   if (target.led == Order::Led::kForce)
-    order.push = new ((*memory)->data()) link::PushSlot;  // all zeros mean that it stays as it is
+    order.push = new ((*memory)->data()) link::PushSlot;  // an empty slot is all zeros, as the memory is already
   else
     order.slot = new ((*memory)->data()) link::PoseSlot;
   if (programs_.size() >= kMostPrograms) programs_.clear();
-  programs_[peer.pid] = programOf(peer.pid);  // set before the servo reports it
+  programs_[peer.pid] = programOf(peer.pid);  // set before the servo reports the new leader
   const auto given = give_(order);
-  // even if the servo was late, because it may still obey
+  // also if the servo did not obey in time, because it may obey later
   leads_.push_back({target, peer, std::move(*memory), programs_[peer.pid]});
   tell(leads_.back(), News::kBegins);
   if (given) return std::move(*shared);
@@ -109,14 +111,15 @@ Result<void> Leads::endOfModel(uint32_t model) {
 void Leads::endPushes() {
   const auto pushes = [](const Lead& lead) { return lead.target.led == Order::Led::kForce; };
   for (auto found = leads_.begin(); (found = std::find_if(leads_.begin(), leads_.end(), pushes)) != leads_.end();)
-    (void)end(Target(found->target), control::Peer(found->peer), News::kEnds);  // the servo may be late: it obeys yet
+    // An error only means that the servo is late: it will still obey.
+    (void)end(Target(found->target), control::Peer(found->peer), News::kEnds);
 }
 
 void Leads::left(const control::Peer& peer) {
   while (holds(peer)) {
     const auto found =
         std::find_if(leads_.begin(), leads_.end(), [&](const Lead& lead) { return lead.peer.id == peer.id; });
-    (void)end(found->target, peer, News::kLeft);  // nobody is there to be told
+    (void)end(found->target, peer, News::kLeft);  // the peer is gone, so an error is not reported
   }
 }
 

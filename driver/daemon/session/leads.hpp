@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Who leads what: hands out the memory of leads, one leader per target, and ends a lead with the connection that asked
-/// for it. Control thread only.
+/// Keeps the leads: gives a leader the shared memory of its lead, allows one leader per target, and ends a lead when
+/// the leader's connection ends. Control thread only.
 #pragma once
 #include <functional>
 #include <map>
@@ -23,55 +23,55 @@ class Leads {
   /// Gives an order to the servo and waits until it is obeyed.
   using Give = std::function<Result<void>(const Order&)>;
 
-  /// What is led, and the name by which its leader knows it.
+  /// The target of a lead.
   struct Target {
     Order::Led led = Order::Led::kModel;
-    uint32_t index = 0;  ///< model or arm
-    std::string name;    ///< "model door", for messages
-    uint32_t place = 0;  ///< for a force; given by begin()
+    uint32_t index = 0;  ///< number of the model or the arm
+    std::string name;    ///< such as "model door", for messages
+    uint32_t place = 0;  ///< for a force: the program's place on the arm, chosen by begin()
   };
 
-  /// A program that pushes.
+  /// A program that pushes on an arm.
   struct Pusher {
     pid_t pid;
     uint32_t place;
     std::string program;
   };
-  /// A program begins to push; it ends by a request, or when its connection is gone.
+  /// What a program did: kBegins: it begins to push; kEnds: it asked to end; kLeft: its connection is gone.
   enum class News { kBegins, kEnds, kLeft };
-  /// Is told when a program begins or stops pushing on an arm.
+  /// Called when a program begins or stops pushing on an arm.
   using Tell = std::function<void(uint32_t arm, const Pusher& pusher, News news)>;
 
-  /// @param exclusive one program pushes on an arm; otherwise as many as there are places
+  /// @param exclusive true if only one program may push on an arm; otherwise as many as there are places
   explicit Leads(Give give, bool exclusive = false, Tell tell = nullptr)
       : give_(std::move(give)), tell_(std::move(tell)), exclusive_(exclusive) {}
-  ~Leads();  ///< reports those that still push
+  ~Leads();  ///< reports the end of programs that still push
   Leads(const Leads&) = delete;
   Leads& operator=(const Leads&) = delete;
 
-  /// [main] Begins a lead. @return a descriptor of its memory. An error names the leader that is there already.
+  /// [main] Begins a lead. @return a descriptor of its memory. If the target has a leader already, the error names it.
   Result<Descriptor> begin(Target target, const control::Peer& peer);
-  /// [main] Ends the lead of this peer.
+  /// [main] Ends this peer's lead of a target.
   Result<void> end(const Target& target, const control::Peer& peer) { return end(target, peer, News::kEnds); }
-  /// [main] Ends whatever leads a model, because it is moved otherwise, or leaves.
+  /// [main] Ends the lead of a model, if there is one, because the model is moved in another way or is removed.
   Result<void> endOfModel(uint32_t model);
-  /// [main] Ends all pushes, because the permission is gone. Nobody reads what a program writes from now on.
+  /// [main] Ends all pushes, because programs may no longer push. Later answers of a program are not read.
   void endPushes();
-  /// [main] Ends all leads of a peer that is gone.
+  /// [main] Ends all leads of a peer whose connection is gone.
   void left(const control::Peer& peer);
 
-  /// [main] The process that leads a model or a hand, if one does.
+  /// [main] Returns the process that leads a model or a hand, if there is one.
   std::optional<pid_t> leader(Order::Led led, uint32_t index) const;
-  /// [main] The name of a process that led or pushed; "?" if none had this number.
+  /// [main] Returns the name of a process that led or pushed; "?" if none had this number.
   std::string program(pid_t pid) const;
-  /// [main] Those that push on an arm.
+  /// [main] Returns the programs that push on an arm.
   std::vector<Pusher> pushers(uint32_t arm) const;
-  /// [main] False: programs may not push, whatever the scene said at the start.
+  /// [main] True if programs may push. A request can change this; the scene sets only the first value.
   bool mayPush() const { return may_push_; }
-  void letPush(bool may) { may_push_ = may; }  ///< [main]
-  /// [main] True if something lives as long as the peer's connection.
+  void letPush(bool may) { may_push_ = may; }  ///< [main] sets mayPush()
+  /// [main] True if this peer has a lead, which ends with its connection.
   bool holds(const control::Peer& peer) const;
-  /// [main] Numbers of the peers that hold something.
+  /// [main] Returns the numbers of all peers that have a lead.
   std::set<uint64_t> holders() const;
 
  private:
@@ -79,7 +79,7 @@ class Leads {
     Target target;
     control::Peer peer;
     std::unique_ptr<SealedMemory> memory;
-    std::string program;  ///< that pushes
+    std::string program;  ///< name of the leading program
   };
   Result<void> end(const Target& target, const control::Peer& peer, News how);
   Result<void> finish(Lead lead, News how);
@@ -91,8 +91,8 @@ class Leads {
   bool exclusive_, may_push_ = true;
   uint32_t last_place_ = 0;
   std::vector<Lead> leads_;
-  std::map<pid_t, std::string> programs_;            ///< of the programs that came last
-  std::vector<std::unique_ptr<SealedMemory>> kept_;  ///< of leads that the servo did not end, which it may still read
+  std::map<pid_t, std::string> programs_;            ///< names of the newest programs
+  std::vector<std::unique_ptr<SealedMemory>> kept_;  ///< of leads that the servo may still read
 };
 
 }  // namespace hapticd::servo

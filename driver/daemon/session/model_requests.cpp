@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Models that come and go while the daemon runs.
+/// Requests that add, remove and reload models while the daemon runs.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -24,15 +24,16 @@ namespace {
 
 using control::Request;
 
-/// Which added models are not what the person who added them takes them for, as `notes` of the answer.
+/// Adds `notes` to the answer: which added models may not be what the user expects, because their plugin's file has
+/// changed since it was loaded.
 void tellReplaced(nlohmann::ordered_json& json, const std::vector<scene::Model>& models,
                   const host::Services::Log& log) {
   std::set<std::string> told;
   for (const scene::Model& model : models) {
     if (!host::replacedSinceLoaded(model.library) || !told.insert(model.library.string()).second) continue;
     const std::string text = "the file of plugin '" + model.plugin +
-                             "' has changed since this daemon loaded it: the code from before goes on, as a library is "
-                             "never unloaded\n  fix: end the daemon and start it again";
+                             "' has changed since this daemon loaded it: this run goes on with the old code, because a "
+                             "library is never unloaded\n  fix: end the daemon and start it again";
     json["notes"].push_back(text);
     log(HSP_LOG_WARNING, model.name, text);
   }
@@ -47,8 +48,8 @@ bool sameDevices(const scene::Scene& a, const scene::Scene& b) {
 
 }  // namespace
 
-/// The scene of a request. The rights of the caller count: a file that is not passed open is opened by name only for
-/// the daemon's own user and for root.
+/// Loads the scene of a request with the rights of the caller: only for the daemon's own user and for root, files are
+/// opened by name; other programs must send open files.
 Result<scene::Scene> RequestHandler::loadFor(const control::Peer& peer, const Request& request) {
   passed_.reset();
   if (!request.files.empty() || !given_files_.empty()) {
@@ -59,24 +60,29 @@ Result<scene::Scene> RequestHandler::loadFor(const control::Peer& peer, const Re
   }
   if (request.file.empty()) return loadOwn(peer);
   if (!isForeign(peer)) return load_(request.file);
-  return refuse("forbidden",
-                request.file +
-                    ": a program of another user passes the scene and the files that it names along, open\n  "
-                    "fix: use hapticd ctl, or see \"files\" in the documentation of the protocol");
+  return refuse(
+      "forbidden",
+      request.file +
+          ": the daemon runs as another user and does not open files for this program; the program must send the "
+          "scene and the files that it names as open files\n  fix: use hapticd ctl, which does this, or see "
+          "\"files\" in driver/docs/control.md");
 }
 
-/// The daemon's own scene, read anew. Its texts are not shown to others.
+/// Reads the daemon's own scene again. Its content is not shown to other users.
 Result<scene::Scene> RequestHandler::loadOwn(const control::Peer& peer) {
   if (!isForeign(peer)) return load_(scene_file_);
   if (scene_passed_)
-    return refuse("forbidden",
-                  scene_file_ + ": came from a program, which must pass it again\n  fix: hapticd ctl reload FILE");
+    return refuse(
+        "forbidden",
+        scene_file_ +
+            ": a program sent this scene, so only a program can load it again\n  fix: hapticd ctl reload FILE");
   auto scene = load_(scene_file_);
   if (!scene) return refuse("failed", tellable(peer, scene.error()));
   return scene;
 }
 
-/// The arms' own files stay readable, since a scene must name the running arms; but their content is not shown.
+/// Loads a scene that a program sent. The daemon may read the files of its own arms for it, because the scene must name
+/// these arms, but shows nothing of their content.
 Result<scene::Scene> RequestHandler::loadPassed(const control::Peer& peer, const std::string& file) {
   std::vector<std::string> own;
   for (const scene::Device& device : runner_.scene().devices) {
@@ -94,7 +100,7 @@ Result<scene::Scene> RequestHandler::loadPassed(const control::Peer& peer, const
   return Error{passed_->named(scene.error())};
 }
 
-/// A problem in the daemon's own scene quotes it.
+/// Returns an error that this peer may see: another user does not get quotes from the daemon's own scene.
 std::string RequestHandler::tellable(const control::Peer& peer, const std::string& why) const {
   if (passed_) return passed_->named(why);
   return isForeign(peer) ? scene_file_ + ": cannot be used\n  fix: ask the daemon's user for hapticd check" : why;
@@ -123,7 +129,7 @@ Result<std::string> RequestHandler::add(const control::Peer& peer, const Request
   return lineOf(json);
 }
 
-/// A plugin that ended a run is kept out of this one too.
+/// Refuses models whose plugin is on the quarantine list, because it ended an earlier run.
 Result<void> RequestHandler::refuseQuarantined(const std::vector<scene::Model>& models) const {
   if (runner_.stateDir().empty()) return {};
   for (const watch::QuarantinedPlugin& entry : watch::quarantined(runner_.stateDir()))
@@ -131,18 +137,21 @@ Result<void> RequestHandler::refuseQuarantined(const std::vector<scene::Model>& 
       if (entry.holds(model.plugin, host::identityOnDisk(model.library)))
         return refuse("quarantined", "model \"" + model.name + "\": plugin '" + entry.plugin +
                                          "' ended an earlier run by " + entry.reason +
-                                         "\n  fix: repair it, then: hapticd plugin clear " + entry.plugin);
+                                         "\n  fix: repair the plugin, then: hapticd plugin clear " + entry.plugin);
   return {};
 }
 
-/// Adds all of them or none: everything that can fail is done before the first one is given to the servo.
+/// Adds all these models or none: all steps that can fail come before the first model is given to the servo.
 Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
-  code_ = "failed";  // it is right that no model of these names was found
+  code_ = "failed";  // placeOf() has set another code, because these names were not found
   std::vector<uint32_t> empty;
   for (uint32_t i = 0; i < places_.size(); ++i)
     if (!places_[i].taken && runner_.world().shapes()[i] == nullptr) empty.push_back(i);
   if (empty.size() < models.size())
-    return refuse("too_many", fmt::format("{} more models can be added, not {}", empty.size(), models.size()));
+    return refuse(
+        "too_many",
+        fmt::format("the run has room for {} more models, but {} were given\n  fix: remove models first, or add fewer",
+                    empty.size(), models.size()));
   if (auto trusted = refuseQuarantined(models); !trusted) return trusted;
   std::vector<std::unique_ptr<host::ShapeInstance>> shapes;
   for (const scene::Model& model : models) {
@@ -162,15 +171,16 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
     order.model = prepared_.back().get();
     const auto given = give(order);
     places_[place] = {models[i], true, true};
-    runner_.world().keep(place, std::move(shapes[i]), models[i]);  // even if it was late, because it may still obey
+    // Also if the servo did not obey in time, because it may obey later.
+    runner_.world().keep(place, std::move(shapes[i]), models[i]);
     if (!given) return given;
     prepared_.pop_back();
   }
   return {};
 }
 
-/// What `hapticd check` says about the added models, as `warnings` of the answer and in the log. A caller that passed
-/// no file is not told about the daemon's own.
+/// Adds the warnings of `hapticd check` about the added models to the answer, as `warnings`, and to the log. A caller
+/// of another user gets no warnings about the daemon's own scene.
 void RequestHandler::tellWarnings(const control::Peer& peer, const std::vector<scene::Model>& models,
                                   nlohmann::ordered_json& json) const {
   if (!advise_ || (isForeign(peer) && !passed_)) return;
@@ -182,7 +192,8 @@ void RequestHandler::tellWarnings(const control::Peer& peer, const std::vector<s
   }
 }
 
-/// Which of these wait for a tip to leave them, as far as the servo has met them by now. @param met [s] until it has
+/// Lists which of these models wait for a tip to leave them. @param met [s] time in which the servo surely has stepped
+/// the models once
 nlohmann::ordered_json RequestHandler::waitingOf(const std::vector<scene::Model>& models, double met) const {
   nlohmann::ordered_json waiting = nlohmann::ordered_json::array();
   const auto now = [&] { return runner_.telemetry().statusWriter()->page().now.read().value_or(status::Now{}).t; };
@@ -193,13 +204,13 @@ nlohmann::ordered_json RequestHandler::waitingOf(const std::vector<scene::Model>
     const auto is = [&](const scene::Model& model) { return model.name == name; };
     if (!places_[i].taken || std::none_of(models.begin(), models.end(), is) || !waitsForTip(session(), i)) continue;
     waiting.push_back(name);
-    log_(HSP_LOG_WARNING, name, "a tip is in it: it is felt once the tip was outside");
+    log_(HSP_LOG_WARNING, name, "a tip is inside this model; the model gives no force until the tip has left it");
   }
   return waiting;
 }
 
 nlohmann::ordered_json RequestHandler::cameAnswer(const std::vector<scene::Model>& models) {
-  constexpr double kMet = 0.25;  // [s] the search meets a new model within about 0.1 s, and then it is stepped
+  constexpr double kMet = 0.25;  // [s] the search finds a new model within about 0.1 s, and then the model is stepped
   nlohmann::ordered_json json = {{"ok", true}, {"models", models.size()}};
   if (auto waiting = waitingOf(models, kMet); !waiting.empty()) json["waiting"] = std::move(waiting);
   return json;
@@ -231,8 +242,10 @@ Result<std::string> RequestHandler::reload(const control::Peer& peer, const Requ
   auto scene = loadFor(peer, request);
   if (!scene) return Error{scene.error()};
   if (!sameDevices(*scene, runner_.scene()))
-    return Error{file +
-                 ": names other devices than the running ones\n  fix: stop the daemon and start it with this scene"};
+    return Error{
+        file +
+        ": its devices are not those of this run, and a reload cannot change devices\n  fix: stop the daemon and "
+        "start it with this scene"};
   std::vector<uint32_t> old;
   for (uint32_t i = 0; i < places_.size(); ++i)
     if (places_[i].taken) old.push_back(i);
@@ -250,26 +263,27 @@ Result<std::string> RequestHandler::reload(const control::Peer& peer, const Requ
   return lineOf(json);
 }
 
-/// A scene that lets nobody push ends the pushes of programs at once, with their ramp. One that allows them restores
-/// what another scene took, but no more than the start allowed.
+/// Takes or gives the permission to push from a reloaded scene. A scene that lets no program push ends all pushes, with
+/// their ramp. A scene that allows pushes gives the permission back, but only if the scene at the start allowed pushes.
 void RequestHandler::takePermission(const scene::Clients& wanted) {
   const bool may = wanted.mode != scene::ClientMode::kOff && wanted.push;
   const scene::Clients& given = runner_.scene().clients;
   if (given.mode == scene::ClientMode::kOff || !given.push) return;
   if (!may && leads_.mayPush())
-    log_(HSP_LOG_WARNING, scene_file_, "no program may push any more: their forces ramp out");
+    log_(HSP_LOG_WARNING, scene_file_, "programs may no longer push; their forces ramp out");
   leads_.letPush(may);
   if (!may) leads_.endPushes();
 }
 
-/// What the scene says and the run does not do; it is logged as well.
+/// Returns, and logs, the settings of the scene that a reload cannot apply to the run.
 std::vector<std::string> RequestHandler::tellKept(const scene::Scene& wanted) const {
   std::vector<std::string> kept = keptSettings(runner_.scene(), wanted);
   if (!leads_.mayPush()) std::erase(kept, "clients.mode"), std::erase(kept, "clients.push");
   if (!kept.empty())
     log_(HSP_LOG_WARNING, scene_file_,
-         fmt::format("a reload cannot change {}: as before\n  fix: stop the daemon and start it with this scene",
-                     fmt::join(kept, ", ")));
+         fmt::format(
+             "a reload cannot change {}; the old value stays\n  fix: stop the daemon and start it with this scene",
+             fmt::join(kept, ", ")));
   return kept;
 }
 

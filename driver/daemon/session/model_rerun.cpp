@@ -12,7 +12,7 @@ namespace {
 using record::Column;
 using record::ColumnType;
 
-/// That column and those right after it, all of them numbers of 8 bytes; nullptr if the rows have none.
+/// Returns a column if it and the next `count` - 1 columns are numbers of 8 bytes; otherwise nullptr.
 const Column* reals(const record::RecordedStream& stream, const std::string& name, uint32_t count) {
   const Column* column = stream.find(name);
   const bool fits = column != nullptr && column->type == ColumnType::kReal &&
@@ -20,30 +20,30 @@ const Column* reals(const record::RecordedStream& stream, const std::string& nam
   return fits ? column : nullptr;
 }
 
-constexpr int kSettle = 50;     ///< ticks without a hand, after which a body shows its rest shape
-constexpr double kTick = 1e-3;  ///< [s] of these
+constexpr int kSettle = 50;     ///< ticks without a touch, after which a soft body is at rest
+constexpr double kTick = 1e-3;  ///< [s] length of these ticks
 
 }  // namespace
 
 Result<std::unique_ptr<ModelRerun>> ModelRerun::prepare(const record::Recording& recording, World& world) {
   const record::RecordedStream* ticks = recording.stream("ticks");
-  if (ticks == nullptr || ticks->rows() == 0) return Error{"the recording has no tick"};
+  if (ticks == nullptr || ticks->rows() == 0) return Error{"the recording has no ticks"};
   std::unique_ptr<ModelRerun> rerun(new ModelRerun(*ticks, world));
   rerun->time_ = ticks->find("t");
-  if (rerun->time_ == nullptr) return Error{"the ticks of the recording have no time"};
+  if (rerun->time_ == nullptr) return Error{"the recording has no times of ticks (column t)"};
   rerun->probes_.resize(world.core().probeCount());
   for (size_t i = 0; i < rerun->probes_.size(); ++i) {
     const std::string arm = "arm" + std::to_string(i) + "_";
     const Tip tip{ticks->find(arm + "valid"), reals(*ticks, arm + "x", 3), reals(*ticks, arm + "qw", 4),
                   reals(*ticks, arm + "vx", 3)};
     if (!tip.valid || !tip.position || !tip.orientation || !tip.velocity)
-      return Error{"the ticks of the recording have no tip of " + arm.substr(0, arm.size() - 1)};
+      return Error{"the recording has no tip position, orientation or velocity for " + arm.substr(0, arm.size() - 1)};
     rerun->tips_.push_back(tip);
   }
   return rerun;
 }
 
-/// How many rows are not later than t.
+/// Returns the number of rows that are not later than t.
 uint64_t ModelRerun::rowsUntil(double t) const {
   uint64_t low = 0, high = ticks_->rows();
   while (low < high) {
@@ -87,7 +87,7 @@ void ModelRerun::step() {
   tick(timeOf(next_++));
 }
 
-/// Steps with the probes as they are. Rows of a damaged file may run backward; such a row is left out.
+/// Steps the model to time t with the present probes. In a damaged file times may run backward; such a row is skipped.
 void ModelRerun::tick(double t) {
   const double dt = begun_ ? t - last_ : 0;
   if (!(dt >= 0)) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Touches one model again with the tips of a recording, so that a body which deforms has the shape that it had then.
-/// The shape is for drawings alone: unlike a replay this computes neither the arms nor other models nor orders.
+/// Touches one model with the recorded tips again, so that a soft body gets the shape that it had in the recorded run.
+/// The shape is only for drawings: unlike a replay, this computes no arms, other models or orders.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -15,14 +15,14 @@ namespace hapticd::servo {
 
 class ModelRerun {
  public:
-  static constexpr double kMemory = 2;  ///< [s] A body touched longer ago than this has come to rest.
+  static constexpr double kMemory = 2;  ///< [s] a body that was last touched longer ago than this is at rest
 
-  /// [main] @param recording, world outlive it; the world has one model, and a probe for each arm of the recording.
-  /// Fails if the rows hold no tip positions
+  /// [main] Fails if the rows have no tip positions. @param recording must outlive the result @param world must outlive
+  /// the result; it has one model, and a probe for each arm of the recording
   static Result<std::unique_ptr<ModelRerun>> prepare(const record::Recording& recording, World& world);
 
-  /// [main] Brings the model to the time t [s] of the recording. It steps on from the last call if that is less than
-  /// kMemory away, otherwise from rest at t - kMemory. The call costs as much as these ticks of the model.
+  /// [main] Steps the model to the time t [s] of the recording: from the last call if t is less than kMemory after it,
+  /// otherwise from rest at t - kMemory. The call takes as long as all these steps of the model.
   void goTo(double t);
 
  private:
@@ -42,8 +42,8 @@ class ModelRerun {
   std::vector<Tip> tips_;
   std::vector<Probe> probes_;
   std::optional<Lockstep> lockstep_;
-  uint64_t next_ = 0;  ///< row
-  double last_ = 0;    ///< [s] of the tick before
+  uint64_t next_ = 0;  ///< number of the next row
+  double last_ = 0;    ///< [s] time of the last tick that was stepped
   bool begun_ = false;
 };
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// Waiting for the servo, which answers at its next tick or is stuck.
+/// Waits for the servo, which either does something in its next tick or is stuck.
 #pragma once
 #include "base/clock.hpp"
 
 namespace hapticd::servo {
 
-/// [any] Looks every millisecond. True once `done` is, false after 2 s.
+/// [any] Calls `done` every millisecond. Returns true once `done` returns true, and false after 2 s.
 template <class Done>
 bool waitUntil(Done&& done) {
   constexpr Nanoseconds kPause = 1'000'000, kPatience = 2'000'000'000;

@@ -17,7 +17,7 @@ bool interprets(const std::string& name) {
   return false;
 }
 
-/// A process writes its own command line, so it may contain anything.
+/// Replaces characters that cannot be printed, because a process can write anything into its command line.
 std::string printable(std::string name) {
   constexpr size_t kMost = 48;
   name.resize(std::min(name.size(), kMost));

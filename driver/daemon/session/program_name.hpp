@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a process calls itself.
+/// The name of a process, for messages.
 #pragma once
 #include <sys/types.h>
 
@@ -8,10 +8,11 @@
 
 namespace hapticd::servo {
 
-inline constexpr size_t kMostPrograms = 256;  ///< most names that are kept; when there are more, all are looked up anew
+/// most names that are kept; beyond this all are forgotten and looked up again
+inline constexpr size_t kMostPrograms = 256;
 
-/// [any] The name of a process for people: that of its file, with the script behind it where an interpreter runs one.
-/// Printable characters alone, 48 of them at most; "?" where the process cannot be looked at.
+/// [any] Returns the name of a process: the name of its file, followed by the script if it is an interpreter. The name
+/// has at most 48 characters, all printable. Returns "?" if the process cannot be read.
 std::string programOf(pid_t pid);
 
 }  // namespace hapticd::servo

@@ -22,7 +22,7 @@ const char* describe(ClientForces::Refusal why) {
     case ClientForces::Refusal::kTooLarge:
       return "a number is beyond 1e6";
     case ClientForces::Refusal::kAhead:
-      return "its tick lies ahead";
+      return "it answers a tick that has not begun";
   }
   return "";
 }
@@ -50,9 +50,9 @@ PusherLog::Message PusherLog::ends(uint32_t arm, uint32_t place, End how, const 
   const std::string name = who(told);
   told.pid = 0;
   const double given = client.given.load(kRelaxed);
-  if (how == End::kUnlead) return {HSP_LOG_INFO, name + " pushes on it no more"};
-  if (told.silent) return {HSP_LOG_WARNING, name + " ended; it was silent before, so that its force was gone already"};
-  if (given == 0) return {HSP_LOG_INFO, name + " ended, and pushed with no force"};
+  if (how == End::kUnlead) return {HSP_LOG_INFO, name + " no longer pushes on it"};
+  if (told.silent) return {HSP_LOG_WARNING, name + " ended; it was silent before, so its force had ended already"};
+  if (given == 0) return {HSP_LOG_INFO, name + " ended; its force was zero"};
   return {HSP_LOG_WARNING, fmt::format("{} ended while it pushed with {:.3g} N: its force ramped out", name, given)};
 }
 
@@ -97,7 +97,7 @@ void PusherLog::lookAtRefusals(Told& told, const ClientForces::Client& client, d
 
 void PusherLog::lookAtBound(Told& told, const ClientForces::Client& client, double bound,
                             std::vector<Message>& messages) {
-  constexpr double kRounding = 1e-3;  // a program that clamps by itself, as libHD does, asks for no more
+  constexpr double kRounding = 1e-3;  // tolerance, for a program such as libHD that limits its force to the same bound
   if (told.bounded || client.bounded.load(kRelaxed) == 0) return;
   if (client.asked.load(kRelaxed) <= bound * (1 + kRounding)) return;
   told.bounded = true;

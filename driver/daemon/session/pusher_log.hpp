@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Writes into the daemon's log what programs do that push on an arm: which process, what it does, and why its force is
-/// less than it asks for, or none.
+/// Messages for the daemon's log about programs that push on an arm: which process it is, what it does, and why its
+/// force is less than it asks for.
 #pragma once
 #include <sys/types.h>
 
@@ -16,7 +16,8 @@ namespace hapticd::servo {
 
 class PusherLog {
  public:
-  static constexpr double kSilent = 0.2;  ///< [s] after which the log reports a silence; shorter ones are only counted
+  /// [s] a longer silence is reported in the log; shorter ones are only counted
+  static constexpr double kSilent = 0.2;
   static constexpr double kRefusedPeriod = 1.0;  ///< [s] between two reports about refused answers of a program
 
   /// A message for the log. @param level HSP_LOG_INFO, ...
@@ -27,20 +28,20 @@ class PusherLog {
   /// How a program stops pushing.
   enum class End { kUnlead, kLeft };
 
-  /// [any] A program begins to push. @param place less than ClientForces::kMost
+  /// [any] Called when a program begins to push. @param place less than ClientForces::kMost
   Message begins(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
-  /// [any] A program ends. @param client its counts
+  /// [any] Called when a program stops pushing. @param client its counts
   Message ends(uint32_t arm, uint32_t place, End how, const ClientForces::Client& client);
-  /// [any] What is new about the programs on an arm. @param now [s]
+  /// [any] Returns messages about changes since the last call, of the programs on an arm. @param now [s]
   std::vector<Message> look(uint32_t arm, const ClientForces& forces, double now);
 
  private:
-  /// What was reported about a program.
+  /// What was already reported about a program.
   struct Told {
-    pid_t pid = 0;  ///< 0: an empty place
+    pid_t pid = 0;  ///< 0 if the place is empty
     std::string program;
     bool silent = false, bounded = false;
-    double quiet = 0;  ///< [s]
+    double quiet = 0;  ///< [s] ClientForces::Client::quiet at the last call
     uint64_t refused = 0;
     double refused_at = -kRefusedPeriod;
   };
@@ -55,7 +56,7 @@ class PusherLog {
   std::vector<std::array<Told, ClientForces::kMost>> told_;
 };
 
-/// [any] Why an answer was refused: "a number is not finite".
+/// [any] Returns why an answer was refused, such as "a number is not finite".
 const char* describe(ClientForces::Refusal why);
 
 }  // namespace hapticd::servo

@@ -5,7 +5,8 @@
 
 namespace hapticd::servo {
 
-/// Virtual time that waits for the recording, because it runs hundreds of times faster than the disk was planned for.
+/// Virtual time that waits for the recorder, because a virtual run can be hundreds of times faster than a real one, and
+/// too fast for the disk.
 class RecordedClock final : public Clock {
  public:
   explicit RecordedClock(const record::Recorder& recorder) : recorder_(recorder) {}

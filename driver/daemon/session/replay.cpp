@@ -18,9 +18,10 @@ namespace {
 using record::Column;
 using record::RecordedStream;
 
-constexpr double kKeptSeconds = 0.1;  ///< seconds of the replay's own black box: rows are compared as they come
+/// [s] length of the replay's own black box; short, because rows are compared at once
+constexpr double kKeptSeconds = 0.1;
 
-/// Measured times are not compared: they differ from run to run.
+/// True for columns of measured times, which are not compared because they differ from run to run.
 bool measured(const std::string& column) {
   return column == "lateness_us" || column == "compute_us" || column == "step_us";
 }
@@ -46,31 +47,32 @@ SampleColumns sampleColumns(const RecordedStream& ticks, size_t index) {
           find("q0"),          find("dq0"),          find("measured0")};
 }
 
-/// Streams that recordings of version 0.1 do not have.
+/// True for streams that recordings of version 0.1 do not have.
 bool isLater(const std::string& stream) {
   static constexpr std::string_view kLater[] = {"leads", "events", "pushes", "links", "motors"};
   return std::find(std::begin(kLater), std::end(kLater), stream) != std::end(kLater);
 }
 
-/// What a stream must have so that its rows can be told apart and fed again.
+/// Returns what the recording lacks for a replay, or "".
 std::string missingIn(const record::Recording& recording, const RecordedRun& run,
                       const std::vector<record::StreamSpec>& wanted) {
   for (const record::StreamSpec& spec : wanted) {
     const RecordedStream* stream = recording.stream(spec.name);
-    if (stream == nullptr && isLater(spec.name)) continue;  // it is older than the stream, and had nothing to put there
+    if (stream == nullptr && isLater(spec.name)) continue;  // the recording is older than this stream
     if (stream == nullptr) return "has no " + spec.name;
     if (stream->lost() > 0)
       return "lacks " + std::to_string(stream->lost()) + " rows of " + spec.name +
-             (recording.blackBox() ? ": a black box keeps the newest alone; record with --record" : "");
-    if (stream->rowBytes() != spec.layout.rowBytes()) return "has rows of " + spec.name + " of another build's size";
+             (recording.blackBox() ? ": a black box keeps only the newest rows; record with --record" : "");
+    if (stream->rowBytes() != spec.layout.rowBytes())
+      return "has rows of " + spec.name + " with another size than in this build";
     for (const Column& column : spec.layout.columns()) {
       const Column* found = stream->find(column.name);
       if (found == nullptr || found->offset != column.offset || found->type != column.type)
-        return "has no column " + column.name + " of " + spec.name + " at the place where this build has it";
+        return "has no column " + column.name + " of " + spec.name + " at the place where this build expects it";
     }
   }
   const RecordedStream& ticks = *recording.stream("ticks");
-  if (ticks.rows() == 0) return "has no tick";
+  if (ticks.rows() == 0) return "has no ticks";
   if (ticks.number(0, *ticks.find("tick")) != 0)
     return "begins in the middle of a run; record from the start with --record";
   return run.devices.empty() ? "has no device" : "";
@@ -78,7 +80,7 @@ std::string missingIn(const record::Recording& recording, const RecordedRun& run
 
 }  // namespace
 
-/// A clock that makes each tick find what it found then, and looks at what it gave before the next one comes.
+/// A clock that, before each tick, compares the rows of the last tick and prepares the recorded inputs of the next one.
 class Replay::Player final : public Clock {
  public:
   Player(Replay& replay, const record::FlightRing& ring)
@@ -115,7 +117,8 @@ class Replay::Player final : public Clock {
   }
 
   void compare() {
-    for (const size_t stream : {kPushes, kLeads, kContacts, kPoses, kActivations, kOrders, kTicks}) {  // causes first
+    // Streams that can cause differences in others come first, so that the first difference found is the cause.
+    for (const size_t stream : {kPushes, kLeads, kContacts, kPoses, kActivations, kOrders, kTicks}) {
       if (recorded_[stream] == nullptr) continue;
       const RecordedStream& then = *recorded_[stream];
       for (uint64_t& row = compared_[stream];
@@ -146,8 +149,8 @@ class Replay::Player final : public Clock {
       std::memcpy(sample.position, row + columns.position->offset, bytes);
       if (columns.velocity != nullptr) std::memcpy(sample.velocity, row + columns.velocity->offset, bytes);
       if (columns.measured != nullptr) std::memcpy(sample.torque, row + columns.measured->offset, bytes);
-      // A fault that held before the tick and that the arm did not find by itself came from outside: from a stop or a
-      // watchdog.
+      // The replayed arm did not find this fault by itself, so it came from outside in the recorded run: from a stop or
+      // a watchdog.
       const auto fault = at<uint32_t>(row, columns.fault_before->offset);
       if (fault != 0) replay_.arms_[i]->limiter().trip(static_cast<Fault>(fault));
     }
@@ -162,7 +165,7 @@ class Replay::Player final : public Clock {
       const bool known = row.model < models && row.order <= 2 && row.probe < replay_.arms_.size() &&
                          replay_.world_->shapes()[row.model]->surfaces() != nullptr &&
                          row.surface < replay_.world_->shapes()[row.model]->surfaces()->surface_count;
-      if (!known) continue;  // a damaged row; the forces will differ and show it
+      if (!known) continue;  // a damaged row is ignored; the forces will differ
       const hsp_near near{row.surface, row.probe, {row.u, row.v}, row.distance};
       replay_.world_->link().records.push({row.model, static_cast<link::ActivationRecord::Order>(row.order), near});
     }
@@ -190,7 +193,7 @@ class Replay::Player final : public Clock {
     }
   }
 
-  /// The memory that a leader got; each leader gets a new one.
+  /// Makes the memory of a leader, a new one for each leader.
   const link::PoseSlot* newSlot(uint32_t led, uint32_t target) {
     auto slot = std::make_unique<link::PoseSlot>();
     leads_[{led, target}] = slot.get();
@@ -198,7 +201,7 @@ class Replay::Player final : public Clock {
     return slots_.back().get();
   }
 
-  /// What the servo took from a leader, put where it will find it in the same tick.
+  /// Writes the recorded records of leaders into their memory, so that the servo reads them in the same tick.
   void feedLeads() {
     if (recorded_[kLeads] == nullptr) return;
     for (const RecordedStream& stream = *recorded_[kLeads]; lead_ < stream.rows(); ++lead_) {
@@ -215,7 +218,7 @@ class Replay::Player final : public Clock {
     return push_slots_.back().get();
   }
 
-  /// The answers that the servo took from programs.
+  /// Writes the recorded answers of pushing programs likewise.
   void feedPushes() {
     if (recorded_[kPushes] == nullptr) return;
     for (const RecordedStream& stream = *recorded_[kPushes]; push_ < stream.rows(); ++push_) {
@@ -226,7 +229,8 @@ class Replay::Player final : public Clock {
     }
   }
 
-  /// The tick in which a model was added or removed: added models are not in the recording.
+  /// Returns the first tick in which a model was added or removed. The replay ends there, because the recording does
+  /// not describe added models.
   uint64_t endOfScene() const {
     const RecordedStream& stream = *recorded_[kOrders];
     for (uint64_t i = 0; i < stream.rows(); ++i) {
@@ -297,7 +301,7 @@ class Replay::Player final : public Clock {
   }
 
   Replay& replay_;
-  std::optional<OfflineTick> counted_;  ///< while a tick goes on
+  std::optional<OfflineTick> counted_;  ///< set while a tick runs
   const record::FlightRing& ring_;
   const RecordedStream& ticks_;
   std::vector<const RecordedStream*> recorded_;
@@ -305,9 +309,9 @@ class Replay::Player final : public Clock {
   std::vector<uint64_t> compared_;
   uint64_t tick_ = 0, activation_ = 0, order_ = 0, lead_ = 0, push_ = 0, end_ = 0;
   std::vector<std::unique_ptr<link::PoseSlot>> slots_;
-  std::map<std::pair<uint32_t, uint32_t>, link::PoseSlot*> leads_;  ///< the newest of each target
+  std::map<std::pair<uint32_t, uint32_t>, link::PoseSlot*> leads_;  ///< newest memory, by target of the lead
   std::vector<std::unique_ptr<link::PushSlot>> push_slots_;
-  std::map<std::pair<uint32_t, uint32_t>, link::PushSlot*> pushes_;  ///< the newest of each place of an arm
+  std::map<std::pair<uint32_t, uint32_t>, link::PushSlot*> pushes_;  ///< newest memory, by arm and place
   Nanoseconds now_ = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Runs a recording again: the same loop, arms, limits and models, fed with the recorded samples, activation
-/// records, orders and times. Every result is compared to the last bit.
+/// Runs a recording again: the same loop, arms, limits and models get the recorded samples, activation records, orders
+/// and times. Every result is compared with the recorded one, bit by bit.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -17,24 +17,25 @@
 
 namespace hapticd::servo {
 
-/// A number that differs from the recording.
+/// The first number that differs from the recording.
 struct Difference {
   uint64_t tick = 0;
   double t = 0;      ///< [s]
-  std::string what;  ///< "contacts: fx of model teapot"
+  std::string what;  ///< such as "contacts: fx of model teapot"
   double recorded = 0, replayed = 0;
 };
 
 struct ReplayOutcome {
   uint64_t ticks = 0, recorded_ticks = 0;
   std::optional<Difference> first;
-  double largest_force_error = 0;  ///< [N] difference of what is sent to a device, over all ticks
-  std::string note;                ///< why it ended before the recording did; "" if it did not
+  double largest_force_error = 0;  ///< [N] largest difference of a force sent to a device, over all ticks
+  std::string note;                ///< why the replay ended before the recording; "" if it did not
 };
 
 class Replay {
  public:
-  /// [main] Builds the world of the recording. @param run as readAbout gave it, altered where a change is to be tried
+  /// [main] Builds the world of the recording. @param run as readAbout() gave it, perhaps with changes that are to be
+  /// tried
   static Result<std::unique_ptr<Replay>> prepare(const record::Recording& recording, RecordedRun run,
                                                  const host::Services::Log& log);
   ~Replay();
@@ -48,7 +49,7 @@ class Replay {
   const record::Recording& recording_;
   RecordedRun run_;
   std::vector<std::unique_ptr<host::Playback>> playbacks_;
-  bool paced_ = false;  ///< in the recorded run, by the samples of an arm
+  bool paced_ = false;  ///< true if the samples of an arm drove the recorded run
   std::unique_ptr<World> world_;
   std::vector<std::unique_ptr<Arm>> arms_;
   std::unique_ptr<Telemetry> telemetry_;

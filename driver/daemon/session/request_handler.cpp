@@ -25,7 +25,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using control::Request;
 
-/// The parameter of a class by its id; nullptr if there is none.
+/// Returns the parameter of a class with this id, or nullptr.
 const hsp_param* parameterOf(const hsp_class& plugin, const std::string& id, uint32_t& index) {
   for (index = 0; index < plugin.param_count; ++index) {
     const hsp_param* param = HSP_AT(const hsp_param, plugin.params, plugin.params[0].struct_size, index);
@@ -34,7 +34,7 @@ const hsp_param* parameterOf(const hsp_class& plugin, const std::string& id, uin
   return nullptr;
 }
 
-/// The allowed values: "0 to 3000 N/m", or the words of a choice.
+/// Returns the allowed values, such as "0 to 3000 N/m", or the words of a choice.
 std::string expectedOf(const hsp_param& param) {
   if (param.kind == HSP_BOOL) return "true or false";
   if (param.kind != HSP_ENUM)
@@ -45,7 +45,7 @@ std::string expectedOf(const hsp_param& param) {
   return "one of " + document::listed(words, 40);
 }
 
-/// The number that a word stands for, if it is a word of the parameter.
+/// Returns the number of a word of the parameter, or nothing if there is no such word.
 std::optional<double> numberOf(const hsp_param& param, const std::string& word) {
   for (uint32_t i = 0; param.kind == HSP_ENUM && i < param.choice_count; ++i)
     if (word == host::textOf(param.choices[i])) return i;
@@ -126,7 +126,7 @@ Result<std::string> RequestHandler::tell(const control::Peer& peer, const Reques
       return featureAnswer(*runner_.world().shapes()[*place], request.number);
     }
     default:
-      return Error{"this request asks for nothing"};
+      return Error{"this kind of request is not answered here (an error of hapticd; please report it)"};
   }
 }
 
@@ -211,7 +211,9 @@ Result<void> RequestHandler::able(const std::string& model, bool enabled) {
   const auto place = placeOf(model);
   if (!place) return Error{place.error()};
   if (const std::string why = enabled ? silencedWhy(session(), *place) : ""; !why.empty())
-    return refuse("silenced", why + "; it stays so until it is loaded anew: hapticd ctl reload, or remove and add");
+    return refuse(
+        "silenced",
+        why + "; it stays silenced until it is loaded again\n  fix: hapticd ctl reload, or remove and add the model");
   Order order;
   order.kind = enabled ? Order::Kind::kEnable : Order::Kind::kDisable;
   order.target = *place;
@@ -220,9 +222,9 @@ Result<void> RequestHandler::able(const std::string& model, bool enabled) {
   return give(order);
 }
 
-/// A model that waits for a tip to leave it is enabled but not felt, as the answer says.
+/// Enables a model. If a tip is inside, the model is not felt until the tip has left; the answer says so.
 Result<std::string> RequestHandler::enable(const std::string& model) {
-  constexpr double kMet = 0.02;  // [s] for which it was traced all the time
+  constexpr double kMet = 0.02;  // [s] enough, because an unfelt model is still traced
   if (auto done = able(model, true); !done) return Error{done.error()};
   nlohmann::ordered_json json = {{"ok", true}};
   const auto place = placeOf(model);
@@ -231,7 +233,7 @@ Result<std::string> RequestHandler::enable(const std::string& model) {
   return lineOf(json);
 }
 
-/// What `get` and `list` answer from now on.
+/// Keeps the new value of a parameter for `get` and `list`.
 void RequestHandler::remember(scene::Model& model, const hsp_param& param, const Order& order) {
   auto found = std::find_if(model.parameters.begin(), model.parameters.end(),
                             [&](const scene::Value& value) { return value.index == order.param; });
@@ -269,21 +271,23 @@ Result<void> RequestHandler::set(const Request& request) {
                   fmt::format("{}: {:g} is out of range, expected {}", what, order.value, expectedOf(*param)));
   if ((param->flags & HSP_P_SAFETY) != 0 && !request.consent)
     return refuse("consent", what +
-                                 ": a hand may feel this change suddenly, so the person who holds the arm must agree\n "
+                                 ": a hand may feel this change suddenly, so whoever holds the arm must agree\n "
                                  " fix: add \"consent\": true, or hapticd ctl set --consent");
   auto given = give(order);
   if (given) remember(places_[*place].model, *param, order);
   return given;
 }
 
-/// Only the servo knows where the model is when it obeys, so it applies the bounds of speed: the answer says what
-/// became of the seconds that were asked for.
+/// Moves a model. Only the servo knows where the model is when it obeys, so the servo applies the bounds of speed. The
+/// answer says how long the move really takes.
 Result<std::string> RequestHandler::move(const Request& request) {
   const auto place = placeOf(request.model);
   if (!place) return Error{place.error()};
   const scene::Model& model = places_[*place].model;
   if (!model.kinematic)
-    return refuse("unsupported", "model \"" + model.name + "\" is not kinematic, expected a kinematic model");
+    return refuse("unsupported",
+                  "model \"" + model.name +
+                      "\" is not kinematic, so it cannot be moved; expected motion: kinematic in the scene");
   if (const auto leader = leads_.leader(Order::Led::kModel, *place))
     return refuse("busy", "model \"" + model.name + "\" is led by process " + std::to_string(*leader));
   Order order;
@@ -294,14 +298,17 @@ Result<std::string> RequestHandler::move(const Request& request) {
   if (request.turns) std::copy_n(request.orientation.data(), 4, order.orientation);
   order.seconds = request.seconds.value_or(0);
   if (auto given = give(order); !given) return Error{given.error()};
-  // It obeyed, and only this thread gives orders, so the servo has no reason to change it.
+  // Safe to read: the servo has obeyed, and only this thread gives orders that change the move.
   return lineOf({{"ok", true}, {"seconds", runner_.world().core().models()[*place].glide.seconds()}});
 }
 
-/// A hold that came while this waited for its turn is the newer wish.
+/// Clears arms, unless a hold came while this request waited for its turn: the hold is newer.
 Result<void> RequestHandler::clear(const control::Peer& peer, const std::string& device) {
   if (peer.asked != 0 && peer.asked < held_at_.load())
-    return refuse("held", "a hold came after this request\n  fix: ask again if the force is wanted");
+    return refuse(
+        "held",
+        "the arm was put on hold after this request, so the request was not carried out\n  fix: ask again if the "
+        "force is wanted");
   const auto& devices = runner_.scene().devices;
   bool found = false;
   for (uint32_t i = 0; i < devices.size(); ++i) {

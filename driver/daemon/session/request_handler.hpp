@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Carries out requests from the control socket: looks up, prepares on its own thread, gives orders to the servo, waits
-/// until they are obeyed. Nothing here runs in the servo thread.
+/// Carries out requests from the control socket: answers questions, prepares models on its own thread, gives orders to
+/// the servo, and waits until they are obeyed. Nothing here runs in the servo thread.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -24,42 +24,43 @@ class RequestHandler {
  public:
   /// Loads a scene file with everything it names.
   using LoadScene = std::function<Result<scene::Scene>(const std::string& file)>;
-  /// Warnings about the models in a scene. @param stiffness [N/m] that each of them claims
+  /// Returns warnings about the models in a scene. @param stiffness [N/m] claim of each model
   using Advise =
       std::function<std::vector<std::string>(const scene::Scene& models, const std::vector<double>& stiffness)>;
 
-  /// [main] @param dump_folder where black boxes are written
+  /// [main] @param dump_folder folder for dumps of the black box
   RequestHandler(Runner& runner, LoadScene load, host::Services::Log log, std::string dump_folder);
 
-  /// [main] Called before the first request: what `status` says about where the daemon is found.
+  /// [main] Called before the first request: sets the name and the socket that `status` reports.
   void knownAs(const std::string& name, const std::string& socket) { name_ = name, socket_ = socket; }
-  /// [main] Called before the first request; nothing: there are no warnings about added models.
+  /// [main] Called before the first request: sets the function for warnings about added models; empty for no warnings.
   void adviseBy(Advise advise) { advise_ = std::move(advise); }
 
-  /// [any] One thread at a time. A line of JSON for a line of JSON. @param files the descriptors that the line names
+  /// [any] One thread at a time. Answers a request (one line of JSON) with one line of JSON. @param files descriptors
+  /// that came with the line
   control::Reply answer(const control::Peer& peer, const std::string& line, std::vector<Descriptor> files = {});
-  /// [any] Any thread, at any time: holds arms or ends the run at once, without waiting for other requests.
-  /// @return the answer; nothing if the line is no such request
+  /// [any] Any thread, at any time. Carries out a request to hold arms or to end the run at once, without waiting for
+  /// other requests. @return the answer, or nothing if the line is not such a request
   std::optional<control::Reply> urgent(const control::Peer& peer, const std::string& line);
-  /// [any] The same thread. What the peer's connection keeps alive.
+  /// [any] The thread of answer(). Returns what depends on the peer's connection.
   control::Standing standing(const control::Peer& peer) const { return {stays(peer), listeners_.count(peer.id) > 0}; }
-  /// [any] The same thread. Events for a subscriber, one line each; "" if there are none.
+  /// [any] The thread of answer(). Returns new events for a subscriber, one line each; "" if there are none.
   std::string news(const control::Peer& peer);
-  /// [any] The same thread. The connection is gone, and so is what it kept alive.
+  /// [any] The thread of answer(). Called when a connection is gone: ends what depended on it.
   void left(const control::Peer& peer);
 
-  /// [any] The same thread. Writes the black box. @return the file
+  /// [any] The thread of answer(). Writes the black box to a file. @return the name of the file
   Result<std::string> dump(const std::string& why);
 
  private:
-  /// An error with one word for programs.
+  /// Makes an error. @param code one word by which programs can tell errors apart
   Error refuse(const char* code, std::string why) const {
     code_ = code;
     return Error{std::move(why)};
   }
   Result<std::string> obey(const control::Peer& peer, const control::Request& request);
   Result<std::string> obeyForModels(const control::Peer& peer, const control::Request& request);
-  /// Requests that only ask.
+  /// Answers requests that change nothing.
   Result<std::string> tell(const control::Peer& peer, const control::Request& request);
   Session session() const { return {runner_, places_, leads_, scene_file_}; }
   Result<std::string> eventsAfter(double after) const;
@@ -107,20 +108,20 @@ class RequestHandler {
   LoadScene load_;
   Advise advise_;
   std::string name_, socket_;
-  std::vector<double> came_stiffness_;  ///< [N/m] of the models that were added last
+  std::vector<double> came_stiffness_;  ///< [N/m] claims of the models of the last request
   host::Services::Log log_;
   std::string dump_folder_, scene_file_;
   std::vector<ModelPlace> places_;
-  std::vector<std::unique_ptr<ModelState>> prepared_;  ///< given to the servo but not yet taken
+  std::vector<std::unique_ptr<ModelState>> prepared_;  ///< given to the servo, which has not taken them yet
   uint64_t given_ = 0;
   Leads leads_;
-  std::map<uint64_t, uint64_t> listeners_;  ///< by peer: the number of the next event
+  std::map<uint64_t, uint64_t> listeners_;  ///< subscribers: number of the next event, by peer
   std::atomic<Nanoseconds> held_at_{0};     ///< CLOCK_MONOTONIC of the last hold
-  bool scene_passed_ = false;               ///< the scene's file came from a program, so its name must not be opened
-  std::vector<Descriptor> given_files_;     ///< received with the request that is answered
-  std::optional<PassedFiles> passed_;       ///< their copies, while it is answered
-  Descriptor attached_;                     ///< for the answer that is being made
-  mutable const char* code_ = "failed";     ///< of its error
+  bool scene_passed_ = false;               ///< a program sent the scene, so its file must not be opened by name
+  std::vector<Descriptor> given_files_;     ///< received with the present request
+  std::optional<PassedFiles> passed_;       ///< copies of given_files_, during the request
+  Descriptor attached_;                     ///< descriptor to send with the present answer
+  mutable const char* code_ = "failed";     ///< word for the error of the present request
 };
 
 }  // namespace hapticd::servo

@@ -26,13 +26,13 @@ constexpr uint32_t kSpareModels = 64;
 constexpr const char* kGroup = "haptic";
 constexpr const char* kDefaultName = "hapticd";
 
-/// Where black boxes are kept: in the state folder, or beside the run's own files.
+/// Returns the folder for black boxes: the state folder, or that of the run's own files.
 std::string stateFolder(const std::string& runtime_folder) {
   const std::string folder = watch::stateFolder().string();
   return folder.empty() ? runtime_folder : folder;
 }
 
-/// A run that ends in order removes its black box, so one that is still there was left by a crash.
+/// Saves a black box that a crash left. A run that ends in order removes its black box.
 void keepCrashed(const std::string& file, const std::string& name, const std::string& runtime_folder,
                  const std::string& run = "the last run") {
   std::error_code error;
@@ -49,14 +49,14 @@ void keepCrashed(const std::string& file, const std::string& name, const std::st
   std::filesystem::remove(file, error);
 }
 
-/// True for "hapticd-123", which a run chose because its name was taken. No other run will ever have it.
+/// True for a name such as "hapticd-123", which a run gets if "hapticd" is in use. No other run will use it again.
 bool isAutomatic(const std::string& name) {
   const std::string begin = std::string(kDefaultName) + "-";
   return name.size() > begin.size() && name.compare(0, begin.size(), begin) == 0 &&
          name.find_first_not_of("0123456789", begin.size()) == std::string::npos;
 }
 
-/// What a killed run with a name of its own left in memory: its black box is kept, the rest is removed.
+/// Removes the files of killed runs with such names, and saves their black boxes.
 void clearDead(const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -66,7 +66,7 @@ void clearDead(const std::string& folder) {
   for (const fs::path& lock : locks) {
     const int fd = ::open(lock.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
     if (fd < 0) continue;
-    if (flock(fd, LOCK_EX | LOCK_NB) == 0) {  // no living run has it
+    if (flock(fd, LOCK_EX | LOCK_NB) == 0) {  // no living run has this name
       const std::string name = lock.stem().string(), base = folder + "/" + name;
       keepCrashed(base + ".blackbox.h5", name, folder, "the run " + name);
       for (const char* ending : {".status", ".sock", ".lock"}) unlink((base + ending).c_str());
@@ -75,7 +75,7 @@ void clearDead(const std::string& folder) {
   }
 }
 
-/// Such as "models teapot, floor on simulated Premium 1.5; programs may push (clients: add)".
+/// Describes a scene, such as "models teapot, floor on simulated Premium 1.5; programs may push (clients: add)".
 std::string contents(const scene::Scene& scene) {
   std::vector<std::string> models, devices;
   for (const scene::Model& model : scene.models) models.push_back(model.name);
@@ -94,8 +94,8 @@ std::string contents(const scene::Scene& scene) {
 
 }  // namespace
 
-/// @return false if a living run has it. A holder removes the lock file, so a file that was locked after its removal is
-/// not the one that others see, and is taken anew.
+/// Takes a name for this run. @return false if a living run has it. A run that ends removes its lock file: if the file
+/// was removed before it was locked, other runs see another file, so it is opened and locked again.
 Result<bool> RunFiles::take(const std::string& name) {
   lock_file_ = folder_ + "/" + name + ".lock";
   for (;;) {
@@ -114,7 +114,8 @@ Result<bool> RunFiles::take(const std::string& name) {
   }
 }
 
-/// The same, and waits for one that is about to end: it serves no more, and holds its name until its report is written.
+/// Like take(), but waits for a run that is about to end: such a run no longer serves its socket, but keeps its name
+/// until its report is written.
 Result<bool> RunFiles::takeOrWait(const std::string& name) {
   constexpr Nanoseconds kPatience = 1'000'000'000, kPause = 10'000'000;
   const std::string socket = folder_ + "/" + name + ".sock";
@@ -142,12 +143,12 @@ Result<std::unique_ptr<RunFiles>> RunFiles::open(const std::string& name, RunOpt
   clearDead(outside->folder_);
   auto taken = outside->takeOrWait(name.empty() ? kDefaultName : name);
   if (taken && !*taken && !name.empty())
-    return Error{"--name " + name + ": another daemon runs as " + name + ", expected another name"};
+    return Error{"--name " + name + ": another daemon has the name " + name + "; expected another name"};
   if (taken && !*taken) {
     taken = outside->take(kDefaultName + ("-" + std::to_string(getpid())));
     log::write(HSP_LOG_WARNING, "",
                "another daemon runs as hapticd; this one has the name " + outside->name_ +
-                   "\n  programs find it by that name alone: hapticd ctl --name " + outside->name_);
+                   "\n  programs find it only by this name: hapticd ctl --name " + outside->name_);
   }
   if (!taken) return Error{taken.error()};
   const std::string base = outside->folder_ + "/" + outside->name_;
@@ -162,7 +163,7 @@ RunFiles::~RunFiles() {
   const bool began = runner_ != nullptr || ended_;
   end();
   if (lock_ < 0) return;
-  // What the set-up made for a run that was refused, which no run would ever remove.
+  // Removes files that the set-up made for a run that was then refused.
   if (!began)
     for (const char* ending : {".blackbox.h5", ".status"}) unlink((folder_ + "/" + name_ + ending).c_str());
   unlink(lock_file_.c_str());
@@ -173,7 +174,8 @@ void RunFiles::serve(Runner& runner, const std::string& device_file, host::Catal
                      RequestHandler::Advise advise, const host::Services::Log& log) {
   if (folder_.empty()) return;
   runner_ = &runner;
-  // A fork would make each page of the servo's memory copied at the next write, which is a page fault in a tick.
+  // Plugins are described in another program: after a fork, every first write to a page of the servo's memory would be
+  // a page fault in a tick.
   catalog.describeBy([](const auto& file) { return host::describeByProgram("/proc/self/exe", file); });
   const auto load = [device_file, &catalog](const std::string& file) -> Result<scene::Scene> {
     catalog.refresh();

@@ -27,12 +27,12 @@ namespace {
 
 constexpr Nanoseconds kStatusPeriod = 200'000'000;
 constexpr Nanoseconds kReadyPoll = 1'000'000;
-constexpr uint64_t kReadyTicks = 2;          ///< the servo lives, so the service manager may be told
-constexpr uint64_t kDryCycles = 2000;        ///< with motors off, to judge the machine before a hand relies on it
-constexpr uint64_t kLongestRunUs = 100'000;  ///< of CPU time without sleep; a tick takes a hundredth of it
+constexpr uint64_t kReadyTicks = 2;    ///< after this many ticks the service manager is told that the daemon is ready
+constexpr uint64_t kDryCycles = 2000;  ///< cycles with motors off, to judge the machine before a hand relies on it
+constexpr uint64_t kLongestRunUs = 100'000;  ///< longest CPU time without sleep [us]; a tick takes a hundredth of it
 
 Nanoseconds spinFor(const scene::Servo& servo) {
-  // Spinning buys regularity on bare metal; in a virtual machine the pauses come from outside.
+  // Spinning reduces lateness on bare metal. In a virtual machine it does not help: the pauses come from the host.
   constexpr double kBareMetalSpinUs = 50;
   const double us = servo.spin_us.value_or(os::inVirtualMachine() ? 0 : kBareMetalSpinUs);
   return static_cast<Nanoseconds>(us * 1e3);
@@ -51,14 +51,15 @@ std::string noFifo(int priority, const std::error_code& code, bool hardware) {
          "  fix: sudo usermod -aG haptic $USER, log in again (limits: rtprio 80, memlock 524288)";
 }
 
-/// Whose code is run by a thread for which the end of the run waits.
+/// Returns the module whose code keeps the run from ending, or nullptr.
 const Owner* keepsTheEnd() {
   for (const Worker worker : {Worker::kServo, Worker::kMain, Worker::kSearch, Worker::kControl})
     if (const Owner* owner = calledBy(worker)) return owner;
   return nullptr;
 }
 
-/// [main] A watchdog that names what a run waits for in vain. @param may_lag late ticks are nobody's fault here
+/// [main] Makes the watchdog of a run, which ends a hung process and names the module that hangs. @param may_lag true
+/// if late ticks are normal on this machine
 std::unique_ptr<watch::Watchdog> watchdogOf(watch::Watched& watched, bool may_lag) {
   using watch::Watchdog;
   const auto hung = [&watched] { watch::dieOf("a step that did not come back", watched.inServo()); };
@@ -110,7 +111,7 @@ Result<std::unique_ptr<World>> Runner::buildWorld(const scene::Scene& scene, con
   world_options.measure = true;
   world_options.spare_models = options.spare_models;
   world_options.max_force = maxForceOf(scene);
-  world_options.budgets = !options.virtual_time;  // a budget of real time would make virtual runs differ
+  world_options.budgets = !options.virtual_time;  // a budget of real time would make two virtual runs differ
   return World::build(scene, world_options, log);
 }
 
@@ -128,7 +129,7 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
   }
   if (options.virtual_time && !runner->onlySimulated())
     return Error{
-        "--virtual-time runs faster than any clock, and the scene names real hardware; expected simulated devices "
+        "--virtual-time runs faster than a real clock, but the scene names real hardware; expected simulated devices "
         "only"};
   runner->telemetry_ = std::make_unique<Telemetry>(runner->scene_, options.rate, runner->world_->places());
   runner->openEventLog();
@@ -137,9 +138,9 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
   settings.period_ns = static_cast<Nanoseconds>(std::llround(1e9 / options.rate));
   settings.ticks = options.duration ? static_cast<uint64_t>(std::llround(*options.duration * options.rate)) : 0;
   settings.lockstep = options.virtual_time;
-  if (!options.virtual_time)  // never so much of a tick that the tick ends late
+  if (!options.virtual_time)  // programs' answers are only awaited for a time that does not make the tick late
     settings.answer_time = std::min(static_cast<Nanoseconds>(scene.clients.answer_time * 1e9), settings.period_ns / 4);
-  // A simulation at a terminal starts at once: there is no hand, and nobody waits for READY.
+  // A simulation at a terminal starts without dry cycles: there is no hand, and no service manager waits for READY.
   const bool watched = std::getenv("NOTIFY_SOCKET") != nullptr;
   settings.dry_cycles = !options.virtual_time && (watched || !runner->onlySimulated()) ? kDryCycles : 0;
   if (auto opened = runner->openBlackBox(settings); !opened) return Error{opened.error()};
@@ -200,7 +201,7 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
   const Working working(Worker::kMain);
   WatchedServo watched(*loop_, arms_, *telemetry_);
   const watch::CrashGuard crash(watched, options_.state_dir);
-  os::prepareSignalStack();  // this thread may search, which runs plugins
+  os::prepareSignalStack();  // this thread may run searches, and so code of plugins
   if (options_.virtual_time) {
     const Nanoseconds begun = monotonicNow();
     done = runInVirtualTime(*loop_, watched, [this, begun] {
@@ -210,7 +211,7 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
     ended();
   } else {
     done = runReal(watched, every, ended);
-    stopArms();  // again where it failed
+    stopArms();  // tries again if it failed
   }
   guard_.reset();
   resident_bytes_ = os::residentBytes();
@@ -223,8 +224,8 @@ void Runner::stopArms() {
   for (const auto& arm : arms_) arm->stop();
 }
 
-/// Until the loop has ended: feeds the service manager, passes on messages of the servo, keeps the guard up to
-/// date.
+/// Runs until the loop has ended: keeps the service manager's watchdog quiet, writes messages of the servo, and keeps
+/// the guard process up to date.
 void Runner::lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::function<void(const Runner&)>& every) {
   RealClock clock(0);
   watch::Feeder feeder;
@@ -245,12 +246,12 @@ void Runner::lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::
   }
 }
 
-/// The servo thread's work. @param runs it has the rights that the arms need
+/// The function of the servo thread. @param runs false if the rights that the arms need are missing
 void Runner::serve(bool runs) {
   const Working working(Worker::kServo);
   if (guard_ && runs) guard_->arm(true);
   if (runs) loop_->run();
-  if (guard_ && loop_->silent()) guard_->arm(false);  // the last command was zero: that no tick follows is no fault
+  if (guard_ && loop_->silent()) guard_->arm(false);  // the last command was zero: no cut is needed
 }
 
 Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every,
@@ -264,7 +265,7 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   const auto watchdog = watchdogOf(watched, mayLag());
   if (const auto code = watchdog->start(options_.priority + 1))
     return Error{"cannot start the watchdog thread: " + code.message()};
-  std::vector<std::string> refused;  // belongs to the servo thread until `ready`, then to this thread
+  std::vector<std::string> refused;  // written by the servo thread until `ready`, then read by this thread
   const bool anyhow = onlySimulated() || options_.allow_non_rt, locked = warnings_.empty();
   if (guard_) tellGuard();
   os::Thread servo;
@@ -295,7 +296,9 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   event_log_->tell(*telemetry_->flight());
   ended();
   watchdog->stop();
-  if (!loop_->finished()) return Error{warnings_.back() + "\n  forces stay off (--allow-non-rt allows them)"};
+  if (!loop_->finished())
+    return Error{warnings_.back() +
+                 "\n  forces stay off\n  note: --allow-non-rt allows forces without real-time rights"};
   return {};
 }
 
@@ -306,7 +309,8 @@ void Runner::openEventLog() {
   for (uint32_t place = 0; place < scene_.models.size(); ++place) event_log_->name(place, scene_.models[place].name);
 }
 
-/// Without real-time rights, and where processors are paused one by one, late ticks are nobody's fault.
+/// True if late ticks are normal: without real-time rights, or on a virtual machine whose processors are paused one by
+/// one.
 bool Runner::mayLag() const {
   return options_.allow_non_rt || os::inVirtualMachine();
 }
@@ -316,7 +320,7 @@ void Runner::suspend() noexcept {
   suspend_ = true;
 }
 
-/// Called once nothing is felt any more, and the last command has been sent.
+/// Stops the process until it is continued. Called once forces are zero, and the last command has been sent.
 void Runner::stopProcess() {
   constexpr Nanoseconds kMostPatience = 1'000'000'000, kLastCommand = 20'000'000;
   RealClock clock(0);
@@ -348,7 +352,7 @@ std::vector<std::string> Runner::enterRealTime() const {
       refused.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " + code.message());
   if (const auto code = os::setFifo(options_.priority))
     refused.push_back(noFifo(options_.priority, code, !onlySimulated()));
-  (void)os::limitRealTimeRun(kLongestRunUs);  // if this is refused, the limit is lower already
+  (void)os::limitRealTimeRun(kLongestRunUs);  // if this fails, the limit is lower already
   return refused;
 }
 
@@ -389,7 +393,7 @@ std::vector<std::string> Runner::recovered() const {
     if (fault == Fault::kNone) continue;
     const std::string words = arms_[i]->trouble() != nullptr ? arms_[i]->trouble() : describe(fault);
     texts.push_back("device " + scene_.devices[i].name + ": " + words.substr(0, words.find("; ")) +
-                    "; its forces ended and came back once it was well");
+                    "; its forces ended and came back once the device worked again");
   }
   return texts;
 }

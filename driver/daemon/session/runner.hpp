@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A whole run of the daemon: threads, real-time rights, the loop, and an orderly end. Called by `hapticd run`.
+/// A whole run of the daemon: threads, real-time rights, the loop, and an orderly end. Used by `hapticd run`.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -27,92 +27,94 @@ class ProximityThread;
 namespace hapticd::servo {
 
 struct RunOptions {
-  double rate = 1000;              ///< [Hz]
-  std::optional<double> duration;  ///< [s] none: until stopped
+  double rate = 1000;              ///< [Hz] of the servo
+  std::optional<double> duration;  ///< [s] length of the run; without it, until stop()
   bool virtual_time = false;
-  std::optional<int> cpu;  ///< pins the servo thread
+  std::optional<int> cpu;  ///< processor for the servo thread
   int priority = os::kServoPriority;
   uint32_t spare_models = 0;  ///< places for models that are added during the run
-  std::string status;         ///< file of the status page; empty: none
-  std::string record;         ///< file that takes every tick; empty: none
-  std::string black_box;      ///< file in memory with the last seconds; empty: memory of the process
-  std::string state_dir;      ///< folder for what a crash leaves; empty: nothing is written
-  bool allow_non_rt = false;  ///< runs real hardware even without real-time rights
+  std::string status;         ///< file of the status page; "" for none
+  std::string record;         ///< file of the recording of every tick; "" for none
+  std::string black_box;      ///< file in memory for the black box; "": memory of the process
+  std::string state_dir;      ///< folder for files after a crash; "": none are written
+  bool allow_non_rt = false;  ///< true: real hardware may run without real-time rights
 };
 
 class Runner {
  public:
-  /// [main] Sets up the models. If it fails, the fault is in what the scene names: its files and parameters.
+  /// [main] Sets up the models. If it fails, the error is in files or parameters that the scene names.
   static Result<std::unique_ptr<World>> buildWorld(const scene::Scene& scene, const RunOptions& options,
                                                    const host::Services::Log& log);
 
-  /// [main] Takes models and arms down; if a module crashes in it, it is named and remembered as in a run.
+  /// [main] Destroys models and arms. If a module crashes in this, it is named and put on the quarantine list as in a
+  /// run.
   ~Runner();
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
-  /// [main] Opens the devices. If it fails, the fault is in the hardware, or a virtual run names some hardware.
+  /// [main] Opens the devices. It fails if the hardware fails, or if a virtual run names real hardware.
   static Result<std::unique_ptr<Runner>> prepare(const scene::Scene& scene, const RunOptions& options,
                                                  std::unique_ptr<World> world, const host::Services::Log& log);
 
-  /// [main] Runs to the end; `every` is called about five times a second from this thread, and `ended` once the motors
-  /// are off. If anything delays `ended` for more than a second after a stop, the process ends.
+  /// [main] Runs until the end. @param every is called from this thread about five times a second @param ended is
+  /// called once the motors are off. If `ended` has not returned one second after a stop, the process is ended.
   Result<void> run(const std::function<void(const Runner&)>& every, const std::function<void()>& ended = [] {});
 
-  /// [any] Asks for an end: forces ramp to zero first. Async-signal-safe.
+  /// [any] Asks the run to end. Forces ramp to zero first. Async-signal-safe.
   void stop() noexcept { loop_->stop(); }
 
   /// [any] Ramps the forces of these arms to zero now (see Loop::hold). Async-signal-safe.
   void hold(uint64_t arms) noexcept { loop_->hold(arms); }
 
-  /// [any] Ramps forces to zero, then stops the process until it is continued (Ctrl-Z). Forces stay off after it until
-  /// they are cleared. Async-signal-safe.
+  /// [any] For Ctrl-Z: ramps forces to zero, then stops the process until it is continued. After that, forces stay off
+  /// until they are cleared. Async-signal-safe.
   void suspend() noexcept;
 
   World& world() { return *world_; }
   const World& world() const { return *world_; }
-  /// [any] Only one thread: an order for the servo.
+  /// [any] Gives an order to the servo. Only one thread may call this.
   bool giveOrder(const Order& order) { return loop_->give(order); }
   Door& door() { return loop_->door(); }
-  /// [main] After the run: nothing is left behind.
+  /// [main] Called after the run: removes the file of the black box.
   void endBlackBox() { telemetry_->flight()->ring().removeFile(); }
-  /// [any] The same thread: a model takes a place; "": it has left.
+  /// [any] The thread of giveOrder(): a model takes a place, or has left it (`name` is "").
   void nameModel(uint32_t place, const std::string& name, const std::string& plugin);
-  /// [any] The same thread: a program is about to lead.
+  /// [any] The thread of giveOrder(): a program is about to lead.
   void nameLeader(pid_t pid, const std::string& program) { event_log_->leads(pid, program); }
-  /// [any] The same thread: a program pushes on an arm.
+  /// [any] The thread of giveOrder(): a program begins to push on an arm.
   void namePusher(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
-  /// [any] The same thread: it has stopped pushing.
+  /// [any] The thread of giveOrder(): a program has stopped pushing.
   void forgetPusher(uint32_t arm, uint32_t place, PusherLog::End how);
-  /// [any] The same thread: counts of a program that pushed, for the report.
+  /// [any] The thread of giveOrder(): adds the counts of a program that pushed to the report.
   void book(const record::ClientReport& client) { telemetry_->pushed(client); }
 
-  /// Folder for the quarantine and for what a crash leaves; "": none.
+  /// Folder for the quarantine list and for files after a crash; "" if there is none.
   const std::string& stateDir() const { return options_.state_dir; }
   bool virtualTime() const { return options_.virtual_time; }
-  /// [any] One thread: memory that the loop shares with others until it has ended; nullptr until somebody asks.
+  /// [any] One thread: memory that the loop shares with other programs until it has ended; nullptr before the first
+  /// request.
   struct Shared {
     std::unique_ptr<SealedMemory> state, bell;
   };
   Shared& shared() { return shared_; }
   const Telemetry& telemetry() const { return *telemetry_; }
   const Loop& loop() const { return *loop_; }
-  Nanoseconds wallTime() const { return wall_time_; }       ///< [main] how many the loop took
-  size_t residentBytes() const { return resident_bytes_; }  ///< [main] time at the end of the loop
+  Nanoseconds wallTime() const { return wall_time_; }       ///< [main] duration of the loop
+  size_t residentBytes() const { return resident_bytes_; }  ///< [main] memory of the process at the end of the run
   const std::vector<std::unique_ptr<Arm>>& arms() const { return arms_; }
   const scene::Scene& scene() const { return scene_; }
-  const record::Recorder* recorder() const { return recorder_.get(); }  ///< nullptr: nothing is recorded
+  const record::Recorder* recorder() const { return recorder_.get(); }  ///< nullptr if there is no recording
 
-  /// Real-time rights could not be had in full: four-part messages for the user.
+  /// Messages for the user about real-time rights that the run did not get.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
-  /// [main] What took the force of an arm away, in words; "": nothing did.
+  /// [main] Returns the message for the fault of an arm, or "" if there is none.
   std::string faultOf(size_t arm) const;
 
-  /// [main] After the run: what took a force away for a while, in words.
+  /// [main] After the run: returns messages for faults that ended by themselves.
   std::vector<std::string> recovered() const;
 
-  /// [main] After the run: what ended it early or took the force away, in words.
+  /// [main] After the run: returns messages for faults that ended the run early or took a force away.
   std::vector<std::string> faults() const;
 
  private:
@@ -132,7 +134,7 @@ class Runner {
   void keepGuard();
   void openEventLog();
   void lockMemory();
-  std::vector<std::string> enterRealTime() const;  ///< servo thread. @return what was refused
+  std::vector<std::string> enterRealTime() const;  ///< [servo thread] @return messages for refused rights
   bool onlySimulated() const;
 
   scene::Scene scene_;
@@ -145,7 +147,7 @@ class Runner {
   std::unique_ptr<Clock> clock_;
   std::unique_ptr<Loop> loop_;
   std::unique_ptr<record::Recorder> recorder_;
-  std::unique_ptr<watch::GuardProcess> guard_;  ///< nullptr: no arm needs one, or none can be switched off from outside
+  std::unique_ptr<watch::GuardProcess> guard_;  ///< nullptr if no arm needs one, or none can use one
   uint32_t guards_ended_ = 0;
   std::atomic<bool> suspend_{false};
   std::vector<std::string> warnings_;

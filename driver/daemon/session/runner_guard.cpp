@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The guard process of a run: which runs have one, and how it is kept up to date.
+/// The guard process of a run: decides which runs have one, and keeps it up to date.
 #include <algorithm>
 #include <utility>
 
@@ -9,7 +9,7 @@
 
 namespace hapticd::servo {
 
-/// True for an arm whose hardware does not switch itself off, and which another process can switch off.
+/// True if an arm does not switch its motors off by itself, but another process can switch them off.
 bool Runner::needsGuard() const {
   if (options_.virtual_time) return false;
   return std::any_of(arms_.begin(), arms_.end(), [](const auto& arm) {
@@ -18,7 +18,7 @@ bool Runner::needsGuard() const {
 }
 
 void Runner::startGuard() {
-  constexpr Nanoseconds kAfterTheWatchdog = 2;  // whose cut comes first
+  constexpr Nanoseconds kAfterTheWatchdog = 2;  // times the watchdog's patience, so that the watchdog cuts first
   const Nanoseconds patience =
       kAfterTheWatchdog * (mayLag() ? watch::Watchdog::kMissedInVirtualMachine : watch::Watchdog::kMissedAfter);
   auto guard = watch::GuardProcess::start(options_.priority + 2, patience);
@@ -27,7 +27,8 @@ void Runner::startGuard() {
   loop_->beatOn(guard_->ticks());
 }
 
-/// A guard that was killed, as on a machine short of memory, would not be missed until it is needed.
+/// Restarts a guard that was killed, for example because the machine ran out of memory. Otherwise its end would only be
+/// noticed when it is needed.
 void Runner::keepGuard() {
   constexpr uint32_t kMost = 8;
   if (guards_ended_ > kMost) return;
@@ -35,12 +36,12 @@ void Runner::keepGuard() {
   const bool again = ++guards_ended_ <= kMost;
   const Result<void> begun = again ? guard_->restart() : Error{"it ended repeatedly"};
   log::write(begun ? HSP_LOG_WARNING : HSP_LOG_ERROR, "",
-             begun ? "the guard process ended; another watches in its place"
-                   : "the guard process ended, and there is no other: " + begun.error());
+             begun ? "the guard process ended; a new one has replaced it"
+                   : "the guard process ended and could not be replaced: " + begun.error());
   if (!begun) guards_ended_ = kMost + 1;
 }
 
-/// Arms come and go: an arm that was found anew must be reached in another way.
+/// Tells the guard how to reach the arms, because this changes when an arm is plugged in again.
 void Runner::tellGuard() {
   for (uint32_t i = 0; i < arms_.size(); ++i) {
     hdv_silence how{};

@@ -11,7 +11,7 @@ namespace hapticd::servo {
 
 namespace {
 
-/// Such as ", at 1.234 s with 0.42 N at a depth of 0.525 mm", as far as that is known.
+/// Describes a pull, such as ", at 1.234 s with 0.42 N at a depth of 0.525 mm", as far as it is known.
 std::string placeOf(const Pull& pull) {
   if (pull.t < 0) return "";
   std::string text = fmt::format(", at {:.3f} s with {:.3g} N", pull.t, pull.force);
@@ -19,7 +19,7 @@ std::string placeOf(const Pull& pull) {
   return text;
 }
 
-/// Such as ", the largest by 5.85 N at 2.134 s at a depth of 3.9 mm", as far as that is known.
+/// Describes a jump, such as ", the largest by 5.85 N at 2.134 s at a depth of 3.9 mm", as far as it is known.
 std::string sizeOf(const Pull& jump) {
   if (!(jump.force > 0)) return "";
   std::string text = fmt::format(", the largest by {:.3g} N", jump.force);
@@ -28,7 +28,7 @@ std::string sizeOf(const Pull& jump) {
   return text;
 }
 
-/// The cure for jumps that are intended: the size that was seen, rounded up.
+/// Returns the cure if the jumps are intended: the call of reportJumps() with the largest jump, rounded up.
 std::string onPurpose(const Pull& jump) {
   if (!(jump.force > 0)) return "";
   const double unit = std::pow(10, std::floor(std::log10(jump.force)) - 1);
@@ -36,7 +36,7 @@ std::string onPurpose(const Pull& jump) {
                      unit * std::ceil(jump.force / unit));
 }
 
-/// What is wrong with a shape that pulled: if no depth was reported, its author may have forgotten the depth.
+/// Returns what may be wrong with a shape that pulled. If its depth was zero, the author may have forgotten to set it.
 std::string causeOf(const Pull& pull) {
   const std::string sign = "its force has the wrong sign";
   return pull.depth == 0 ? "its depth_m was left at 0 inside, or " + sign : sign;
@@ -76,18 +76,19 @@ std::string silenceReason(const std::string& model, Trouble trouble, int32_t fai
              "took longer than the budget of a tick, several times; it was silenced; measure it with: hapticd plugin "
              "check FILE.so";
     case Trouble::kJump:
-      return who + "gave forces that jumped beyond its claimed stiffness" + sizeOf(pull) + "; it was silenced; " +
-             onPurpose(pull) + "test it with: hapticd plugin check FILE.so";
+      return who + "gave forces that jumped by more than its claimed stiffness allows" + sizeOf(pull) +
+             "; it was silenced; " + onPurpose(pull) + "test it with: hapticd plugin check FILE.so";
     case Trouble::kTwists:
       return who +
-             "gave torques that jumped beyond its claimed stiffness; it was silenced; test it with: hapticd plugin "
+             "gave torques that jumped by more than its claimed stiffness allows; it was silenced; test it with: "
+             "hapticd plugin "
              "check FILE.so";
     case Trouble::kNotUnit:
-      return who + "gave a pose whose quaternion is not of unit length; it was silenced";
+      return who + "gave a pose whose quaternion does not have length 1; it was silenced";
     case Trouble::kPulls:
       return who + "pulled the probe into its surface" + placeOf(pull) + ": " + causeOf(pull) +
-             ", since it reports to push only (HSP_R_PUSHES); it was silenced; test it "
-             "with: hapticd plugin check FILE.so, which tells the place as well";
+             ", although it reports to push only (HSP_R_PUSHES); it was silenced; test it "
+             "with: hapticd plugin check FILE.so, which also says where";
   }
   return "";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Words for a model that the guard has silenced.
+/// Messages for a model that the guard has silenced.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -12,13 +12,13 @@ struct ModelState;
 struct Pull;
 enum class Trouble : uint8_t;
 
-/// [main] Why the model was silenced and what to do; "" if it was not.
+/// [main] Returns why the model was silenced and what to do; "" if it was not silenced.
 std::string silenceReason(const ModelState& model);
-/// [main] The same. @param failed_status the first status that step may not return
+/// [main] The same. @param failed_status the first status not allowed by the ABI that step() returned
 std::string silenceReason(const std::string& model, Trouble trouble, int32_t failed_status);
-/// [main] The same. @param pull how it pulled, if it did
+/// [main] The same. @param pull the pull, or the largest jump, for which it was silenced
 std::string silenceReason(const std::string& model, Trouble trouble, int32_t failed_status, const Pull& pull);
-/// [main] The same for an event HAPTICD_SILENCED.
+/// [main] The same for an event of kind HAPTICD_SILENCED.
 std::string silenceReason(const hapticd_event& event, const std::string& model);
 
 }  // namespace hapticd::servo

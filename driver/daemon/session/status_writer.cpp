@@ -35,7 +35,7 @@ StatusWriter::StatusWriter(std::unique_ptr<status::PageFile> file, const scene::
 void StatusWriter::name(uint32_t place, const std::string& name, const std::string& plugin) {
   if (place >= status::kMaxModels) return;
   auto& model = file_->page().model[place];
-  model.step_us.clear();  // of the one before
+  model.step_us.clear();  // removes the times of the model that had this place before
   model.now.write({});
   file_->page().feet[place].write({});
   model.name.write(named(name, plugin));
@@ -87,7 +87,7 @@ void StatusWriter::models(uint64_t tick, const Core& core,
                           std::span<const record::ContactStatistics> books) noexcept HSP_RT {
   status::Page& page = file_->page();
   for (const uint32_t place : core.live()) {
-    if (place >= status::kMaxModels) break;  // in the order of the scene; models that were added come later
+    if (place >= status::kMaxModels) break;  // places grow, so the rest has no entry either
     const ModelState& model = core.models()[place];
     status::ModelNow now;
     now.depth = std::numeric_limits<double>::quiet_NaN();

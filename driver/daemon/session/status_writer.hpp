@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Puts each tick onto the status page.
+/// Writes each tick to the status page.
 #pragma once
 #include <memory>
 #include <span>
@@ -14,18 +14,18 @@ namespace hapticd::servo {
 
 class StatusWriter {
  public:
-  /// [main] Names everything and shows the page to readers.
+  /// [main] Writes all names, then makes the page valid for readers.
   StatusWriter(std::unique_ptr<status::PageFile> file, const scene::Scene& scene,
                const std::vector<std::unique_ptr<Arm>>& arms, double rate);
 
-  /// [main] A model takes a place, or leaves it (an empty name).
+  /// [main] Called when a model takes a place, or leaves it (an empty name).
   void name(uint32_t place, const std::string& name, const std::string& plugin);
 
-  /// [main] A program pushes on an arm. @param pid 0: it has stopped
+  /// [main] Called when a program begins or stops pushing on an arm. @param pid 0 if it has stopped
   void pusher(uint32_t arm, uint32_t place, uint64_t pid, const std::string& program);
 
-  /// [rt] After a tick. Copies only what changes, so its cost does not grow with models that are far away.
-  /// @param books by the place of a model
+  /// [rt] Called after a tick. Copies only models that changed, so models far away cost nothing.
+  /// @param books statistics by the place of a model
   void tick(const status::Now& now, Nanoseconds late, Nanoseconds spent, const Core& core,
             const std::vector<std::unique_ptr<Arm>>& arms,
             std::span<const record::ContactStatistics> books) noexcept HSP_RT;

@@ -92,7 +92,8 @@ void Telemetry::keep(const BlackBoxRow& row) noexcept HSP_RT {
   if (row_count_ < rows_.size()) ++row_count_;
 }
 
-/// At the planned end of a run, and in a hold, nothing pushes back: how deep a hand sinks then is nothing of the model.
+/// True at the planned end of a run, and in a hold. No force acts then, so the depth of the hand says nothing about the
+/// model and is not counted.
 bool Telemetry::held(const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
   const auto is = [](const auto& arm) { return arm->limiter().fault() == Fault::kStopped; };
   return !arms.empty() && std::all_of(arms.begin(), arms.end(), is);
@@ -117,7 +118,7 @@ void Telemetry::bookWork(uint32_t index, const Core& core,
                                              arms[arm]->probe().position);
 }
 
-/// [N] What a contact pulls deeper in with; 0: it does not.
+/// Returns the force [N] with which a contact pulls the probe deeper in, or 0.
 double Telemetry::pullOf(const Contact& contact, const Arm& arm) noexcept HSP_RT {
   const bool pulls = contact.world.depth_m > 0 && arm.probe().valid && pullsIn(contact.world, arm.probe().position);
   return pulls ? Eigen::Map<const Vector3d>(contact.world.force).norm() : 0;
@@ -150,7 +151,7 @@ void Telemetry::bookModels(double dt, const Core& core, const std::vector<std::u
     }
     models_[index].add(depth > 0 && pushed, depth, force, dt, model.step_ns);
     if (depth > -HUGE_VAL && model.status >= HSP_OK) models_[index].addFoot(held, model.status == HSP_DEGRADED);
-    // The force with which a model in trouble fades out is not its answer.
+    // The force with which a model in trouble fades out is not its answer, so it is not counted.
     const bool any = odd.untraced + odd.depthless + odd.outside + odd.pull > 0;
     if (any && pushed && model.status >= HSP_OK && !model.guard.quarantined()) bookOdd(index, odd);
     bookArms(index, dt, core, arms);
@@ -191,7 +192,7 @@ record::RunReport Telemetry::report(const std::vector<std::string>& faults) cons
   report.servo_allocations = allocations_;
   for (size_t i = 0; i < models_.size(); ++i)
     if (!names_[i].empty()) report.models.push_back(reportOf(i));
-  // Names are keys in the report, and a model often takes the place of one of its name.
+  // Names are keys in the report, and a removed model is often replaced by one with the same name.
   std::map<std::string, int> times;
   for (record::ModelReport left : left_) {
     const int before = times[left.name]++;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The books of a run, kept in the servo thread without allocation: histograms of time, contact statistics of every
-/// model, and the black box of the last ten seconds.
+/// The statistics of a run, kept in the servo thread without allocation: histograms of times, contact statistics of
+/// every model, and the black box of the last ten seconds.
 #pragma once
 #include <array>
 #include <memory>
@@ -19,14 +19,14 @@
 
 namespace hapticd::servo {
 
-/// One tick in the black box.
+/// A short row about one tick: for the status line, and for the black box if there is no Flight.
 struct BlackBoxRow {
   double t = 0;  ///< [s] since the start
   float lateness_us = 0, compute_us = 0;
-  std::array<float, 3> position{};  ///< [m] first arm, world
-  std::array<float, 3> force{};     ///< [N] first arm, world, as sent
-  float depth_m = 0;                ///< deepest contact; negative: distance of the nearest foot; 0: nothing traced
-  uint32_t model = UINT32_MAX;      ///< of that foot
+  std::array<float, 3> position{};  ///< [m] of the first arm, world frame
+  std::array<float, 3> force{};     ///< [N] of the first arm, world frame, as sent
+  float depth_m = 0;                ///< deepest contact; negative: distance to the nearest foot; 0: no model is traced
+  uint32_t model = UINT32_MAX;      ///< model of this contact or foot
   int32_t status = 0;               ///< worst status of the tick
   uint32_t fault = 0;               ///< servo::Fault of the first arm
 };
@@ -36,38 +36,38 @@ class Telemetry final : public TickLog {
   static constexpr double kBlackBoxSeconds = 10;
   static constexpr size_t kMostLeft = 64;
 
-  /// [main] Allocates and touches everything.
-  /// @param places most models that there may be; 0: those of the scene
+  /// [main] Allocates all memory and touches it.
+  /// @param places most models that the run can have; 0: as many as the scene has
   Telemetry(const scene::Scene& scene, double rate, uint32_t places = 0);
 
-  /// [main] A model takes an empty place; before the servo adopts it. The counts of a model that left stay in the
-  /// report, for the newest `kMostLeft` of them.
+  /// [main] Called before the servo adopts a model into an empty place. The counts of the newest kMostLeft models that
+  /// have left stay in the report.
   void name(uint32_t place, const std::string& name, const std::string& plugin);
 
-  /// [main] Keeps every tick in a black box, with all inputs and outputs; then the short rows kept so far are not
-  /// needed.
+  /// [main] From now on keeps every tick in this black box, with all inputs and outputs, instead of the short
+  /// BlackBoxRow.
   void attach(std::unique_ptr<Flight> flight);
-  /// [main] Shows every tick on a page that others can read too.
+  /// [main] From now on also writes every tick to this status page.
   void attach(std::unique_ptr<StatusWriter> status) { status_ = std::move(status); }
   StatusWriter* statusWriter() { return status_.get(); }
   const StatusWriter* statusWriter() const { return status_.get(); }
   Flight* flight() { return flight_.get(); }
   const Flight* flight() const { return flight_.get(); }
 
-  /// [main] A program pushed on an arm, and has stopped.
+  /// [main] Called when a program has stopped pushing: adds its counts.
   void pushed(const record::ClientReport& client) { record::add(clients_, client); }
 
-  /// [rt] Before a tick at time `now`.
+  /// [rt] Called before a tick at time `now`.
   void begin(Nanoseconds now, const Arms& arms) noexcept HSP_RT override {
     if (flight_) flight_->begin(now, arms);
   }
 
-  /// [rt] An order of a person, obeyed in this tick.
+  /// [rt] Called for each order that this tick obeys.
   void order(const Order& order) noexcept HSP_RT override {
     if (flight_) flight_->order(order);
   }
 
-  /// [rt] Books one tick.
+  /// [rt] Adds one tick to the statistics.
   void tick(double t, double dt, Nanoseconds late, const Spent& spent, const Core& core,
             const Arms& arms) noexcept HSP_RT override;
 
@@ -77,16 +77,16 @@ class Telemetry final : public TickLog {
     missed_ += missed;
   }
 
-  /// [rt] The end of the run, with what was counted after the warm-up.
+  /// [rt] Called at the end of the run, with the counts since the warm-up.
   void finish(uint64_t ticks, Nanoseconds elapsed, long page_faults, uint64_t allocations) noexcept override;
 
-  /// [main] Everything as the report that --report writes. @param faults words for what went wrong
+  /// [main] Returns the report that --report writes. @param faults messages of the faults
   record::RunReport report(const std::vector<std::string>& faults) const;
 
-  /// [main] The black box, oldest row first.
+  /// [main] Returns the rows of the black box, oldest first.
   std::vector<BlackBoxRow> blackBox() const;
 
-  /// [any] The newest row, for the status line; it may be torn, so it is only for people to look at.
+  /// [any] Returns the newest row for the status line. It may mix values of two ticks, so it is only for display.
   const BlackBoxRow& newest() const noexcept { return newest_; }
 
  private:
@@ -96,8 +96,8 @@ class Telemetry final : public TickLog {
   static bool held(const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
   void bookArms(uint32_t index, double dt, const Core& core,
                 const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
-  /// [N] The force with which a model pushed in a tick, the largest of all probes, although no contact can be reported;
-  /// and its pull.
+  /// [N] Largest force of a model on any probe in a tick, in cases without a proper contact: nothing traced, no depth,
+  /// or outside the surface; and its largest pull.
   struct Odd {
     double untraced = 0, depthless = 0, outside = 0, pull = 0;
   };
@@ -109,17 +109,17 @@ class Telemetry final : public TickLog {
                   BlackBoxRow& row) noexcept HSP_RT;
 
   std::vector<std::string> names_, plugins_;
-  std::vector<record::ModelReport> left_;  ///< models that have left
+  std::vector<record::ModelReport> left_;  ///< reports of models that have left
   std::vector<record::ClientReport> clients_;
   double rate_, simulated_seconds_ = 0;
   record::Histogram lateness_us_, compute_us_, arms_us_;
   std::vector<record::ContactStatistics> models_;
   std::vector<record::ContactWork> work_;          ///< [model * arms + arm]
-  std::vector<std::string> devices_;               ///< where there are several
+  std::vector<std::string> devices_;               ///< names of the arms if there are several
   std::vector<record::ContactStatistics> by_arm_;  ///< [model * devices_.size() + arm]
-  std::vector<BlackBoxRow> rows_;                  // used where there is no flight
-  std::vector<StopCounts> stops_;                  ///< by arm
-  std::vector<std::string> all_devices_;           ///< their names
+  std::vector<BlackBoxRow> rows_;                  // used only without flight_
+  std::vector<StopCounts> stops_;                  ///< statistics of joints at their stops, by arm
+  std::vector<std::string> all_devices_;           ///< names of all arms
   BlackBoxRow newest_;
   size_t next_ = 0, row_count_ = 0;
   uint64_t ticks_ = 0, overruns_ = 0, missed_ = 0, allocations_ = 0;

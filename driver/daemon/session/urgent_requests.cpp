@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Requests that wait behind nothing: a person who wants the force to end shall not wait for a model to be built.
+/// Requests that wait for no other request: a user who wants to end the force must not wait until a model is built.
 #include <nlohmann/json.hpp>
 
 #include "base/clock.hpp"
@@ -11,7 +11,8 @@ using control::Request;
 
 namespace {
 
-constexpr Nanoseconds kPause = 500'000, kPatience = 100'000'000;  ///< for the servo to obey; one tick is enough
+/// [ns] Pause between two looks whether the servo has obeyed, and longest wait; the servo needs one tick.
+constexpr Nanoseconds kPause = 500'000, kPatience = 100'000'000;
 
 std::string good() {
   return R"({"ok":true})";
@@ -32,7 +33,8 @@ std::optional<control::Reply> RequestHandler::urgent(const control::Peer&, const
   return control::Reply(control::withId(held ? *held : control::refusal(held.error(), code), id));
 }
 
-/// Called on any thread. The ring of orders has one writer and may be full, so a hold has a way of its own.
+/// Holds arms. May be called on any thread. The queue of orders has one writer and may be full, so a hold does not use
+/// it.
 Result<std::string> RequestHandler::hold(const std::string& device, const char*& code) {
   const auto& devices = runner_.scene().devices;
   uint64_t arms = 0;
@@ -42,7 +44,7 @@ Result<std::string> RequestHandler::hold(const std::string& device, const char*&
   if (arms == 0) return Error{noSuchDevice(runner_.scene(), device)};
   held_at_.store(monotonicNow());
   runner_.hold(arms);
-  if (runner_.loop().ticks() == 0) return good();  // no force has come yet, and none will
+  if (runner_.loop().ticks() == 0) return good();  // no force has flowed yet, and the hold keeps it off
   RealClock clock(0);
   for (const Nanoseconds until = clock.now() + kPatience; !runner_.loop().holdsObeyed(arms) && clock.now() < until;)
     clock.waitUntil(clock.now() + kPause);

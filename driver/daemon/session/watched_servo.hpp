@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The running servo as watchdog and crash handler see it.
+/// The interface through which the watchdog and the crash handler see the running servo.
 #pragma once
 #include <memory>
 #include <vector>

@@ -22,7 +22,7 @@ void Proximity::addModel(uint32_t place, host::ShapeInstance& shape, const hsp_p
   const double* q = pose.orientation;
   model.orientation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
   model.active.assign(size_t{probe_count} * surfaces, 0);
-  constexpr uint32_t kRivals = 32;  // a plugin may offer several feet on a surface, after one on each
+  constexpr uint32_t kRivals = 32;  // room for further feet, because a plugin may offer several feet on one surface
   found_.resize(std::max<size_t>(found_.size(), size_t{surfaces} + kRivals));
   seen_.resize(std::max<size_t>(seen_.size(), surfaces));
   if (of_scene_.size() <= place) of_scene_.resize(place + 1, UINT32_MAX);
@@ -53,7 +53,7 @@ size_t Proximity::modelCount() const {
 }
 
 Searching Proximity::amount() const {
-  constexpr uint64_t kSmallBytes = 512 * 1024;  // a torus has half as many, and is searched in under 20 us
+  constexpr uint64_t kSmallBytes = 512 * 1024;  // [bytes] a torus has half as many, and is searched in less than 20 us
   const std::lock_guard lock(mutex_);
   uint32_t surfaces = 0;
   uint64_t bytes = 0;

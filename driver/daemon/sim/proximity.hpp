@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The global, slow work: which surfaces are near a probe? Sends activation records to the servo and keeps a mirror of
-/// the models' transforms. (Thompson et al. 1999, section 4.2: 10 cm on, 5 cm of hysteresis, bounding boxes first.)
+/// The proximity search: finds which surfaces are near a probe, and sends activation records to the servo. It keeps
+/// copies of the models' transforms. A surface is activated at 10 cm and stopped 5 cm farther away; bounding boxes are
+/// tested first (Thompson et al. 1999, section 4.2).
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -12,14 +13,14 @@
 
 namespace hapticd::sim {
 
-/// Period of the search: at 2 m/s a probe moves 10 mm of the 100 mm at which surfaces are activated.
+/// Period of the search. In this time a probe of 2 m/s moves 10 mm, and surfaces are activated at 100 mm.
 
 struct ProximitySettings {
-  double activation_radius = 0.10;  ///< [m]
-  double hysteresis = 0.05;         ///< [m]
+  double activation_radius = 0.10;  ///< [m] a surface nearer than this to a probe is traced
+  double hysteresis = 0.05;         ///< [m] tracing stops this much farther away
 };
 
-/// How much searching there is to do.
+/// How long a search takes.
 enum class Searching {
   kNone,   ///< no model has surfaces
   kSmall,  ///< one small surface: a search takes microseconds, so it needs no thread
@@ -28,32 +29,32 @@ enum class Searching {
 
 class Proximity {
  public:
-  /// [main] @param models in the order of the scene; those that trace themselves are not searched.
+  /// [main] @param models in the order of the scene; models that trace themselves are left out of the search
   Proximity(const std::vector<host::ShapeInstance*>& models, const std::vector<hsp_pose>& poses, uint32_t probe_count,
             const ProximitySettings& settings, link::Link& link);
 
-  /// [main] Adds a model while searches go on, in a place of the scene that is empty.
+  /// [main] Adds a model to an empty place while searches run.
   void add(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count);
 
-  /// [main] The model of a place is no longer searched: nothing is sent for it after the return.
+  /// [main] Removes the model of a place. After the return, no records are sent for it.
   void remove(uint32_t place);
 
-  /// [sim] One search with the newest state of the arm: starts, offers and stops tracing.
+  /// [sim] Searches once with the newest positions of the probes, and starts, updates or stops the tracing of surfaces.
   void search();
 
-  /// [any] Models that have surfaces to search.
+  /// [any] Returns the number of models that have surfaces to search.
   size_t modelCount() const;
-  /// [any] How much searching they need; it changes as models come and leave.
+  /// [any] Returns how long a search takes now; this changes as models come and leave.
   Searching amount() const;
 
  private:
   mutable std::mutex mutex_;  ///< models come and leave between two searches
   struct Model {
-    uint32_t index;  ///< in the scene; UINT32_MAX: it has left
+    uint32_t index;  ///< of the model in the scene; UINT32_MAX: it has left
     const host::ShapeInstance* shape;
-    uint32_t surfaces;                 ///< how many it has
-    uint64_t bytes;                    ///< of the shape
-    Eigen::Vector3d box_min, box_max;  ///< model frame; empty if it is unknown, so that it is always searched
+    uint32_t surfaces;                 ///< number of its surfaces
+    uint64_t bytes;                    ///< locked memory of the shape
+    Eigen::Vector3d box_min, box_max;  ///< [m] model frame; without a box the model is always searched
     bool has_box;
     Eigen::Vector3d position;
     Eigen::Quaterniond orientation;
@@ -70,7 +71,7 @@ class Proximity {
   ProximitySettings settings_;
   link::Link& link_;
   std::vector<Model> models_;
-  std::vector<uint32_t> of_scene_;  ///< scene index to index in models_
+  std::vector<uint32_t> of_scene_;  ///< index in models_, by the model's place in the scene
   std::vector<hsp_near> found_;
   std::vector<uint8_t> seen_;
 };

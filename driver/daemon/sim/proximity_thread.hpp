@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Who searches in runs on a real clock: nobody where no model has surfaces; the main thread, which waits anyway, where
-/// one small surface is all; otherwise a thread of its own.
+/// Runs the proximity search in runs on a real clock. Without surfaces no search is needed. If there is only one small
+/// surface, the main thread searches, because it only waits otherwise. In all other cases a separate thread searches.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -15,7 +15,7 @@ namespace hapticd::sim {
 
 class ProximityThread {
  public:
-  /// @param wants_search [any] true: search now, without waiting for the period
+  /// @param wants_search [any] returns true if a search is needed now, without waiting for the period
   ProximityThread(Proximity& proximity, std::function<bool()> wants_search)
       : proximity_(proximity), wants_search_(std::move(wants_search)) {}
   ~ProximityThread() { stop(); }
@@ -28,9 +28,8 @@ class ProximityThread {
     return amount == Searching::kLarge ? startThread() : std::error_code();
   }
 
-  /// [main] Does what is due now: a small search, or starting the thread once models need it. If no thread
-  /// can be started, this one keeps searching. @return how long to rest until the next turn [ns]: at most
-  /// `rest`
+  /// [main] Runs a small search, or starts the search thread once the models need it. If the search thread cannot
+  /// start, the calling thread keeps searching. @return time to wait until the next call [ns], at most `rest`
   Nanoseconds turn(Nanoseconds rest) {
     if (thread_.running()) return rest;
     const Searching amount = proximity_.amount();
@@ -39,7 +38,7 @@ class ProximityThread {
     return std::min(rest, link::kSearchPeriod);
   }
 
-  void stop() {  ///< [main]
+  void stop() {  ///< [main] ends the thread, if there is one
     stop_ = true;
     thread_.join();
   }
@@ -50,7 +49,7 @@ class ProximityThread {
   }
 
   void loop() {
-    constexpr Nanoseconds kPoll = 1'000'000;  // an urgent search waits no longer than this
+    constexpr Nanoseconds kPoll = 1'000'000;  // longest delay of an urgent search
     const Working working(Worker::kSearch);
     RealClock clock(0);
     for (Nanoseconds next = clock.now(); !stop_;) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The status page: what a running daemon tells everybody who may read it. Plain memory of fixed layout, mapped from a
-/// file; readers map it read-only.
+/// The status page: the present state of a running daemon, for every program that may read the file. It is plain memory
+/// of fixed layout, mapped from a file; readers map it read-only.
 #pragma once
 #include <array>
 #include <atomic>
@@ -13,9 +13,9 @@ namespace hapticd::status {
 
 constexpr uint64_t kPageMagic = 0x31544154535448;  ///< "HTSTAT1"
 constexpr uint32_t kMaxArms = 8;
-constexpr uint32_t kMaxModels = 96;  ///< that are listed one by one
+constexpr uint32_t kMaxModels = 96;  ///< models beyond these have no entry
 
-/// record::Histogram for one writing and many reading threads.
+/// Like record::Histogram, but for one writing and many reading threads.
 class SharedHistogram {
  public:
   /// [rt] Counts one value.
@@ -24,7 +24,7 @@ class SharedHistogram {
     bump(total_);
     if (value > max_.load(std::memory_order_relaxed)) max_.store(value, std::memory_order_relaxed);
   }
-  /// [any] The value below which a share q of all lies; 0 when empty.
+  /// [any] Returns the value below which a share q of all values lies; 0 if there are none.
   double quantile(double q) const noexcept {
     const auto total = static_cast<double>(total_.load(std::memory_order_relaxed));
     double seen = 0;
@@ -36,7 +36,7 @@ class SharedHistogram {
     return 0;
   }
   double max() const noexcept { return max_.load(std::memory_order_relaxed); }
-  /// [main] Forgets everything, while nobody adds.
+  /// [main] Removes all values. Not to be called while another thread adds.
   void clear() noexcept {
     for (auto& count : counts_) count.store(0, std::memory_order_relaxed);
     total_.store(0, std::memory_order_relaxed);
@@ -45,36 +45,39 @@ class SharedHistogram {
 
  private:
   static void bump(std::atomic<uint64_t>& count) noexcept HSP_RT {
-    count.store(count.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);  // one writer: no locked add
+    // There is one writer, so no atomic addition is needed.
+    count.store(count.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   }
   std::array<std::atomic<uint64_t>, record::Histogram::kBuckets> counts_{};
   std::atomic<uint64_t> total_{0};
   std::atomic<double> max_{0};
 };
 
-/// The last tick.
+/// Number and times of the last tick.
 struct Now {
   uint64_t tick = 0, overruns = 0, missed = 0;
   double t = 0;  ///< [s]
 };
 
 struct ArmNow {
-  double position[3] = {}, force[3] = {};  ///< [m], [N] as sent; world frame
-  uint64_t sequence = 0;                   ///< of the sample
+  double position[3] = {}, force[3] = {};  ///< [m] of the tip; [N] as sent; world frame
+  uint64_t sequence = 0;                   ///< number of the newest sample
   uint32_t fault = 0, valid = 0;
 };
 
 struct ModelNow {
-  double depth = 0, force = 0, gain = 0;  ///< [m] nan: not traced; [N]
+  double depth = 0, force = 0, gain = 0;  ///< [m] NaN if not traced; [N]; factor of its force, 0 to 1
   uint64_t tick = 0;                      ///< tick in which it was last stepped
   int32_t status = 0;
   uint32_t iterations = 0;
-  uint32_t trouble = 0;          ///< servo::Trouble: why it is not felt
-  int32_t failed_status = 0;     ///< the first status that step may not return
-  uint32_t waits = 0, none = 0;  ///< 1: it was added or enabled with a tip in it, and is not felt until none is
+  uint32_t trouble = 0;       ///< servo::Trouble: why it is not felt
+  int32_t failed_status = 0;  ///< the first status not allowed by the ABI that step() returned; 0: none
+  /// waits: 1 if it was added or enabled with a tip inside, and is not felt until the tip has left. none: unused.
+  uint32_t waits = 0, none = 0;
 };
 
-/// Ticks since a model was added whose foot was proved the nearest, or was held by a contact, or neither.
+/// Ticks since a model was added, by the state of its foot point: proved to be the nearest; held by a contact; or
+/// neither.
 struct ModelFeet {
   uint64_t nearest = 0, held = 0, degraded = 0;
 };
@@ -82,22 +85,22 @@ struct ModelFeet {
 /// A program that pushes on an arm.
 struct Pusher {
   char program[56] = {};
-  uint64_t pid = 0;  ///< 0: an empty place
+  uint64_t pid = 0;  ///< 0 if the place is empty
 };
 struct PusherNow {
   uint64_t answers = 0, in_time = 0, next_tick = 0, silences = 0;
-  double force = 0, largest = 0;  ///< [N] its force now, and that of all programs
+  double force = 0, largest = 0;  ///< [N] its force now; its largest force so far
 };
 constexpr uint32_t kPushersOfArm = 8;
 
 struct Name {
-  char text[56] = {}, kind[56] = {};  ///< of a model and its plugin, or a device and its module; "": an empty place
+  char text[56] = {}, kind[56] = {};  ///< a model and its plugin, or a device and its module; "" if the place is empty
 };
 
 struct Page {
   std::atomic<uint64_t> magic{0};
   uint32_t bytes = 0, arms = 0, models = 0, pid = 0;
-  double rate = 0;  ///< [Hz] asked for
+  double rate = 0;  ///< [Hz] of the servo, as asked for
   Slot<Now> now;
   SharedHistogram lateness_us, compute_us;
   struct {
@@ -109,7 +112,7 @@ struct Page {
     Slot<ModelNow> now;
     SharedHistogram step_us;
   } model[kMaxModels];
-  double answer_time = 0;  ///< [s] for which the servo listens to programs
+  double answer_time = 0;  ///< [s] how long in a tick the servo waits for programs' answers
   struct {
     Slot<Pusher> who;
     Slot<PusherNow> now;

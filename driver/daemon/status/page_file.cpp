@@ -23,7 +23,7 @@ std::string variable(const char* name) {
   return value != nullptr ? value : "";
 }
 
-/// A folder to which only its owner may write; a link, or somebody else's folder in its place, is refused.
+/// Makes a folder to which only its owner may write. Returns false if a link or another user's folder has this name.
 bool ownFolder(const std::string& folder) {
   mkdir(folder.c_str(), 0750);
   struct stat info{};
@@ -31,8 +31,9 @@ bool ownFolder(const std::string& folder) {
          (info.st_mode & S_IWOTH) == 0;
 }
 
-/// The servo writes into this memory. On a disk, each page that the kernel writes back faults in a tick, which may wait
-/// for the disk. The folder of a session is in memory on most machines, but not in every container.
+/// True if a folder is in a memory file system. The servo writes into the status page, and on a disk each write-back by
+/// the kernel causes a page fault in a tick, which may wait for the disk. The folder of a login session is in memory on
+/// most machines, but not in every container.
 bool inMemory(const std::string& folder) {
   struct statfs info{};
   return statfs(folder.c_str(), &info) == 0 && (info.f_type == TMPFS_MAGIC || info.f_type == RAMFS_MAGIC);

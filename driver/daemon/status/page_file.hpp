@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Where the page lives: a file in a memory file system that its owner writes and others map read-only.
+/// The file of a status page, in a memory file system: its owner writes it, and others map it read-only.
 #pragma once
 #include <memory>
 #include <string>
@@ -9,27 +9,27 @@
 
 namespace hapticd::status {
 
-/// The folder of sockets and pages: $RUNTIME_DIRECTORY (given by systemd), $XDG_RUNTIME_DIR/hapticd, /run/hapticd if
-/// the system's daemon is there, or /dev/shm/hapticd-UID.
+/// Returns the folder of sockets and pages: $RUNTIME_DIRECTORY (set by systemd), else $XDG_RUNTIME_DIR/hapticd, else
+/// /run/hapticd if the system's daemon runs there, else /dev/shm/hapticd-UID. @param create true: make it if necessary
 std::string runtimeFolder(bool create);
 
 class PageFile {
  public:
-  /// [main] A new page, zero. @param file "": memory of this process alone
+  /// [main] Creates a page of zeros. @param file "": memory of this process only
   static Result<std::unique_ptr<PageFile>> create(const std::string& file);
-  /// [main] The page of a running daemon, read-only.
+  /// [main] Opens the page of a running daemon, read-only.
   static Result<std::unique_ptr<PageFile>> open(const std::string& file);
-  ~PageFile();  ///< the owner removes the file
+  ~PageFile();  ///< removes the file, if this object created it
   PageFile(const PageFile&) = delete;
   PageFile& operator=(const PageFile&) = delete;
 
-  Page& page() { return *page_; }  ///< of a created one
+  Page& page() { return *page_; }  ///< only after create()
   const Page& page() const { return *page_; }
 
  private:
   PageFile() = default;
   Page* page_ = nullptr;
-  std::string file_;  ///< to be removed
+  std::string file_;  ///< file to remove; "" if this object did not create one
 };
 
 }  // namespace hapticd::status

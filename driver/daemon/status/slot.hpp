@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// One small record between a writer that never waits and any number of readers, in this process or another: a sequence
-/// lock whose words are atomic, so that a reader sees a whole record or tries again, and a reader that is killed
-/// changes nothing.
+/// One small record from a writer that never waits to any number of readers, in this process or another. It is a
+/// sequence lock with atomic words: a reader gets a whole record or tries again, and a reader that is killed does no
+/// harm.
 #pragma once
 #include <array>
 #include <atomic>
@@ -19,17 +19,17 @@ class Slot {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % 8 == 0);
 
  public:
-  /// [rt] Only one thread writes.
+  /// [rt] Writes the record. Only one thread may write.
   void write(const T& value) noexcept HSP_RT {
     const auto words = std::bit_cast<std::array<uint64_t, kWords>>(value);
     const uint64_t sequence = sequence_.load(std::memory_order_relaxed);
     sequence_.store(sequence + 1, std::memory_order_relaxed);
-    // release on each word, so that whoever sees one of them sees the odd number too
+    // release on each word, so that a reader that sees a new word also sees the odd sequence number
     for (size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_release);
     sequence_.store(sequence + 2, std::memory_order_release);
   }
 
-  /// [any] Nothing if the writer was writing it each time, or died while it did.
+  /// [any] Returns the record, or nothing if the writer was writing at each try, or died while it wrote.
   std::optional<T> read() const noexcept {
     constexpr int kTries = 1000;
     for (int i = 0; i < kTries; ++i) {

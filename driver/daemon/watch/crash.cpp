@@ -24,13 +24,13 @@ namespace hapticd::watch {
 
 namespace {
 
-/// Everything that the handler needs, prepared while memory can still be allocated.
+/// Everything that the signal handler needs, prepared before, because a handler cannot allocate memory.
 struct Prepared {
   std::atomic<Watched*> servo{nullptr};
-  std::atomic<int> process{0};       ///< a fork of this process is not its business
-  std::atomic<bool> leaving{false};  ///< the process ends in order, so its exit is nobody's fault
-  char dir[kLongestPath] = "";       // "": nothing is written
-  /// The C library's last words, if it keeps them: a length, and then the text.
+  std::atomic<int> process{0};       ///< the watched process; in a fork of it the handler does nothing
+  std::atomic<bool> leaving{false};  ///< the process ends normally, so a call of exit() is not a fault
+  char dir[kLongestPath] = "";       // folder for the black box and the quarantine file; "": neither is written
+  /// The C library's last message before it aborted, if it keeps it: a length, and then the text.
   const char* const* last_words = nullptr;
 };
 Prepared prepared;
@@ -39,18 +39,18 @@ bool sentByOther(const siginfo_t& info) noexcept {
   return info.si_code <= 0 && info.si_code != SI_TIMER && info.si_pid != 0 && info.si_pid != getpid();
 }
 
-/// Whose code raised a signal. A signal from another process, or one sent to the process instead of a thread, has no
-/// known culprit: no name is better than a wrong one.
+/// Returns the owner of the code that raised a signal; nullptr if the owner is unknown. The owner counts as unknown if
+/// another process sent the signal, or if it was sent to the whole process: no name is better than a wrong one.
 const Owner* culpritOf(int signal, const siginfo_t& info, const void* context) noexcept {
   const bool own_fault = wordsOfCrash(signal) != nullptr && info.si_code > 0;
   const bool raised = info.si_code == SI_TKILL && info.si_pid == getpid();
   if (!own_fault && !raised) return nullptr;
   if (const Owner* called = calledHere()) return called;
-  return isWorker() ? nullptr : ownerInterrupted(context);  // a thread that a plugin or module started itself
+  return isWorker() ? nullptr : ownerInterrupted(context);  // perhaps a thread that a plugin or module started
 }
 
-/// True if the allocator found its own records overwritten: whoever did that has returned long ago. Code that does not
-/// ship with the daemon is the likeliest cause.
+/// True if malloc() or free() aborted because its own data were overwritten. The code that overwrote them has returned
+/// long ago. Most likely it is code that does not ship with hapticd.
 bool allocatorAborted() noexcept {
   constexpr const char* kItsWords[] = {"free", "alloc", "corrupt", "chunk"};
   const char* said = prepared.last_words != nullptr ? *prepared.last_words : nullptr;
@@ -65,12 +65,12 @@ bool isForeign(const Owner& owner) noexcept {
   return false;
 }
 
-/// nullptr: nothing is watched, or this process is a fork of the one that is.
+/// Returns the watched servo; nullptr if there is none, or if this process is a fork of the watched one.
 Watched* watchedHere() noexcept {
   return prepared.process.load() == getpid() ? prepared.servo.load() : nullptr;
 }
 
-/// Ends as if nobody had handled the signal.
+/// Ends the process as if no handler were installed.
 void dieBySystem(int signal) noexcept {
   std::signal(signal, SIG_DFL);
   std::raise(signal);
@@ -93,7 +93,7 @@ void onFatal(int signal, siginfo_t* info, void* context) {
   const Owner* culprit = culpritOf(signal, *info, context);
   const bool own = info->si_code > 0 || (info->si_code == SI_TKILL && info->si_pid == getpid());
   const bool torn = signal == SIGABRT && allocatorAborted();
-  // Shipped code may free what was torn before, so code that does not ship is the likelier cause.
+  // Shipped code may only free the memory that other code overwrote, so code that does not ship is the likelier cause.
   if (torn && culprit != nullptr && foreignOwner(0) != nullptr && !isForeign(*culprit)) culprit = nullptr;
   const Suspicion suspicion = culprit != nullptr || !own ? Suspicion::kNone
                               : torn                     ? Suspicion::kTorn
@@ -101,7 +101,8 @@ void onFatal(int signal, siginfo_t* info, void* context) {
   die(servo, prepared.dir, {words(signal).text(), culprit, suspicion});
 }
 
-/// Ctrl-C, SIGTERM and the like. If a module sent one to its own process, no person wished it.
+/// Handles Ctrl-C, SIGTERM and similar signals. If this process sent the signal itself, a module did it and no person
+/// wished it, so it counts as a fault.
 void onStop(int signal, siginfo_t* info, void* context) {
   const bool own = info->si_code <= 0 && info->si_code != SI_TIMER && info->si_pid == getpid();
   if (own && watchedHere() != nullptr) dieOf(words(signal).text(), culpritOf(signal, *info, context));
@@ -116,7 +117,8 @@ void onStop(int signal, siginfo_t* info, void* context) {
   dieBySystem(signal);
 }
 
-/// A plugin or library that called exit(): static objects still exist, and other threads still run.
+/// Handles a plugin or library that called exit(). At this time static objects still exist, and other threads still
+/// run.
 void dieOfExit(const char* what) noexcept {
   if (prepared.leaving.load() || watchedHere() == nullptr) return;
   const Owner* culprit = calledHere();
@@ -132,7 +134,7 @@ void onExit() {
 
 void guardAgainstCrash(Watched& servo, const std::filesystem::path& dir) {
   static const bool at_exit = std::atexit(&onExit) == 0 && std::at_quick_exit(&onExit) == 0;
-  (void)at_exit;  // if this is refused, memory is short, and the next allocation says so
+  (void)at_exit;  // atexit() fails only if there is no memory; the next allocation reports that
   const std::string text = dir.string();
   prepared.dir[0] = '\0';
   if (text.size() < kLongestPath) std::memcpy(prepared.dir, text.c_str(), text.size() + 1);
@@ -188,7 +190,7 @@ void endAnyway(const Owner* keeps) noexcept {
   if (keeps != nullptr)
     addOwner(line, *keeps).add(" did not come back");
   else
-    line.add("what it still did took too long");
+    line.add("its last work took too long");
   line.add("\n  ").add(servo->drives() ? "the motors are off; " : "").add("the process ends without its report\n");
   line.write(STDERR_FILENO);
   endProcess(1);

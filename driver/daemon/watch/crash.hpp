@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The end of a daemon whose plugin crashed, called exit(), or never came back: motors off first, then the black box
-/// with the plugin's name, then a note that keeps the plugin out of the next start, then the exit.
+/// Ends a daemon whose plugin crashed, called exit(), or never returned. It switches the motors off first. Then it
+/// notes the plugin, so that the next start leaves it out, saves the black box under the plugin's name, and exits.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -9,20 +9,21 @@
 
 namespace hapticd::watch {
 
-/// [main] Handles every signal that ends a process, exit(), quick_exit() and _exit(), until `forget`. A harmless signal
-/// from another process ends the run in order; SIGTERM and the like do what they did before, unless this process sent
-/// them itself.
-/// @param dir for the black box and the quarantine file; empty: neither is written
+/// [main] Handles every signal that ends a process, exit(), quick_exit() and _exit(), until forgetCrash(). If another
+/// process sends a signal that is not a crash, such as SIGUSR1, the run ends normally. SIGTERM and the like keep their
+/// former effect, unless this process sent them itself.
+/// @param dir folder for the black box and the quarantine file; if it is empty, neither is written
 void guardAgainstCrash(Watched& servo, const std::filesystem::path& dir);
 
-/// [main] The signals do what they did before, so the servo may be destroyed.
+/// [main] Ends the watching of the servo, so that it may be destroyed.
 void forgetCrash();
 
-/// [main] From here to the end of the process, after the last command: if a plugin tore memory, whoever frees it finds
-/// that, perhaps the last object of the program.
+/// [main] Called after the last command: handles crashes until the end of the process. If a plugin overwrote memory,
+/// the crash may come only when the last objects of the program are destroyed.
 void guardTheEnd(const std::filesystem::path& dir);
 
-/// Does both while the object lives; such objects may nest. The sanitizers have handlers of their own, and keep them.
+/// Calls guardAgainstCrash(), and forgetCrash() at the end of its life. Such objects may nest. Builds with sanitizers
+/// do nothing here, because the sanitizers have their own handlers.
 class CrashGuard {
  public:
   CrashGuard(Watched& servo, const std::filesystem::path& dir);
@@ -35,12 +36,12 @@ class CrashGuard {
   std::filesystem::path dir_before_;
 };
 
-/// [any] What the handler does, async-signal-safe, ended with exit code 1. @param reason such as "Segmentation fault"
-/// @param culprit whose code did it; nullptr: nobody is blamed
+/// [any] Does what the signal handler does, and ends the process with exit code 1. Async-signal-safe.
+/// @param reason such as "Segmentation fault" @param culprit owner of the code that did it; nullptr blames nobody
 [[noreturn]] void dieOf(const char* reason, const Owner* culprit) noexcept;
 
-/// [any] Ends the process at once, motors off first, because it was told to end and could not: nobody is put in
-/// quarantine. @param keeps whose code keeps it; nullptr: unknown
+/// [any] Switches the motors off and ends the process at once, because it was told to end and did not. No plugin is put
+/// in quarantine. @param keeps owner of the code that did not return; nullptr if it is unknown
 [[noreturn]] void endAnyway(const Owner* keeps) noexcept;
 
 }  // namespace hapticd::watch

@@ -20,20 +20,20 @@ namespace hapticd::watch {
 
 namespace {
 
-std::atomic<int> dying{0};  ///< the thread that ends the process
+std::atomic<int> dying{0};  ///< number of the thread that ends the process; 0: none
 
-/// Of that thread alone. The reason and the culprit are fixed at the first step: what the later ones find is a process
-/// that is falling apart.
+/// Data of that thread. The reason and the culprit are set before the first step, because later steps may find a
+/// damaged process.
 struct Death {
-  std::atomic<size_t> step{0};  ///< the next of kSteps
-  const char* dir = "";         ///< die()
+  std::atomic<size_t> step{0};  ///< index of the next step in kSteps
+  const char* dir = "";         ///< see die()
   bool motors_off = false;
   const Owner* culprit = nullptr;
-  bool called = false;         ///< it was, by the thread that ends the process
-  const char* call = nullptr;  ///< its function; nullptr: a step
+  bool called = false;         ///< true if the thread that ends the process was calling the culprit
+  const char* call = nullptr;  ///< name of the called function; nullptr: a step
   Suspicion suspicion = Suspicion::kNone;
-  int not_remembered = 0;  ///< errno
-  Line reason, black_box;  ///< its file, once it is written
+  int not_remembered = 0;  ///< errno, if the quarantine file could not be written; else 0
+  Line reason, black_box;  ///< black_box: path of its file; "" until the file is written
 };
 Death death;
 
@@ -64,14 +64,14 @@ void writeBlackBox(Watched& servo) noexcept {
   death.black_box = file;
 }
 
-/// Who ended the process: the culprit, or where memory was torn all that do not ship with us; nullptr: there are no
-/// more.
+/// Returns the owners to put in quarantine, by number: the culprit, or, if memory was overwritten, all owners that do
+/// not ship with hapticd. Returns nullptr if there are no more.
 const Owner* leftOut(size_t number) noexcept {
   if (death.suspicion == Suspicion::kTorn) return foreignOwner(number);
   return number == 0 ? death.culprit : nullptr;
 }
 
-/// A device module cannot be left out of the next start: it is named, and no more.
+/// True if the next start can leave the culprit out. A device module cannot be left out: the message only names it.
 bool mayBeLeftOut() noexcept {
   const Owner* first = leftOut(0);
   return first != nullptr && !first->device && death.dir[0] != '\0';
@@ -114,17 +114,18 @@ void tellCulprit(Line& line) noexcept {
   line.add("\n  ");
 }
 
-/// "plugin 'torus' of model 'ring', plugin ...": what does not ship with hapticd. False: there is nothing.
+/// Adds all owners that do not ship with hapticd: "plugin 'torus' of model 'ring', plugin ...". Returns false if there
+/// are none.
 bool addForeign(Line& line) noexcept {
   size_t count = 0;
   for (; const Owner* owner = foreignOwner(count); ++count) addOwner(line.add(count > 0 ? ", " : ""), *owner);
   return count > 0;
 }
 
-/// What is tried before the daemon itself is reported.
+/// Names the code that the user should test before reporting the daemon itself.
 void tellForeign(Line& line) noexcept {
   if (death.suspicion == Suspicion::kNone || foreignOwner(0) == nullptr) return;
-  addForeign(line.add("what does not ship with hapticd is the likeliest cause: "));
+  addForeign(line.add("the likeliest cause is code that does not ship with hapticd: "));
   line.add("\n  ");
 }
 
@@ -138,13 +139,14 @@ void tellCure(Line& line, bool drives) noexcept {
   } else if (mayBeLeftOut()) {
     const char* why = strerrordesc_np(death.not_remembered);
     line.add("it could not be put in quarantine, so the next start loads it again: ").add(death.dir);
-    line.add(": ").add(why != nullptr ? why : "not written").add("\n  fix: take it out of the scene\n");
+    line.add(": ").add(why != nullptr ? why : "not written").add("\n  fix: remove it from the scene\n");
   } else if (death.culprit != nullptr && !death.culprit->device) {
     line.add(drives ? "the run" : "the command")
         .add(" has ended\n  fix: repair the plugin; hapticd plugin check FILE.so looks for the cause\n");
   } else if (death.suspicion != Suspicion::kNone && foreignOwner(0) != nullptr) {
-    line.add("it has ended\n  fix: try that first (hapticd plugin check FILE.so); if it passes, report this with the ")
-        .add("output of: hapticd doctor --json\n");
+    line.add(
+            "it has ended\n  fix: test that code first (hapticd plugin check FILE.so); if it passes, report this with ")
+        .add("the output of: hapticd doctor --json\n");
   } else if (!drives) {
     line.add("the command has ended\n  fix: report it with the output of: hapticd doctor --json\n");
   } else {
@@ -156,8 +158,8 @@ void tell(Watched& servo) noexcept {
   Line line;
   tellCulprit(line);
   if (servo.drives())
-    line.add(death.motors_off ? "the motors were switched off first" : "to switch the motors off crashed as well");
-  if (*death.black_box.text() != '\0') line.add("; the last seconds are in ").add(death.black_box.text());
+    line.add(death.motors_off ? "the motors were switched off first" : "switching the motors off crashed too");
+  if (*death.black_box.text() != '\0') line.add("; the last seconds of the run are in ").add(death.black_box.text());
   if (servo.drives()) line.add("\n  ");
   tellForeign(line);
   tellCure(line, servo.drives());
@@ -166,7 +168,8 @@ void tell(Watched& servo) noexcept {
 
 constexpr void (*kSteps[])(Watched&) noexcept = {&cutMotors, &remember, &writeBlackBox, &tell};
 
-/// For a thread that finds another at it: that one ends the process, unless it is stuck itself.
+/// Called by a thread if another thread is already ending the process: waits for it, and ends the process if that
+/// thread does not.
 [[noreturn]] void awaitEnd() noexcept {
   constexpr timespec kPatience{5, 0};
   nanosleep(&kPatience, nullptr);
@@ -197,7 +200,8 @@ void die(Watched* servo, const char* dir, const Cause& cause) noexcept {
   int nobody = 0;
   const int self = os::threadId();
   if (!dying.compare_exchange_strong(nobody, self) && nobody != self) awaitEnd();
-  // A step that crashes itself (the device's cut, on a heap just torn) brings this thread here again: on with the next.
+  // If a step crashes itself (such as the device's cut, with a damaged heap), this thread comes here again, and
+  // continues with the next step.
   if (nobody == 0) {
     death.dir = dir;
     death.reason.add(cause.reason);

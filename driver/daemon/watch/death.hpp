@@ -1,37 +1,39 @@
 // SPDX-License-Identifier: MIT
-/// What is done and told where a fault ends the process: motors off, the note that keeps a plugin out of the next
-/// start, the black box, then the words. Every function is [any] and async-signal-safe.
+/// What happens if a fault ends the process: the motors are switched off, the plugin is noted so that the next start
+/// leaves it out, the black box is saved, and the message is printed. Every function is [any] and async-signal-safe.
 #pragma once
 #include "watch/line.hpp"
 #include "watch/watched.hpp"
 
 namespace hapticd::watch {
 
-/// What a crash in the daemon's own code says of the code that does not ship with it.
+/// How strongly a crash in the daemon's own code makes code that does not ship with hapticd suspicious.
 enum class Suspicion {
-  kNone,   ///< nothing: a signal from outside, or a culprit that is known
-  kCrash,  ///< it may have done it
-  kTorn    ///< memory was overwritten or freed twice, and whoever did it has gone: most likely it did
+  kNone,   ///< not at all: the signal came from outside, or the culprit is known
+  kCrash,  ///< such code may be the cause
+  kTorn    ///< such code is most likely the cause: memory was overwritten or freed twice
 };
 
 struct Cause {
   const char* reason;    ///< such as "Segmentation fault"
-  const Owner* culprit;  ///< whose code did it; nullptr: nobody is blamed
+  const Owner* culprit;  ///< owner of the code that did it; nullptr blames nobody
   Suspicion suspicion;
 };
 
-/// Ends the process with exit code 1. Whatever crashes on the way is passed over: the next part follows.
-/// @param servo nullptr: nothing is watched, so that nothing is done or told
-/// @param dir for the black box and the quarantine file; "": neither is written. Stays until the end of the process
+/// Ends the process with exit code 1, in several steps. If a step crashes itself, the next step follows.
+/// @param servo the watched servo; nullptr ends the process without any step
+/// @param dir folder for the black box and the quarantine file; "": neither is written. The text must stay valid
 [[noreturn]] void die(Watched* servo, const char* dir, const Cause& cause) noexcept;
 
-/// Motors free; what an I/O thread has still to send goes with the process, so that it gets a moment.
+/// Frees the motors, and waits a moment until the command has been sent: an I/O thread may still have to send it, and
+/// this thread ends with the process.
 void cutAndAwait(Watched& servo) noexcept;
 
-/// "plugin 'torus' of model 'ring'"
+/// Adds the name of an owner, such as "plugin 'torus' of model 'ring'".
 Line& addOwner(Line& line, const Owner& owner) noexcept;
 
-/// " in its activate()", " in a step": what a module without a name for it was called for.
+/// Adds the function that the owner's code was called for, such as " in its activate()". If `name` is nullptr, it adds
+/// " in a step" for a shape.
 Line& addCall(Line& line, const Owner& owner, const char* name) noexcept;
 
 }  // namespace hapticd::watch

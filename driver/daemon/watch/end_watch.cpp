@@ -29,7 +29,8 @@ void EndWatch::watch() {
   while (!stopped_.wait_for(lock, std::chrono::nanoseconds(kLookEvery), [this] { return stop_; })) look(monotonicNow());
 }
 
-/// A run of slow ticks ramps its forces out first, however long that takes; one whose tick never ends cannot.
+/// A run with slow ticks gets the time to ramp its forces out. A run whose tick never ends cannot do that, so it is
+/// ended.
 void EndWatch::look(Nanoseconds now) noexcept {
   if (stuck_) {
     looked_last_ += kLookEvery;
@@ -46,7 +47,8 @@ void EndWatch::look(Nanoseconds now) noexcept {
   if (now - still_since_ >= kEndWithin && !std::exchange(told_, true)) late_();
 }
 
-/// Counted in looks, not in time, so that a process stopped by a debugger or a closed laptop comes back to a good tick.
+/// Time is counted by the number of looks, not by a clock. So a process that was stopped by a debugger, or a laptop
+/// that slept, does not count as hanging.
 void EndWatch::lookForHang(uint64_t ticks) noexcept {
   const Nanoseconds begun = servo_.tickBegun(), cpu = servo_.cpuTime();
   const bool same = std::exchange(tick_begun_, begun) == begun && begun != 0 && ticks == ticks_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Watches a run that has no watchdog, as in virtual time: one that was asked to end and whose ticks stand still is
-/// ended, and so is one whose tick does not come back, asked or not.
+/// Watches a run without a watchdog, as in virtual time. It ends a run that was asked to end but makes no more ticks,
+/// and any run with a tick that does not return.
 #pragma once
 #include <condition_variable>
 #include <functional>
@@ -15,17 +15,19 @@ namespace hapticd::watch {
 class EndWatch {
  public:
   static constexpr Nanoseconds kLookEvery = 50'000'000;
-  static constexpr Nanoseconds kEndWithin = 900'000'000;  ///< [ns] without a tick, from the moment it was asked to end
+  static constexpr Nanoseconds kEndWithin = 900'000'000;  ///< [ns] longest time without a tick once it must end
 
-  /// [ns] of processor time in one tick: no shape that is felt takes so long, and a slow machine does not lengthen it.
+  /// [ns] longest processor time of a tick. No useful shape takes this long, and processor time does not grow on a busy
+  /// machine.
   static constexpr Nanoseconds kHungAfter = 5'000'000'000;
-  /// [ns] of looks at one tick that waits for something, such as a lock or a file.
+  /// [ns] longest time of a tick that waits for something, such as a lock or a file, counted in looks of the thread.
   static constexpr Nanoseconds kWaitsAfter = 30'000'000'000;
-  /// [ns] of looks at the calls after the last tick: a module may wait there for a thread of its own.
+  /// [ns] longest time of the calls after the last tick, in which a module may wait for its own threads, counted in
+  /// looks of the thread.
   static constexpr Nanoseconds kWaitsForLast = 10'000'000'000;
 
-  /// [main] @param late what ends the process that was asked to end @param hung what ends one whose tick hangs; it
-  /// returns if it finds nobody to blame, and is asked again
+  /// [main] @param late ends a process that was asked to end @param hung ends a process whose tick hangs; if it finds
+  /// nobody to blame it returns, and is called again later
   EndWatch(const Watched& servo, std::function<void()> late, std::function<void()> hung)
       : servo_(servo), late_(std::move(late)), hung_(std::move(hung)) {}
   ~EndWatch();
@@ -33,10 +35,10 @@ class EndWatch {
   EndWatch& operator=(const EndWatch&) = delete;
 
   std::error_code start();  ///< [main]
-  /// [main] No tick is to come: what still is called, such as stop() of the arms, has kWaitsForLast.
-  /// @param stuck ends the process after that; it returns if it finds nobody to blame, and is asked again
+  /// [main] Called after the last tick. The calls that follow, such as stop() of the arms, may take kWaitsForLast.
+  /// @param stuck ends the process after that; if it finds nobody to blame it returns, and is called again later
   void lastCalls(std::function<void()> stuck);
-  /// [any] One look; the thread does nothing else.
+  /// [any] Looks at the servo once. The thread does nothing else but this, periodically.
   void look(Nanoseconds now) noexcept;
 
  private:
@@ -47,9 +49,9 @@ class EndWatch {
   std::function<void()> late_, hung_, stuck_;
   uint64_t ticks_ = UINT64_MAX;
   Nanoseconds still_since_ = 0;
-  Nanoseconds looked_last_ = 0;  ///< at the calls after the last tick
+  Nanoseconds looked_last_ = 0;  ///< [ns] time spent looking at the calls after the last tick
   Nanoseconds tick_begun_ = 0;
-  Nanoseconds looked_ = 0, cpu_before_ = 0;  ///< of this tick; of the servo when it was first seen
+  Nanoseconds looked_ = 0, cpu_before_ = 0;  ///< [ns] time spent looking at this tick; CPU time of the servo before it
   bool told_ = false, stop_ = false;
   std::mutex mutex_;
   std::condition_variable stopped_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// No servo, as the crash handler sees it: a run that has ended, modules that are set up, or a command without an arm.
-/// No tick is to come, and the motors are off.
+/// The Watched object for a process without a running servo: after a run, during the set-up of modules, or in a command
+/// without an arm. There are no ticks, and the motors are off.
 ///
-/// Watched itself has no defaults, so that the compiler names what a running servo forgot to answer.
+/// Watched itself has no default implementations, so that the compiler reports what a running servo does not implement.
 #pragma once
 #include "watch/watched.hpp"
 

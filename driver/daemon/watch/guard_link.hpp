@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the daemon and its guard process share: same machine, same build.
+/// Data that the daemon and its guard process exchange. Both run on the same machine with the same build.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -8,20 +8,20 @@
 
 namespace hapticd::watch {
 
-/// In memory of both.
+/// Shared memory of the daemon and its guard process.
 struct Heartbeat {
-  std::atomic<uint64_t> ticks{0};  ///< written by the servo
-  std::atomic<uint32_t> armed{0};  ///< a force may be on, so ticks must go on, and so must the daemon
+  std::atomic<uint64_t> ticks{0};  ///< number of ticks, written by the servo
+  std::atomic<uint32_t> armed{0};  ///< 1: a force may be on, so the guard acts if the ticks or the daemon end
 };
 
-/// Sent over a socket, with a descriptor if the arm can be silenced.
+/// A message about one arm, sent over a socket, with a descriptor if the guard can switch the arm off.
 struct GuardMessage {
   uint32_t arm = 0;
-  uint32_t there = 0;  ///< 0: the arm has left
+  uint32_t there = 0;  ///< 0: the arm is no longer there
   hdv_silence how{};
 };
 
-constexpr const char* kGuardArgument = "--guard-process";  ///< followed by the priority, and the ns before it silences
-constexpr int kGuardSocket = 3, kGuardMemory = 4;          ///< descriptors of the guard
+constexpr const char* kGuardArgument = "--guard-process";  ///< followed by the priority and the patience [ns]
+constexpr int kGuardSocket = 3, kGuardMemory = 4;          ///< numbers of the guard's descriptors
 
 }  // namespace hapticd::watch

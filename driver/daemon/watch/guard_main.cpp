@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The guard process itself. It shares nothing with the daemon but two descriptors, and allocates nothing once it runs.
+/// The guard process itself. It shares only two descriptors with the daemon, and allocates nothing while it watches.
 #include <linux/usbdevice_fs.h>
 #include <poll.h>
 #include <signal.h>
@@ -23,8 +23,8 @@ namespace hapticd::watch {
 namespace {
 
 constexpr Nanoseconds kLook = 1'000'000, kOnTime = 2 * kLook;
-constexpr Nanoseconds kKillAfter = 1'000'000'000;  ///< [ns] of looks on time: the watchdog inside had its chance
-constexpr unsigned kUsbTimeout = 100;              ///< [ms]
+constexpr Nanoseconds kKillAfter = 1'000'000'000;  ///< [ns] without a tick: then it kills the daemon
+constexpr unsigned kUsbTimeout = 100;              ///< [ms] timeout of a USB transfer
 constexpr size_t kMostArms = 16;
 
 struct Target {
@@ -32,7 +32,7 @@ struct Target {
   Descriptor fd;
 };
 
-/// The interface belongs to the daemon while that lives; here its remains are taken away.
+/// Claims a USB interface. While the daemon lives, the interface belongs to it; this takes it over after its end.
 bool claim(int fd, unsigned interface) noexcept {
   if (ioctl(fd, USBDEVFS_CLAIMINTERFACE, &interface) == 0) return true;
   usbdevfs_ioctl disconnect{static_cast<int>(interface), USBDEVFS_DISCONNECT, nullptr};
@@ -67,17 +67,17 @@ class GuardLoop {
   GuardLoop(const Heartbeat& beat, Nanoseconds patience)
       : beat_(beat), patience_(patience), daemon_(getppid()), last_(monotonicNow()) {}
 
-  /// Runs until the daemon has gone.
+  /// Watches until the daemon has ended.
   void run() {
     while (listen()) look(monotonicNow());
     if (beat_.armed.load() == 0) return;
-    constexpr int kTimes = 3;  // the first command may meet a transfer that the kernel still takes back
+    constexpr int kTimes = 3;  // the first command may fail while the kernel cancels a transfer of the daemon
     for (int i = 0; i < kTimes; ++i) silenceAll(true);
-    tell("the daemon has gone");
+    tell("the daemon has ended");
   }
 
  private:
-  /// Waits for a message, for one look at most. False if the other end is closed.
+  /// Waits for a message, at most for the period of a look. Returns false if the daemon's end is closed.
   bool listen() {
     pollfd polled{kGuardSocket, POLLIN, 0};
     if (poll(&polled, 1, static_cast<int>(kLook / 1'000'000)) <= 0) return true;
@@ -97,7 +97,7 @@ class GuardLoop {
     target.fd = std::move(descriptors_.front());
   }
 
-  /// A late look saw nothing of the time before it, in which the machine may have stood still.
+  /// Checks that ticks go on. If a look comes late, the machine may have stood still, so only part of the time counts.
   void look(Nanoseconds now) {
     const Nanoseconds way = now - std::exchange(last_, now);
     const uint64_t ticks = beat_.ticks.load();
@@ -109,12 +109,12 @@ class GuardLoop {
     still_ += way <= kOnTime ? way : kLook;
     if (still_ > patience_ && !std::exchange(silenced_, true)) {
       silenceAll(false);
-      tell("the servo stands still");
+      tell("the servo makes no more ticks");
     }
     if (still_ > kKillAfter && getppid() == daemon_) kill(daemon_, SIGKILL);
   }
 
-  /// @param gone USB interfaces are free
+  /// Switches all arms off. @param gone true if the daemon has ended, so that its USB interfaces are free
   void silenceAll(bool gone) noexcept {
     failed_ = false;
     for (Target& target : targets_)
@@ -145,7 +145,7 @@ void guardMain(int count, char** arguments) {
   constexpr int kMostPriority = 98;
   const int priority = count > 2 ? std::atoi(arguments[2]) : 0;
   if (priority > 0)
-    (void)os::setFifo(priority < kMostPriority ? priority : kMostPriority);  // refused: as an ordinary one
+    (void)os::setFifo(priority < kMostPriority ? priority : kMostPriority);  // if refused, it is an ordinary thread
   (void)os::lockMemory();
   void* mapped = mmap(nullptr, sizeof(Heartbeat), PROT_READ, MAP_SHARED, kGuardMemory, 0);
   if (mapped == MAP_FAILED || count < 4) _exit(2);

@@ -20,21 +20,22 @@ namespace hapticd::watch {
 
 namespace {
 
-constexpr int kBeyond = 16;  ///< so that descriptors with the guard's own numbers are not overwritten
+constexpr int kBeyond = 16;  ///< lowest number for descriptors, so that they do not overwrite the guard's
 
 Error cannot(const char* what) {
   return Error{std::string("cannot start the guard process: ") + what + ": " + std::strerror(errno) +
-               "\n  where the daemon is killed, the arm keeps its last force"};
+               "\n  if the daemon is killed, the arm may keep its last force\n  fix: keep the switch of the arm's "
+               "power within reach"};
 }
 
-/// The same file at a number that the child's own descriptors do not use.
+/// Duplicates the descriptor to a number that the child does not use for its own descriptors.
 int above(int fd) {
   const int moved = fcntl(fd, F_DUPFD_CLOEXEC, kBeyond);
   close(fd);
   return moved;
 }
 
-/// 0: it is no longer open.
+/// Returns the inode of an open file; 0 if the descriptor is not open.
 uint64_t inodeOf(int fd) {
   struct stat what{};
   return fd >= 0 && fstat(fd, &what) == 0 ? what.st_ino : 0;
@@ -57,7 +58,7 @@ Result<std::unique_ptr<GuardProcess>> GuardProcess::start(int priority, Nanoseco
   return guard;
 }
 
-/// The memory stays, because the servo counts its ticks there.
+/// The new guard gets the same shared memory, because the servo continues to count its ticks there.
 Result<void> GuardProcess::restart() {
   errno = EBADF;
   if (inodeOf(memory_.get()) != memory_is_) return cannot("its memory was closed");
@@ -79,7 +80,7 @@ Result<void> GuardProcess::spawn(int socket) {
   posix_spawn_file_actions_addclosefrom_np(&files, kGuardMemory + 1);
   posix_spawnattr_t how;
   posix_spawnattr_init(&how);
-  posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSID);  // Ctrl-C and Ctrl-Z are for the daemon alone
+  posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSID);  // so that Ctrl-C and Ctrl-Z reach only the daemon
   std::array<std::string, 4> words = {"hapticd-guard", kGuardArgument, std::to_string(priority_),
                                       std::to_string(patience_)};
   char* arguments[] = {words[0].data(), words[1].data(), words[2].data(), words[3].data(), nullptr};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The guard: a process of its own that switches the arms off once the daemon is gone (`_exit`, SIGKILL, a crash that
-/// no handler sees) or its ticks stand still. For arms whose hardware does not do so itself.
+/// The guard is a separate process that switches the arms off if the daemon has ended (by `_exit`, SIGKILL, or a crash
+/// that no handler saw), or if the servo makes no more ticks. It is for arms whose hardware does not do so itself.
 #pragma once
 #include <atomic>
 #include <map>
@@ -15,22 +15,25 @@ namespace hapticd::watch {
 
 class GuardProcess {
  public:
-  /// [main] @param priority SCHED_FIFO of the guard, as far as it is allowed
-  /// @param patience [ns] without a tick, seen by punctual looks, before it silences the arms
+  /// [main] Starts the guard. @param priority SCHED_FIFO priority of the guard, if the process may use it
+  /// @param patience [ns] time without a tick after which the guard switches the arms off. Time in which the guard
+  /// itself could not run does not count
   static Result<std::unique_ptr<GuardProcess>> start(int priority, Nanoseconds patience);
-  ~GuardProcess();  ///< [main] ends it without silencing anything
+  ~GuardProcess();  ///< [main] ends the guard without switching any arm off
   GuardProcess(const GuardProcess&) = delete;
   GuardProcess& operator=(const GuardProcess&) = delete;
 
-  /// [main] How an arm is silenced from now on; nullptr if that is impossible now. It repeats nothing.
+  /// [main] Tells the guard how to switch an arm off; nullptr if that is impossible now. The same data are sent only
+  /// once.
   void tell(uint32_t arm, const hdv_silence* how);
-  /// [main] Whether it watches: from the first tick on, and not while the process is stopped on purpose.
+  /// [main] Starts or ends the watching. The guard must watch from the first tick on, but not while the process is
+  /// stopped on purpose (Ctrl-Z).
   void arm(bool watches) noexcept { beat_->armed.store(watches ? 1 : 0); }
-  /// [any] Counts ticks.
+  /// [any] The counter of ticks, which the servo increments.
   std::atomic<uint64_t>& ticks() noexcept { return beat_->ticks; }
-  /// [main] It lives.
+  /// [main] True if the guard process lives.
   bool alive() noexcept;
-  /// [main] Starts another process in place of one that has ended. It must be told about every arm anew.
+  /// [main] Starts a new guard in place of one that has ended. tell() must be called again for every arm.
   Result<void> restart();
 
  private:
@@ -41,12 +44,12 @@ class GuardProcess {
   Nanoseconds patience_ = 0;
   Heartbeat* beat_ = nullptr;
   Descriptor socket_, memory_;
-  uint64_t memory_is_ = 0;  ///< its inode: another thread may have closed the descriptor
+  uint64_t memory_is_ = 0;  ///< inode of the memory, to notice that another thread closed the descriptor
   int process_ = -1;
-  std::map<uint32_t, uint64_t> told_;  ///< epoch by arm
+  std::map<uint32_t, uint64_t> told_;  ///< by arm: the epoch of the data that were sent last
 };
 
-/// [main] What the guard process does; it never returns. @param arguments as kGuardArgument says
+/// [main] The main function of the guard process; it never returns. @param arguments see kGuardArgument
 [[noreturn]] void guardMain(int count, char** arguments);
 
 }  // namespace hapticd::watch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Text for handlers of signals: nothing here allocates.
+/// Builds text in signal handlers. Nothing here allocates memory.
 #pragma once
 #include <unistd.h>
 
@@ -9,7 +9,7 @@ namespace hapticd::watch {
 
 constexpr size_t kLongestPath = 1024;
 
-/// A line that is built without the C library's buffers.
+/// A text of limited length that is built without the buffers of the C library.
 class Line {
  public:
   Line& add(const char* text) noexcept {
@@ -17,7 +17,7 @@ class Line {
     text_[length_] = '\0';
     return *this;
   }
-  /// A plugin's name as part of a file name; whatever it contains, the file stays in its folder.
+  /// Adds a plugin's name as part of a file name. Signs such as / are replaced, so that the file stays in its folder.
   Line& addName(const char* name) noexcept {
     for (; *name != '\0' && length_ + 1 < sizeof text_; ++name) {
       const bool plain = (*name >= 'a' && *name <= 'z') || (*name >= 'A' && *name <= 'Z') ||

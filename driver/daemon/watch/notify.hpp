@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The service manager's side of the watchdog: systemd's notification protocol over NOTIFY_SOCKET, without its library.
+/// Messages to the service manager, also for its watchdog: systemd's notification protocol over NOTIFY_SOCKET, without
+/// systemd's library.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,19 +9,20 @@
 
 namespace hapticd::watch {
 
-/// [any] Sends a message such as "READY=1". False if nobody asked for it, or it could not be sent.
+/// [any] Sends a message such as "READY=1". Returns false if no service manager asked for messages, or if sending
+/// failed.
 bool notify(const std::string& message);
 
-/// [main] How often the service manager wants to hear that all is well (WATCHDOG_USEC, for this process); nothing if it
-/// does not ask.
+/// [main] Returns the period in which the service manager expects a message that all is well (WATCHDOG_USEC, for this
+/// process); nothing if it expects none.
 std::optional<Nanoseconds> watchdogPeriod();
 
-/// Feeds the service manager's watchdog, but only while the servo ticks.
+/// Sends the message that all is well to the service manager, but only while the servo makes ticks.
 class Feeder {
  public:
   Feeder() : period_(watchdogPeriod()) {}
 
-  /// [main] Call several times a second. @return true when it fed
+  /// [main] Call it several times a second. @return true if it sent the message
   bool feed(Nanoseconds now, uint64_t ticks);
 
  private:

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// _exit() and _Exit(), which end a process without a word: a module that calls one is heard first.
+/// Intercepts _exit() and _Exit(), which end a process without calling any handler, so that a module that calls them is
+/// noticed.
 #pragma once
 
 namespace hapticd::watch {
 
-/// [main] What _exit() does first, whoever calls it; nullptr: nothing. `heard` must be async-signal-safe.
+/// [main] Sets a function that is called first when any code calls _exit(); nullptr for none. `heard` must be
+/// async-signal-safe.
 void onPlainExit(void (*heard)());
 
 /// [any] Ends the process without calling that function. Async-signal-safe.

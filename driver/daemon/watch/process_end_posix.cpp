@@ -29,8 +29,9 @@ void endProcess(int code) noexcept {
 }  // namespace hapticd::watch
 
 #ifndef HAPTICD_SANITIZED
-// Replaces the C library's functions, because modules find the program's names first. What the library calls itself, as
-// in exit() and posix_spawn(), is not replaced. The sanitizers replace these functions as well.
+// Replaces the C library's functions for all modules, because the loader searches the program's own symbols first.
+// Calls inside the C library, as in exit() and posix_spawn(), still use the library's own functions. The sanitizers
+// also replace these functions.
 extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): these names are the C library's
 __attribute__((visibility("default"))) void _exit(int code) {

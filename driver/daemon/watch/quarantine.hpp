@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Plugins that crashed or hung the daemon, remembered from one start to the next until the user clears them.
+/// The quarantine: plugins that ended the daemon by a crash or a hang. The list is kept from one start to the next,
+/// until the user clears it.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -11,30 +12,30 @@ namespace hapticd::watch {
 
 struct QuarantinedPlugin {
   std::string plugin, reason;
-  std::string file;  ///< identity of the file that ended the run, see host::identityOnDisk; "": unknown
+  std::string file;  ///< identity of the plugin's file (see host::identityOnDisk); "" if it is unknown
 
-  /// A plugin of that name from that file is left out. A rebuilt one, and another file of the same name, are
-  /// not.
+  /// True if a plugin of that name from that file must be left out. A rebuilt file, or another file with the same name,
+  /// is not left out.
   bool holds(const std::string& name, const std::string& identity) const {
     return name == plugin && (file.empty() || file == identity);
   }
 };
 
-/// [main] Folder of what outlives a run: STATE_DIRECTORY (as systemd gives it), XDG_STATE_HOME/hapticd or
-/// ~/.local/state/hapticd; empty where none is named.
+/// [main] Returns the folder for files that outlive a run: STATE_DIRECTORY (which systemd sets),
+/// XDG_STATE_HOME/hapticd, or ~/.local/state/hapticd; empty if the environment names none of them.
 std::filesystem::path stateFolder();
 
-/// [main] The same, created if it is missing; empty if none can be written.
+/// [main] Returns the same folder, and creates it if it is missing; empty if it cannot be written.
 std::filesystem::path stateDir();
 
-/// [main] The list, oldest first; a file stands in it once.
+/// [main] Returns the list, oldest first, with each file once.
 std::vector<QuarantinedPlugin> quarantined(const std::filesystem::path& dir);
 
-/// [main] Takes every file of a plugin off the list. False: it was not on it.
+/// [main] Removes every file of a plugin from the list. Returns false if the plugin was not on it.
 Result<bool> clearQuarantine(const std::filesystem::path& dir, const std::string& plugin);
 
-/// The file in the state folder has one line per file: the plugin's name, a tab, the reason, a tab, the file's
-/// identity.
+/// Name of the list's file in the state folder. Each of its lines has the plugin's name, a tab, the reason, a tab, and
+/// the identity of the plugin's file.
 constexpr const char* kQuarantineFile = "quarantine";
 
 }  // namespace hapticd::watch

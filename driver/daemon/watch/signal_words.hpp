@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-/// What signals are called in messages.
+/// Names of signals in messages.
 #pragma once
 #include "watch/line.hpp"
 
 namespace hapticd::watch {
 
-/// [any] What went wrong, for a signal that a fault of the code raises; nullptr for other signals.
+/// [any] Returns what went wrong, for a signal that faulty code raises; nullptr for other signals.
 const char* wordsOfCrash(int signal) noexcept;
 
-/// [any] The same for every signal.
+/// [any] Returns words for any signal.
 Line words(int signal) noexcept;
 
 }  // namespace hapticd::watch

@@ -9,7 +9,7 @@ namespace hapticd::watch {
 std::error_code Watchdog::start(int priority) {
   stop_ = false;
   return thread_.start("hapticd-watch", [this, priority] {
-    (void)os::setFifo(priority);  // if this is refused, it still watches, as well as the machine allows
+    (void)os::setFifo(priority);  // if it is refused, the thread still watches, as an ordinary thread
     RealClock clock(0);
     while (!stop_) {
       clock.waitUntil(clock.now() + kCheckEvery);
@@ -30,20 +30,21 @@ bool Watchdog::check(Nanoseconds now) noexcept {
   const uint64_t tick = servo_.ticks();
   const Nanoseconds begun = servo_.tickBegun(), next = servo_.nextTick();
   if (begun != 0 && now > begun) return judge({tick, false}, now - begun, seen);
-  // A simulation with late ticks hurts nobody.
+  // In a simulation, late ticks can hurt nobody.
   if (begun == 0 && next != 0 && now > next && !servo_.simulated()) return judge({tick, true}, now - next, seen);
   phase_ = {};
   return false;
 }
 
-/// Somebody who asks for the end must not wait for a plugin that builds a model, or searches without end.
+/// Ends the process if its end was asked for some time ago: a plugin that takes long, or never returns, must not delay
+/// it.
 void Watchdog::watchEnd() noexcept {
   if (servo_.stopAsked() != 0 && ++checks_since_stop_ == kEndWithin / kCheckEvery && late_) late_();
 }
 
-/// @param overdue since the tick began, or should have  @param seen of that time since the last look
+/// @param overdue time since the tick began, or should have begun @param seen time since the last look that counts
 bool Watchdog::judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcept {
-  if (!(phase == phase_)) {  // the first look at it
+  if (!(phase == phase_)) {  // the first look at this phase
     phase_ = phase;
     cpu_at_phase_ = servo_.cpuTime();
     counted_ = 0;
@@ -62,8 +63,8 @@ bool Watchdog::judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcep
   return true;
 }
 
-/// Counted in looks, not in time: a machine that was asleep comes back to a tick that is still good. A servo that
-/// merely gets no processor does not hang.
+/// Time is counted by the number of looks, not by a clock, so that a tick during which the machine slept does not count
+/// as hanging. A servo that merely gets no processor does not hang either.
 void Watchdog::watchHung(Phase phase) noexcept {
   if (hung_told_ || (phase.waits && servo_.inServo() == nullptr)) return;
   const Nanoseconds looked = ++checks_since_cut_ * kCheckEvery;
@@ -78,7 +79,7 @@ Nanoseconds Watchdog::patience(Phase phase) const noexcept {
   return servo_.simulated() ? std::max(stuck_after_, kStuckSimulated) : stuck_after_;
 }
 
-/// Where no hand can be hurt, it is no fault if a thread was merely not scheduled.
+/// True if the arm is simulated, so that no hand can be hurt, and the thread may merely not have been scheduled.
 bool Watchdog::mayBePaused(Phase phase, Nanoseconds stuck) const noexcept {
   const bool works = !phase.waits && servo_.cpuTime() - cpu_at_phase_ + kCheckEvery > kStuckSimulated;
   return servo_.simulated() && !works && stuck <= kSimulatedPause;

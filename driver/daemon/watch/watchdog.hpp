@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Watches the servo from a thread above it: a tick that does not end, or does not begin, has its motors cut within
-/// 5 ms, and a servo that never comes back ends the process, so that the service manager starts it anew without the
+/// Watches the servo from a thread of higher priority. If a tick does not end, or does not begin, the motors are cut
+/// within 5 ms. If the servo never returns, the process is ended, and the service manager starts it again without the
 /// plugin.
 #pragma once
 #include <atomic>
@@ -15,47 +15,49 @@ namespace hapticd::watch {
 class Watchdog {
  public:
   static constexpr Nanoseconds kCheckEvery = 500'000;
-  static constexpr Nanoseconds kOnTime = 2'000'000;      ///< a longer time between two looks: it was delayed itself
-  static constexpr Nanoseconds kLateCounts = 1'000'000;  ///< of such a way
-  /// With the time to the next look 3 ms, in which 8.5 N give a free tip of 75 g an energy of 4.3 mJ.
+  static constexpr Nanoseconds kOnTime = 2'000'000;  ///< [ns] if the time between two looks is longer, the look is late
+  static constexpr Nanoseconds kLateCounts = 1'000'000;  ///< [ns] part of the time before a late look that counts
+  /// [ns] longest tick of an arm. The next look follows at most 0.5 ms later; in 3 ms, 8.5 N give a free tip of 75 g an
+  /// energy of 4.3 mJ.
   static constexpr Nanoseconds kStuckAfter = 2'500'000;
-  /// A virtual machine charges a thread for time in which its processor was elsewhere.
+  /// [ns] the same in a virtual machine, where the processor may do other work during a tick.
   static constexpr Nanoseconds kStuckInVirtualMachine = 10'000'000;
-  /// At least: a simulated arm hurts no hand, and a virtual machine that stands still charges the servo for it.
+  /// [ns] least value for simulated arms: they cannot hurt a hand, and pauses of a virtual machine count as servo time.
   static constexpr Nanoseconds kStuckSimulated = 60'000'000;
-  /// The next tick is so late. A virtual machine has its processors paused one by one.
+  /// [ns] longest delay of the next tick. In a virtual machine it is longer, because the host pauses single processors.
   static constexpr Nanoseconds kMissedAfter = 2'500'000, kMissedInVirtualMachine = 50'000'000;
-  static constexpr Nanoseconds kHungAfter = 500'000'000;  ///< nothing returns after that
-  /// Nor does a simulation return. Before that it may be a servo without a processor, which is no module's fault; then
-  /// only one that has used kHungAfter of processor time hangs.
+  static constexpr Nanoseconds kHungAfter = 500'000'000;  ///< [ns] a tick that takes longer never returns
+  /// [ns] the same for a simulation. In less time the servo may only have had no processor, which is not a module's
+  /// fault. But a simulation that has used kHungAfter of processor time hangs.
   static constexpr Nanoseconds kHungSimulated = 5'000'000'000;
-  static constexpr Nanoseconds kEndWithin = 900'000'000;       ///< counted from the moment that the end was asked for
-  static constexpr Nanoseconds kSimulatedPause = 200'000'000;  ///< a busy machine may pause a simulation for so long
+  static constexpr Nanoseconds kEndWithin = 900'000'000;       ///< [ns] time to end, after the end was asked for
+  static constexpr Nanoseconds kSimulatedPause = 200'000'000;  ///< [ns] a busy machine may pause a simulation this long
 
-  /// [main] @param hung what ends the process  @param missed_after [ns] that a tick may begin late
-  /// @param stuck_after [ns] that it may take
+  /// [main] @param hung ends the process @param missed_after [ns] longest delay of the start of a tick
+  /// @param stuck_after [ns] longest duration of a tick
   Watchdog(Watched& servo, std::function<void()> hung, Nanoseconds missed_after = kMissedAfter,
            Nanoseconds stuck_after = kStuckAfter)
       : servo_(servo), hung_(std::move(hung)), missed_after_(missed_after), stuck_after_(stuck_after) {}
   ~Watchdog() { stop(); }
 
-  /// [main] Before start(): what ends the process if its end was asked for and does not come.
+  /// [main] Sets a function that ends the process if its end was asked for and does not come. Call it before start().
   void onLateEnd(std::function<void()> late) { late_ = std::move(late); }
 
-  /// [main] @param priority SCHED_FIFO, above the servo's; without the right it runs as an ordinary thread
+  /// [main] @param priority SCHED_FIFO priority, above that of the servo. Without the right to it, the watchdog runs as
+  /// an ordinary thread
   std::error_code start(int priority);
   void stop();
 
-  /// [any] One look; the thread does nothing else. True: it cut. A look that comes late saw nothing of the time before
-  /// it: the whole machine may have stood still, this thread and the servo alike. Such a time counts as one
-  /// millisecond, so that the servo gets a moment to end its tick; a servo that is stuck is then cut by the third look
-  /// at the latest if all come late, and within 3 ms once the looks are on time.
+  /// [any] Looks at the servo once, and returns true if it cut the motors. The thread only calls this periodically.
+  /// Before a look that comes late, the whole machine may have stood still, with this thread and the servo. So the time
+  /// before it counts as only one millisecond, and the servo gets a moment to end its tick. If all looks come late, the
+  /// motors of a stuck servo are cut by the third look at the latest; if looks are on time, within 3 ms.
   bool check(Nanoseconds now) noexcept;
 
   uint64_t cuts() const noexcept { return cuts_.load(); }
 
  private:
-  /// What the servo is doing: a tick, or the wait for one.
+  /// What the servo is doing: a tick, or waiting for a tick.
   struct Phase {
     uint64_t tick = UINT64_MAX;
     bool waits = false;
@@ -71,13 +73,13 @@ class Watchdog {
   std::function<void()> hung_, late_;
   Nanoseconds missed_after_, stuck_after_;
 
-  Phase cut_in_;  ///< the arms were cut in that phase, once
+  Phase cut_in_;  ///< the phase in which the arms were cut; they are cut once a phase
   Phase phase_;
   Nanoseconds checks_since_cut_ = 0, checks_since_stop_ = 0;
   bool hung_told_ = false;
   Nanoseconds cpu_at_phase_ = 0;
-  Nanoseconds looked_at_ = 0;  ///< the last time
-  Nanoseconds counted_ = 0;    ///< time of the phase, as far as it was watched
+  Nanoseconds looked_at_ = 0;  ///< time of the last look
+  Nanoseconds counted_ = 0;    ///< [ns] duration of the phase, as far as it was watched
   std::atomic<uint64_t> cuts_{0};
   std::atomic<bool> stop_{false};
   os::Thread thread_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the watchdog and the crash handler need of a running servo, and all they know of it.
+/// The interface by which the watchdog and the crash handler see a running servo.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,21 +13,21 @@ namespace hapticd::watch {
 class Watched {
  public:
   virtual ~Watched() = default;
-  virtual uint64_t ticks() const noexcept = 0;         ///< done so far
-  virtual Nanoseconds tickBegun() const noexcept = 0;  ///< CLOCK_MONOTONIC of the tick in progress; 0: waiting for one
-  /// CLOCK_MONOTONIC by which the next tick must have begun; 0: none is to come.
+  virtual uint64_t ticks() const noexcept = 0;         ///< number of ticks so far
+  virtual Nanoseconds tickBegun() const noexcept = 0;  ///< CLOCK_MONOTONIC start of the tick in progress; 0: none is
+  /// CLOCK_MONOTONIC time by which the next tick must have begun; 0 if there will be none.
   virtual Nanoseconds nextTick() const noexcept = 0;
   virtual Nanoseconds cpuTime() const noexcept = 0;  ///< CPU time that the servo thread has used
-  virtual bool simulated() const noexcept = 0;       ///< no hand can be hurt
-  virtual void stop() noexcept = 0;                  ///< ends the run in order: forces ramp to zero first
-  /// CLOCK_MONOTONIC when the end was asked for; 0: it was not.
+  virtual bool simulated() const noexcept = 0;       ///< all arms are simulated, so that no hand can be hurt
+  virtual void stop() noexcept = 0;                  ///< ends the run normally: forces ramp to zero first
+  /// CLOCK_MONOTONIC time at which the end was asked for; 0 if it was not.
   virtual Nanoseconds stopAsked() const noexcept = 0;
   virtual void cut(double stuck_for) noexcept = 0;    ///< frees the motors of every arm at once; stuck_for in s
-  virtual bool cutLeft() const noexcept = 0;          ///< the cut is on its way to the hardware, or nobody knows
-  virtual const Owner* inServo() const noexcept = 0;  ///< whose code the servo thread runs; nullptr: the daemon's own
-  virtual const void* blackBox() const noexcept = 0;  ///< the last seconds as they lie in memory; nullptr: none
+  virtual bool cutLeft() const noexcept = 0;          ///< false while the cut has not been sent to the hardware
+  virtual const Owner* inServo() const noexcept = 0;  ///< owner of the code in the servo thread; nullptr: own code
+  virtual const void* blackBox() const noexcept = 0;  ///< memory with the rows of the last seconds, or nullptr
   virtual size_t blackBoxBytes() const noexcept = 0;
-  virtual bool drives() const noexcept { return true; }  ///< motors may be on
+  virtual bool drives() const noexcept { return true; }  ///< true if motors may be on
 };
 
 }  // namespace hapticd::watch

@@ -10,17 +10,18 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr std::string_view kNames[] = {"device.max_force", "max_force"};  ///< of the parameter
+constexpr std::string_view kNames[] = {"device.max_force",
+                                       "max_force"};  ///< names of the parameter for the largest force
 
-/// As in the limiter: the smaller of the two that are known.
+/// Returns the smaller of two forces [N], as the limiter does; 0 means unknown.
 double letThrough(double asked, double device) {
   return asked > 0 && device > 0 ? std::min(asked, device) : std::max(asked, device);
 }
 
-/// The parameter of the module that names its maximum, given or left at its default; 0: it has none.
+/// Returns the largest force [N] by the module's parameter, as given or by default; 0 if it has no such parameter.
 double describedForce(const scene::Device& device) {
-  const auto instance =
-      host::DeviceInstance::create(device, [](int, const std::string&, const std::string&) {});  // told when it opens
+  // Messages are dropped here: they come again when the device is opened.
+  const auto instance = host::DeviceInstance::create(device, [](int, const std::string&, const std::string&) {});
   if (!instance) return 0;
   const hdv_class& module = (*instance)->description();
   for (uint32_t i = 0; i < module.param_count; ++i) {
@@ -33,7 +34,7 @@ double describedForce(const scene::Device& device) {
   return 0;
 }
 
-/// 0 means no limit; one such arm is enough.
+/// Returns the largest of the forces, or 0 (unknown) if one of them is unknown.
 double largest(const std::vector<double>& forces) {
   if (forces.empty() || *std::min_element(forces.begin(), forces.end()) <= 0) return 0;
   return *std::max_element(forces.begin(), forces.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the arms of a scene let through to the hand, before any of them is opened.
+/// The largest force that the arms of a scene let through to the hand, known before an arm is opened.
 #pragma once
 #include <vector>
 
@@ -8,11 +8,11 @@
 
 namespace hapticd::servo {
 
-/// [main] The largest force [N] of any arm, by limits.force and the maximum that its device file or module names; 0 if
-/// nothing is known about one of them.
+/// [main] Returns the largest force [N] of any arm, from limits.force and the maximum that its device file or module
+/// gives; 0 if the force of one arm is unknown.
 double maxForceOf(const scene::Scene& scene);
 
-/// [any] The same for a recorded run. @param devices what the arms said when they were opened
+/// [any] The same for a recorded run. @param devices reports of the arms when they were opened
 double maxForceOf(const scene::Scene& scene, const std::vector<hdv_info>& devices);
 
 }  // namespace hapticd::servo

@@ -7,7 +7,7 @@ namespace hapticd::servo {
 
 namespace {
 
-// plugins/kernels read it, which know nothing of the daemon.
+// Read by plugins/kernels, which do not depend on the daemon.
 constexpr const char* kVariable = "HAPTICD_INSTRUCTIONS";
 
 bool portableByEnvironment() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Which processor instructions the inner loops of shapes use: the fastest, or those that give the same bits
-/// everywhere.
+/// Chooses the processor instructions for the inner loops of shapes: the fastest, or those that give the same bits on
+/// every machine.
 #pragma once
 #include <string>
 
@@ -8,11 +8,11 @@
 
 namespace hapticd::servo {
 
-/// [main] Sets what the scene wants, before the first shape of the process is made. Plugins look at it once, so all
-/// scenes of a process share the first one's choice.
+/// [main] Sets the choice of the scene. Call it before the first shape of the process is made: plugins read the choice
+/// once, so all scenes of a process use the choice of the first.
 void chooseInstructions(const scene::Servo& servo);
 
-/// [main] Which instructions shapes use here with this scene: "portable", "avx2+fma".
+/// [main] Returns the instructions that shapes use on this machine with this scene: "portable" or "avx2+fma".
 std::string takenInstructions(const scene::Servo& servo);
 
 }  // namespace hapticd::servo

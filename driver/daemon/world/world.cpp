@@ -19,7 +19,8 @@ hsp_pose startPose(const scene::Model& model) {
 }
 
 uint64_t budgetNs(const scene::Servo& servo, double rate) {
-  constexpr double kShareOfPeriod = 0.8;  // the rest is for the device, the limits and going back to sleep
+  // shapes get this share of a period; the rest is for the devices, the limits and the sleep
+  constexpr double kShareOfPeriod = 0.8;
   return static_cast<uint64_t>(servo.budget_us > 0 ? servo.budget_us * 1e3 : kShareOfPeriod * 1e9 / rate);
 }
 
@@ -85,8 +86,8 @@ Result<std::unique_ptr<host::ShapeInstance>> World::prepare(const scene::Model& 
   const uint32_t needs = (*shape)->report().flags;
   if ((needs & HSP_R_VELOCITY) != 0 && !needsVelocity())
     return Error{"model '" + model.name +
-                 "': needs the velocity of the probe, which this run does not estimate because "
-                 "no model needed it at the start\n  fix: start the daemon with a scene that has such a model"};
+                 "': needs the velocity of the probe, which this run does not estimate, because "
+                 "no model needed it at the start\n  fix: start the daemon with a scene that has this model"};
   return shape;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A scene brought to life: instances created and activated, the core and the simulation side joined by a link. Used by
-/// run, trace, explain and tests alike.
+/// The models of a scene, ready to run: shapes are created and activated, and the core and the proximity search are
+/// connected. Used by run, trace, explain and tests.
 #pragma once
 #include <memory>
 #include <vector>
@@ -16,29 +16,30 @@
 namespace hapticd::servo {
 
 struct WorldOptions {
-  double rate = 1000;  ///< [Hz]
+  double rate = 1000;  ///< [Hz] of the servo
   uint32_t probe_count = 1;
   uint32_t spare_models = 0;   ///< places for models that are added during the run
-  bool measure = false;        ///< measures the CPU time of every step
-  bool budgets = false;        ///< tells every step how much CPU time of the tick is left
-  double evaluation_ns = 0;    ///< > 0: costs are counted, at so much per evaluation, instead of measured
-  double max_force = 0;        ///< [N] most that any arm lets through to the hand; 0: unknown
-  bool former_claims = false;  ///< as in recordings without claims, see CoreSettings
+  bool measure = false;        ///< true: measure the CPU time of every step
+  bool budgets = false;        ///< true: give every step the CPU time that is left in the tick
+  double evaluation_ns = 0;    ///< if > 0, the cost of a step is its evaluations times this, not its measured time
+  double max_force = 0;        ///< [N] largest force that any arm lets through to the hand; 0: unknown
+  bool former_claims = false;  ///< for old recordings, see CoreSettings
 };
 
 class World {
  public:
-  /// [main] Creates and activates every model. The error names the model and gives the plugin's own words.
+  /// [main] Creates and activates every model. An error names the model and contains the plugin's own message.
   static Result<std::unique_ptr<World>> build(const scene::Scene& scene, const WorldOptions& options,
                                               const host::Services::Log& log);
 
-  /// [main] Creates and activates one more model while the others run; it is felt once the servo adopts it.
+  /// [main] Creates and activates one more model during a run. It is felt only after the servo has adopted it.
   Result<std::unique_ptr<host::ShapeInstance>> prepare(const scene::Model& model, const host::Services::Log& log) const;
 
-  /// [main] Keeps the shape of an empty place alive, and has it searched from now on.
+  /// [main] Puts a shape into an empty place, keeps it alive, and adds it to the proximity search.
   void keep(uint32_t place, std::unique_ptr<host::ShapeInstance> shape, const scene::Model& model);
 
-  /// [main] The model of a place is no longer searched; called before the servo is told to release it.
+  /// [main] Removes the model of a place from the proximity search. Call it before the servo is told to release the
+  /// model.
   void forget(uint32_t place) { proximity_->remove(place); }
 
   /// [main] Destroys the shape of a place that the servo has released.
@@ -47,21 +48,21 @@ class World {
   Core& core() { return *core_; }
   sim::Proximity& proximity() { return *proximity_; }
   link::Link& link() { return *link_; }
-  /// [main] What runs the simulation side in step with simulated time.
+  /// [main] Returns the object that runs the proximity search in step with virtual time.
   Lockstep lockstep() {
     return {*core_, [this] { proximity_->search(); }};
   }
   const std::vector<std::unique_ptr<host::ShapeInstance>>& shapes() const { return shapes_; }
 
-  /// How many models there may be at a time.
+  /// Returns how many models the run can have at a time.
   uint32_t places() const { return static_cast<uint32_t>(core_->models().size()); }
 
-  /// Some shape reads velocities, so an estimator must run.
+  /// True if some shape reads velocities, so that they must be estimated.
   bool needsVelocity() const { return (needs_ & HSP_R_VELOCITY) != 0; }
-  /// [N/m] The stiffest contact that the models claim.
+  /// Returns the largest stiffness [N/m] that a model claims.
   double maxStiffness() const { return max_stiffness_; }
 
-  /// Bytes that the models hold in locked memory, as they report it.
+  /// Returns how many bytes the models use that must be locked in memory, as they report it.
   uint64_t lockedBytes() const { return locked_bytes_; }
 
  private:

@@ -25,7 +25,7 @@ bool Arm::look(hapticd_state& state) {
   constexpr int kPatienceMs = 500;
   hapticd_state newer;
   if (hapticd_next_state(client_, device_, UINT64_MAX, kPatienceMs, &state) != 1) return false;
-  // The memory outlives its daemon, so what counts is that the ticks go on.
+  // The memory still exists after the daemon has ended, so the ticks must be seen to go on.
   return nowNs() < state.time_ns + kHoldsNs ||
          hapticd_next_state(client_, device_, state.tick, kPatienceMs, &newer) == 1;
 }
@@ -52,7 +52,7 @@ void Arm::wanted(double force[3]) const {
 
 void Arm::run() {
   constexpr int kClientPriority = 70, kLongestMs = 100;
-  (void)os::setFifo(kClientPriority);  // without the right to real time the force comes one tick late
+  (void)os::setFifo(kClientPriority);  // without real-time rights the force comes one tick late
   uint64_t last = UINT64_MAX;
   while (!end_) {
     hapticd_state state;

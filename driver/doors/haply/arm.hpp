@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// One arm of a daemon for one program: a thread answers every tick with the program's force, which programs send as
-/// seldom as they like.
+/// One arm of a daemon for one program. A thread answers every tick with the program's newest force, so that the
+/// program may send forces less often.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -15,7 +15,7 @@ namespace hapticd::haply {
 
 class Arm {
  public:
-  static constexpr uint64_t kHoldsNs = 100'000'000;  ///< a force ends this long after the program was last heard
+  static constexpr uint64_t kHoldsNs = 100'000'000;  ///< [ns] a force ends this long after the program's last message
 
   Arm(hapticd_client* client, int device, std::string name)
       : client_(client), device_(device), name_(std::move(name)) {}
@@ -24,11 +24,11 @@ class Arm {
   Arm& operator=(const Arm&) = delete;
 
   const std::string& name() const { return name_; }
-  /// [main] The newest state. False if none comes any more.
+  /// [main] Reads the newest state. False if no new states come any more.
   bool look(hapticd_state& state);
-  /// [main] From now on this force [N, world frame] is applied. The first call begins to push.
+  /// [main] Sets the force [N, world frame] that is applied from now on. The first call begins a lead of the force.
   Result<void> push(const double force[3]);
-  /// [main] The force that is applied now [N].
+  /// [main] Returns the force that is applied now [N].
   void wanted(double force[3]) const;
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd-inverse-service`: the arms of a running daemon for programs that were written for Haply's Inverse Service.
+/// `hapticd-inverse-service`: offers the arms of a running daemon to programs that were written for Haply's Inverse
+/// Service.
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -33,7 +34,7 @@ void converse(websocket::Channel& channel, const std::string& daemon, int number
   if (!session) return say(number, session.error());
   std::string text = (*session)->inventory();
   while (!text.empty() && !told_to_end && channel.send(text, kSendMs)) {
-    constexpr int kSilentMs = 30'000;  // a program that is silent for so long has gone
+    constexpr int kSilentMs = 30'000;  // [ms] a program that is silent for longer has gone
     const auto message = channel.receive(kSilentMs);
     if (!message) return;
     text = (*session)->answer(*message);
@@ -64,7 +65,7 @@ void serve(websocket::Listener& listener, const std::string& daemon) {
     ++number;
   }
   std::fflush(nullptr);
-  std::_Exit(0);  // silent programs are not waited for; the daemon ends their forces with the connection
+  std::_Exit(0);  // does not wait for silent programs; the daemon ends their forces with the connection
 }
 
 }  // namespace
@@ -73,9 +74,9 @@ int main(int count, char** words) {
   std::string daemon = "hapticd";
   unsigned short port = 10001;
   const command_line::Program app(
-      "The arms of a running hapticd in the interface of Haply's Inverse Service (WebSocket, JSON).");
+      "Offers the arms of a running hapticd through the interface of Haply's Inverse Service (WebSocket, JSON).");
   app.addOption("--name", daemon, "name of the daemon, as given to `hapticd run --name`").showDefault();
-  app.addOption("--port", port, "port of 127.0.0.1; 0: one that is free").showDefault();
+  app.addOption("--port", port, "port on 127.0.0.1; 0 for any free port").showDefault();
   app.footer("Example:\n  hapticd-inverse-service --port 10001");
   if (const auto ended = app.parse(count, words)) return *ended;
   auto first = haply::Session::open(daemon, 0);

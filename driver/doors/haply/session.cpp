@@ -20,7 +20,7 @@ const Json& childOf(const Json& json, const char* key) {
   return it != json.end() ? *it : nothing;
 }
 
-/// Reads three finite numbers, if all of them are there.
+/// Reads three finite numbers. False unless all three are there.
 bool readVector(const Json& json, double v[3]) {
   const char* axes[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
@@ -45,7 +45,7 @@ Json stateOf(const hapticd_state& state, const double wanted[3], const Basis& ba
           {"control_mode", "force"}};
 }
 
-/// The handle: the orientation of the tip, and the buttons.
+/// Writes the part of a state about the handle: the orientation of the tip, and the buttons.
 Json gripOf(const hapticd_state& state, const std::string& id, const Basis& basis) {
   const auto q = basis.turnFromWorld(state.orientation);
   return {{"device_id", id},
@@ -114,7 +114,7 @@ std::string Session::answer(const std::string& message) {
     obey(json);
     all = childOf(json, "session").contains("force_render_full_state");
   } else {
-    complain("a message was no object of JSON");
+    complain("a message is not a JSON object");
   }
   return tell(all);
 }
@@ -122,7 +122,8 @@ std::string Session::answer(const std::string& message) {
 void Session::obey(const Json& message) {
   const Json& permutation = childOf(childOf(childOf(childOf(message, "session"), "configure"), "basis"), "permutation");
   if (permutation.is_string() && !basis_.set(permutation.get<std::string>()))
-    complain("the basis \"" + permutation.get<std::string>().substr(0, 40) + "\" is not a permutation of X, Y and Z");
+    complain("the basis \"" + permutation.get<std::string>().substr(0, 40) +
+             "\" is not a permutation of X, Y and Z, such as \"XZY\"");
   for (const Json& device : childOf(message, "inverse3")) {
     const Json& id = childOf(device, "device_id");
     if (!id.is_string()) continue;
@@ -141,7 +142,7 @@ void Session::obeyArm(Arm& arm, const Json& commands) {
     if (name == "probe_position") continue;
     if (name != "set_cursor_force") {
       complain("the command " + name.substr(0, 60) +
-               " is not known here; it is set_cursor_force and probe_position alone");
+               " is not known here; only set_cursor_force and probe_position are known");
     } else if (!readVector(childOf(command, "values"), force)) {
       complain("set_cursor_force needs values with three finite numbers x, y and z");
     } else {

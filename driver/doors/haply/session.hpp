@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What one program of Haply's interface hears and says: an inventory first, then one state for each of its messages.
+/// The conversation with one program of Haply's interface: first it gets an inventory, then one state for each message
+/// that it sends.
 #pragma once
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,17 +14,17 @@ namespace hapticd::haply {
 
 class Session {
  public:
-  /// [main] Connects to a daemon. @param number of this session
+  /// [main] Connects to a daemon. @param number number of this session
   static Result<std::unique_ptr<Session>> open(const std::string& daemon, int number);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// [main] The first message. "" if the daemon reports nothing any more
+  /// [main] Returns the first message, or "" if the daemon reports no more ticks.
   std::string inventory();
-  /// [main] The answer to a message. "" if the daemon reports nothing any more
+  /// [main] Returns the answer to a message, or "" if the daemon reports no more ticks.
   std::string answer(const std::string& message);
-  /// [main] What was asked for but is impossible, reported once; "" if there is nothing new.
+  /// [main] Returns what the program asked for but cannot have, or "". Each problem is returned once.
   std::string complaint();
 
  private:

@@ -13,7 +13,7 @@ namespace hapticd::hd {
 
 namespace {
 
-constexpr uint64_t kHoldNs = 100'000'000;  ///< how long a force holds after the frame that set it
+constexpr uint64_t kHoldNs = 100'000'000;  ///< [ns] a force ends this long after the frame that set it
 
 constexpr HDenum kCapabilities[] = {HD_FORCE_OUTPUT, HD_MAX_FORCE_CLAMPING, HD_FORCE_RAMPING, HD_SOFTWARE_FORCE_LIMIT,
                                     HD_ONE_FRAME_LIMIT};
@@ -23,9 +23,11 @@ uint32_t bitOf(HDenum capability) {
   return found != std::end(kCapabilities) ? 1u << (found - std::begin(kCapabilities)) : 0;
 }
 
-constexpr uint32_t kNone = 0, kStopped = 8;  ///< hapticd_state.fault: none; the arm is held, or the daemon ends
+constexpr uint32_t kNone = 0,
+                   kStopped = 8;  ///< hapticd_state.fault: no fault; the arm is held, or the daemon ends
 
-/// The daemon's reasons for withholding a force (hapticd_state.fault) in the HDAPI. HD_SUCCESS: nothing to report.
+/// Returns the HDAPI's error for the daemon's reason for withholding a force (hapticd_state.fault), or HD_SUCCESS if
+/// there is nothing to report.
 HDerror errorOf(uint32_t fault) {
   constexpr uint32_t kDeviceLost = 2, kStale = 4, kTooFast = 5, kOverheated = 10;
   switch (fault) {
@@ -48,9 +50,9 @@ HDerror errorOf(uint32_t fault) {
 std::string hintOf(const std::string& arm, uint32_t fault) {
   if (fault == kStopped)
     return "the arm " + arm +
-           " is held: nobody feels a force\n  fix: hapticd ctl clear, once whoever holds the arm agrees";
+           " is held, so it gives no force\n  fix: hapticd ctl clear, after the person who holds the arm has agreed";
   return "the arm " + arm + " is at fault (" + std::to_string(fault) +
-         "): nobody feels a force\n  fix: hapticd ctl status says what it is; hapticd ctl clear lets the force come "
+         "), so it gives no force\n  fix: hapticd ctl status says what it is; hapticd ctl clear lets the force come "
          "back";
 }
 
@@ -71,12 +73,12 @@ void scaleTo(double v[3], double most) {
 }  // namespace
 
 void Arm::open(std::shared_ptr<Link> link, Facts facts) {
-  constexpr double kRampTime = 0.05;  // s until the greatest force
+  constexpr double kRampTime = 0.05;  // [s] from zero to the largest force
   link_ = std::move(link);
   facts_ = std::move(facts);
   motion_ = {};
   frame_ = last_ = {};
-  ended_ = pushed_ = seen_ = false;  // an open frame ends as it would have ended: the daemon was lost meanwhile
+  ended_ = pushed_ = seen_ = false;  // a new daemon; a frame that is open now can still be ended
   told_fault_ = 0, stopped_since_ = -1, told_limit_ = false;
   std::fill_n(held_force_, 3, 0.0), std::fill_n(held_torque_, 3, 0.0);
   capabilities_ = bitOf(HD_MAX_FORCE_CLAMPING) | bitOf(HD_FORCE_RAMPING) | bitOf(HD_SOFTWARE_FORCE_LIMIT) |
@@ -92,7 +94,7 @@ void Arm::close() {
   capabilities_ = 0;
 }
 
-/// Another thread may have read a newer one already.
+/// Takes a state, unless another thread has taken a newer one already.
 void Arm::look(const hapticd_state& state) {
   if (seen_ && state.tick <= now_.tick) return;
   seen_ = true;
@@ -111,7 +113,7 @@ void Arm::refresh() {
   if (isOpen() && link_->next(UINT64_MAX, 0, state) == 1) look(state);
 }
 
-/// The force is still that of the last frame.
+/// A new frame begins with the force of the last frame.
 const Frame& Arm::newest() {
   refresh();
   newest_ = frame_;
@@ -144,8 +146,8 @@ void Arm::reportFault() {
   const uint32_t fault = now_.fault;
   if (fault != kStopped) stopped_since_ = -1;
   if (fault == told_fault_) return;
-  // A daemon that ends ramps its forces out as a hold does. The scheduler reports that it has gone.
-  constexpr double kEnds = 0.25;  // s
+  // A daemon that ends ramps its forces out, which looks like a hold. The scheduler reports that the daemon has gone.
+  constexpr double kEnds = 0.25;  // [s]
   if (fault == kStopped && stopped_since_ < 0) stopped_since_ = now_.t;
   if (fault == kStopped && now_.t - stopped_since_ < kEnds) return;
   told_fault_ = fault;
@@ -189,7 +191,8 @@ void Arm::addJointTorque(double force[3], double torque[3]) const {
   for (int i = 0; i < 3; ++i) force[i] += more_force[i], torque[i] += more_torque[i];
 }
 
-/// When a force begins to be clamped, an error says so, because what is felt is not what was asked for.
+/// Reports an error when the daemon begins to limit the program's force, because the user then feels less than the
+/// program asked for.
 void Arm::tellOfLimit(const double force[3]) {
   const bool beyond = forceOn() && facts_.max_force > 0 && allFinite(force) && sizeOf(force) > facts_.max_force;
   const bool tells = isEnabled(HD_SOFTWARE_FORCE_LIMIT) && isEnabled(HD_MAX_FORCE_CLAMPING);
@@ -197,10 +200,11 @@ void Arm::tellOfLimit(const double force[3]) {
   told_limit_ = beyond;
 }
 
-/// How much of what the program asked for the library lets through. After an error, nothing.
+/// Limits the force that the program asked for, and returns an error if it breaks a bound. After an error the force is
+/// zero.
 HDerror Arm::checked(uint64_t ns, double force[3]) const {
   if (!forceOn()) return HD_SUCCESS;
-  if (!allFinite(force)) return hintOnce("a force is not a number: it cannot be felt"), HD_FORCE_ERROR;
+  if (!allFinite(force)) return hintOnce("a force is not a finite number, so no force is sent"), HD_FORCE_ERROR;
   if (bounds_.velocity > 0 && sizeOf(frame_.velocity) * kMmPerMetre > bounds_.velocity) return HD_EXCEEDED_MAX_VELOCITY;
   const double step[3] = {force[0] - last_.force[0], force[1] - last_.force[1], force[2] - last_.force[2]};
   if (bounds_.impulse > 0 && sizeOf(step) > bounds_.impulse) return HD_EXCEEDED_MAX_FORCE_IMPULSE;
@@ -245,7 +249,7 @@ bool Arm::isEnabled(HDenum capability) const {
 bool Arm::enable(HDenum capability, bool on, std::string& why) {
   if (on && capability == HD_FORCE_OUTPUT && !link_->lead(why)) return false;
   capabilities_ = on ? capabilities_ | bitOf(capability) : capabilities_ & ~bitOf(capability);
-  if (!forceOn()) force_since_ns_ = 0;  // it ramps in anew
+  if (!forceOn()) force_since_ns_ = 0;  // it ramps in again
   return bitOf(capability) != 0;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// An opened arm: its frames, its capabilities, and the force that goes out. The caller holds the library's lock.
+/// An opened arm: its frames, its capabilities, and the force that is sent. The caller holds the library's lock.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -11,19 +11,19 @@
 
 namespace hapticd::hd {
 
-/// What a frame read and asked for, in SI units.
+/// A frame of the HDAPI: the state that it read, and the force that the program asked for. SI units.
 struct Frame {
   hapticd_state state{};
   double velocity[3] = {}, angular[3] = {};
   double force[3] = {}, torque[3] = {};  ///< [N], [N m]
-  double joint_torque[6] = {};           ///< [N m] of turret, thigh, shin and gimbal; added to force and torque
+  double joint_torque[6] = {};  ///< [N m] of turret, thigh, shin, three of the gimbal; added to force and torque
 };
 
-/// Bounds that the library itself checks; the daemon has its own, which do not depend on these.
+/// Bounds that the library checks. The daemon's limits do not depend on them.
 struct Bounds {
-  double velocity = 0;  ///< [mm/s] 0: not checked
-  double impulse = 0;   ///< [N] from one frame to the next; 0: not checked
-  double ramp = 0;      ///< [N/s]
+  double velocity = 0;  ///< [mm/s] largest speed of the tip; 0 for no check
+  double impulse = 0;   ///< [N] largest change of force from one frame to the next; 0 for no check
+  double ramp = 0;      ///< [N/s] growth of the force after it was switched on
 };
 
 class Arm {
@@ -37,31 +37,31 @@ class Arm {
   const std::shared_ptr<Link>& link() const { return link_; }
   const Facts& facts() const { return facts_; }
 
-  /// A tick of the scheduler begins. @param ns CLOCK_MONOTONIC
+  /// To be called when a tick of the scheduler begins. @param ns CLOCK_MONOTONIC
   void tick(const hapticd_state& state, uint64_t ns);
-  /// The tick ends: the servo hears that this program lives, and which force holds.
+  /// To be called when the tick ends: tells the servo that this program lives, and the force to apply.
   void heartbeat(uint64_t ns);
 
-  /// @param scheduler_tick number of the current tick; UINT64_MAX: the caller is in none
+  /// Begins a frame. @param scheduler_tick number of the current tick, or UINT64_MAX if the caller is not in a tick
   void begin(uint64_t scheduler_tick);
-  /// @param pushes the scheduler runs, so that somebody continues the force
+  /// Ends a frame. @param pushes true if the scheduler runs, so that it sends the force in the ticks that follow
   void end(uint64_t scheduler_tick, uint64_t ns, bool pushes);
   bool inFrame() const { return in_frame_; }
   Frame& frame() { return frame_; }
   const Frame& last() const { return last_; }
-  /// The daemon's present state, for a reader that is in no frame and no tick.
+  /// Returns the daemon's present state, for a caller that is neither in a frame nor in a tick.
   const Frame& newest();
 
   static bool isCapability(HDenum capability);
   bool isEnabled(HDenum capability) const;
-  /// @return false if there is no such capability, or it is not available
+  /// @return false, and the reason in `why`, if there is no such capability or it is not available
   bool enable(HDenum capability, bool on, std::string& why);
   Bounds& bounds() { return bounds_; }
   bool forceOn() const { return isEnabled(HD_FORCE_OUTPUT); }
-  bool knowsJacobian() const;                ///< joint torques can be turned into a force
-  double motorTemperature(int joint) const;  ///< 0 cold to 1 as hot as it may get
+  bool knowsJacobian() const;                ///< true if joint torques can be turned into a force
+  double motorTemperature(int joint) const;  ///< from 0 (cold) to 1 (the hottest allowed)
   bool first = false;                        ///< opened as the default device
-  int32_t light = 0;                         ///< HD_USER_STATUS_LIGHT, which no arm has
+  int32_t light = 0;                         ///< value of HD_USER_STATUS_LIGHT; no arm has this light
 
  private:
   void look(const hapticd_state& state);
@@ -86,8 +86,8 @@ class Arm {
   bool pushed_ = false;
   double held_force_[3] = {}, held_torque_[3] = {};
   uint32_t capabilities_ = 0, told_fault_ = 0;
-  double stopped_since_ = -1;  ///< [s] of the daemon's time; < 0: the arm is not held
-  bool told_limit_ = false;    ///< that the program asks for more than the arm's force was reported
+  double stopped_since_ = -1;  ///< [s] time of the daemon since which the arm is held; < 0 if it is not held
+  bool told_limit_ = false;    ///< it was reported that the program asks for more than the arm's largest force
   Bounds bounds_;
 };
 

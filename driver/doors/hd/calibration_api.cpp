@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Calibration, which is the daemon's affair, and what else the HDAPI has.
+/// The HDAPI's functions for calibration, which the daemon does itself, and the functions that fit nowhere else.
 #include "HD/hd.h"
 #include "library.hpp"
 #include "rotation.hpp"
@@ -44,7 +44,7 @@ void hdUpdateCalibration(HDenum style) {
   if (isCalibrated(all, *arm)) return;
   all.fail(HD_DEVICE_FAULT);
   hintOnce(
-      "a program does not calibrate an arm of hapticd\n  fix: hapticd device calibrate FILE, before the daemon runs");
+      "a program cannot calibrate an arm of hapticd\n  fix: hapticd device calibrate FILE, before the daemon runs");
 }
 
 void hdUpdateCalibrationMessage(HDenum style) {

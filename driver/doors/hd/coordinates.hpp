@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Between the world of a scene and the coordinates that its programs of the HDAPI count in (`clients: {origin,
+/// Converts between the world of a scene and the coordinates that HDAPI programs of the scene use (`clients: {origin,
 /// frame}`).
 #pragma once
 #include "facts.hpp"
@@ -7,10 +7,10 @@
 
 namespace hapticd::hd {
 
-/// A state of the daemon as programs see it, still in SI units.
+/// Converts a state of the daemon to the coordinates of programs, still in SI units.
 void toProgram(const Facts& facts, hapticd_state& state);
 
-/// A program's force or torque in the axes of the world, and back.
+/// Converts a force or torque from the axes of programs to the axes of the world, and back.
 void toWorld(const Facts& facts, double v[3]);
 void fromWorld(const Facts& facts, double v[3]);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Devices, frames, capabilities and errors.
+/// The HDAPI's functions for devices, frames, capabilities and errors.
 #include <cerrno>
 #include <cstring>
 #include <exception>
@@ -12,14 +12,14 @@ namespace hapticd::hd {
 
 namespace {
 
-/// The daemon's name for an arm. An empty name means the first arm.
+/// Returns the daemon's name for an arm. An empty name means the first arm.
 std::string deviceOf(HDstring name) {
   for (const char* usual : {"", "Default Device", "Default PHANToM", "Default PHANTOM"})
     if (name == nullptr || std::strcmp(name, usual) == 0) return "";
   return name;
 }
 
-/// An open arm of this name. nullptr if there is none
+/// Returns the open arm of this name, or nullptr if there is none.
 Arm* openOf(Library& all, const std::string& name, HHD& handle) {
   for (handle = 0; handle < kMostArms; ++handle) {
     Arm& arm = all.arms()[handle];
@@ -40,7 +40,7 @@ HHD refuse(Library& all, int number, const std::string& why) {
   return HD_INVALID_HANDLE;
 }
 
-/// Puts an opened arm into its place: that of an arm whose daemon ended, or a free one.
+/// Puts an opened arm into the place of an arm of the same name whose daemon has ended, or into a free place.
 HHD keep(Library& all, const std::string& wanted, std::shared_ptr<Link> link, Facts facts) {
   const Guard guard(all.lock);
   HHD handle = 0;

@@ -13,7 +13,7 @@ namespace hapticd::hd {
 class ErrorStack {
  public:
   void push(HDerror code, HHD device, int internal = 0);
-  HDErrorInfo pop();  ///< HD_SUCCESS: it is empty
+  HDErrorInfo pop();  ///< takes the newest error; its code is HD_SUCCESS if the stack is empty
 
  private:
   static constexpr size_t kDepth = 64;
@@ -22,10 +22,11 @@ class ErrorStack {
   size_t next_ = 0, count_ = 0;
 };
 
-/// [any] Never NULL.
+/// [any] Returns the text of an error code, never NULL.
 const char* errorText(HDerror code);
 
-/// [any] Prints one line on stderr, once for each `text`, which must stay in memory: what is wrong and how to fix it.
+/// [any] hintOnce() prints what is wrong and how to fix it on stderr, only once for each `text`, which must have static
+/// storage. hint() prints each time.
 void hintOnce(const char* text);
 void hint(const char* what, const char* text);
 

@@ -16,12 +16,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr size_t kFull = 6;  // degrees of freedom
+constexpr size_t kFull = 6;  // degrees of freedom of a pose
 
-/// Arms that HDAPI programs know by name, with the usable workspace in mm that their makers publish.
+/// Arms whose names HDAPI programs know, with the usable workspace in mm that the maker publishes.
 struct Known {
-  const char* product;  ///< part of the name that the device itself gives
-  const char* model;    ///< as HD_DEVICE_MODEL_TYPE says it
+  const char* product;  ///< part of the product name that the device reports
+  const char* model;    ///< value of HD_DEVICE_MODEL_TYPE
   double size[3];
 };
 constexpr Known kKnown[] = {
@@ -38,7 +38,7 @@ const Known& knownAs(const std::string& product) {
   return found != std::end(kKnown) ? *found : kOther;
 }
 
-/// A box around the place where the arm stands; the largest box that a link may reach is a quarter longer.
+/// Sets the workspace to a box around the place where the arm stands. The largest workspace is a quarter larger.
 void readWorkspace(const Known& known, const Json& mount, Facts& facts) {
   constexpr double kBeyondUsable = 1.25;
   double place[3];
@@ -52,7 +52,7 @@ void readWorkspace(const Known& known, const Json& mount, Facts& facts) {
   facts.tabletop = -facts.usable[1];
 }
 
-/// The programs' coordinates: those of the world, or of the arm's mount, with an origin of their own.
+/// Reads the coordinates of the programs: the axes of the world or of the arm's mount, with another origin.
 void readFrame(const Json& clients, const Json& mount, Facts& facts) {
   const bool of_device = clients.value("frame", "world") == "device";
   double origin[3] = {};
@@ -64,7 +64,7 @@ void readFrame(const Json& clients, const Json& mount, Facts& facts) {
     facts.origin[i] = origin[i] + (of_device ? mount.at("position").at(i).get<double>() : 0.0);
 }
 
-/// What the device file says for HDAPI programs.
+/// Reads the part of the device file that is for HDAPI programs.
 void readHd(const Json& device, Facts& facts) {
   const Json hd = device.value("hd", Json::object());
   const auto words = [&](const char* key, std::string& text) {
@@ -83,7 +83,7 @@ void readHd(const Json& device, Facts& facts) {
 }
 
 void readInfo(const Json& info, Facts& facts) {
-  constexpr double kDampingTime = 1e-3;  // s: N s/mm for each N/mm, which a wall at 1 kHz bears in any case
+  constexpr double kDampingTime = 1e-3;  // [s] largest damping per stiffness: stable for a wall at 1 kHz
   facts.joints = info.at("joint_count");
   const Json& torque = info.at("max_torque");
   const auto motors = std::count_if(torque.begin(), torque.end(),
@@ -104,7 +104,7 @@ void readScene(const Json& scene, size_t device, Facts& facts) {
   if (const Json& enable = limits.at("enable"); enable.is_object()) facts.enable_button = enable.value("button", -1);
   if (const double force = limits.at("force"); force > 0)
     facts.max_force = facts.max_force > 0 ? std::min(facts.max_force, force) : force;
-  constexpr size_t kHottest = 7, kAmbient = 8;  // places in the list at which a motor stands
+  constexpr size_t kHottest = 7, kAmbient = 8;  // index of these numbers in the list of a motor
   for (const Json& motor : limits.at("motors")) facts.motors.push_back({motor.at(kHottest), motor.at(kAmbient)});
   facts.max_torque = limits.at("torque");
   const Json clients = scene.value("clients", Json::object());

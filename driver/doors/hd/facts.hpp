@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What does not change of an arm while a daemon runs, in the units of the HDAPI.
+/// Properties of an arm that do not change while a daemon runs, in the units of the HDAPI.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,36 +11,37 @@ namespace hapticd::hd {
 struct Facts {
   std::string name, model, vendor = "hapticd", serial, driver;  ///< `name` in the daemon's form
   std::string firmware_text;
-  double firmware = 0;  ///< its first number
-  double rate = 1000;   ///< [Hz] of the servo
+  double firmware = 0;  ///< first number in firmware_text
+  double rate = 1000;   ///< [Hz] rate of the servo
   int joints = 3, input_dof = 3, output_dof = 3;
   double max_force = 0, continuous_force = 0;  ///< [N]
   double max_stiffness = 0, max_damping = 0;   ///< [N/mm], [N s/mm]
-  double workspace[6] = {}, usable[6] = {};    ///< [mm] least x y z, greatest x y z; HD frame
+  double workspace[6] = {}, usable[6] = {};    ///< [mm] least x y z, then greatest x y z; HDAPI axes
   double tabletop = 0;                         ///< [mm] height of the workspace's middle above the table
-  int enable_button = -1;                      ///< enable button, without which no force flows; -1: there is none
-  bool pushable = false;                       ///< the scene lets programs push
+  int enable_button = -1;  ///< number of the enable button, needed for any force; -1 if there is none
+  bool pushable = false;   ///< the scene lets programs push
   struct Motor {
     double hottest, ambient;  ///< [degC]
   };
-  std::vector<Motor> motors;  ///< joints with a model of their motors' heat
-  /// One of the programs' joints: sign times the device's joint, plus an offset.
+  std::vector<Motor> motors;  ///< joints that have a thermal model of their motor
+  /// One joint as programs see it: sign times the device's joint, plus an offset.
   struct Joint {
     size_t joint;
     double sign, offset;
   };
   std::vector<Joint> joint_of;      ///< turret, thigh, shin, and up to three of the gimbal
-  std::vector<unsigned> button_of;  ///< the device's joints, in the order of the programs'; none: they are the same
-  double max_torque = 0;            ///< [N m] on the hand; 0: programs cannot turn the hand
-  bool is_world = true;             ///< the programs' coordinates are the world's
+  std::vector<unsigned> button_of;  ///< device's button for each of the programs' buttons; empty if they are the same
+  double max_torque = 0;            ///< [N m] largest torque on the hand; 0 if programs cannot turn the hand
+  bool is_world = true;             ///< true if the programs' coordinates are those of the world
   double origin[3] = {};            ///< [m] origin of the programs' coordinates, in the world
   double turn[4] = {1, 0, 0, 0};    ///< w x y z, from the programs' axes to the world's
 };
 
-/// [main] @param about what a daemon says about itself @return false if it cannot be understood
+/// [main] Reads the facts of one device. @param about JSON in which the daemon describes itself @return false if it
+/// cannot be understood
 bool readFacts(const char* about, int device, Facts& facts);
 
-/// [any] A copy that stays as long as the process, because a string that the HDAPI gives out is never freed.
+/// [any] Returns a copy of the text that lives as long as the process, because programs may keep strings of the HDAPI.
 HDstring keptForever(const std::string& text);
 
 }  // namespace hapticd::hd

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// From torques of joints, as some programs set them, to the force and the torque on the hand that hapticd knows.
+/// Converts joint torques, which some programs set, to the force and the torque on the hand that hapticd takes.
 #pragma once
 #include <vector>
 
@@ -8,9 +8,9 @@
 
 namespace hapticd::hd {
 
-/// The wrench whose joint torques J^T W come nearest to those asked for: of all six joints where the arm has them and a
-/// gimbal with motors, otherwise the force of the first three. Near a singular pose it stays bounded (damped least
-/// squares, Nakamura and Hanafusa 1986).
+/// Computes the wrench W whose joint torques J^T W are nearest to the given torques. For an arm with six joints and
+/// motors in its gimbal it uses all six joints; for other arms it computes only the force, from the first three joints.
+/// Near a singular pose the wrench stays bounded (damped least squares, Nakamura and Hanafusa 1986).
 /// @param torque [N m] of turret, thigh and shin, then of the gimbal @param force [N] @param moment [N m] world frame
 void wrenchOf(const Facts& facts, const hapticd_jacobian& jacobian, const double torque[6], double force[3],
               double moment[3]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Everything that the library knows. It is made at the first call, so that a constructor of another library may be it,
-/// and is never destroyed: a program that leaves main() with the servo thread running is not to crash.
+/// The state of the whole library. It is made at the first call, which may come from a static constructor. It is never
+/// destroyed, so that a program that leaves main() while the servo thread runs does not crash.
 #pragma once
 #include <array>
 #include <mutex>
@@ -13,25 +13,25 @@
 
 namespace hapticd::hd {
 
-constexpr size_t kMostArms = 16;  // handles are 0 to 15, never 260, which some programs take for an error
+constexpr size_t kMostArms = 16;  // handles are 0 to 15; some programs take 260 for an error
 
 class Library {
  public:
   Library() : arms_(made(std::make_index_sequence<kMostArms>())) {}
 
-  std::recursive_mutex lock;  ///< guards the arms and which of them is current
+  std::recursive_mutex lock;  ///< guards the arms and `current`
   ErrorStack errors;
   HHD current = 0;
 
   std::array<Arm, kMostArms>& arms() { return arms_; }
-  /// nullptr if no open arm has this handle.
+  /// Returns the open arm of this handle, or nullptr if there is none.
   Arm* find(HHD handle) { return handle < kMostArms && arms_[handle].isOpen() ? &arms_[handle] : nullptr; }
   Scheduler& scheduler() { return scheduler_; }
   double rate() const;  ///< [Hz] of the daemon
 
   /// Puts an error on the stack with the current device.
   void fail(HDerror code) { errors.push(code, current); }
-  /// The current arm. nullptr if there is none, which is an error.
+  /// Returns the current arm. If there is none, puts an error on the stack and returns nullptr.
   Arm* currentArm();
 
  private:

@@ -26,7 +26,7 @@ std::string namesOf(hapticd_client* client) {
   return names;
 }
 
-/// The place where a column begins in its row; -1 if there is none.
+/// Returns the byte at which a column begins in its row, or -1 if there is no such column.
 long placeOf(const hapticd_column* columns, long count, const char* name) {
   for (long i = 0; i < count; ++i)
     if (std::strcmp(columns[i].name, name) == 0) return columns[i].offset;
@@ -60,7 +60,8 @@ std::shared_ptr<Link> Link::open(const std::string& name, Facts& facts, std::str
     return nullptr;
   }
   if (!readFacts(hapticd_about(client.get()), device, facts)) {
-    why = "what the daemon says of itself cannot be understood: it is of another version\n  fix: restart the daemon";
+    why =
+        "the daemon's description of itself cannot be understood: it is of another version\n  fix: restart the daemon";
     return nullptr;
   }
   hapticd_state first;

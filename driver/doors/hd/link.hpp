@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// One arm of a running daemon, through libhapticd.
+/// One arm of a running daemon, through the client library.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -10,11 +10,11 @@
 
 namespace hapticd::hd {
 
-/// One thread at a time may open, lead and close; others may wait, push and read meanwhile.
+/// Only one thread at a time may open, lead and close. Meanwhile other threads may wait, push and read.
 class Link {
  public:
-  /// [main] Connects to the daemon of $HAPTICD_NAME. @param name of the arm; empty: the first. @param why becomes the
-  /// reason and its cure @param number becomes errno or 0. nullptr if it cannot connect
+  /// [main] Connects to the daemon of $HAPTICD_NAME. @param name name of the arm, empty for the first @param why
+  /// becomes the reason of a failure and its fix @param number becomes errno or 0 @return nullptr if it cannot connect
   static std::shared_ptr<Link> open(const std::string& name, Facts& facts, std::string& why, int& number);
   Link(hapticd_client* client, int device) : client_(client), device_(device) {}
   Link(const Link&) = delete;
@@ -27,23 +27,24 @@ class Link {
   }
   /// [any] As hapticd_listen.
   void listen(unsigned microseconds) const { hapticd_listen(client_, microseconds); }
-  /// [any] The newest Jacobian of the arm. @return false if it is unknown
+  /// [any] Reads the newest Jacobian of the arm. @return false if there is none
   bool jacobian(hapticd_jacobian& jacobian) const { return hapticd_read_jacobian(client_, device_, &jacobian) == 1; }
-  /// [any] True if a daemon of this name runs, though perhaps another one than before.
+  /// [any] True if a daemon of this name runs, which may be another one than before.
   bool runs() const { return hapticd_alive(client_) == 1; }
-  /// [main] True if the daemon to which it connected still runs.
+  /// [main] True if the daemon to which this object connected still runs.
   bool alive() const {
     return !lost && runs() && hapticd_ask(client_, R"({"do":"snapshot"})", nullptr, 0, nullptr) >= 0;
   }
-  std::atomic<bool> lost{false};  ///< no tick came for a long time
+  std::atomic<bool> lost{false};  ///< true if no tick has come for a long time
 
-  /// [main] From now on push() has an effect. @return false: `why` says why not
+  /// [main] Begins a lead, so that push() has an effect. @return false, and the reason in `why`, if that is impossible
   bool lead(std::string& why);
   bool leads() const { return lead_ != nullptr; }
   void push(const hapticd_push& push) const {
     if (lead_ != nullptr) hapticd_lead_push(lead_, &push);
   }
-  /// [any] Newest temperatures of the windings in degC, of as many joints as `most`; others stay as they are.
+  /// [any] Writes the newest temperatures of the windings [degC], for at most `most` joints. Unknown ones do not
+  /// change.
   void temperatures(double* of_joint, size_t most) const;
 
  private:

@@ -9,7 +9,7 @@ namespace hapticd::hd {
 void Motion::add(const hapticd_state& state) {
   if (count_ > 0 && state.tick <= at(0).tick) {
     if (state.tick == at(0).tick) return;
-    count_ = 0;  // another daemon has started, which counts anew
+    count_ = 0;  // another daemon has started, and counts its ticks from 0
   }
   kept_[next_] = state;
   next_ = (next_ + 1) % kKept;

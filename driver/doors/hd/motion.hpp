@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// How an arm moved in the last ticks: velocities that the daemon does not tell.
+/// Estimates velocities of an arm from its last ticks, because the daemon does not send them.
 #pragma once
 #include <array>
 #include <cstddef>

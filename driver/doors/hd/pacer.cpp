@@ -13,9 +13,9 @@ namespace hapticd::hd {
 namespace {
 
 constexpr uint64_t kSecond = 1'000'000'000, kMillisecond = 1'000'000;  // [ns]
-constexpr int kPatienceMs = 20;                                        ///< after this time the library ticks by itself
-constexpr uint64_t kSilentNs = 500 * kMillisecond;  ///< then the daemon counts as gone, even if its process lives
-constexpr uint64_t kLookNs = 100 * kMillisecond;    ///< time between two checks whether the process lives
+constexpr int kPatienceMs = 20;                     ///< time without a tick after which the library ticks by itself
+constexpr uint64_t kSilentNs = 500 * kMillisecond;  ///< time without a tick after which the daemon counts as gone
+constexpr uint64_t kLookNs = 100 * kMillisecond;    ///< time between two checks whether the daemon's process lives
 
 void sleepNs(uint64_t ns) {
   const timespec time{static_cast<time_t>(ns / kSecond), static_cast<long>(ns % kSecond)};
@@ -73,7 +73,7 @@ bool Pacer::waitFor(const Lead& lead, hapticd_state& state) {
   return lead.link && lead.link->next(seen_, 0, state) == 1;
 }
 
-/// No state came. The error is reported once per outage.
+/// Called if no state came. Reports the error once per outage.
 void Pacer::missed(const Lead& lead) {
   const uint64_t now = nowNs();
   if (silent_since_ns_ == 0) silent_since_ns_ = now, looked_ns_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Ticks for the scheduler: those of the daemon, or, where none is there, of this process's own clock.
+/// Ticks for the scheduler: those of the daemon or, if there is no daemon, those of a clock of this process.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -16,13 +16,13 @@ class Library;
 class Pacer {
  public:
   explicit Pacer(Library& library) : library_(library) {}
-  /// Waits for a tick and gives its states to the arms. Only one thread at a time. @return CLOCK_MONOTONIC [ns] when it
-  /// began
+  /// Waits for a tick and gives its states to the arms. Only one thread at a time may call it. @return CLOCK_MONOTONIC
+  /// [ns] at which the tick began
   uint64_t wait();
-  /// [any] Looks for ticks without sleeping from so many microseconds before they are due; 0: it sleeps
-  /// (hapticd_listen)
+  /// [any] Makes wait() poll instead of sleep, from this number of microseconds before a tick is due; with 0 it sleeps
+  /// (see hapticd_listen).
   void listen(unsigned microseconds) { listen_us_ = microseconds; }
-  void endTick();  ///< [servo] tells every arm that the program lives
+  void endTick();  ///< [servo] tells the daemon, for every arm, that the program lives
   double rate() const;
 
  private:
@@ -37,9 +37,9 @@ class Pacer {
 
   Library& library_;
   std::mutex waiting_;
-  std::weak_ptr<Link> followed_;  ///< the arm whose ticks these are; its device closes it
+  std::weak_ptr<Link> followed_;  ///< the arm whose ticks are used; closed by its device
   uint64_t seen_ = UINT64_MAX, silent_since_ns_ = 0, looked_ns_ = 0;
-  bool lost_ = false;  ///< and told so
+  bool lost_ = false;  ///< the daemon is lost, and this was reported
   std::atomic<unsigned> listen_us_{0};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Values, out and in, of each type of number.
+/// The HDAPI's functions that get and set parameters, one for each type of number.
 #include <string>
 
 #include "HD/hd.h"
@@ -10,7 +10,8 @@ namespace hapticd::hd {
 
 namespace {
 
-/// What CURRENT_... means for the caller: the open frame, else in a tick the last frame, else the present state.
+/// Returns the frame that CURRENT_... means for the caller: the open frame; without one, the last frame if the caller
+/// is in a tick, and the present state if not.
 const Frame& currentFor(Library& all, Arm& arm) {
   if (arm.inFrame() || all.scheduler().tickOfCaller() != UINT64_MAX) return arm.frame();
   return arm.newest();

@@ -24,9 +24,9 @@ namespace hapticd::hd {
 namespace {
 
 constexpr size_t kMostTasks = 512;
-constexpr int kPriority = 70;  ///< below the daemon's servo at 80
+constexpr int kPriority = 70;  ///< real-time priority, below 80 of the daemon's servo
 
-thread_local int ticks_of_this_thread = 0;  ///< how deeply the thread is nested in callbacks
+thread_local int ticks_of_this_thread = 0;  ///< number of callbacks in which this thread is nested
 
 bool becomeRealTime() {
   const sched_param priority{kPriority};
@@ -37,9 +37,9 @@ bool becomeRealTime() {
   return false;
 }
 
-/// [us] How long before and after a tick is due the servo loop looks for it without sleeping: the value of
-/// $HAPTICD_LISTEN; else, with real-time priority, a tenth of the period, 100 us at most. Without that priority a busy
-/// loop would only use up the time that the kernel gives to the thread.
+/// Returns the time [us], before and after a tick is due, in which the servo loop polls for it instead of sleeping. It
+/// is the value of $HAPTICD_LISTEN. Without this variable it is a tenth of the period, at most 100 us, if the loop has
+/// real-time priority, and 0 if not: a busy loop would then only use up the time that the kernel gives to the thread.
 unsigned listeningTime(bool real_time, double rate) {
   constexpr double kMost = 100, kShare = 0.1, kUsPerSecond = 1e6;
   if (const char* text = std::getenv("HAPTICD_LISTEN"); text != nullptr && *text != '\0') {
@@ -47,24 +47,24 @@ unsigned listeningTime(bool real_time, double rate) {
     const char* end = text + std::strlen(text);
     const auto [stopped, error] = std::from_chars(text, end, us);
     if (error == std::errc{} && stopped == end) return us;
-    hintOnce("HAPTICD_LISTEN is not a number of microseconds, expected 0 to 200: it is ignored");
+    hintOnce("HAPTICD_LISTEN is ignored: it is not a number of microseconds from 0 to 200");
   }
   return real_time ? static_cast<unsigned>(std::min(kMost, kShare * kUsPerSecond / rate)) : 0;
 }
 
-/// HD_INVALID_VALUE says that a rate is wrong, but not which ones are right.
+/// Prints which rates are possible, because the error HD_INVALID_VALUE does not say it.
 void tellRates(double wanted, double daemon) {
   constexpr int kShown = 6;
   char text[256];
   int at =
       std::snprintf(text, sizeof text,
-                    "hdSetSchedulerRate(%.0f) is refused: callbacks run in ticks of the daemon, which has %.0f Hz\n"
-                    "  fix: one of %.0f",
+                    "hdSetSchedulerRate(%.0f) is refused: callbacks run in ticks of the daemon, which runs at %.0f Hz\n"
+                    "  fix: use one of the rates %.0f",
                     wanted, daemon, daemon);
   for (int every = 2; every <= kShown && at > 0 && static_cast<size_t>(at) < sizeof text; ++every)
     at += std::snprintf(text + at, sizeof text - static_cast<size_t>(at), ", %.0f", std::round(daemon / every));
-  hintOnce(
-      keptForever(std::string(text) + ", ... (the daemon's rate over a whole number), or servo.rate in the scene"));
+  hintOnce(keptForever(std::string(text) +
+                       ", ... (the daemon's rate divided by a whole number), or change servo.rate in the scene"));
 }
 
 }  // namespace
@@ -72,10 +72,11 @@ void tellRates(double wanted, double daemon) {
 bool Scheduler::start() {
   const std::lock_guard guard(lock_);
   if (running_) return true;
-  if (thread_.joinable()) thread_.detach();  // a callback of its own stopped it, so it is about to end
+  if (thread_.joinable()) thread_.detach();  // one of its own callbacks stopped it, so it is about to end
   sigset_t all, before;
   sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);  // signals are for the program's own threads
+  pthread_sigmask(SIG_SETMASK, &all,
+                  &before);  // the library's thread gets no signals
   running_ = true;
   const uint64_t run = ++run_;
   try {
@@ -154,7 +155,7 @@ void Scheduler::run(const std::shared_ptr<Task>& task) {
   changed_.notify_all();
 }
 
-/// Callbacks run by priority, highest first; those of equal priority in the order in which they came.
+/// Callbacks run by priority, highest first. Callbacks of equal priority run in the order in which they were added.
 std::shared_ptr<Scheduler::Task> Scheduler::add(HDSchedulerCallback function, void* data, HDushort priority) {
   constexpr HDSchedulerHandle kLastHandle = 0x7fffffff;  // programs keep handles in 32 bits
   const std::lock_guard guard(lock_);
@@ -174,7 +175,7 @@ HDSchedulerHandle Scheduler::schedule(HDSchedulerCallback function, void* data, 
   return handle;
 }
 
-/// Ticks that the caller counts, because there is no servo loop, or the caller is in it.
+/// Runs a callback in ticks of the calling thread, because there is no servo loop, or because the caller is in it.
 void Scheduler::runHere(HDSchedulerCallback function, void* data) {
   const bool nested = ticks_of_this_thread > 0;
   HDCallbackCode code = HD_CALLBACK_CONTINUE;
@@ -183,7 +184,7 @@ void Scheduler::runHere(HDSchedulerCallback function, void* data) {
     ++ticks_of_this_thread;
     code = function(data);
     --ticks_of_this_thread;
-    if (nested) break;  // its next ticks would never come while it waits in this one
+    if (nested) break;  // inside a tick no further tick can come
   }
 }
 
@@ -198,7 +199,7 @@ bool Scheduler::runToEnd(HDSchedulerCallback function, void* data, HDushort prio
     task->gone = true;
     tasks_.erase(std::remove(tasks_.begin(), tasks_.end(), task), tasks_.end());
   }
-  runHere(function, data);  // the servo loop was stopped meanwhile
+  runHere(function, data);  // the servo loop has been stopped meanwhile
   return true;
 }
 

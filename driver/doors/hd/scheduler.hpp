@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Callbacks of the program, once a tick, in a thread of the library.
+/// Calls the program's callbacks once per tick, in a thread of the library.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -18,23 +18,23 @@ class Scheduler {
  public:
   explicit Scheduler(Pacer& pacer) : pacer_(pacer) {}
 
-  bool start();  ///< false: no thread can be had
-  void stop();   ///< waits for the end of the current tick, unless the caller is in it
+  bool start();  ///< false if no thread can be started
+  void stop();   ///< waits for the end of the current tick, unless a callback of this tick is the caller
   bool running() const { return running_; }
 
-  /// @return its handle; HD_INVALID_HANDLE: there are too many
+  /// Adds a callback. @return its handle, or HD_INVALID_HANDLE if there are too many callbacks
   HDSchedulerHandle schedule(HDSchedulerCallback function, void* data, HDushort priority);
-  /// Returns when the callback is done. @return false: there are too many
+  /// Adds a callback and returns when it is done. @return false if there are too many callbacks
   bool runToEnd(HDSchedulerCallback function, void* data, HDushort priority);
-  bool unschedule(HDSchedulerHandle handle);  ///< false if it has ended, or never existed
+  bool unschedule(HDSchedulerHandle handle);  ///< false if the callback has ended, or never existed
   bool isScheduled(HDSchedulerHandle handle, bool wait);
 
-  bool setRate(double rate);                    ///< [Hz] false if it is more than the daemon's rate, or not a rate
+  bool setRate(double rate);                    ///< [Hz] false if it is not the daemon's rate over a whole number
   double rate() const;                          ///< [Hz]
-  bool realTime() const { return real_time_; }  ///< the servo loop has real-time priority
+  bool realTime() const { return real_time_; }  ///< true if the servo loop has real-time priority
   double instantaneousRate() const { return instantaneous_; }
 
-  /// Number of the tick in which the calling thread is; UINT64_MAX: it is in none.
+  /// Returns the number of the tick in which the calling thread is, or UINT64_MAX if it is not in a tick.
   uint64_t tickOfCaller() const;
   double secondsInTick() const;
 
@@ -59,14 +59,14 @@ class Scheduler {
   Pacer& pacer_;
   mutable std::mutex lock_;
   std::condition_variable changed_;
-  Tasks tasks_;  ///< in the order in which they run
+  Tasks tasks_;  ///< callbacks in the order in which they run
   std::thread thread_;
   std::atomic<bool> running_{false};
   std::atomic<uint64_t> run_{0};  ///< number of the thread that may run the callbacks
   HDSchedulerHandle next_handle_ = 1;
   std::atomic<double> wanted_rate_{0}, instantaneous_{0};
   std::atomic<uint64_t> tick_{0}, began_ns_{0};
-  std::atomic<bool> real_time_{true};  ///< until it is tried
+  std::atomic<bool> real_time_{true};  ///< true until the library has tried to get it
 };
 
 }  // namespace hapticd::hd

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The scheduler.
+/// The HDAPI's functions for the scheduler.
 #include <exception>
 
 #include "HD/hd.h"

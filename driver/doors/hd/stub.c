@@ -1,3 +1,3 @@
 /* SPDX-License-Identifier: MIT */
-/* Nothing: a library that build scripts look for and that programs call nothing of. */
+/* Empty on purpose: build scripts need a library of this name, but programs call no function of it. */
 typedef int hapticd_stub_of_hdapi;

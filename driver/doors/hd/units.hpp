@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Programs of the HDAPI count in mm and mN m, the daemon in SI units.
+/// The HDAPI has mm and mN m; the daemon has SI units.
 #pragma once
 
 namespace hapticd::hd {

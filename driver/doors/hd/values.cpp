@@ -19,7 +19,7 @@ void copy(const double* from, int count, double factor, double* out) {
   for (int i = 0; i < count; ++i) out[i] = factor * from[i];
 }
 
-/// A value of a frame: CURRENT_... is that of the open frame, LAST_... that of the one before.
+/// Writes a value of a frame: for CURRENT_... of the open frame, for LAST_... of the frame before.
 struct OfFrame {
   HDenum current, last;
   int count;
@@ -37,7 +37,7 @@ void safetySwitch(const Arm& arm, const Frame& frame, double* out) {
   out[0] = button < 0 || (frame.state.buttons >> button & 1u) != 0 ? 1 : 0;
 }
 void inkwell(const Arm&, const Frame&, double* out) {
-  out[0] = 1;  // the arm is out of the inkwell, which no arm of ours has
+  out[0] = 1;  // always out of the inkwell: no arm of hapticd has an inkwell
 }
 void nothing(const Arm&, const Frame&, double* out) {
   std::fill_n(out, kMostNumbers, 0.0);
@@ -101,21 +101,22 @@ constexpr OfFrame kOfFrames[] = {
     {HD_CURRENT_MOTOR_DAC_VALUES, HD_LAST_MOTOR_DAC_VALUES, 6, nothing},
 };
 
-/// A value of the arm or of the scheduler.
+/// Writes a value of the arm or of the scheduler.
 struct OfArm {
   HDenum name;
   int count;
   void (*get)(const Asked& asked, double* out);
 };
 
-/// A program that answers one tick late feels a wall of a third of the stiffness before it buzzes.
+/// Returns the largest stiffness for programs. A program that answers one tick late makes walls buzz at a third of the
+/// stiffness that shapes can have.
 double stiffness(const Asked& asked) {
   constexpr double kLate = 3;
   const bool in_time = sysconf(_SC_NPROCESSORS_ONLN) > 1 && asked.scheduler.realTime();
   return asked.arm.facts().max_stiffness / (in_time ? 1 : kLate);
 }
 
-/// The torque with which an arm may turn the hand, in mN m; an arm of three joints cannot turn it.
+/// Returns the largest torque on the hand in mN m. It is 0 for an arm of three joints.
 double torque(const Arm& arm) {
   return arm.facts().output_dof > 3 ? arm.facts().max_torque * kMmPerMetre : 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the HDAPI calls parameters, as numbers in its own units.
+/// The HDAPI's parameters, as numbers in the HDAPI's units.
 #pragma once
 #include "arm.hpp"
 #include "scheduler.hpp"
@@ -8,22 +8,22 @@ namespace hapticd::hd {
 
 constexpr int kMostNumbers = 16;
 
-/// The arm and frame that are asked for a parameter.
+/// The arm and the frame from which a parameter is read.
 struct Asked {
   Arm& arm;
-  const Frame& current;  ///< what CURRENT_... means for the caller
+  const Frame& current;  ///< the frame that CURRENT_... means for the caller
   const Scheduler& scheduler;
 };
 
-/// @return how many numbers `out` got; 0: there is no such parameter, -1: it is a text
+/// Writes the numbers of a parameter. @return how many, 0 if there is no such parameter, or -1 if it is a text
 int numbersOf(const Asked& asked, HDenum name, double out[kMostNumbers]);
 
-/// nullptr if it is not a text.
+/// Returns the text of a parameter, or nullptr if it is not a text.
 const std::string* textOf(const Facts& facts, HDenum name);
 
-/// How many numbers a call to set it takes; 0 if it cannot be set.
+/// Returns how many numbers a call needs to set a parameter, or 0 if it cannot be set.
 int numbersToSet(HDenum name);
-/// @return HD_SUCCESS, or the reason why not
+/// Sets a parameter. @return HD_SUCCESS, or the error
 HDerror set(Arm& arm, HDenum name, const double* numbers);
 
 }  // namespace hapticd::hd

@@ -12,11 +12,11 @@ namespace hapticd::view {
 
 namespace {
 
-/// 128 bits of the system's random numbers in hexadecimal.
+/// Returns 128 random bits of the system, as hexadecimal text.
 std::string secret() {
   std::array<unsigned char, 16> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw std::runtime_error("the system gives no random numbers for a token");
+    throw std::runtime_error("cannot read random numbers from the system for the token");
   std::string text;
   for (const unsigned char byte : bytes) {
     text += "0123456789abcdef"[byte >> 4];
@@ -50,7 +50,7 @@ std::vector<std::string> split(std::string_view text, char by) {
   return parts;
 }
 
-/// "localhost", "127.0.0.1" or "[::1]", with any port: a tunnel (ssh -L) may have another one at its other end.
+/// True for "localhost", "127.0.0.1" or "[::1]", with any port, because a tunnel (ssh -L) may use another port.
 bool loopback(const std::string& host) {
   for (const std::string_view name : {"localhost", "127.0.0.1", "[::1]"}) {
     if (host.rfind(name, 0) != 0) continue;
@@ -69,7 +69,7 @@ std::string cookieValue(const std::string& cookies, const std::string& name) {
   return "";
 }
 
-/// The first protocol of the client's list that this server speaks.
+/// Returns the first protocol of the client's list that this server knows.
 void choose(const std::string& offered, Admission& admission) {
   for (const std::string& name : split(offered, ',')) {
     if (name == "hapticd.1")

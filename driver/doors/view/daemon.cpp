@@ -22,7 +22,7 @@ namespace asio = boost::asio;
 using Local = asio::local::stream_protocol;
 using ErrorCode = boost::system::error_code;
 
-constexpr size_t kMostAnswer = 64u << 20;  ///< [bytes] of one line
+constexpr size_t kMostAnswer = 64u << 20;  ///< [bytes] largest size of an answer
 
 Json refusal(const std::string& why) {
   return {{"ok", false}, {"error", why}};
@@ -55,7 +55,7 @@ class DaemonImpl final : public Daemon {
     link_ = std::make_shared<Link>(io_);
     link_->owner = this;
     ErrorCode error;
-    link_->socket.connect(Local::endpoint(file_), error);  // for a local socket: it succeeds at once, or fails
+    link_->socket.connect(Local::endpoint(file_), error);  // a local socket connects at once, or fails
     if (error) return;
     link_->socket.non_blocking(true, error);
     connected_ = true;
@@ -64,7 +64,7 @@ class DaemonImpl final : public Daemon {
   }
 
  private:
-  /// What outlives the owner while an operation is in progress.
+  /// State that outlives its owner while an operation is in progress.
   struct Link {
     explicit Link(asio::io_context& io) : socket(io) {}
     Local::socket socket;
@@ -89,7 +89,7 @@ class DaemonImpl final : public Daemon {
     });
   }
 
-  /// Reads what has arrived, with the descriptor that may come with it. False if the daemon has ended.
+  /// Reads the bytes that have arrived, and the descriptor that may come with them. False if the daemon has ended.
   bool take() {
     char buffer[1 << 14];
     std::vector<Descriptor> descriptors;
@@ -115,7 +115,7 @@ class DaemonImpl final : public Daemon {
     in_.erase(0, begin);
   }
 
-  /// One read may contain answers from before the one that brought memory, which is the one that says "bytes".
+  /// One read may contain several answers. A descriptor belongs to the answer that says "bytes".
   Descriptor takeMemory(const Json& answer) {
     if (memories_.empty() || !answer.contains("bytes")) return {};
     Descriptor memory = std::move(memories_.front());

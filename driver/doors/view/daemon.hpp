@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The control socket of a running daemon (see control.md), asked without waiting: an answer comes when it comes, and
-/// rows go on meanwhile.
+/// The control socket of a running daemon (see control.md). Requests do not wait for their answers, so that rows are
+/// sent meanwhile.
 #pragma once
 #include <boost/asio/io_context.hpp>
 #include <functional>
@@ -20,7 +20,7 @@ class Daemon {
   using Answered = std::function<void(const Json& answer, const Descriptor& memory)>;
 
   virtual ~Daemon() = default;
-  /// [main] Sends a request; requests are answered in order. It never waits, and calls back later, not at once.
+  /// [main] Sends a request. It never waits; `answered` is called later. Requests are answered in order.
   virtual void ask(const Json& request, Answered answered) = 0;
   virtual bool connected() const = 0;  ///< [main]
   virtual void connect() = 0;          ///< [main] tries to connect again if there is no connection

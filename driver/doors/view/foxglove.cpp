@@ -14,7 +14,7 @@ namespace hapticd::view {
 
 namespace {
 
-constexpr uint64_t kTickBytes = 1u << 20;  ///< most rows of one stream in one tick of the view
+constexpr uint64_t kTickBytes = 1u << 20;  ///< [bytes] most rows of one stream in one tick of the view
 constexpr char kMessageData = 1;           ///< op code of a message to a subscription
 
 uint64_t wallNow() {
@@ -44,11 +44,11 @@ class Foxglove final : public Conversation {
   ~Foxglove() override { *alive_ = false; }
 
   void onText(std::string_view text) override;
-  void onBinary(std::span<const std::byte>) override {}  // messages of clients that publish: this server ignores them
+  void onBinary(std::span<const std::byte>) override {}  // this server ignores messages that clients publish
   void onTick() override;
 
  private:
-  /// A channel: a stream of rows, or one of the two that follow them.
+  /// A channel: a stream of rows, /tf or /scene.
   struct Channel {
     size_t stream = SIZE_MAX;  ///< SIZE_MAX: /tf or /scene
     Json advert;
@@ -79,7 +79,7 @@ class Foxglove final : public Conversation {
 void Foxglove::onTick() {
   if (stage_.rows() == nullptr) return;
   if (run_ != stage_.run()) begin();
-  if (!peer_.idle()) return;  // the rows wait in the black box
+  if (!peer_.idle()) return;  // the rows stay in the black box until later
   for (size_t i = 0; i < next_.size(); ++i) sendStream(i);
   sendTransforms();
   sendScene();
@@ -94,7 +94,7 @@ void Foxglove::begin() {
   t_offset_ = 0;
   for (const record::Column& column : columnsOf(stage_.about(), "ticks"))
     if (column.name == "t") t_offset_ = column.offset;
-  start_ = 0;  // sent with the first tick that is seen
+  start_ = 0;  // set with the first tick that is seen
   peer_.text(Json({{"op", "serverInfo"},
                    {"name", "hapticd " + stage_.about().value("hapticd", "")},
                    {"capabilities", Json::array()},
@@ -133,7 +133,8 @@ void Foxglove::advertise() {
   peer_.text(Json({{"op", "advertise"}, {"channels", adverts}}).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-/// 0: nobody has subscribed to the channel. Subscription numbers of the client may be any; ours are one more.
+/// Returns 1 + the client's number of a subscription to the channel, or 0 if nobody has subscribed. The client may
+/// choose any number, including 0.
 uint32_t Foxglove::subscriptionOf(uint32_t channel) const {
   for (const auto& [subscription, of] : subscriptions_)
     if (of == channel) return subscription + 1;
@@ -163,7 +164,7 @@ void Foxglove::sendStream(size_t stream) {
       double t = 0;
       std::memcpy(&t, row + t_offset_, sizeof t);
       const auto since = static_cast<uint64_t>(std::max(0.0, t) * 1e9);
-      if (start_ == 0) start_ = wallNow() - since;  // taken once, because the wall clock may jump
+      if (start_ == 0) start_ = wallNow() - since;  // read only once, because the wall clock may jump
       newest_ = start_ + since;
     }
     if (subscription != 0)

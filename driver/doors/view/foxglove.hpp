@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Foxglove's WebSocket protocol (github.com/foxglove/ws-protocol, version 1), to read only: a channel for each stream
-/// of rows, /tf for models and tips, /scene for the triangles.
+/// Foxglove's WebSocket protocol (github.com/foxglove/ws-protocol, version 1), read-only. It has one channel for each
+/// stream of rows, /tf for the poses of models and tips, and /scene for the triangles.
 #pragma once
 #include <memory>
 

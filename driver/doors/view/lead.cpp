@@ -11,7 +11,8 @@ namespace hapticd::view {
 
 namespace {
 
-/// The daemon's memory, or nullptr: a file that is too short would end this process at the first record.
+/// Maps the daemon's memory. Returns nullptr if the file is too short, because a record beyond its end would kill this
+/// process.
 hapticd_lead_page* mapLead(int fd) {
   struct stat info{};
   if (fd < 0 || fstat(fd, &info) != 0 || info.st_size < static_cast<off_t>(sizeof(hapticd_lead_page))) return nullptr;
@@ -36,7 +37,7 @@ std::unique_ptr<Lead> Lead::ask(boost::asio::io_context& io, const std::string& 
 }
 
 Lead::~Lead() {
-  daemon_.reset();  // read first, because it may hold the answer that fills in `page_`
+  daemon_.reset();  // first, because a pending answer may still set `page_`
   if (page_ != nullptr) munmap(page_, HAPTICD_LEAD_BYTES);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A lead that a page has taken: the memory file that the daemon handed out, and the connection that it lives with.
+/// A lead that a page has taken: the memory file of the lead, and the connection to the daemon that keeps the lead
+/// alive.
 #pragma once
 #include <boost/asio/io_context.hpp>
 #include <functional>
@@ -16,16 +17,16 @@ class Lead {
  public:
   using Taken = std::function<void(const Json& answer)>;
 
-  /// [main] Asks on a connection of its own: the daemon ends the lead when that closes, however this process ends.
-  /// @param request {"do": "lead", ...} @param taken the daemon's answer, once
+  /// [main] Asks for the lead on a separate connection: the daemon ends the lead when this connection closes, even if
+  /// this process is killed. @param request {"do": "lead", ...} @param taken called once, with the daemon's answer
   static std::unique_ptr<Lead> ask(boost::asio::io_context& io, const std::string& socket, const Json& request,
                                    Taken taken);
   ~Lead();
   Lead(const Lead&) = delete;
   Lead& operator=(const Lead&) = delete;
 
-  /// [main] Newest wins; nothing waits. @param record the bytes of a hapticd_target. False if its size is impossible,
-  /// or there is no lead (yet)
+  /// [main] Writes a record; it never waits, and the newest record wins. @param record the bytes of a hapticd_target
+  /// @return false if the size is wrong, or there is no lead (yet)
   bool put(std::span<const std::byte> record);
   bool refused() const { return refused_; }  ///< [main] the daemon refused the lead
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd-view`: shows a running daemon, or a recording, in a browser. A process of its own with no right but to map
-/// the black box and to talk to the control socket; it may be killed at any time. `hapticd view` starts it.
+/// `hapticd-view`: shows a running daemon, or a recording, in a browser. It is a separate process, which only maps the
+/// black box and talks to the control socket. It may be killed at any time. `hapticd view` starts it.
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/file.h>
@@ -33,16 +33,16 @@ struct Options {
   bool control = false, open = false, until_end = false;
 };
 
-/// True as long as a daemon holds the lock on its name.
+/// True while a daemon holds the lock on its name.
 bool daemonLives(const std::string& lock_file) {
   const int fd = open(lock_file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
-  if (fd < 0) return errno == EACCES;  // it belongs to another user, so it exists at least
+  if (fd < 0) return errno == EACCES;  // the lock file of another user: the daemon may run
   const bool free = flock(fd, LOCK_SH | LOCK_NB) == 0;
   close(fd);
   return !free;
 }
 
-/// Starts the user's browser and does not wait for it.
+/// Starts the user's browser without waiting for its end.
 void openBrowser(const std::string& url) {
   pid_t child = 0;
   std::string program = "xdg-open", address = url;
@@ -51,7 +51,7 @@ void openBrowser(const std::string& url) {
     std::fputs("no browser could be started (xdg-open is missing): open the address above yourself\n", stderr);
 }
 
-/// Ticks the conversations 60 times per second while there are any, and watches for the end of the daemon.
+/// Calls every conversation 60 times per second while there are any, and watches for the end of the daemon.
 class Heart {
  public:
   Heart(boost::asio::io_context& io, Stage& stage, Server& server, std::string lock_file)
@@ -71,7 +71,7 @@ class Heart {
   }
 
  private:
-  static constexpr unsigned kLook = 64;  ///< beats: about one second, in which pages hear of the end
+  static constexpr unsigned kLook = 64;  ///< beats between two checks for the daemon's end: about one second
   boost::asio::io_context& io_;
   boost::asio::steady_timer timer_;
   Stage& stage_;
@@ -121,10 +121,10 @@ int main(int argc, char** argv) {
   Options options;
   const hapticd::command_line::Program app("hapticd-view: shows a running daemon, or a recording, in a browser.");
   app.addOption("--name", options.name, "name of the daemon");
-  app.addOption("--port", options.port, "port on 127.0.0.1; 0: a free one");
+  app.addOption("--port", options.port, "port on 127.0.0.1; 0 for any free port");
   app.addOption("--file", options.file, "show this recording or dump instead of a daemon");
   app.addOption("--drawings", options.drawings, "socket of a process that draws the models of the recording");
-  app.addFlag("--control", options.control, "pages may change the run");
+  app.addFlag("--control", options.control, "allow pages to change the run");
   app.addFlag("--open", options.open, "start a browser");
   app.addFlag("--until-end", options.until_end, "end with the daemon");
   try {

@@ -20,7 +20,7 @@ void append(std::string& bytes, T value) {
   bytes.append(raw, sizeof raw);
 }
 
-/// A list of numbers, or nullptr.
+/// Returns a list of numbers of the answer, or nullptr if it is not one.
 const Json* numbers(const Json& answer, const char* key) {
   const auto it = answer.find(key);
   return it != answer.end() && it->is_array() ? &*it : nullptr;
@@ -35,14 +35,14 @@ bool appendAll(std::string& bytes, const Json& list) {
   return true;
 }
 
-constexpr size_t kMost = size_t{1} << 24;  ///< most vertices and triangles: no page draws more
+constexpr size_t kMost = size_t{1} << 24;  ///< most vertices, and most triangles, that a page draws
 
 struct Counts {
   size_t vertices = 0, triangles = 0;
   bool normals = false;
 };
 
-/// What an answer says about its memory; nothing if that is impossible.
+/// Returns what an answer says about its memory, or nothing if the numbers are impossible.
 Counts countsOf(const Json& answer) {
   const auto count = [&](const char* key) {
     const auto it = answer.find(key);
@@ -53,7 +53,8 @@ Counts countsOf(const Json& answer) {
   return counts.vertices <= kMost && counts.triangles <= kMost ? counts : Counts{};
 }
 
-/// It is read, not mapped, because memory that somebody shortens would end this process. False if it has fewer bytes.
+/// Reads the memory. False if it has too few bytes. It is not mapped, because this process would be killed if another
+/// process shortened it.
 bool appendFrom(int memory, size_t count, std::string& bytes) {
   struct stat info{};
   if (memory < 0 || fstat(memory, &info) != 0 || info.st_size < static_cast<off_t>(count)) return false;

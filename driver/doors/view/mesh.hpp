@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Meshes and vertices as they go to a page: little-endian words, then the numbers, nothing encoded as text.
+/// Messages with meshes and vertices for a page. They are binary: little-endian words, then the numbers.
 ///
 ///     mesh:      u32 0x80000000, vertices, triangles, flags (1: normals follow), f32 xyz, [f32 normals], u32 corners
 ///     vertices:  u32 0x100 + model, frame, vertices, 0, f32 xyz
@@ -15,16 +15,17 @@ namespace hapticd::view {
 
 constexpr uint32_t kMeshMessage = 0x80000000u, kVerticesMessage = 0x100;
 
-/// [main] From an answer of `geometry` as memory. nullptr if it is not one, or the memory is shorter than it says.
+/// [main] Makes a message from the daemon's answer to `geometry`, whose triangles are in `memory`. Returns nullptr if
+/// the answer is wrong, or if the memory is shorter than the answer says.
 Message meshMessage(const Json& answer, int memory);
 
-/// [main] Only the vertices of such an answer, for a body that deforms. nullptr in the same cases.
+/// [main] The same with only the vertices, for a body that deforms. Returns nullptr in the same cases.
 Message verticesMessage(const Json& answer, int memory, uint32_t model, uint32_t frame);
 
-/// [main] From an answer of `vertices`. nullptr if it has no vertices.
+/// [main] Makes a message from the daemon's answer to `vertices`. Returns nullptr if it has no vertices.
 Message verticesMessage(const Json& answer, uint32_t model);
 
-/// [main] A message that begins with four words.
+/// [main] Returns a message that begins with these four words, with room for `reserve` more bytes.
 std::string headed(uint32_t a, uint32_t b, uint32_t c, uint32_t d, size_t reserve = 0);
 
 }  // namespace hapticd::view

@@ -17,20 +17,20 @@ namespace hapticd::view {
 
 namespace {
 
-constexpr uint64_t kBacklogBytes = 4u << 20;  ///< most rows that a new page gets: 10 s of one arm at 1 kHz
-constexpr uint64_t kMessageBytes = 1u << 20;  ///< most rows of one stream in one message
+constexpr uint64_t kBacklogBytes = 4u << 20;  ///< [bytes] most rows that a new page gets: 10 s of one arm at 1 kHz
+constexpr uint64_t kMessageBytes = 1u << 20;  ///< [bytes] most rows of one stream in one message
 constexpr double kBacklogSeconds = 10;
 constexpr std::array<std::string_view, 4> kReads = {"status", "list", "geometry", "feature"};
 constexpr std::array<std::string_view, 14> kControls = {"enable", "disable", "move", "set",  "add", "remove", "reload",
                                                         "hold",   "clear",   "dump", "stop", "get", "lead",   "unlead"};
-constexpr size_t kMostLeads = 4;  ///< of one page
+constexpr size_t kMostLeads = 4;  ///< most leads of one page
 
 template <class Words>
 bool contains(const Words& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// The oldest row that will still exist when it is copied, because the servo overwrites rows meanwhile.
+/// Returns the oldest row that will still exist when it is copied: the servo overwrites old rows meanwhile.
 uint64_t oldest(const RowSource& rows, size_t stream) {
   constexpr uint64_t kMargin = 64;
   const uint64_t begin = rows.begin(stream);
@@ -62,14 +62,14 @@ class Native final : public Conversation {
 
   Peer& peer_;
   Stage& stage_;
-  std::shared_ptr<bool> alive_;  ///< answers of the daemon may come after the page has gone
+  std::shared_ptr<bool> alive_;  ///< false after the page has gone, for answers that come later
   uint64_t run_ = 0, list_number_ = 0, status_number_ = 0;
-  std::vector<uint64_t> next_;  ///< row of each stream
+  std::vector<uint64_t> next_;  ///< next row to send of each stream
   std::map<std::string, uint64_t> frames_;
   std::unique_ptr<Playback> playback_;
-  /// A body of the recording, as this page knows it.
+  /// A body of the recording, and what this page has of it.
   struct Body {
-    double time = NAN;  ///< [s] of the shape that was last asked for
+    double time = NAN;  ///< [s] time of the shape that was requested last
     bool asked = false;
   };
   std::map<std::string, Body> bodies_;
@@ -87,13 +87,13 @@ void Native::onTick() {
   }
   if (run_ != stage_.run()) begin();
   tellChanges();
-  if (!peer_.idle()) return;  // newest values only: what a slow page cannot take is skipped
+  if (!peer_.idle()) return;  // a slow page gets only the newest values; others are skipped
   sendRows();
   sendVertices();
   if (playback_) askBodies();
 }
 
-/// A run was found: sends what it is, and where its rows begin for this page.
+/// Called when a run was found: sends its description, and the first rows for this page.
 void Native::begin() {
   run_ = stage_.run();
   const RowSource& rows = *stage_.rows();
@@ -146,14 +146,14 @@ void Native::sendRows() {
     if (playback_->takeChanged()) peer_.text(playback_->stateJson());
     return;
   }
-  // the ticks' end is read first: rows of other streams are committed before the tick that they belong to
+  // reads the end of the ticks first: rows of other streams are written before the row of their tick
   const size_t ticks = rows.find("ticks");
   for (size_t i = 0; i < next_.size(); ++i)
     if (i != ticks) sendRows(i, rows.end(i));
   if (ticks < next_.size()) sendRows(ticks, rows.end(ticks));
 }
 
-/// The place in the recording jumped: the page forgets its rows and gets those before the new place.
+/// Called when the place in the recording jumped: the page forgets its rows and gets the rows before the new place.
 void Native::jump() {
   if (!playback_->takeJumped()) return;
   peer_.text(R"({"type":"reset"})");
@@ -164,7 +164,7 @@ void Native::sendRows(size_t stream, uint64_t end) {
   const RowSource& rows = *stage_.rows();
   const RowStream& what = rows.streams()[stream];
   uint64_t& next = next_[stream];
-  if (what.name == "activations") return;  // rows of the search, thousands per second, which no page draws
+  if (what.name == "activations") return;  // thousands of rows per second, which no page draws
   if (next < rows.begin(stream)) next = oldest(rows, stream);
   const uint64_t most = kMessageBytes / what.row_bytes;
   if (!playback_ && end > next + kBacklogBytes / what.row_bytes) next = end - most;
@@ -189,7 +189,7 @@ void Native::sendVertices() {
   }
 }
 
-/// Each body of a recording is asked for its shape at the page's place in it as soon as the last one has come.
+/// Requests, for each body of a recording, the shape at the page's present place, as soon as the last answer has come.
 void Native::askBodies() {
   const double now = playback_->time();
   for (const std::string& model : stage_.bodies()) {
@@ -208,7 +208,7 @@ void Native::onText(std::string_view text) {
   Json request = document::parseJson(text);
   const bool good = request.is_object() && request.contains("do") && request["do"].is_string();
   const Json id = request.is_object() && request.contains("id") ? request["id"] : Json();
-  if (!good) return answer(id, {{"ok", false}, {"error", "expected an object of JSON with \"do\" and \"id\""}});
+  if (!good) return answer(id, {{"ok", false}, {"error", "expected a JSON object with \"do\" and \"id\""}});
   const std::string word = request["do"];
   request.erase("id");
   if (word == "geometry") return draw(id, request);
@@ -227,7 +227,8 @@ void Native::onText(std::string_view text) {
   pass(id, std::move(request));
 }
 
-/// u32 lead, 0, and the record of its target. An unknown lead is ignored, since it may have ended meanwhile.
+/// A message with the record of a lead: u32 lead, u32 0, hapticd_target. An unknown lead is ignored, because it may
+/// have ended meanwhile.
 void Native::onBinary(std::span<const std::byte> bytes) {
   constexpr size_t kHead = 8;
   uint32_t number = 0;
@@ -240,7 +241,7 @@ void Native::onBinary(std::span<const std::byte> bytes) {
 void Native::lead(const Json& id, const Json& request) {
   std::erase_if(leads_, [](const auto& known) { return known.second->refused(); });
   if (leads_.size() >= kMostLeads)
-    return answer(id, {{"ok", false}, {"error", "this page holds too many leads already"}});
+    return answer(id, {{"ok", false}, {"error", "this page already has 4 leads, which is the limit: end one of them"}});
   const uint32_t number = next_lead_++;
   leads_[number] =
       Lead::ask(stage_.io(), stage_.socket(), request, [this, id, number, alive = alive_](const Json& said) {
@@ -263,7 +264,7 @@ void Native::answer(const Json& id, Json answer) {
   peer_.text(answer.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-/// A mesh goes out as bytes, right before the answer that names it.
+/// A mesh is sent as bytes, directly before the answer that names it.
 void Native::draw(const Json& id, const Json& request) {
   if (!request.contains("model") || !request["model"].is_string())
     return answer(id, {{"ok", false}, {"error", "geometry needs a model"}});

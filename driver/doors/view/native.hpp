@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// The protocol of the page, "hapticd.1". Text is JSON, bytes are rows and meshes (see mesh.hpp).
 ///
-/// Down: {"type": "about" | "list" | "status" | "end" | "reset" | "playback", ...}, and {"type": "answer", "id": N,
-/// ...}. Up: requests as in control.md with an "id"; of a recording also play, pause, seek. A page without the right to
-/// control may ask for status, list and geometry alone.
+/// To the page: {"type": "about" | "list" | "status" | "end" | "reset" | "playback", ...}, and {"type": "answer", "id":
+/// N, ...}. From the page: requests as in control.md with an "id", and for a recording also play, pause and seek. A
+/// page without the right to control may only send status, list and geometry.
 #pragma once
 #include <memory>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Both sides of a WebSocket, free of the library that carries it.
+/// The two sides of a WebSocket, independent of the WebSocket library.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -11,23 +11,24 @@
 
 namespace hapticd::view {
 
-/// Bytes on their way to several peers at once.
+/// Bytes that are sent to one or several peers.
 using Message = std::shared_ptr<const std::string>;
 
-/// The connection, as a conversation sees it.
+/// The connection to a page or program, as a conversation sees it.
 class Peer {
  public:
   virtual ~Peer() = default;
-  /// [main] Sends text (JSON) after everything that waits. If more than kMostWaiting bytes wait, the connection ends.
+  /// [main] Sends a text (JSON) after all waiting messages. If more than kMostWaiting bytes wait, the connection ends.
   virtual void text(std::string json) = 0;
   virtual void binary(Message bytes) = 0;  ///< [main] sends bytes in the same way
-  /// [main] True if nothing waits to be sent: newest values sent only then skip what a slow reader cannot take.
+  /// [main] True if no message waits to be sent. Newest values are sent only then, so that a slow reader skips some.
   virtual bool idle() const = 0;
 
   static constexpr size_t kMostWaiting = 64u << 20;  ///< [bytes] size of the meshes of a large scene
 };
 
-/// What is said over a connection: it is made when that opens, and destroyed when it has ended.
+/// The protocol over one connection. It is made when the connection opens, and destroyed after the connection has
+/// ended.
 class Conversation {
  public:
   Conversation() = default;
@@ -35,8 +36,8 @@ class Conversation {
   Conversation(const Conversation&) = delete;
   Conversation& operator=(const Conversation&) = delete;
 
-  virtual void onText(std::string_view text) = 0;               ///< [main] a message came
-  virtual void onBinary(std::span<const std::byte> bytes) = 0;  ///< [main] the same
+  virtual void onText(std::string_view text) = 0;               ///< [main] a text message came
+  virtual void onBinary(std::span<const std::byte> bytes) = 0;  ///< [main] a binary message came
   virtual void onTick() = 0;                                    ///< [main] 60 times per second: sends newest values
 };
 

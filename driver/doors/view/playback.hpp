@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A recording as one page plays it: place, speed, loop.
+/// The playback of a recording for one page: place, speed, loop.
 #pragma once
 #include <chrono>
 #include <string>
@@ -12,22 +12,23 @@ namespace hapticd::view {
 
 class Playback {
  public:
-  /// [main] Stands at the beginning and plays. @param rows outlives it @param about describes the recording
+  /// [main] Starts at the beginning and plays. @param rows must outlive this object @param about describes the
+  /// recording
   Playback(const RowSource& rows, const Json& about);
 
-  static bool knows(const std::string& word);  ///< [any] play, pause, seek
+  static bool knows(const std::string& word);  ///< [any] true for play, pause and seek
   /// [main] {"do": "play", "speed": 1, "loop": true}, {"do": "pause"}, {"do": "seek", "t": seconds}. @return an error,
   /// or ""
   std::string obey(const Json& request);
 
-  void advance();                                              ///< [main] advances by the time that has passed
+  void advance();                                              ///< [main] advances by the time since the last call
   double time() const { return t_; }                           ///< [s] [main]
   const std::vector<uint64_t>& ends() const { return ends_; }  ///< [main] rows of each stream up to the present place
-  /// [main] The rows from `seconds` before the present place on.
+  /// [main] First row of each stream for the last `seconds` before the present place.
   std::vector<uint64_t> rowsFrom(double seconds) const;
 
-  bool takeJumped();              ///< [main] the place jumped since the last call, so earlier rows are void
-  bool takeChanged();             ///< [main] the state should be reported again
+  bool takeJumped();              ///< [main] true if the place jumped since the last call: earlier rows are invalid
+  bool takeChanged();             ///< [main] true if the state changed since the last call, and must be reported
   std::string stateJson() const;  ///< [main] {"type": "playback", ...}
 
  private:

@@ -51,8 +51,9 @@ class Mapped {
   size_t size_ = 0;
 };
 
-/// The circles of a black box that a servo thread goes on writing. Its protocol is that of record::FlightRing: words of
-/// a row are stored with release, then the count of rows; a row is whole if the writer has not come round meanwhile.
+/// The rings of a black box, which a servo thread writes at the same time. As in record::FlightRing, the words of a row
+/// are stored with release order, then the count of rows. A copied row is valid if the writer did not overwrite it
+/// meanwhile.
 class BlackBox final : public RowSource {
  public:
   explicit BlackBox(const std::string& file) : mapped_(file) {}
@@ -84,7 +85,7 @@ class BlackBox final : public RowSource {
     return std::atomic_ref<uint64_t>(rows).load(std::memory_order_acquire);
   }
   uint64_t begin(size_t stream) const override {
-    const uint64_t rows = end(stream), kept = rings_[stream].capacity - 1;  // one slot is being written
+    const uint64_t rows = end(stream), kept = rings_[stream].capacity - 1;  // one slot may be half-written
     return rows > kept ? rows - kept : 0;
   }
   uint64_t copy(size_t stream, uint64_t first, uint64_t count, std::byte* rows) const override {
@@ -182,7 +183,7 @@ uint64_t firstRowOf(const RowSource& source, size_t stream, uint64_t tick) {
   uint64_t low = source.begin(stream), high = source.end(stream);
   while (low < high) {
     const uint64_t middle = low + (high - low) / 2;
-    uint64_t at = 0;  // a row that was overwritten meanwhile is too old
+    uint64_t at = 0;  // tick 0, if the row was overwritten meanwhile: it is too old
     if (source.copy(stream, middle, 1, row.data()) == 1) std::memcpy(&at, row.data(), sizeof at);
     if (at < tick)
       low = middle + 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Where a view's rows come from: the black box of a running daemon, or a recording. Rows are passed on as they lie
-/// there; `about` says what their columns are.
+/// The source of the rows of a view: the black box of a running daemon, or a recording. Rows are passed on unchanged;
+/// `about` describes their columns.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +18,7 @@ struct RowStream {
   uint32_t row_bytes = 8;  ///< a multiple of 8; each row begins with its tick, u64
 };
 
-/// The rows of a run. Row numbers count from the beginning of the run. Not for several threads at once.
+/// The rows of a run, numbered from the beginning of the run. Only one thread at a time may use it.
 class RowSource {
  public:
   RowSource() = default;
@@ -31,9 +31,9 @@ class RowSource {
   /// [main] The streams in the order of the file: the index of a stream is its number in messages.
   virtual const std::vector<RowStream>& streams() const = 0;
   virtual uint64_t begin(size_t stream) const = 0;  ///< [main] the oldest row that is kept
-  virtual uint64_t end(size_t stream) const = 0;    ///< [main] one past the newest
+  virtual uint64_t end(size_t stream) const = 0;    ///< [main] one past the newest row
 
-  /// [main] Copies up to `count` whole rows from number `first` on. @return how many; 0: `first` is not kept
+  /// [main] Copies up to `count` rows from row number `first` on. @return how many, or 0 if `first` is no longer kept
   virtual uint64_t copy(size_t stream, uint64_t first, uint64_t count, std::byte* rows) const = 0;
 
   /// [main] The index of the stream of that name, or streams().size().
@@ -46,7 +46,7 @@ Result<std::unique_ptr<RowSource>> openBlackBox(const std::string& file);
 /// [main] Maps a recording, a dump, or the file that a crash left.
 Result<std::unique_ptr<RowSource>> openRecording(const std::string& file);
 
-/// [main] The first row of a stream whose tick is not before `tick`: rows are in the order of their ticks.
+/// [main] Returns the first row of a stream whose tick is `tick` or later. Rows are in the order of their ticks.
 uint64_t firstRowOf(const RowSource& source, size_t stream, uint64_t tick);
 
 }  // namespace hapticd::view

@@ -28,7 +28,7 @@ using ErrorCode = boost::system::error_code;
 constexpr size_t kHeadBytes = 8 * 1024, kRequestBytes = 64 * 1024, kMostUnread = 32;
 constexpr std::chrono::seconds kHeadPatience(10), kIdle(30);
 
-/// Only scripts and styles of this server: nothing inline, nothing evaluated, nothing from elsewhere.
+/// The content security policy: only scripts and styles of this server, no inline code, no eval(), no other sources.
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -54,8 +54,8 @@ RequestHead headOf(const Request& request) {
 class ServerImpl;
 class Socket;
 
-/// Who is connected. Each connection owns a part of it: connections that are open at the end outlive the server,
-/// because they end with the io_context that reads for them.
+/// The open connections. Each connection shares the ownership: connections that are still open at the end outlive the
+/// server, because they end with the io_context.
 struct Register {
   std::set<Socket*> sockets;
   size_t connections = 0;
@@ -74,7 +74,7 @@ class Socket final : public Peer, public std::enable_shared_from_this<Socket> {
   void tick() {
     if (conversation_) conversation_->onTick();
   }
-  /// The objects of the conversation are destroyed now.
+  /// Destroys the conversation.
   void endConversation() { conversation_.reset(); }
 
  private:
@@ -94,13 +94,13 @@ class Socket final : public Peer, public std::enable_shared_from_this<Socket> {
   std::shared_ptr<Register> register_;
   Request request_;
   beast::flat_buffer buffer_;
-  std::deque<Outgoing> waiting_;  ///< the first message is on its way
+  std::deque<Outgoing> waiting_;  ///< the first message is being sent
   size_t waiting_bytes_ = 0;
   bool ended_ = false, paused_ = false;
   std::unique_ptr<Conversation> conversation_;
 };
 
-/// One HTTP connection: answers requests until it becomes a WebSocket.
+/// One HTTP connection: it answers requests until it becomes a WebSocket.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(tcp::socket socket, ServerImpl& server);
@@ -150,7 +150,7 @@ class ServerImpl final : public Server {
   const std::shared_ptr<Register>& connected() const { return register_; }
 
  private:
-  /// The same port of ::1, for browsers that resolve "localhost" to it. A machine without IPv6 does without it.
+  /// Binds the same port of ::1, for browsers that resolve "localhost" to it. Without IPv6 it is left out.
   void bindV6() {
     ErrorCode error;
     const tcp::endpoint endpoint(asio::ip::address_v6::loopback(), v4_.local_endpoint().port());
@@ -167,7 +167,7 @@ class ServerImpl final : public Server {
       if (!error && register_->connections < kMostConnections)
         std::make_shared<Connection>(std::move(socket), *this)->read();
       if (!error) return accept(acceptor);
-      // without a free descriptor it is not tried again and again
+      // waits, so that it does not try again and again without a free descriptor
       auto timer = std::make_shared<asio::steady_timer>(acceptor.get_executor(), std::chrono::milliseconds(500));
       timer->async_wait([this, &acceptor, timer](ErrorCode) { accept(acceptor); });
     });
@@ -295,7 +295,7 @@ void Socket::onRead(ErrorCode error) {
   else
     conversation_->onBinary(std::as_bytes(std::span(data, bytes.size())));
   buffer_.consume(buffer_.size());
-  paused_ = waiting_.size() > kMostUnread;  // a client that does not read its answers is asked for no more
+  paused_ = waiting_.size() > kMostUnread;  // reads no more requests of a client that does not read its answers
   if (!ended_ && !paused_) read();
 }
 
@@ -320,12 +320,12 @@ void Socket::write() {
   });
 }
 
-/// The conversation ends; the object is destroyed with its last pending operation.
+/// Ends the conversation. This object is destroyed after its last pending operation.
 void Socket::end() {
   if (std::exchange(ended_, true)) return;
   ErrorCode ignored;
   beast::get_lowest_layer(stream_).socket().close(ignored);
-  // not while it is speaking, because this may be called from within it
+  // later, because the conversation itself may have called this function
   asio::post(stream_.get_executor(), [self = shared_from_this()] { self->conversation_.reset(); });
 }
 
@@ -339,7 +339,7 @@ Result<std::unique_ptr<Server>> Server::listen(asio::io_context& io, unsigned sh
     return std::unique_ptr<Server>(std::move(server));
   } catch (const boost::system::system_error& error) {
     return Error{"cannot serve port " + std::to_string(port) + " of 127.0.0.1: " + error.code().message() +
-                 "\n  fix: give another --port, or none for a free one"};
+                 "\n  fix: give another --port, or no --port for any free port"};
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// HTTP and WebSocket on the loopback interface. Everything is bounded: heads of 8 KiB, messages of 64 KiB, 10 s for a
-/// head, 8 WebSockets, 32 connections. The only part that knows Boost.Beast is server.cpp.
+/// head, 8 WebSockets, 32 connections. Only server.cpp uses Boost.Beast.
 #pragma once
 #include <boost/asio/io_context.hpp>
 #include <functional>
@@ -19,7 +19,7 @@ struct Asset {
   std::string_view bytes;
 };
 
-/// [main] A file of the page by its path; `bytes` is empty if there is none.
+/// [main] Returns the file of the page at this path; `bytes` is empty if there is no such file.
 Asset assetOf(const std::string& path);
 
 class Server {
@@ -29,16 +29,16 @@ class Server {
   /// Makes the conversation of a new WebSocket; `peer` outlives it.
   using Converse = std::function<std::unique_ptr<Conversation>(Subprotocol, Peer& peer)>;
 
-  /// [main] Binds 127.0.0.1 and, if it exists, ::1. @param port 0: any free port
+  /// [main] Binds 127.0.0.1 and, if it exists, ::1. @param port 0 for any free port
   static Result<std::unique_ptr<Server>> listen(boost::asio::io_context& io, unsigned short port, Converse converse);
   virtual ~Server() = default;
   Server() = default;
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  virtual std::string url() const = 0;  ///< [main] with the token
+  virtual std::string url() const = 0;  ///< [main] address of the page, with the token
   virtual size_t sockets() const = 0;   ///< [main] number of open WebSockets
-  virtual void tick() = 0;              ///< [main] ticks every conversation
+  virtual void tick() = 0;              ///< [main] calls onTick() of every conversation
 };
 
 }  // namespace hapticd::view

@@ -12,10 +12,11 @@ namespace hapticd::view {
 namespace {
 
 constexpr std::chrono::milliseconds kFindEvery(500), kPollEvery(1000);
-constexpr std::chrono::milliseconds kGeometryEvery(60), kRestless(1500);  ///< s that a body swings on after a touch
+constexpr std::chrono::milliseconds kGeometryEvery(60),
+    kRestless(1500);  ///< a body may swing after a touch
 constexpr uint64_t kContactsAtOnce = 512;
 
-/// The models of a list by their place, which is the number that rows use for them.
+/// Calls use(number, model) for each model of a list. Rows use the same number.
 template <class Use>
 void eachModel(const Json& list, Use&& use) {
   const auto models = list.find("models");
@@ -27,7 +28,8 @@ void eachModel(const Json& list, Use&& use) {
   }
 }
 
-/// Sent as memory: it has exact normals and no limit on its size, and needs no conversion to text and back.
+/// Requests the triangles as memory instead of text: with exact normals, without a limit on the size, and without
+/// conversion.
 Json geometryOf(const std::string& model) {
   return {{"do", "geometry"}, {"model", model}, {"as", "memory"}};
 }
@@ -63,7 +65,7 @@ void Stage::adopt(std::unique_ptr<RowSource> rows) {
   ++run_, ++list_number_, ++status_number_;
 }
 
-/// A daemon exists once its socket answers; its black box was made before.
+/// Searches for the daemon. It has started when its socket answers; its black box exists before that.
 void Stage::find() {
   daemon_->connect();
   if (!daemon_->connected()) return;
@@ -75,7 +77,7 @@ void Stage::find() {
 
 void Stage::tick() {
   const Clock::time_point now = Clock::now();
-  if (was_connected_ && !daemon_->connected()) ++status_number_;  // they report that it has ended
+  if (was_connected_ && !daemon_->connected()) ++status_number_;  // so that pages report the daemon's end
   was_connected_ = daemon_->connected();
   if (!recorded() && !daemon_->connected() && now >= next_find_) {
     next_find_ = now + kFindEvery;
@@ -110,7 +112,7 @@ void Stage::poll() {
   });
 }
 
-/// Each model that deforms is asked for its newest frame as soon as the last one has come.
+/// Requests the newest frame of each model that deforms, as soon as the last answer has come.
 void Stage::pollSoft() {
   findTouched();
   const Clock::time_point now = Clock::now();
@@ -149,7 +151,7 @@ void Stage::askGeometry(const std::string& name) {
   });
 }
 
-/// Which models were touched lately, by the newest contacts.
+/// Finds out from the newest contacts which models were touched.
 void Stage::findTouched() {
   const size_t stream = rows_->find("contacts");
   if (soft_.empty() || stream >= rows_->streams().size()) return;

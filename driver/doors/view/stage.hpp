@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What all conversations look at: the rows of the run, its models, their meshes. Follows a daemon that ends and starts
-/// again under its name.
+/// The data that all conversations share: the rows of the run, its models and their meshes. If a daemon ends and
+/// another one starts with the same name, the stage changes to the new one.
 #pragma once
 #include <boost/asio/io_context.hpp>
 #include <chrono>
@@ -18,15 +18,15 @@ namespace hapticd::view {
 
 struct StageOptions {
   std::string folder;    ///< runtime folder of the daemon
-  std::string name;      ///< of the daemon
-  std::string file;      ///< a recording instead of a daemon; "": none
-  std::string drawings;  ///< socket of a process that draws the models of the recording; "": none
+  std::string name;      ///< name of the daemon
+  std::string file;      ///< a recording to show instead of a daemon, or ""
+  std::string drawings;  ///< socket of a process that draws the models of the recording, or ""
   bool control = false;  ///< pages may change the run
 };
 
 /// The triangles of a model, or the reason why there are none.
 struct Drawn {
-  Message mesh;  ///< in the form in which it goes to a page; see mesh.hpp
+  Message mesh;  ///< as a message for pages, see mesh.hpp
   std::string error;
 };
 
@@ -34,33 +34,33 @@ class Stage {
  public:
   Stage(boost::asio::io_context& io, StageOptions options);
 
-  /// [main] Opens the recording. A daemon is not opened here: it is looked for again and again.
+  /// [main] Opens the recording. It does not open a daemon: tick() searches for the daemon again and again.
   Result<void> open();
-  void tick();  ///< [main] called 60 times per second while somebody looks
+  void tick();  ///< [main] called 60 times per second while a page is open
 
   const StageOptions& options() const { return options_; }
   bool recorded() const { return !options_.file.empty(); }
-  const RowSource* rows() const { return rows_.get(); }  ///< nullptr: no daemon has been found yet
-  const Json& about() const { return about_; }           ///< parsed once
+  const RowSource* rows() const { return rows_.get(); }  ///< nullptr if no daemon was found yet
+  const Json& about() const { return about_; }           ///< description of the run
   uint64_t run() const { return run_; }                  ///< number of runs found so far
   bool alive() const { return recorded() || daemon_->connected(); }
   const Json& list() const { return list_; }            ///< newest answer of `list`
-  uint64_t listNumber() const { return list_number_; }  ///< number of its changes so far
+  uint64_t listNumber() const { return list_number_; }  ///< number of changes of list() so far
   const Json& status() const { return status_; }        ///< newest answer of `status`
   uint64_t statusNumber() const { return status_number_; }
   Daemon& daemon() { return *daemon_; }
-  const std::string& socket() const { return socket_; }  ///< of the daemon
+  const std::string& socket() const { return socket_; }  ///< control socket of the daemon
   boost::asio::io_context& io() { return io_; }
 
-  /// [main] The triangles of a model, from the cache if it does not deform.
+  /// [main] Calls `drawn` with the triangles of a model, which come from the cache if the model does not deform.
   void draw(const std::string& model, std::function<void(const Drawn&)> drawn);
 
-  /// [main] The vertices that a body of the recording had at the time t [s]; nullptr if they are not available. Not
-  /// called if the run has changed by then.
+  /// [main] Calls `drawn` with the vertices that a body of the recording had at time t [s], or with nullptr if they are
+  /// not available. It is not called if the run changes before.
   void drawAt(const std::string& model, double t, std::function<void(const Message&)> drawn);
-  std::vector<std::string> bodies() const;  ///< models that deform
+  std::vector<std::string> bodies() const;  ///< names of models that deform
 
-  /// The newest vertices of a model that deforms, in the form that goes to a page; frame 0: none yet.
+  /// The newest vertices of a model that deforms, as a message for pages. Frame 0 means that there are none yet.
   struct Live {
     uint64_t frame = 0;
     Message vertices;
@@ -69,11 +69,11 @@ class Stage {
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// A model that deforms. One whose steps write no vertices is asked for its triangles while it is touched.
+  /// A model that deforms. If its steps write no vertices, its triangles are requested while it is touched.
   struct Soft {
     uint32_t number = 0;
     bool frames = true;  ///< its steps write vertices
-    bool asked = false;  ///< an answer is awaited
+    bool asked = false;  ///< a request was sent and not yet answered
     Clock::time_point touched{}, next{};
   };
   void find();
@@ -96,7 +96,7 @@ class Stage {
   std::map<std::string, Drawn> meshes_;
   std::map<std::string, Live> live_;
   std::map<std::string, Soft> soft_;
-  uint64_t next_contact_ = 0;  ///< row of the stream of contacts
+  uint64_t next_contact_ = 0;  ///< next row to read of the stream of contacts
 };
 
 }  // namespace hapticd::view

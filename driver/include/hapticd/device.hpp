@@ -13,7 +13,7 @@ namespace hapticd {
 /// Describes a class before any instance exists. All texts have static storage.
 struct DeviceInfo {
   const char* id;    ///< reverse DNS, "org.example.device.arm"
-  const char* name;  ///< as device files name it, "arm"
+  const char* name;  ///< name of the class in device files, "arm"
   const char* version;
   const char* license;
   const char* doc;
@@ -28,10 +28,10 @@ struct DeviceInfo {
 /// and may hide the functions below. The text of an exception becomes the error that the user reads.
 class Device {
  public:
-  void stop() {}   ///< [main] started: switches the motors off, ends threads
-  void close() {}  ///< [main] open: gives the hardware back
-  const void* extension(const char* /*name*/) { return nullptr; }  ///< [main] nullptr: it has none of that name
-  const hsp_host* host() const { return host_; }                   ///< [any] not in the constructor
+  void stop() {}   ///< [main] called if started: switches the motors off, ends threads
+  void close() {}  ///< [main] called if open: releases the hardware
+  const void* extension(const char* /*name*/) { return nullptr; }  ///< [main] nullptr if it has none of that name
+  const hsp_host* host() const { return host_; }                   ///< [any] not valid in the constructor
 
  private:
   template <class T>
@@ -41,7 +41,7 @@ class Device {
   State state_ = State::kClosed;
 };
 
-/// Makes the C functions of class T, and its description as constant data. A call in a wrong state gets HSP_E_STATE.
+/// Makes the C functions of class T, and its description as constant data. A call in a wrong state returns HSP_E_STATE.
 template <class T>
 struct DeviceClass {
   static constexpr auto kFields = T::fields();
@@ -60,7 +60,9 @@ struct DeviceClass {
       detail::logError(host, std::string(T::kInfo.name) + ": " + e.what());
       return nullptr;
     } catch (...) {
-      detail::logError(host, std::string(T::kInfo.name) + ": threw something that is no std::exception");
+      detail::logError(host, std::string(T::kInfo.name) +
+                                 ": the constructor threw an object that is not a std::exception; expected "
+                                 "std::runtime_error with a text for the user");
       return nullptr;
     }
   }
@@ -137,7 +139,9 @@ struct DeviceClass {
       detail::logError(base(device).host_, e.what());
       return HSP_E_IO;
     } catch (...) {
-      detail::logError(base(device).host_, "threw something that is no std::exception");
+      detail::logError(base(device).host_,
+                       "a function threw an object that is not a std::exception; expected std::runtime_error with a "
+                       "text for the user");
       return HSP_E_IO;
     }
   }
@@ -150,7 +154,7 @@ inline constexpr std::array<const hdv_class*, sizeof...(T)> kDeviceClasses = {&D
 
 }  // namespace hapticd
 
-/// Exports the devices of this module; once per shared object, at file scope: HAPTICD_DEVICES(SimulatedArm)
+/// Exports the devices of this module. Use it once per shared object, at file scope: HAPTICD_DEVICES(SimulatedArm)
 #define HAPTICD_DEVICES(...)                                                                            \
   extern "C" {                                                                                          \
   constinit const hdv_entry hdv_module_entry = {HDV_MAGIC, HSP_ABI_MAJOR, HSP_ABI_MINOR,                \

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* device_capture.h - an extension of device.h: it hands over the bytes on the wire, for an arm whose format is not
+/* device_capture.h - an extension of device.h: it hands over the bytes on the wire, for an arm whose wire format is not
  * known yet (`hapticd device record`). */
 #ifndef HAPTICD_DEVICE_CAPTURE_H
 #define HAPTICD_DEVICE_CAPTURE_H
@@ -9,12 +9,14 @@ extern "C" {
 #endif
 
 #define HDV_EXT_CAPTURE "hdv.capture/1"
-/* Takes one transfer as it was on the wire; to_arm: 0 from the arm, 1 to it. Returns 0 to go on, else to end. */
+/* Takes the bytes of one transfer, unchanged. to_arm is 0 for a transfer from the arm, 1 for a transfer to the arm.
+ * Returns 0 to go on, and another value to end the capture. */
 typedef int32_t (*hdv_take_transfer)(void* who, uint64_t time_ns, uint32_t to_arm, const uint8_t* bytes, size_t count);
 typedef struct hdv_ext_capture {
   uint32_t struct_size, reserved;
-  /* [main] While open and not started: speaks with the arm, its motors off, whether or not its reports can be read, and
-   * gives each transfer to `take` (with `who` as it is) until that ends it. time_ns counts from the beginning. */
+  /* [main] While open and not started: exchanges transfers with the arm, with its motors off, even if its reports
+   * cannot be understood. Passes each transfer to `take`, with `who` unchanged, until `take` returns a value that is
+   * not 0. time_ns counts from the beginning of the capture. */
   hsp_status (*capture)(hdv_device*, hdv_take_transfer take, void* who);
 } hdv_ext_capture;
 

@@ -11,8 +11,8 @@ extern "C" {
 #define HDV_EXT_TROUBLE "hdv.trouble/1"
 typedef struct hdv_ext_trouble {
   uint32_t struct_size, reserved;
-  /* [any] Returns what was wrong at the last read() and, after "; ", how to fix it. NULL: nothing was. The text has
-   * static storage: it outlives the device. */
+  /* [any] Returns what was wrong at the last read() and, after "; ", how to fix it. Returns NULL if nothing was wrong.
+   * The text has static storage: it outlives the device. */
   const char* (*why)(const hdv_device*)HSP_RT;
 } hdv_ext_trouble;
 

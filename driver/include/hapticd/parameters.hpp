@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Parameter tables for plugins and device modules in C++. One line per parameter makes the C table, the defaults, the
-/// checks and the assignment to a member. shape.hpp and device.hpp include this header.
+/// Parameter tables for plugins and device modules in C++. One line per parameter gives its row in the C table, its
+/// default, its checks and the member that gets the value. shape.hpp and device.hpp include this header.
 #pragma once
 #include <array>
 #include <cmath>
@@ -24,11 +24,11 @@ struct Member {
   std::array<double, 3> T::* vector3 = nullptr;
 
   constexpr Member() = default;
-  constexpr Member(double T::* m) : real(m) {}                // NOLINT: implicit by intent, a table line names a member
-  constexpr Member(int T::* m) : integer(m) {}                // NOLINT
-  constexpr Member(bool T::* m) : boolean(m) {}               // NOLINT
-  constexpr Member(std::string T::* m) : text(m) {}           // NOLINT
-  constexpr Member(std::vector<double> T::* m) : array(m) {}  // NOLINT
+  constexpr Member(double T::* m) : real(m) {}   // NOLINT: implicit on purpose, so that a table line can name a member
+  constexpr Member(int T::* m) : integer(m) {}   // NOLINT
+  constexpr Member(bool T::* m) : boolean(m) {}  // NOLINT
+  constexpr Member(std::string T::* m) : text(m) {}               // NOLINT
+  constexpr Member(std::vector<double> T::* m) : array(m) {}      // NOLINT
   constexpr Member(std::array<double, 3> T::* m) : vector3(m) {}  // NOLINT
 };
 
@@ -39,7 +39,8 @@ struct Field {
   Member<T> member;
 };
 
-/// Each function makes one table line: id (a dot nests), member, unit, range, default, one sentence of documentation.
+/// Each function makes one line of the table: id (a dot nests keys), member, unit, range, default, and one sentence of
+/// documentation.
 template <class T>
 struct Fields {
   static constexpr hsp_param blank(uint32_t kind, const char* id, const char* unit, uint32_t flags, const char* doc) {
@@ -69,7 +70,7 @@ struct Fields {
     p.min = 0, p.max = 1, p.def = def ? 1 : 0;
     return {p, member};
   }
-  /// One word of `choices`, which must have static storage. The member holds its index.
+  /// One word of `choices`, which must have static storage. The member holds the index of the word.
   template <size_t N>
   static constexpr Field<T> choice(const char* id, int T::* member, const char* const (&choices)[N], int def,
                                    const char* doc, uint32_t flags = 0) {
@@ -88,7 +89,7 @@ struct Fields {
     p.def_text = def;
     return {p, member};
   }
-  /// Any structure. The member holds it as JSON text, which the module itself checks.
+  /// Any structure of lists and mappings. The member holds it as JSON text, and the module itself checks it.
   static constexpr Field<T> data(const char* id, std::string T::* member, const char* def, const char* doc,
                                  uint32_t flags = 0) {
     hsp_param p = blank(HSP_DATA, id, "", flags, doc);
@@ -119,7 +120,8 @@ struct Fields {
   }
 };
 
-/// Joins tables, so that a base class can add its own lines: `join(Base::fields<T>(), std::array{...})`.
+/// Joins tables, so that a class can add its own lines to those of a base class: `join(Base::fields<T>(),
+/// std::array{...})`.
 template <class T, size_t... N>
 constexpr auto join(const std::array<Field<T>, N>&... tables) {
   std::array<Field<T>, (N + ...)> all{};
@@ -176,7 +178,7 @@ inline bool inRange(const hsp_param& p, double x) {
   return std::isfinite(x) && x >= p.min && x <= p.max;
 }
 
-/// Returns what is wrong with `value` for parameter `p`, or an empty text.
+/// Returns what is wrong with `value` for parameter `p`, or an empty text if it is valid.
 inline std::string complaint(const hsp_param& p, const hsp_value& value) {
   char text[256] = "";
   const bool numeric = p.kind == HSP_REAL || p.kind == HSP_INT || p.kind == HSP_BOOL || p.kind == HSP_ENUM;
@@ -200,7 +202,7 @@ inline std::string complaint(const hsp_param& p, const hsp_value& value) {
   return text;
 }
 
-/// [rt] Assigns a checked value to a member of a numeric kind.
+/// [rt] Assigns a number, which the caller has checked, to the member of a numeric parameter.
 template <class T>
 void assignNumber(T& object, const Field<T>& field, double number) noexcept {
   if (const auto m = field.member.real) object.*m = number;
@@ -208,7 +210,7 @@ void assignNumber(T& object, const Field<T>& field, double number) noexcept {
   if (const auto m = field.member.boolean) object.*m = number != 0;
 }
 
-/// [main] Checks a value and assigns it. A wrong one is logged and gives HSP_E_ARG.
+/// [main] Checks a value and assigns it. If the value is wrong, logs why and returns HSP_E_ARG.
 template <class T, size_t N>
 hsp_status assign(T& object, const std::array<Field<T>, N>& fields, const hsp_host* host, uint32_t index,
                   const hsp_value* value) {
@@ -230,7 +232,7 @@ hsp_status assign(T& object, const std::array<Field<T>, N>& fields, const hsp_ho
   return HSP_OK;
 }
 
-/// [main] Fetches the current value of one parameter. Its pointers are valid until the object changes.
+/// [main] Fetches the current value of one parameter. The pointers in `value` are valid until the object changes.
 template <class T, size_t N>
 hsp_status fetch(const T& object, const std::array<Field<T>, N>& fields, uint32_t index, hsp_value* value) {
   if (index >= N || value == nullptr) return HSP_E_ARG;

@@ -17,20 +17,21 @@ namespace hapticd {
 /// Describes a class before any instance exists. All texts have static storage.
 struct ShapeInfo {
   const char* id;    ///< reverse DNS, "org.example.shape.sphere"
-  const char* name;  ///< as scenes name it, "sphere"
+  const char* name;  ///< name of the class in scenes, "sphere"
   const char* version;
   const char* license;
   const char* doc;     ///< one or two sentences
   uint32_t flags = 0;  ///< HSP_C_*
 };
 
-/// [main] Returns the force [N] up to which a claimed stiffness must hold: the most that an arm lets reach the hand.
-/// @param activation of the model  @param unknown [N] returned where the host does not tell that force
+/// [main] Returns the force [N] up to which a claimed stiffness must hold: the largest force that any arm of the scene
+/// lets through to the hand. @param activation the argument of activate() @param unknown [N] returned if the host does
+/// not give that force
 inline double forceToClaimFor(const hsp_activation& activation, double unknown) {
   return HSP_HAS(&activation, max_arm_force) && activation.max_arm_force > 0 ? activation.max_arm_force : unknown;
 }
 
-/// [main] Reports that the force jumps on purpose, by at most `newtons`. It does nothing if the host is too old.
+/// [main] Reports that the force jumps on purpose, by at most `newtons` [N]. It does nothing if the host is too old.
 inline void reportJumps(hsp_report& report, double newtons) {
   if (!HSP_HAS(&report, max_jump)) return;
   report.flags |= HSP_R_JUMPS;
@@ -41,16 +42,17 @@ inline void reportJumps(hsp_report& report, double newtons) {
 ///   static constexpr ShapeInfo kInfo;
 ///   static constexpr auto fields();                            std::array<Field<T>, N>, one line per parameter
 ///   void activate(const hsp_activation&, hsp_report&);         [main] may allocate and throw
-///   hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept HSP_RT;   [rt] one probe, or
-///   hsp_status step(const hsp_step&) noexcept HSP_RT;                                    [rt] all of them
+/// and one of
+///   hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept HSP_RT;   [rt] answers one probe
+///   hsp_status step(const hsp_step&) noexcept HSP_RT;                                    [rt] answers all probes
 /// and may hide the functions below. The text of an exception becomes the error that the user reads.
 class Shape {
  public:
   void deactivate() {}                                             ///< [main] frees what activate() took
   void reset() noexcept HSP_RT {}                                  ///< [rt] forgets what was tracked
-  const void* extension(const char* /*name*/) { return nullptr; }  ///< [main] nullptr: it has none of that name
+  const void* extension(const char* /*name*/) { return nullptr; }  ///< [main] nullptr if it has none of that name
   void changed() noexcept HSP_RT {}               ///< [rt] live parameters have new values; step() follows
-  const hsp_host* host() const { return host_; }  ///< [any] not in the constructor
+  const hsp_host* host() const { return host_; }  ///< [any] not valid in the constructor
 
  private:
   template <class T>
@@ -59,7 +61,7 @@ class Shape {
   bool active_ = false;
 };
 
-/// Makes the C functions of class T, and its description as constant data. A call in a wrong state gets HSP_E_STATE.
+/// Makes the C functions of class T, and its description as constant data. A call in a wrong state returns HSP_E_STATE.
 template <class T>
 struct ShapeClass {
   static constexpr auto kFields = T::fields();
@@ -77,7 +79,9 @@ struct ShapeClass {
       detail::logError(host, std::string(T::kInfo.name) + ": " + e.what());
       return nullptr;
     } catch (...) {
-      detail::logError(host, std::string(T::kInfo.name) + ": threw something that is no std::exception");
+      detail::logError(host, std::string(T::kInfo.name) +
+                                 ": the constructor threw an object that is not a std::exception; expected "
+                                 "std::runtime_error with a text for the user");
       return nullptr;
     }
   }
@@ -103,7 +107,9 @@ struct ShapeClass {
       detail::logError(base(shape).host_, e.what());
       return HSP_E_ARG;
     } catch (...) {
-      detail::logError(base(shape).host_, "threw something that is no std::exception");
+      detail::logError(base(shape).host_,
+                       "activate() threw an object that is not a std::exception; expected std::runtime_error with a "
+                       "text for the user");
       return HSP_E_ARG;
     }
   }
@@ -127,9 +133,9 @@ struct ShapeClass {
     } else {
       static_assert(
           requires(T& t) { t.step(*step); },
-          "the shape has neither of: hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) "
-          "noexcept, hsp_status step(const hsp_step&) noexcept; look at its name, arguments and that it is "
-          "public");
+          "the shape has neither hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept nor "
+          "hsp_status step(const hsp_step&) noexcept; check the name and the arguments of the function, and that it "
+          "is public");
       return self(shape).step(*step);
     }
   }
@@ -178,7 +184,7 @@ inline constexpr std::array<const hsp_class*, sizeof...(T)> kShapeClasses = {&Sh
 
 }  // namespace hapticd
 
-/// Exports the shapes of this plugin; once per shared object, at file scope: HAPTICD_SHAPES(Sphere, Box)
+/// Exports the shapes of this plugin. Use it once per shared object, at file scope: HAPTICD_SHAPES(Sphere, Box)
 #define HAPTICD_SHAPES(...)                                                                            \
   extern "C" {                                                                                         \
   constinit const hsp_entry hsp_plugin_entry = {HSP_MAGIC, HSP_ABI_MAJOR, HSP_ABI_MINOR,               \

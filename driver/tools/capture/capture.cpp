@@ -16,7 +16,7 @@ int digitOf(char c) {
   return -1;
 }
 
-/// Parses "01 ff", "01,FF" or "0x01 0xff"; nothing for any other text.
+/// Parses "01 ff", "01,FF" or "0x01 0xff"; returns nothing for any other text.
 std::optional<std::vector<uint8_t>> bytesIn(const std::string& text) {
   std::vector<uint8_t> bytes;
   for (size_t i = 0; i < text.size();) {
@@ -51,7 +51,7 @@ void takeTime(std::string& line, double& time) {
   line = end;
 }
 
-/// What hid-recorder says about the device before its first event.
+/// Returns true for the lines about the device that hid-recorder writes before its first event.
 bool isHeading(const std::string& line) {
   return line.size() > 1 && line[1] == ':' && std::string("DRNIP").find(line[0]) != std::string::npos;
 }
@@ -60,7 +60,7 @@ bool isPrintable(char c) {
   return (c >= ' ' && c <= '~') || c == '\n' || c == '\r' || c == '\t';
 }
 
-/// The beginning of a line, made safe for a terminal whatever it contains.
+/// Returns the beginning of a line, made safe for a terminal whatever it contains.
 std::string shown(const std::string& line) {
   constexpr size_t kShown = 40;
   std::string text = line.substr(0, kShown);
@@ -68,10 +68,10 @@ std::string shown(const std::string& line) {
   return text;
 }
 
-/// How to convert what this seems to be into such text.
+/// Returns how to convert the text into one that can be read, if its format is recognised.
 std::string otherForm(const std::string& text) {
   if (!std::all_of(text.begin(), text.end(), isPrintable)) return "; this is not text, leave --hex out";
-  const bool dump = text.rfind("00000000", 0) == 0;  // the output of xxd and hexdump -C begins so
+  const bool dump = text.rfind("00000000", 0) == 0;  // as at the beginning of the output of xxd and hexdump -C
   return dump ? "; a dump with addresses: give the file itself, or `xxd -p -c SIZE`" : "";
 }
 

@@ -10,27 +10,28 @@
 namespace hapticd::capture {
 
 enum class Form : uint8_t {
-  kGuess,  ///< text if every line can be read as such
+  kGuess,  ///< read as text if every line is such text, otherwise as raw bytes
   kRaw,    ///< the bytes themselves
   kHex,    ///< one transfer per line: two hex digits per byte; # begins a comment. Also hid-recorder's "E:" lines.
 };
 
 /// One transfer: a HID report, a packet of an endpoint. A raw capture is one long transfer.
 struct Transfer {
-  double time = -1;  ///< [s], -1: not known
+  double time = -1;  ///< [s] when it was captured; -1 if unknown
   std::vector<uint8_t> bytes;
 };
 
 struct Capture {
   bool text = false;
   std::vector<Transfer> transfers;
-  size_t bytes() const;  ///< of all of them
+  size_t bytes() const;  ///< sum over all transfers
 };
 
-/// [main] Reads a capture. An error names the line. Lines that begin with "> " went to the arm and are left out.
+/// [main] Reads a capture. An error names the line. Lines that begin with "> " are what was sent to the arm; they are
+/// left out.
 Result<Capture> readCapture(const std::string& bytes, Form form);
 
-/// [any] "01 ff 3c".
+/// [any] Returns the bytes as hexadecimal text, such as "01 ff 3c".
 std::string hexText(const uint8_t* bytes, size_t count);
 
 }  // namespace hapticd::capture

@@ -15,9 +15,9 @@ namespace {
 using codec::Checksum;
 using codec::Field;
 
-/// Fewer reports than that agree with some method by chance.
+/// Fewer reports than this may agree with some method by chance.
 constexpr size_t kFewestDifferent = 3;
-/// Share of the reports whose checksum is wrong: some of them are really damaged.
+/// A hint is given only if the checksum is wrong in at least this share of the reports.
 constexpr double kMost = 0.8;
 
 using BadReports = std::vector<const BadReport*>;
@@ -37,7 +37,7 @@ struct Fit {
   size_t count = 0;
 };
 
-/// A method as the file would write it.
+/// A method, with the words for it in a device file.
 struct Method {
   std::string words;
   codec::Check check;
@@ -69,14 +69,14 @@ std::vector<Method> methodsFor(const Field& field) {
   return all;
 }
 
-/// A range of bytes in words, and how it differs from the file's range.
+/// A checksum field with another range of bytes, and the words for the difference from the file's field.
 struct Range {
   Field field;
   std::string words;
 };
 
-/// The method and byte order that agree with most reports over one range of bytes, also with the report id before it
-/// (-1: there is none).
+/// Finds the method and byte order that agree with most reports over one range of bytes, also with the report id in
+/// front of the bytes. @param id report id; -1 if there is none
 void tryMethods(const Range& range, const BadReports& reports, int id, Fit& best) {
   Field field = range.field;
   for (const Method& one : methodsFor(field))
@@ -93,7 +93,8 @@ void tryMethods(const Range& range, const BadReports& reports, int id, Fit& best
     }
 }
 
-/// The checksum one byte beside, or a byte more or less at either end of its range; nothing if it would cover itself.
+/// Returns the checksum field at another place or with another range; nothing if the checksum would cover itself or lie
+/// outside the report.
 std::optional<Range> otherRange(const codec::Wire& wire, const Field& field, int at, int from, int to) {
   const int end = at + static_cast<int>(field.bytes()), most = static_cast<int>(wire.input.size);
   if (from < 0 || to <= from || to > most || at < 0 || end > most || (at < to && end > from)) return std::nullopt;
@@ -106,7 +107,8 @@ std::optional<Range> otherRange(const codec::Wire& wire, const Field& field, int
   return range;
 }
 
-/// Tries other places and ranges, first with the method of the file, which may be a method by numbers.
+/// Tries other places and ranges, first with the method that the device file gives, which may be a CRC given by its
+/// polynomial.
 void tryRanges(const codec::Wire& wire, const Field& field, const BadReports& reports, Fit& best) {
   for (const int at : {0, 1, -1})
     for (const int from : {int{field.from}, 0, field.from + 1, field.from - 1})
@@ -120,7 +122,8 @@ void tryRanges(const codec::Wire& wire, const Field& field, const BadReports& re
       }
 }
 
-/// The bad reports, if a wrong checksum is the only problem of all of them.
+/// Returns the checksum field, and in `sums` the bad reports, if all reports with a wrong checksum have it in the same
+/// field.
 const Field* onlyChecksum(const Decoded& decoded, BadReports& sums) {
   const Field* field = nullptr;
   std::set<std::string> different;
@@ -137,7 +140,7 @@ const Field* onlyChecksum(const Decoded& decoded, BadReports& sums) {
 }  // namespace
 
 std::string checksumHint(const codec::Wire& wire, const Decoded& decoded) {
-  // A wrong method is right now and then by chance: for one report in 256 if both bytes are equal.
+  // A wrong method gives the right checksum by chance now and then, such as for one report in 256.
   if (static_cast<double>(decoded.good()) > (1 - kMost) * static_cast<double>(decoded.reports.size())) return "";
   BadReports sums;
   const Field* field = onlyChecksum(decoded, sums);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Which checksum the reports of a capture have, where they do not have that of the device file.
+/// Finds the checksum that the reports of a capture have, if the checksum of the device file does not fit them.
 #pragma once
 #include <string>
 
@@ -7,8 +7,8 @@
 
 namespace hapticd::capture {
 
-/// [main] One line, "" unless checksums are wrong in most reports: another method, byte order or range of bytes, or a
-/// checksum that covers the report id.
+/// [main] Returns one line that names another method, byte order or range of bytes, or a checksum that covers the
+/// report id. Returns "" unless the checksums of most reports are wrong.
 std::string checksumHint(const codec::Wire& wire, const Decoded& decoded);
 
 }  // namespace hapticd::capture

@@ -12,7 +12,7 @@ using codec::Field;
 using codec::Role;
 using codec::Verdict;
 
-constexpr size_t kFewestReports = 20;  ///< reports
+constexpr size_t kFewestReports = 20;  ///< no hints for fewer reports
 
 const Field* fieldOf(const codec::Wire& wire, Role role) {
   const auto found = std::find_if(wire.input.fields.begin(), wire.input.fields.end(),
@@ -52,7 +52,8 @@ std::string flags(const codec::Wire& wire, const DecodedReports& reports) {
   return text;
 }
 
-/// If the device seems to restart in each report, the field is a counter or a clock.
+/// Returns a hint if the device seems to restart in each report, because the field `starts` is then a counter or a
+/// clock.
 std::string starts(const codec::Wire& wire, const DecodedReports& reports) {
   if (fieldOf(wire, Role::kStarts) == nullptr) return "";
   size_t changes = 0;
@@ -64,7 +65,7 @@ std::string starts(const codec::Wire& wire, const DecodedReports& reports) {
          "time})?\n";
 }
 
-/// The other byte order of a counter that does not count.
+/// Returns a hint if a counter does not count, but does so in the other byte order.
 std::string counter(const codec::Wire& wire, const Decoded& decoded, const DecodedReports& reports) {
   const Field* field = fieldOf(wire, Role::kSequence);
   if (field == nullptr || field->bits % 8 != 0 || field->bits < 16 || field->bits > 32 || field->bit_skip != 0 ||
@@ -82,7 +83,8 @@ std::string counter(const codec::Wire& wire, const Decoded& decoded, const Decod
   return std::string("the counter counts with endian: ") + (field->big_endian ? "little" : "big") + "\n";
 }
 
-/// From the times of the capture: the median, since a pause in a recording says nothing about the arm.
+/// Compares wire.rate with the times in the capture. The median counts, because a pause in a recording says nothing
+/// about the arm.
 std::string rate(const codec::Wire& wire, const DecodedReports& reports, double least_rate) {
   std::vector<double> between;
   for (size_t i = 1; i < reports.size(); ++i)
@@ -91,7 +93,7 @@ std::string rate(const codec::Wire& wire, const DecodedReports& reports, double 
   if (between.size() < kFewestReports || wire.exchange == codec::Exchange::kPoll) return "";
   std::nth_element(between.begin(), between.begin() + static_cast<long>(between.size() / 2), between.end());
   const double period = between[between.size() / 2];
-  if (!(period > 0)) return "";  // several of them came together
+  if (!(period > 0)) return "";  // several reports came together
   const double measured = 1 / period;
   if (measured > 0.75 * wire.rate && measured < 1.5 * wire.rate) return "";
   char text[320];
@@ -110,12 +112,12 @@ std::string rate(const codec::Wire& wire, const DecodedReports& reports, double 
   return text;
 }
 
-/// Compares the arm's own clock with wire.rate: one of the two is in other units.
+/// Compares the arm's own clock with wire.rate, because one of the two may be in other units.
 std::string clock(const codec::Wire& wire, const DecodedReports& reports) {
   if (fieldOf(wire, Role::kTime) == nullptr || wire.exchange == codec::Exchange::kPoll || !(wire.rate > 0)) return "";
   std::vector<double> between;
   for (size_t i = 1; i < reports.size(); ++i)
-    if (reports[i]->state.clock > reports[i - 1]->state.clock)  // it begins anew
+    if (reports[i]->state.clock > reports[i - 1]->state.clock)  // a clock that restarts is left out
       between.push_back(reports[i]->state.clock - reports[i - 1]->state.clock);
   if (between.size() < kFewestReports) return "";
   std::nth_element(between.begin(), between.begin() + static_cast<long>(between.size() / 2), between.end());

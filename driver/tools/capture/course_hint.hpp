@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What good reports say that no arm means: flags that never change, a device that starts with each report, another
-/// rate than that of the file.
+/// Finds what cannot be right in reports without errors: flags that never change, a device that seems to restart with
+/// each report, a rate that differs from the one in the device file.
 #pragma once
 #include <string>
 
@@ -8,8 +8,8 @@
 
 namespace hapticd::capture {
 
-/// [main] One line per hint, "" if there is none. @param least_rate health.least_rate: below this share of wire.rate no
-/// torque is sent
+/// [main] Returns one line per hint, or "" if there is none. @param least_rate health.least_rate: no torque is sent if
+/// the reports arrive at less than this share of wire.rate
 std::string courseHints(const codec::Wire& wire, const Decoded& decoded, double least_rate);
 
 }  // namespace hapticd::capture

@@ -16,9 +16,9 @@ using codec::Field;
 using codec::Role;
 
 constexpr size_t kFewestGood = 5;         ///< reports: fewer may be good by chance
-constexpr size_t kTriedBytes = 8 * 1024;  ///< bytes: each of a thousand framings is tried on them
+constexpr size_t kTriedBytes = 8 * 1024;  ///< [bytes] so many are used, because a thousand framings are tried on them
 
-/// The beginning of the capture, which represents all of it.
+/// Returns the beginning of the capture, which represents all of it.
 Capture beginOf(const Capture& capture) {
   Capture begin;
   begin.text = capture.text;
@@ -33,7 +33,7 @@ Capture beginOf(const Capture& capture) {
   return begin;
 }
 
-/// The same format with other marks: constants that stand for the marks are removed with them.
+/// Returns the same format with other marks. Constants at the places of the old marks are removed.
 codec::Wire withMarks(codec::Wire wire, int start, int end) {
   for (Field& field : wire.input.fields) {
     const bool constant = field.role == Role::kConstant && field.bits == 8 && field.bit_skip == 0;
@@ -45,7 +45,8 @@ codec::Wire withMarks(codec::Wire wire, int start, int end) {
   return wire;
 }
 
-/// A property beyond the marks that a wrong framing would not get right.
+/// Returns true if a report has a field other than the marks (checksum, firmware number or constant) that would be
+/// wrong with a wrong framing.
 bool judges(const codec::Wire& wire) {
   return std::any_of(wire.input.fields.begin(), wire.input.fields.end(), [&](const Field& field) {
     const bool mark =
@@ -55,7 +56,7 @@ bool judges(const codec::Wire& wire) {
   });
 }
 
-/// The share of bytes that are in good reports, as far as that is known.
+/// Returns about which share of the bytes is in good reports.
 double goodWith(const codec::Wire& wire, const Capture& begin) {
   const Decoded decoded = decodeCapture(wire, begin);
   const size_t good = decoded.good();
@@ -86,7 +87,7 @@ bool isMark(const codec::Wire& wire, int byte) {
 /// The best of the framings that were tried; the first one among equals.
 struct Best {
   const Capture& begin;
-  double part;  ///< share of the bytes that must be in good reports
+  double part;  ///< share of the bytes in good reports, which a framing must exceed
   std::string words;
   void look(const codec::Wire& wire, const std::string& how) {
     const double good = goodWith(wire, begin);
@@ -112,7 +113,7 @@ void tryEscapes(const codec::Wire& wire, Best& best) {
   if (escape.used) best.look(plain, "without framing.escape");
 }
 
-/// Tries another first byte, and also another last one if both were the same.
+/// Tries another start mark, and with it another end mark if both were the same.
 void tryMarks(const codec::Wire& wire, Best& best) {
   const codec::Framing& framing = wire.framing;
   const bool both = framing.start == framing.end;
@@ -126,7 +127,7 @@ void tryMarks(const codec::Wire& wire, Best& best) {
   }
 }
 
-/// How often a byte occurs in the capture.
+/// Returns how often each byte occurs in the capture.
 std::array<size_t, 256> countsOf(const Capture& capture) {
   std::array<size_t, 256> counts{};
   for (const Transfer& transfer : capture.transfers)
@@ -150,7 +151,7 @@ std::string framingHint(const codec::Wire& wire, const Capture& capture, const D
   if (!wire.framing.used || bytes == 0 || (decoded.good() == decoded.reports.size() && decoded.lost == 0)) return "";
   const Capture begin = beginOf(capture);
   if (judges(wire)) {
-    constexpr double kBetter = 0.005;  // bytes that must be escaped are rare: without them every framing is good
+    constexpr double kBetter = 0.005;  // a small gain counts, because bytes that must be escaped are rare
     const double now = goodWith(wire, begin);
     Best best{begin, std::max(kNearlyAll, now + kBetter), ""};
     tryEscapes(wire, best);
@@ -161,7 +162,7 @@ std::string framingHint(const codec::Wire& wire, const Capture& capture, const D
   if (const std::string missing = missingMark(wire, capture); !missing.empty()) return missing;
   return 2 * decoded.lost < bytes
              ? ""
-             : "most bytes are between no marks: see start, end and escape of framing, and wire.input size\n";
+             : "most bytes are not between marks: check start, end and escape of framing, and size of wire.input\n";
 }
 
 }  // namespace hapticd::capture

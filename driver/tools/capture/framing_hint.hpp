@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Why no reports are found in a framed stream: another mark, another escape, or none where there are some.
+/// Finds out why a stream with framing shows no reports: other marks, other escapes, or marks or escapes that the file
+/// lacks.
 #pragma once
 #include <string>
 
@@ -7,8 +8,8 @@
 
 namespace hapticd::capture {
 
-/// [main] One line, "" if the framing is not wrong: for a file with framing, the marks and escapes with which most
-/// reports would be good, or what the file's marks find in the capture.
+/// [main] Returns one line, or "" if the framing is right. The line names the marks and escapes with which most reports
+/// would be good, or says what the marks of the file find in the capture.
 std::string framingHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded);
 
 }  // namespace hapticd::capture

@@ -12,7 +12,7 @@ std::string hintsOf(const codec::Wire& wire, const Capture& capture, const Decod
   std::string layout = layoutHint(wire, capture, decoded);
   if (layout.empty()) layout = framingHint(wire, capture, decoded);
   if (layout.empty()) layout = streamHint(wire, capture, decoded);
-  return layout.empty() ? checksumHint(wire, decoded) : layout;  // whatever else is wrong results from the layout
+  return layout.empty() ? checksumHint(wire, decoded) : layout;  // if the layout is wrong, other errors follow from it
 }
 
 }  // namespace hapticd::capture

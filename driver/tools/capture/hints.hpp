@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the bad reports of a capture have in common, and so what is probably wrong in the device file.
+/// Finds what the bad reports of a capture have in common, and from that what is probably wrong in the device file.
 #pragma once
 #include <string>
 
@@ -7,8 +7,8 @@
 
 namespace hapticd::capture {
 
-/// [main] One line per hint, "" if there is none: a report id that the file does not give or another one, a wrong size,
-/// several reports in one line, a checksum of another method, byte order or range.
+/// [main] Returns one line per hint, or "" if there is none. Hints are about a missing or wrong report id, a wrong
+/// size, several reports in one line, or a checksum with another method, byte order or range.
 std::string hintsOf(const codec::Wire& wire, const Capture& capture, const Decoded& decoded);
 
 }  // namespace hapticd::capture

@@ -18,7 +18,7 @@ std::string idLacks(int id) {
          "wire.input id: " + std::to_string(id) + "; size and offsets do not count it\n";
 }
 
-/// The same for raw bytes, which may be those of a stream without ids.
+/// Returns that text with another possibility, because raw bytes may come from a stream without ids.
 std::string idOrMarkLacks(int id) {
   std::string words = idLacks(id);
   words.pop_back();
@@ -31,7 +31,7 @@ std::string idIsMissing(int id) {
          " in front of each, or leave wire.input id out\n";
 }
 
-/// They do begin with the id, which the size does not include.
+/// Returns the hint for reports that begin with the id, if the size in the file counts the id by mistake.
 std::string sizeCountsTheId(const codec::Wire& wire) {
   return "each begins with " + hexByte(wire.input.id) +
          ", the report id, and has one byte too few: size does not count "
@@ -39,7 +39,7 @@ std::string sizeCountsTheId(const codec::Wire& wire) {
          std::to_string(wire.input.size - 1) + " (it is " + std::to_string(wire.input.size) + ")\n";
 }
 
-/// Nearly all bad reports have one byte less than expected, and begin with the id.
+/// Returns true if nearly all bad reports have one byte less than expected and begin with the id.
 bool idWasCounted(const codec::Wire& wire, const Decoded& decoded) {
   if (wire.input.id < 0 || decoded.bad.size() < kRepeated || 2 * decoded.good() > decoded.reports.size()) return false;
   const auto counted = std::count_if(decoded.bad.begin(), decoded.bad.end(), [&](const BadReport& bad) {
@@ -48,7 +48,7 @@ bool idWasCounted(const codec::Wire& wire, const Decoded& decoded) {
   return 10 * counted >= 9 * static_cast<std::ptrdiff_t>(decoded.bad.size());
 }
 
-/// All bad reports have the same wrong size.
+/// Returns true if all bad reports have the same wrong size.
 bool allOfOneSize(const Decoded& decoded) {
   return !decoded.bad.empty() && decoded.good() == 0 &&
          std::all_of(decoded.bad.begin(), decoded.bad.end(), [&](const BadReport& bad) {
@@ -59,7 +59,8 @@ bool allOfOneSize(const Decoded& decoded) {
 /// How many of the reports would be good with another id and size; nothing if any report would be.
 std::optional<double> goodWith(codec::Wire wire, int id, size_t size, const Capture& capture);
 
-/// Bytes from `from` on are the same in all reports of this size, so that they say nothing.
+/// Returns true if the bytes from `from` on are the same in all reports of this size, so that they are probably
+/// padding.
 bool tailStands(const Capture& capture, size_t size, size_t from) {
   const Bytes* first = nullptr;
   size_t reports = 0;
@@ -74,7 +75,7 @@ bool tailStands(const Capture& capture, size_t size, size_t from) {
   return reports >= kRepeated;
 }
 
-/// Reports longer than the fields need, as with HID and bulk endpoints: the rest is padding.
+/// Returns a hint if reports are longer than the fields need and end with padding, as with HID and bulk endpoints.
 std::string paddingHint(const codec::Wire& wire, const Capture& capture, size_t size) {
   const size_t used = wire.input.bytes(), body = size - (used - wire.input.size);
   if (size <= used || !tailStands(capture, size, used)) return "";
@@ -84,7 +85,7 @@ std::string paddingHint(const codec::Wire& wire, const Capture& capture, size_t 
          std::to_string(wire.input.size) + ")\n";
 }
 
-/// Every line has the size of a report without its id.
+/// Returns true if every line has the size of a report without its id.
 bool linesLackTheId(const codec::Wire& wire, const Capture& capture) {
   return wire.input.id >= 0 && capture.text && !capture.transfers.empty() &&
          std::all_of(capture.transfers.begin(), capture.transfers.end(),
@@ -110,7 +111,7 @@ std::string textHint(const codec::Wire& wire, const Capture& capture, const Deco
   return "";
 }
 
-/// The byte at every multiple of `size`; nothing if several bytes occur, or the places are too few.
+/// Returns the byte at every multiple of `size`; nothing if these bytes differ or are too few.
 std::optional<int> everyFirst(const Bytes& bytes, size_t size) {
   if (size == 0 || bytes.size() % size != 0 || bytes.size() / size < kRepeated) return std::nullopt;
   for (size_t at = size; at < bytes.size(); at += size)
@@ -118,8 +119,8 @@ std::optional<int> everyFirst(const Bytes& bytes, size_t size) {
   return bytes[0];
 }
 
-/// How many of the reports would be good with another id and size; nothing if any report would be, because there is no
-/// checksum, firmware number or constant.
+/// Returns which share of the reports would be good with another id and size. Returns nothing if every report would be
+/// good, because there is no checksum, firmware number or constant.
 std::optional<double> goodWith(codec::Wire wire, int id, size_t size, const Capture& capture) {
   const auto judges = [](const codec::Field& field) {
     return field.role == codec::Role::kChecksum || field.role == codec::Role::kConstant ||
@@ -135,7 +136,7 @@ std::optional<double> goodWith(codec::Wire wire, int id, size_t size, const Capt
   return static_cast<double>(decoded.good()) / static_cast<double>(std::max<size_t>(decoded.reports.size(), 1));
 }
 
-/// The smallest size with which every report begins with the id.
+/// Returns the smallest size with which every report begins with the id.
 size_t sizeWithId(const Bytes& bytes, int id) {
   for (size_t size = 2; size <= codec::kMaxReportBytes; ++size)
     if (everyFirst(bytes, size) == id) return size;
@@ -162,7 +163,8 @@ std::string withoutAnId(const codec::Wire& wire, const Capture& capture, const B
 std::string withAnId(const codec::Wire& wire, const Capture& capture, const Bytes& bytes) {
   const int id = wire.input.id;
   const size_t size = wire.input.size;
-  if (everyFirst(bytes, size + 1)) return "";  // the file's own, or another one that is reported as such
+  // there is an id at the beginning of each report, which another hint handles
+  if (everyFirst(bytes, size + 1)) return "";
   if (goodWith(wire, -1, size, capture).value_or(0) > kNearlyAll) return idIsMissing(id);
   const size_t whole = sizeWithId(bytes, id);
   if (whole == 0) return "";
@@ -171,7 +173,7 @@ std::string withAnId(const codec::Wire& wire, const Capture& capture, const Byte
          "); size does not count the report id\n";
 }
 
-/// Another id, none of the file's own.
+/// Returns a hint if the reports have an id other than the one in the file.
 std::string otherIdHint(const codec::Wire& wire, const Decoded& decoded) {
   if (!decoded.reports.empty() || decoded.other_ids.size() != 1 || decoded.others < kRepeated) return "";
   const int id = *decoded.other_ids.begin();

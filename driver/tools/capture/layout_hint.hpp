@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Which report id and size the bytes of a capture have, where they do not have those of the device file.
+/// Finds the report id and size that the reports of a capture have, if they differ from those in the device file.
 #pragma once
 #include <string>
 
@@ -7,13 +7,13 @@
 
 namespace hapticd::capture {
 
-inline constexpr double kNearlyAll = 0.8;  ///< share of the reports: a layout that fits so many is right
+inline constexpr double kNearlyAll = 0.8;  ///< a layout that fits at least this share of the reports is right
 
-/// [any] "0x3c".
+/// [any] Returns the byte as text, such as "0x3c".
 std::string hexByte(int byte);
 
-/// [main] One line, "" where size and id are right: an id that the file lacks or another one, reports without their id,
-/// reports of another size, several in one line of text.
+/// [main] Returns one line, or "" if size and id are right. The line names a missing or wrong id, reports without their
+/// id, reports of another size, or several reports in one line of text.
 std::string layoutHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded);
 
 }  // namespace hapticd::capture

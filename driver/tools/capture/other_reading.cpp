@@ -11,12 +11,12 @@ namespace {
 using codec::Field;
 using codec::Type;
 
-constexpr double kWholeRange = 0.75;  ///< of the field's range in one step: no arm does that, a wrong sign bit does
+constexpr double kWholeRange = 0.75;  ///< share of the field's range: only a wrong sign bit makes such a step
 
-/// One way to read the raw numbers of a field: code is turned into another number, then scaled.
+/// One way to read the raw numbers of a field: each is changed to another number, and then scaled.
 struct Reading {
   enum class Code { kSame, kOtherSign, kAmount } code = Code::kSame;
-  double turn = 1;    ///< -1: reversed
+  double turn = 1;    ///< -1 reverses the direction
   double offset = 0;  ///< [codes] added before the scale
 };
 
@@ -40,7 +40,7 @@ std::vector<double> allAs(const Field& field, const Reading& reading, const std:
   return all;
 }
 
-/// True if it steps by more than a share of the field's range.
+/// Returns how often the position steps by more than this share of the field's range.
 size_t jumpsOf(const Field& field, const std::vector<double>& positions, double part) {
   const double most = part * spanOf(field) * std::abs(field.scale);
   size_t count = 0;
@@ -59,7 +59,7 @@ std::string typeOf(const Field& field, bool other) {
   return (whole ? "i" : "u") + std::to_string(field.bits);
 }
 
-/// What the file must contain for a reading.
+/// Returns what the file must contain for a reading.
 std::string wordsOf(const Field& field, const Reading& reading) {
   std::string words;
   const auto add = [&words](const std::string& more) { words += (words.empty() ? "" : ", ") + more; };
@@ -69,7 +69,8 @@ std::string wordsOf(const Field& field, const Reading& reading) {
   return words;
 }
 
-/// The likeliest first. A number that is reversed about the middle of its range is a complement of its bits.
+/// Returns the readings to try, the likeliest first. A number that is reversed about the middle of its range has all
+/// its bits inverted.
 std::vector<Reading> readingsOf(const Field& field) {
   using Code = Reading::Code;
   const double range = spanOf(field);
@@ -89,7 +90,7 @@ std::string wholeRange(const Field& field, const std::vector<double>& positions,
   const Reading other{Reading::Code::kOtherSign, 1, 0};
   const auto as_other = allAs(field, other, positions);
   const bool fits = jumpsOf(field, as_other, kWholeRange / 2) == 0 && !leavesStops(as_other, stops);
-  const std::string wraps = "wraps: true if its numbers go on past their end, as those of a counter do";
+  const std::string wraps = "wraps: true if its numbers continue past their end, as in a counter";
   return what + (fits ? "give " + wordsOf(field, other) + ", or " : "give ") + wraps;
 }
 
@@ -111,8 +112,8 @@ std::string otherReading(const Field& field, const std::vector<double>& position
   const auto as_amount = allAs(field, amount, positions);
   if (field.type == Type::kSigned && some > 0 && jumpsOf(field, as_amount, 0.02) == 0)
     return "jumps by half the range of its " + typeOf(field, false) +
-           ", and does not where its highest bit is a sign and "
-           "the others an amount: no type reads that; expected two's complement from the board";
+           ". The jumps disappear if it is read as sign and magnitude, which no type supports; let the board send "
+           "two's complement";
   if (some > 0 || !stops.placed || !leavesStops(positions, stops)) return "";
   for (const Reading& reading : readingsOf(field)) {
     const auto as_other = allAs(field, reading, positions);

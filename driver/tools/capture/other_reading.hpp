@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Positions that another reading of the same bits makes plausible: the other sign of a type, the other way round.
+/// Finds positions that become plausible if the same bits are read in another way, such as signed instead of unsigned,
+/// or reversed.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,19 +9,19 @@
 
 namespace hapticd::capture {
 
-/// Where a joint can be [rad or m].
+/// The range between the stops of a joint [rad or m].
 struct Stops {
-  bool given = false;   ///< false: anywhere
-  bool placed = false;  ///< false: its zero is unknown, so only the range between them counts
+  bool given = false;   ///< false if the stops are unknown, so that every position is possible
+  bool placed = false;  ///< false if the zero is unknown: only the distance between the stops counts
   double low = 0, high = 0;
 };
 
 /// [main] True if the positions leave the stops, or span more than the range between them.
 bool leavesStops(const std::vector<double>& positions, const Stops& stops);
 
-/// [main] One line about positions that jump by nearly the whole range of their field, or that leave the stops where
-/// another reading does not: which type, scale or offset that is. "": nothing to say.
-/// @param positions in all good reports, as `field` reads them
+/// [main] Returns one line if the positions jump by nearly the whole range of their field, or if they leave the stops
+/// and another reading does not. The line names the type, scale or offset of that reading. Returns "" if neither is
+/// true. @param positions in all good reports, as `field` reads them
 std::string otherReading(const codec::Field& field, const std::vector<double>& positions, const Stops& stops);
 
 }  // namespace hapticd::capture

@@ -16,7 +16,7 @@ struct Course {
   std::vector<double> at;
   double least = HUGE_VAL, most = -HUGE_VAL;
 
-  /// @param round [rad] after which its number starts again; 0: never
+  /// @param round [rad] range after which the number starts again; 0 if it never does
   void add(double q, double round) {
     if (round > 0 && !at.empty()) q += std::round((at.back() - q) / round) * round;
     at.push_back(q);
@@ -41,9 +41,10 @@ Stops stopsOf(const ArmFacts& arm, size_t joint) {
   return {true, !arm.zeroed, arm.limits[2 * joint], arm.limits[2 * joint + 1]};
 }
 
-/// True if it goes beyond its stops, or, if its zero is not known yet, spans more than the range between them.
+/// Returns a text if the joint goes beyond its stops, or, if its zero is not known yet, spans more than the range
+/// between them.
 std::string beyondStops(const Course& course, const Stops& stops) {
-  constexpr double kTurns = 4 * M_PI;  // no joint with stops makes two turns
+  constexpr double kTurns = 4 * M_PI;  // a joint with stops cannot make two turns
   const double way = course.most - course.least;
   if (stops.given ? !leavesStops(course.at, stops) : way <= kTurns * 1.1) return "";
   if (stops.placed && way <= stops.high - stops.low)
@@ -54,38 +55,39 @@ std::string beyondStops(const Course& course, const Stops& stops) {
            "right sign?";
   return "from " + number(course.least) + " to " + number(course.most) + " rad, " +
          (stops.placed  ? "and arm.limits are " + number(stops.low) + " to " + number(stops.high) + " rad"
-          : stops.given ? "a way of more than the " + number(stops.high - stops.low) + " rad between its arm.limits"
+          : stops.given ? "farther than the " + number(stops.high - stops.low) + " rad between its arm.limits"
                         : "more than two turns") +
          ": is scale in rad (for degrees: scale_degrees), with the turns of the motor in one turn of the joint?";
 }
 
 std::string jumps(const Course& course, const codec::Wire& wire, const ArmFacts& arm) {
-  constexpr double kLarge = 0.5;                                                       // [rad]
-  const double most = std::max(kLarge, 5 * arm.max_speed / std::max(wire.rate, 1.0));  // a few may be missing between
+  constexpr double kLarge = 0.5;  // [rad]
+  // a few reports may be missing in between
+  const double most = std::max(kLarge, 5 * arm.max_speed / std::max(wire.rate, 1.0));
   double largest = 0;
   const size_t count = course.count([&](double from, double to) {
     largest = std::max(largest, std::abs(to - from));
     return std::abs(to - from) > most;
   });
   if (count < 3 || count * 50 < course.at.size()) return "";
-  // A scale that is too large makes small jumps large, and the span larger still.
+  // If only the scale is too large, the whole span is much larger than these steps.
   if (4 * largest < course.most - course.least) return "";
   return "jumps by up to " + number(largest) + " rad from one report to the next, " + std::to_string(count) +
          " times: look at its byte order (endian), its first byte (at), and the sign and width of its type";
 }
 
-/// Positions that wrap have no known zero, but the range between the stops is known.
+/// Returns a text if positions that wrap span more than the range between the stops. Their zero is unknown.
 std::string tooLongAWay(const Course& course, Stops stops) {
   stops.placed = false;
   if (!stops.given || course.at.empty() || !leavesStops(course.at, stops)) return "";
   const double way = course.most - course.least, room = stops.high - stops.low;
-  return "moves over " + number(way) + " rad, and between its arm.limits are " + number(room) +
-         " rad: scale is at least " + number(way / room) +
+  return "moves over " + number(way) + " rad, but its arm.limits are only " + number(room) +
+         " rad apart: scale is at least " + number(way / room) +
          " times too large: is it in rad (for degrees: scale_degrees), with the turns of the motor in one turn of the "
          "joint?";
 }
 
-/// Joints that all moved, but none of them far: a scale that is too small has no other symptom.
+/// Returns a text if all joints moved, but none of them far, because a scale that is too small has no other symptom.
 std::string shortWays(const std::map<size_t, Course>& courses, const ArmFacts& arm) {
   constexpr double kShort = 0.4, kMoved = 0.01;  // share of the range between the stops
   constexpr size_t kEnough = 100;                // reports
@@ -100,11 +102,11 @@ std::string shortWays(const std::map<size_t, Course>& courses, const ArmFacts& a
   }
   if (ways.empty()) return "";
   return "the joints moved over " + ways +
-         " of the ways between their arm.limits: if this was from stop to stop, scale is " + "about " +
-         number(1 / widest) + " times too small (counts of all edges of an encoder are 4 times its lines)\n";
+         " of the distance between their arm.limits: if they were moved from stop to stop, scale is " + "about " +
+         number(1 / widest) + " times too small (a turn of an encoder has 4 counts for each of its lines)\n";
 }
 
-/// What is wrong with one joint; "" if nothing is.
+/// Returns what is wrong with one joint; "" if nothing is.
 std::string oddCourse(const codec::Wire& wire, const codec::Field& field, const ArmFacts& arm, const Course& course) {
   const Stops stops = stopsOf(arm, field.index);
   std::string wrong = otherReading(field, course.at, stops);

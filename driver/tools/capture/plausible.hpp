@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Positions that an arm cannot have: a layout or a scale that is wrong reads every report as a good one.
+/// Finds positions that an arm cannot have. If only the layout or the scale is wrong, every report still counts as
+/// good.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,14 +12,15 @@ namespace hapticd::capture {
 /// What the device file says about the arm that sent the reports.
 struct ArmFacts {
   size_t joints = 0;
-  std::vector<double> limits;      ///< least, greatest [rad] of each joint; empty: not given
-  bool zeroed = false;             ///< positions count from where the arm was switched on, and a pose gives their zero
-  std::vector<double> max_torque;  ///< [N m] of each joint; empty: not given
-  double max_speed = 100;          ///< [rad/s] of a joint
-  double least_rate = 0.57;        ///< share of wire.rate: with fewer reports no torque is sent
+  std::vector<double> limits;      ///< [rad] least and greatest position of each joint; empty if not given
+  bool zeroed = false;             ///< positions count from the switch-on; a pose will give their zero
+  std::vector<double> max_torque;  ///< [N m] largest torque of each joint; empty if not given
+  double max_speed = 100;          ///< [rad/s] greatest speed of a joint
+  double least_rate = 0.57;        ///< no torque is sent if the reports arrive at less than this share of wire.rate
 };
 
-/// [main] One line for each joint that leaves its limits, or jumps faster than it can move; "" if none does.
+/// [main] Returns one line for each joint that leaves its limits or jumps faster than it can move, or "" if there is
+/// none.
 std::string implausible(const codec::Wire& wire, const ArmFacts& arm, const Decoded& decoded);
 
 }  // namespace hapticd::capture

@@ -49,7 +49,7 @@ std::string hex(uint64_t value, const Field& field) {
   return text;
 }
 
-/// Why one field made a report bad.
+/// Returns why one field made a report bad.
 std::string whyWrong(const Field& field, std::span<const uint8_t> body) {
   const std::string at = " at byte " + std::to_string(field.at);
   const std::string is = hex(codec::codeAt(field, body), field);
@@ -68,7 +68,7 @@ std::string whyWrong(const Field& field, std::span<const uint8_t> body) {
   }
 }
 
-/// "1 report", "3 reports".
+/// Returns a count with its noun, such as "1 report" or "3 reports".
 std::string counted(size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
@@ -92,7 +92,8 @@ class Reader {
   Decoded decoded;
 
  private:
-  /// A report that is too short, or bytes that are no report: at the beginning, the rest of a cut one.
+  /// Takes bytes that are not a whole report. If they begin with the id, they are a bad report; at the beginning of the
+  /// capture, they are the rest of a cut report.
   void oddBytes(std::span<const uint8_t> bytes, double time, size_t at) {
     if (bytes[0] == wire_.input.id && bytes.size() < 2 * wire_.input.bytes())
       return report(bytes, time, at + bytes.size());
@@ -108,8 +109,8 @@ class Reader {
     }
   }
 
-  /// Before the first report is found, byte by byte where packets have no header: bytes lost until then are the rest of
-  /// a report whose beginning the capture lacks.
+  /// Gives a packet to the framer. Until the first report is found, packets without a header are given byte by byte,
+  /// because bytes lost until then are the rest of a report whose beginning the capture lacks.
   void framed(std::span<const uint8_t> packet, double time, size_t offset) {
     const size_t step = wire_.framing.header == 0 && decoded.reports.empty() ? 1 : packet.size();
     for (size_t at = 0; at < packet.size(); at += step) {
@@ -120,7 +121,7 @@ class Reader {
     }
   }
 
-  /// Turns are counted as the module counts them, from the first report on.
+  /// Counts turns as the module does, from the first report on.
   void unwrap(codec::State& state) {
     for (const Field& field : wire_.input.fields) {
       if (field.role != Role::kPosition || !field.wraps) continue;
@@ -165,7 +166,7 @@ class Reader {
   codec::Framer framer_;
   bool known_ = false, placed_ = false;
   uint32_t last_ = 0;
-  std::array<double, codec::kMaxJoints> before_{};  ///< positions of the last good report, turns counted
+  std::array<double, codec::kMaxJoints> before_{};  ///< positions of the last good report, including turns
 };
 
 struct Column {
@@ -174,7 +175,7 @@ struct Column {
   size_t index = 0;
 };
 
-/// The columns of a report, in the order of the table.
+/// Returns the columns of a report, in the order of the table.
 std::vector<Column> columnsOf(const codec::Report& report, size_t joints) {
   std::vector<Column> columns;
   const std::pair<Role, const char*> each[] = {{Role::kPosition, "position"},
@@ -281,12 +282,12 @@ Decoded decodeCapture(const codec::Wire& wire, const Capture& capture) {
   Reader reader(wire);
   for (size_t i = 0; i < capture.transfers.size(); ++i) reader.take(capture.transfers[i], capture.text, i);
   Decoded& decoded = reader.decoded;
-  // More bytes than a report has, or no report at all: not the rest of a report that was cut.
+  // If these bytes are more than a cut report can have, or if no report was found, they count as lost.
   if (decoded.head >= 2 * wire.input.bytes() || decoded.reports.empty()) decoded.lost += std::exchange(decoded.head, 0);
   return std::move(decoded);
 }
 
-/// The fewest digits that read back as the same number.
+/// Returns the number with the fewest digits that read back as the same number.
 static std::string shortest(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
@@ -312,7 +313,7 @@ std::string csvOf(const codec::Wire& wire, size_t joints, const Decoded& decoded
   return text;
 }
 
-/// Such as " (0x01, 0x04)"; nothing if there are many, as in bytes that are cut at wrong places.
+/// Returns ids such as " (0x01, 0x04)"; "" if there are many, because then the bytes are cut at wrong places.
 static std::string idsOf(const std::set<int>& ids) {
   constexpr size_t kFew = 4;
   std::string text;

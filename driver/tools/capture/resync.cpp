@@ -13,7 +13,8 @@ bool goodAt(const codec::Wire& wire, std::span<const uint8_t> bytes, size_t at) 
   return codec::decode(wire.input, bytes.subspan(at, size), state) == codec::Verdict::kGood;
 }
 
-/// A place may have the id and a checksum of one byte by chance, so the report after it must begin correctly too.
+/// Returns true if a good report is at this place. A place may have the id and a right checksum of one byte by chance,
+/// so the report after it must begin correctly too.
 bool begins(const codec::Wire& wire, std::span<const uint8_t> bytes, size_t at) {
   const size_t next = at + wire.input.bytes();
   return goodAt(wire, bytes, at) && (next >= bytes.size() || bytes[next] == wire.input.id || goodAt(wire, bytes, next));
@@ -29,10 +30,10 @@ size_t skipOddBytes(const codec::Wire& wire, std::span<const uint8_t> bytes, siz
                       });
   const size_t size = wire.input.bytes();
   if (!judged || goodAt(wire, bytes, at) || goodAt(wire, bytes, at + size)) return at;
-  constexpr size_t kReports = 8;  // it is looked for up to here; then one report farther on, and again
+  constexpr size_t kReports = 8;  // how many reports ahead the search goes; the caller repeats it one report farther on
   for (size_t other = at + 1; other < std::min(at + kReports * size, bytes.size()); ++other) {
     if (!begins(wire, bytes, other)) continue;
-    if ((other - at) % size == 0) return at;  // reports in step are bad reports, and reported as such
+    if ((other - at) % size == 0) return at;  // no bytes are missing: the reports in between are bad
     odd(bytes.subspan(at, other - at));
     return other;
   }

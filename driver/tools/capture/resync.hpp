@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Raw bytes of numbered reports in which some bytes are missing or too many: the next report is found by its id and
-/// checksum.
+/// For raw bytes of reports with an id, in which some bytes are missing or too many: finds the next report by its id
+/// and checksum.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace hapticd::capture {
 
-/// [main] Where the next report begins: at `at`, unless no good report is there, none follows it in step, and a good
-/// one is found at another place. The bytes between go to `odd`. Reports without an id or a checksum stay where they
-/// are, because too many places would look like one.
+/// [main] Returns where the next report begins. This is `at`, unless there is no good report at `at`, none one or more
+/// report sizes later, and a good one at another place. The bytes in between are passed to `odd`. For reports without
+/// an id or a checksum this is always `at`, because too many places would look like a report.
 size_t skipOddBytes(const codec::Wire& wire, std::span<const uint8_t> bytes, size_t at,
                     const std::function<void(std::span<const uint8_t>)>& odd);
 

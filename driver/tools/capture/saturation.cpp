@@ -12,7 +12,7 @@ namespace {
 using codec::Field;
 using codec::Role;
 
-/// The field of a joint that a column names; nullptr if there is none, as for buttons and counters.
+/// Returns the field of a joint that a column names; nullptr if there is none, as for buttons and counters.
 const Field* fieldOf(const codec::Report& report, const std::string& column) {
   static constexpr std::pair<const char*, Role> kNames[] = {{"position", Role::kPosition},
                                                             {"velocity", Role::kVelocity},
@@ -24,7 +24,7 @@ const Field* fieldOf(const codec::Report& report, const std::string& column) {
   return nullptr;
 }
 
-/// Least and greatest SI value.
+/// Returns the least and greatest value that a field can carry, in SI units.
 std::pair<double, double> rangeOf(const Field& field) {
   const double a = field.least * field.scale + field.offset, b = field.most * field.scale + field.offset;
   return {std::min(a, b), std::max(a, b)};
@@ -38,7 +38,7 @@ void Saturation::look(const codec::Wire& wire, bool to_arm, const std::vector<st
     const Field* field = fieldOf(to_arm ? wire.output : wire.input, columns[i]);
     if (field == nullptr || (field->wraps && std::isfinite(values[i]))) continue;
     const auto [least, most] = rangeOf(*field);
-    const double half = std::abs(field->scale) / 2;  // what rounding changes is no loss
+    const double half = std::abs(field->scale) / 2;  // a change by rounding does not count
     const double motor =
         to_arm && field->role == Role::kTorque && field->index < motors_.size() ? motors_[field->index] : 0;
     char text[240];

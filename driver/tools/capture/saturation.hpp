@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Numbers that do not fit into the field that carries them.
+/// Finds numbers that do not fit into the field that carries them.
 #pragma once
 #include <string>
 #include <utility>
@@ -9,18 +9,19 @@
 
 namespace hapticd::capture {
 
-/// Numbers of many rows that had to be sent as other numbers, column by column.
+/// Collects, column by column, the numbers that had to be sent as other numbers.
 class Saturation {
  public:
-  /// @param motors [N m] greatest torques of the joints; empty: not known
+  /// @param motors [N m] greatest torques of the joints; empty if unknown
   explicit Saturation(std::vector<double> motors = {}) : motors_(std::move(motors)) {}
 
-  /// [main] One row, as encodeRow() takes it. @param to_arm a command; otherwise as the arm would send it
+  /// [main] Examines one row, in the form that encodeRow() takes. @param to_arm true for a command to the arm; false
+  /// for a report from it
   void look(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns, const double* values,
             int line);
 
-  /// [main] One sentence for each such column, in the order in which they began: "line 5: torque1: 0.7 is beyond what
-  /// its field can carry, -0.5 to 0.5; sent as 0.5; so are 12 further rows".
+  /// [main] Returns one sentence for each column with such numbers, in the order of their first lines: "line 5:
+  /// torque1: 0.7 is beyond what its field can carry, -0.5 to 0.5; sent as 0.5; so are 12 further rows".
   std::vector<std::string> told() const;
 
  private:

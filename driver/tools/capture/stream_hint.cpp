@@ -16,10 +16,11 @@ constexpr size_t kFewestAlike = 20;  ///< reports: fewer may have one byte in co
 /// A byte that occurs once in every report, and hardly anywhere else.
 struct Header {
   uint8_t byte = 0;
-  size_t at = 0;  ///< of the capture
+  size_t at = 0;  ///< byte of the capture at which it occurs first
 };
 
-/// 0 and 0xff are the upper bytes of small numbers; a byte that occurs in many places is no mark either.
+/// Returns the byte at `at` if it occurs there in every report. 0 and 0xff do not count, because they are the upper
+/// bytes of small numbers; nor does a byte that occurs in many other places.
 std::optional<Header> headerAt(const Bytes& bytes, size_t size, size_t at) {
   const uint8_t byte = bytes[at];
   if (byte == 0 || byte == 0xff) return std::nullopt;
@@ -37,8 +38,8 @@ std::optional<Header> headerOf(const Bytes& bytes, size_t size) {
   return std::nullopt;
 }
 
-/// True if the file says that byte 0 begins a report, or says nothing about it, and has other numbers where the header
-/// is.
+/// Returns true if the reports of the file begin at the header: byte 0 is that constant, or no field has byte 0 and a
+/// field has the byte at which the header was found.
 bool beginsLater(const codec::Report& report, const Header& header) {
   const auto covers = [](const codec::Field& field, size_t byte) {
     return field.role != codec::Role::kChecksum && field.at <= byte && byte < field.at + field.bytes();
@@ -59,7 +60,7 @@ std::string framingOf(const Header& header) {
   return text;
 }
 
-/// True if the file has something that bytes from another place would not get right.
+/// Returns true if a report has a checksum, constant or firmware number, which would be wrong at another place.
 bool tells(const codec::Report& report) {
   return std::any_of(report.fields.begin(), report.fields.end(), [](const codec::Field& field) {
     return field.role == codec::Role::kChecksum || field.role == codec::Role::kConstant ||
@@ -67,10 +68,11 @@ bool tells(const codec::Report& report) {
   });
 }
 
-/// How many bytes in front of the first whole report make nearly all others good; 0: none, or nobody can tell.
+/// Returns how many bytes to leave out before the first whole report, so that nearly all reports are good; 0 if none,
+/// or if it is not clear.
 size_t bytesBefore(const codec::Wire& wire, const Bytes& bytes) {
   constexpr size_t kMostBytes = 8 * 1024, kFewReports = 3;
-  constexpr double kNearly = 0.8, kDoubt = 0.5;  // of the reports; of those from another place
+  constexpr double kNearly = 0.8, kDoubt = 0.5;  // share of the good reports at the best place, and at the second best
   const size_t size = wire.input.size;
   size_t best = 0;
   double most = 0, second = 0;
@@ -90,7 +92,7 @@ size_t bytesBefore(const codec::Wire& wire, const Bytes& bytes) {
   return most >= kNearly && second < kDoubt ? best : 0;
 }
 
-/// The file's own constants and checksum tell where reports begin, also where some of them are damaged.
+/// Finds where reports begin from the constants and checksum in the file, even if some reports are damaged.
 std::string beginHint(const codec::Wire& wire, const Bytes& bytes, const Decoded& decoded) {
   if (!tells(wire.input) || 2 * decoded.good() > decoded.reports.size()) return "";
   const size_t before = bytesBefore(wire, bytes);
@@ -107,7 +109,7 @@ std::string beginHint(const codec::Wire& wire, const Bytes& bytes, const Decoded
          std::to_string(before + 1) + " FILE)\n";
 }
 
-/// A byte that the reports have in common tells their size, and where they begin.
+/// Finds the size of reports, and where they begin, from a byte that they have in common.
 std::string headerHint(const codec::Wire& wire, const Bytes& bytes, const Decoded& decoded) {
   const size_t size = wire.input.size;
   char begins[64];

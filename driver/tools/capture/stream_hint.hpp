@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The byte that begins each report of a stream, where the device file knows of neither an id nor a mark.
+/// Finds the byte that begins each report of a stream, if the device file gives neither an id nor a mark.
 #pragma once
 #include <string>
 
@@ -7,8 +7,8 @@
 
 namespace hapticd::capture {
 
-/// [main] One line, "" if there is no hint: a header byte that the file's size leaves out, or a capture that begins in
-/// the middle of a report.
+/// [main] Returns one line about a header byte that the size in the file does not count, or about a capture that begins
+/// in the middle of a report. Returns "" if neither is found.
 std::string streamHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded);
 
 }  // namespace hapticd::capture

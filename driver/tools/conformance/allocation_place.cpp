@@ -37,7 +37,7 @@ bool readAt(std::ifstream& in, uint64_t offset, std::vector<T>& to, uint64_t byt
                                .read(reinterpret_cast<char*>(to.data()), static_cast<std::streamsize>(bytes)));
 }
 
-/// The function at an address of a shared object, from the names that its file keeps for debuggers.
+/// Returns the function at an address of a shared object, from the symbol names in its file.
 std::string functionAt(const std::string& file, uint64_t address) {
   std::ifstream in(file, std::ios::binary);
   std::vector<ElfW(Ehdr)> header;
@@ -62,7 +62,7 @@ std::string functionAt(const std::string& file, uint64_t address) {
   return "";
 }
 
-/// The name as its author wrote it, without arguments.
+/// Returns the name as its author wrote it, without arguments.
 std::string readable(const std::string& name) {
   int status = 0;
   char* words = abi::__cxa_demangle(name.c_str(), nullptr, nullptr, &status);
@@ -101,7 +101,8 @@ std::string firstAllocationIn(const std::string& file) {
     if (dladdr(stack[i], &found) == 0 || !std::filesystem::equivalent(found.dli_fname, file, none)) continue;
     const uint64_t address = reinterpret_cast<uintptr_t>(stack[i]) - reinterpret_cast<uintptr_t>(found.dli_fbase) - 1;
     const std::string name = readable(functionAt(file, address));
-    if (name.rfind("std::", 0) == 0 || name.find(" std::") != std::string::npos) continue;  // its caller is meant
+    // skip functions of the standard library: their caller is wanted
+    if (name.rfind("std::", 0) == 0 || name.find(" std::") != std::string::npos) continue;
     char line[32];
     std::snprintf(line, sizeof line, "0x%llx", static_cast<unsigned long long>(address));
     return (name.empty() ? "" : " in " + name) + " (for the line, with -g: addr2line -Cfie " + file + " " + line + ")";

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// Which function of a plugin allocates, told by the stack of its first allocation.
+/// Finds the function of a plugin that allocates, from the call stack of its first allocation.
 #pragma once
 #include <string>
 
 namespace hapticd::conformance {
 
-/// Surrounds one call of step(); the first allocation within any of these is kept.
+/// Surrounds one call of step(). The first allocation during any such call is recorded.
 class AllocationWatch {
  public:
   AllocationWatch() noexcept;
@@ -17,8 +17,8 @@ class AllocationWatch {
 /// [main] From now on AllocationWatch objects take effect.
 void watchAllocations();
 
-/// The function of that file that made the first allocation, and how to find its line: " in NAME (...)". "" if none was
-/// seen, or it is unknown.
+/// Returns the function of that file that made the first allocation, and how to find its line: " in NAME (...)".
+/// Returns "" if no allocation was seen, or if the function is unknown.
 std::string firstAllocationIn(const std::string& file);
 
 }  // namespace hapticd::conformance

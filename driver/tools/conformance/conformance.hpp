@@ -11,10 +11,10 @@ namespace hapticd::conformance {
 struct ConformanceTest {
   const char* name;
   const char* doc;
-  /// "": passed; "skip: why": does not apply; "warn: what": passed with a remark; "note: what": passed, and what was
-  /// measured; otherwise what was wrong.
+  /// Returns "" if the shape passed, "skip: WHY" if the test does not apply, "warn: WHAT" if it passed with a remark,
+  /// "note: WHAT" if it passed and something was measured, and otherwise what is wrong.
   std::string (*run)(const Recipe& recipe, uint64_t seed);
-  const char* needs = nullptr;  ///< the test that must succeed, because otherwise this one only repeats its failure
+  const char* needs = nullptr;  ///< test that must pass first, because this one would only repeat its failure
 };
 
 std::vector<ConformanceTest> lifeTests();     ///< descriptors, parameters, creation and activation
@@ -26,7 +26,8 @@ std::vector<ConformanceTest> memoryTests();   ///< what an instance must remembe
 /// All tests, in the order in which they run.
 const std::vector<ConformanceTest>& conformanceTests();
 
-/// Random parameters, probes, jumps, resets and bad samples from one seed. "" if nothing was wrong.
+/// Tests one instance with random parameters, probes, jumps, resets and bad samples from one seed. Returns "" if
+/// nothing was wrong.
 std::string fuzzOnce(const Recipe& recipe, uint64_t seed);
 
 }  // namespace hapticd::conformance

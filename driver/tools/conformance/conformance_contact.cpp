@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What a shape owes where it is touched: a force that pushes out, flags that agree with it, a claim that is true.
+/// Tests a shape where it is touched: its force must push out, its flags must agree with the force, and its claims must
+/// be true.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Without a contact every test of contact is empty, so a missing contact is a failure.
+/// Fails if no contact was found, because without a contact no test of contacts would test anything.
 std::string contactFound(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
@@ -28,8 +29,8 @@ std::string contactFound(const Recipe& recipe, uint64_t) {
          "by hsp.geometry/1 (bounds), or give parameters with --set that bring it to the origin";
 }
 
-/// The dangerous sign, judged over the whole press, because a detent may pull for part of it. The foot gives the way
-/// out, not the normal, which may have the wrong sign as well.
+/// Returns why forces pull the hand in. The whole press is judged, because a detent may pull for part of it. The
+/// direction outward comes from the foot points, not from the normal, which may have the wrong sign as well.
 std::string wrongSign(Subject& subject, const Place& place) {
   double outward = 0, most = 0, depth = 0, normal = 0;
   press(subject, place, [&](const Answer& answer, const PressStep&) {
@@ -51,9 +52,9 @@ std::string wrongSign(Subject& subject, const Place& place) {
                      : ", as its normal does: turn the sign of force");
 }
 
-/// Finds what a run would silence, by the same judgement: straight in from some mm outside, and during a press.
+/// Finds pulls for which a run would silence the model, on the way straight in from some mm outside and during a press.
 std::string pullsThere(Subject& subject, const Place& place) {
-  constexpr double kFar = 5e-3;  // [m] at which a magnet would be felt
+  constexpr double kFar = 5e-3;  // [m] the force of a magnet would be felt at this distance
   constexpr int kSteps = 100;
   const auto objection = [](const hsp_contact& c, const Vector3d& p) {
     if (!servo::pullsIn(c, p)) return std::string();
@@ -78,13 +79,13 @@ std::string pullsThere(Subject& subject, const Place& place) {
 std::string forceOutward(const Recipe& recipe, uint64_t) {
   return atEachPlace(recipe, [](Subject& subject, const Place& place) {
     std::string wrong = wrongSign(subject, place);
-    const bool pushes =
-        (subject.report().flags & HSP_R_PUSHES) != 0 && !subject.moves();  // where it is, later tests report
+    // pulls are judged only for shapes that claim to push and stand still
+    const bool pushes = (subject.report().flags & HSP_R_PUSHES) != 0 && !subject.moves();
     return wrong.empty() && pushes ? pullsThere(subject, place) : wrong;
   });
 }
 
-/// "" or how an answer disagrees with its flags.
+/// Returns how an answer disagrees with its flags, or "".
 std::string flagsOf(const hsp_contact& c) {
   const bool traced = (c.flags & HSP_OUT_TRACED) != 0, contact = (c.flags & HSP_OUT_CONTACT) != 0;
   const bool named = Vector3d(c.normal).norm() > 0 || std::abs(c.depth_m) > 0;
@@ -101,8 +102,8 @@ std::string contactFlags(const Recipe& recipe, uint64_t) {
   return along(*made.subject, [](const Answer& answer, const Vector3d&) { return flagsOf(answer.contacts[0]); });
 }
 
-/// [N/m] The slopes of a straight press at rest, sorted by size. A jump on purpose is no slope, so it is subtracted,
-/// over ways so long that this hides little.
+/// [N/m] Returns the slopes of a straight press at rest, sorted by size. A claimed jump (max_jump) is no slope, so it
+/// is subtracted; slopes are taken over distances so long that this hides little.
 std::vector<double> slopesOf(Subject& subject, const Place& place) {
   const hsp_report& report = subject.report();
   const double jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
@@ -127,10 +128,10 @@ std::vector<double> slopesOf(Subject& subject, const Place& place) {
   return slopes;
 }
 
-/// [N/m] The slopes of a press that waits at each place until the shape's memory of its way has faded, because a filter
-/// of velocities is no stiffness.
+/// [N/m] Returns the slopes of a press that waits at each place until effects of the motion have faded, because the
+/// force of a velocity filter is not stiffness.
 std::vector<double> slopesAtRest(Subject& subject, const Place& place) {
-  constexpr int kPlaces = 10, kRest = 200;  // ticks: the longest time that a hand would take for a delay
+  constexpr int kPlaces = 10, kRest = 200;  // ticks to wait at each place
   const double depth = pressDepth(subject);
   const hsp_report& report = subject.report();
   const double jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
@@ -148,7 +149,7 @@ std::vector<double> slopesAtRest(Subject& subject, const Place& place) {
   return slopes;
 }
 
-/// [N/m] Nine tenths of a press are no steeper than this; 0 if there is too little of it to say.
+/// [N/m] Returns the slope that nine tenths of a press do not exceed; 0 if there are too few slopes.
 double stiffnessAt(Subject& subject, const Place& place, double claimed) {
   constexpr double kDoubtful = 1.1;
   const std::vector<double> slopes = slopesOf(subject, place);
@@ -159,7 +160,7 @@ double stiffnessAt(Subject& subject, const Place& place, double claimed) {
   return std::min(measured, rested[rested.size() * 9 / 10]);
 }
 
-/// How steep a force is, in words, compared with what is claimed.
+/// Returns how steep a force is, in words, compared with what is claimed.
 std::string besideClaim(double claimed, double measured) {
   return (claimed > 0 ? "it claims " + text(claimed) + " N/m" : std::string("it claims no stiffness")) +
          ", but its force grows by " + text(measured) +
@@ -172,10 +173,10 @@ double middleOf(std::vector<double> sorted) {
   return sorted.empty() ? 0 : sorted[sorted.size() / 2];
 }
 
-/// "" or how the slope that a contact reports has the wrong sign, or is far too small for a check of stability. 0
-/// reports nothing, and a slope that is too large errs to the safe side.
+/// Returns why the stiffness that contacts report is wrong, or "". It is wrong if it has the wrong sign or is far too
+/// small for a check of stability. A stiffness of 0 means unknown, and one that is too large is on the safe side.
 std::string toldStiffness(Subject& subject, const Place& place) {
-  constexpr double kFar = 3, kNoise = 10;  // a law may be steeper in places; [N/m]
+  constexpr double kFar = 3, kNoise = 10;  // factor, because a force law may be steeper in places; [N/m]
   std::vector<double> told;
   press(subject, place, [&told](const Answer& answer, const PressStep& step) {
     const hsp_contact& c = answer.contacts[0];
@@ -185,10 +186,11 @@ std::string toldStiffness(Subject& subject, const Place& place) {
   const std::vector<double> slopes = slopesOf(subject, place);
   if (told.size() < 10 || slopes.size() < 10) return "";
   const double says = middleOf(told), is = middleOf(slopes);
-  const bool soft = (subject.description().flags & HSP_C_DEFORMS) != 0;  // there it may report the nearest part
+  // such a shape may report the stiffness of its nearest part
+  const bool soft = (subject.description().flags & HSP_C_DEFORMS) != 0;
   if (soft ? says >= 0 : kFar * says + kNoise >= is) return "";
-  return placed("contact.stiffness tells " + text(says) + " N/m, and the force grows by " + text(is) +
-                    " N/m there; expected the local slope of the force over the depth (0: not told)",
+  return placed("contact.stiffness is " + text(says) + " N/m, but the force grows by " + text(is) +
+                    " N/m there; expected the local slope of the force over the depth, or 0 if it is unknown",
                 place.foot);
 }
 
@@ -197,7 +199,8 @@ std::string stiffnessClaim(const Recipe& recipe, uint64_t) {
   if (!made.error.empty()) return made.error;
   if (made.subject->moves()) return "skip: it moves, and its force with it";
   const double claimed = made.subject->report().max_stiffness;
-  constexpr double kFails = 1.5, kWarns = 1.1, kNoise = 10;  // a law may be a little steeper in places; [N/m]
+  // factors, because a force law may be a little steeper in places; [N/m]
+  constexpr double kFails = 1.5, kWarns = 1.1, kNoise = 10;
   double steepest = 0;
   std::string wrong = atEachPlace(recipe, [claimed, &steepest](Subject& subject, const Place& place) {
     const double measured = stiffnessAt(subject, place, claimed);
@@ -209,9 +212,10 @@ std::string stiffnessClaim(const Recipe& recipe, uint64_t) {
   return "note: it claims " + text(claimed) + " N/m, and its force grows by " + text(steepest) + " N/m at most";
 }
 
-/// "" or by how much a torque jumps where the surface is met.
+/// Returns by how much a torque jumps where the surface is met, or "".
 std::string torqueAtOnce(const Vector3d& before, const Vector3d& now, double explained) {
-  constexpr double kRoom = 0.01, kLever = 0.1;  // [N m] not felt as a step; [m] a force so far from the tip turns it
+  // [N m] not felt as a step; [m] lever arm with which a force may turn the tip
+  constexpr double kRoom = 0.01, kLever = 0.1;
   const double jump = (now - before).norm();
   if (jump <= kRoom + kLever * explained) return "";
   return "the torque jumps by " + text(jump) +
@@ -219,7 +223,8 @@ std::string torqueAtOnce(const Vector3d& before, const Vector3d& now, double exp
          "model's origin";
 }
 
-/// A force that jumps where the surface is met buzzes, however small its slope behind it is.
+/// Tests that the force does not jump where the surface is met, because a jump buzzes even if the slope below the
+/// surface is small.
 std::string noStep(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
@@ -248,15 +253,15 @@ std::string noStep(const Recipe& recipe, uint64_t) {
   });
 }
 
-/// A press far below the surface, at rest, as long as the surface above it stays the same.
+/// A press far below the surface, at rest at each depth, as far as the foot point stays on the same surface.
 struct DeepPress {
   std::vector<double> depth, force;  ///< [m], [N] outward
 };
 
 DeepPress pressDeep(Subject& subject, const Place& place) {
-  constexpr double kStep = 1e-4, kStrongest = 10;  // [m], [N] more than most hands reach
+  constexpr double kStep = 1e-4, kStrongest = 10;  // [m]; [N] more than most hands press
   const double most = deepestPress(subject);
-  constexpr int kRest = 10;  // ticks: a damper has faded by then, and a filter of velocities nearly
+  constexpr int kRest = 10;  // ticks: until then the force of a damper has faded, and that of a velocity filter nearly
   DeepPress press;
   for (int i = 0; i * kStep <= most; ++i) {
     const Vector3d p = place.foot - place.out * (i * kStep);
@@ -270,11 +275,12 @@ DeepPress pressDeep(Subject& subject, const Place& place) {
   return press;
 }
 
-/// What happens deeper than the other tests go: a law that becomes steep, or a click.
+/// Tests depths that other tests do not reach, where the force may become steep or click.
 std::string deepPress(const Recipe& recipe, uint64_t) {
-  constexpr double kRoom = 0.1;              // [N] not felt as a step
-  constexpr size_t kApart = 10;              // steps over which a slope is taken
-  constexpr double kSteep = 1.5, kJump = 3;  // as at the surface; share of the claim, from one step to the next
+  constexpr double kRoom = 0.1;  // [N] not felt as a step
+  constexpr size_t kApart = 10;  // steps over which a slope is taken
+  // factor, as at the surface; factor of the claim, from one step to the next
+  constexpr double kSteep = 1.5, kJump = 3;
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   const hsp_report& report = made.subject->report();

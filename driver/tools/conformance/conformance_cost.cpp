@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What a step may cost: it ends within a period, does not wait, and makes no system call, allocation or lock.
+/// Tests what a step costs: it must end within a period, must not wait, and must make no system call, allocation or
+/// lock.
 #include <algorithm>
 #include <cstdio>
 
@@ -14,9 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr uint64_t kPeriodNs = 1'000'000;  ///< budget of a servo at 1 kHz
+constexpr uint64_t kPeriodNs = 1'000'000;  ///< period of a servo at 1 kHz
 
-/// What some steps took.
+/// The cost of several steps.
 struct Spent {
   std::vector<uint64_t> wall_ns, cpu_ns;
   size_t waited = 0;
@@ -41,7 +42,8 @@ std::string milliseconds(uint64_t ns) {
   return words;
 }
 
-/// "" or why such steps keep the servo from its period. A busy machine makes no step wait, nor compute more.
+/// Returns why such steps are too slow for the period of the servo, or "". Waits and computing time of a step do not
+/// depend on how busy the machine is.
 std::string tooSlow(const Spent& spent, const char* where, uint64_t claim_ns) {
   const size_t count = spent.wall_ns.size();
   const std::string of = " (median of " + std::to_string(count) + " steps " + where + ")";
@@ -55,10 +57,10 @@ std::string tooSlow(const Spent& spent, const char* where, uint64_t claim_ns) {
          "claims it: report.worst_ns)";
 }
 
-/// Judges free steps and touched ones separately, since only a law of contact may be slow.
+/// Judges steps without and with contact separately, because only the computation of contacts may be slow.
 std::string stepsEndInTime(const Recipe& recipe, uint64_t) {
   constexpr Nanoseconds kLong = kNanosecondsPerSecond / 2;  // a hundred steps of 5 ms are enough to judge
-  constexpr size_t kEnough = 50;                            // even so few are enough if the machine stood still
+  constexpr size_t kEnough = 50;  // steps to judge at least, even if the machine was stopped meanwhile
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   made.subject->measureCost();
@@ -116,15 +118,15 @@ std::string noLock(const Recipe& recipe, uint64_t) {
   if (locks == 0) return "";
   return std::to_string(locks) + (locks == 1 ? " lock in " : " locks in ") + std::to_string(steps) +
          " steps, first after the probe was at " + text(first) +
-         "; expected none: who holds it may keep the servo waiting";
+         "; do not lock in a step: another thread that holds the lock would make the servo wait";
 }
 
-/// Output to the terminal is the most common one: without a buffer each line is noticed.
+/// Fails if a step makes a system call. Most often it prints, so output is not buffered here, and each line is noticed.
 std::string noSystemCall(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   std::setvbuf(stdout, nullptr, _IONBF, 0);
-  if (!watchSystemCalls()) return "skip: this kernel does not tell (it takes Linux 5.11 on x86-64)";
+  if (!watchSystemCalls()) return "skip: system calls cannot be watched here (this needs Linux 5.11 on x86-64)";
   uint64_t steps = 0;
   Vector3d first = Vector3d::Zero();
   alongAndDeep(*made.subject, [&](const Answer&, const Vector3d& p) {
@@ -139,7 +141,8 @@ std::string noSystemCall(const Recipe& recipe, uint64_t) {
          "; a step only computes: write, read and wait outside of touch() and step()";
 }
 
-/// A claim holds for the author's machine: a slower machine is no fault of the shape, but a claim that is far off is.
+/// Compares the cost with the claim. The claim was measured on the author's machine, so only a large difference is a
+/// failure.
 std::string stepCost(const Recipe& recipe, uint64_t) {
   constexpr uint64_t kFar = 10;
   const Made made(recipe);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What a shape draws by hsp.geometry/1 against what it lets one feel: an eye that sees the surface elsewhere than the
-/// hand misleads both, and nothing else of a run compares the two.
+/// Compares the drawing that a shape gives by hsp.geometry/1 with what is felt. Nothing else in a run would notice a
+/// surface that is drawn at one place and felt at another.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -15,25 +15,25 @@ using Eigen::Vector3d;
 
 constexpr size_t kMostTriangles = 96;
 constexpr double kDrawnChord = 0.0025, kDrawnReach = 0.005,
-                 kDrawnTolerance = 0.02;  // parts of the diagonal of the drawing
+                 kDrawnTolerance = 0.02;  // share of the diagonal of the drawing
 
 /// A copy of the triangles, which are valid only until the next call.
 struct Drawing {
   std::vector<Vector3d> corners;
   std::vector<std::array<uint32_t, 3>> triangles;
-  Vector3d low = Vector3d::Zero(), high = Vector3d::Zero();  ///< of the corners [m]
+  Vector3d low = Vector3d::Zero(), high = Vector3d::Zero();  ///< [m] box of the corners
 
   double diagonal() const { return (high - low).norm(); }
 };
 
-/// How the answers at the triangles that were tried compare with them.
+/// The differences between the triangles that were tried and the answers there.
 struct Compared {
   size_t seen = 0, away = 0, outward = 0, inward = 0;
   double distance = 0;             ///< [m] distance of the farthest foot point
-  Vector3d at = Vector3d::Zero();  ///< the triangle that it belongs to
+  Vector3d at = Vector3d::Zero();  ///< [m] the triangle with that foot point
 };
 
-/// "" or what is wrong with the arrays themselves.
+/// Copies the arrays. Returns what is wrong with them, or "".
 std::string readDrawing(const hsp_mesh& mesh, Drawing& to) {
   if (mesh.vertex_count > 0 && mesh.xyz == nullptr) return "tessellate() counts vertices, and xyz is NULL";
   if (mesh.triangle_count > 0 && mesh.indices == nullptr) return "tessellate() counts triangles, and indices is NULL";
@@ -55,11 +55,11 @@ std::string readDrawing(const hsp_mesh& mesh, Drawing& to) {
   return "";
 }
 
-/// "" or a corner that lies outside the box.
+/// Returns a text about a corner that lies outside the box, or "".
 std::string outsideBounds(const Drawing& drawing, const Vector3d& low, const Vector3d& high) {
   if (!low.allFinite() || !high.allFinite() || (high - low).minCoeff() < 0)
     return "bounds() gives from " + text(low) + " to " + text(high) + "; expected min below max, finite";
-  const double room = 1e-3 * drawing.diagonal();  // of floats, and of a chord
+  const double room = 1e-3 * drawing.diagonal();  // for the rounding of floats, and for chords of curves
   for (const Vector3d& p : drawing.corners)
     if ((p - low).minCoeff() < -room || (p - high).maxCoeff() > room)
       return "bounds() gives from " + text(low) + " to " + text(high) + ", but tessellate() has a vertex at " +
@@ -67,19 +67,21 @@ std::string outsideBounds(const Drawing& drawing, const Vector3d& low, const Vec
   return "";
 }
 
-/// Probes close before and behind one triangle: both must find the surface there, and the one behind must be deeper.
+/// Tries two probes close to one triangle, one before and one behind it: both must find the surface there, and the one
+/// behind must be deeper.
 void compareTriangle(Subject& subject, const Drawing& drawing, size_t triangle, Compared& to) {
   const auto& corner = drawing.triangles[triangle];
   const Vector3d &a = drawing.corners[corner[0]], &b = drawing.corners[corner[1]], &c = drawing.corners[corner[2]];
   const Vector3d across = (b - a).cross(c - a), middle = (a + b + c) / 3;
-  if (!(across.norm() > 1e-12 * drawing.diagonal() * drawing.diagonal())) return;  // it has no area, such as at a pole
+  // the triangle has no area, as at a pole
+  if (!(across.norm() > 1e-12 * drawing.diagonal() * drawing.diagonal())) return;
   const double reach = kDrawnReach * drawing.diagonal();
   const Vector3d step = reach * across.normalized();
   const hsp_contact before = answerAtRest(subject, middle + step), behind = answerAtRest(subject, middle - step);
   double nearest = HUGE_VAL;
   for (const hsp_contact* contact : {&before, &behind})
     if ((contact->flags & HSP_OUT_TRACED) != 0) nearest = std::min(nearest, (Vector3d(contact->point) - middle).norm());
-  if (!std::isfinite(nearest)) return;  // it may give nothing outside of a contact
+  if (!std::isfinite(nearest)) return;  // a shape may answer nothing outside of a contact
   ++to.seen;
   if (nearest > kDrawnTolerance * drawing.diagonal()) {
     ++to.away;
@@ -91,7 +93,7 @@ void compareTriangle(Subject& subject, const Drawing& drawing, size_t triangle, 
   };
   const double deeper = depthOf(behind) - depthOf(before);
   if (deeper > reach / 2) ++to.outward;
-  if (deeper < -reach / 2) ++to.inward;  // in between: a thin wall, which is felt from either side
+  if (deeper < -reach / 2) ++to.inward;  // a difference in between means a thin wall, which is felt from either side
 }
 
 std::string verdictOf(const Compared& found) {
@@ -129,7 +131,7 @@ std::string drawingWhereFelt(const Recipe& recipe, uint64_t) {
   if (subject.moves()) return "skip: it moves, and its surface with it";
   Compared found;
   const size_t tried = std::min(kMostTriangles, drawing.triangles.size());
-  constexpr double kGolden = 0.6180339887498949;  // even steps would meet the same column of a grid repeatedly
+  constexpr double kGolden = 0.6180339887498949;  // equal steps could try the same column of a grid again and again
   for (size_t i = 0; i < tried; ++i) {
     const double part = std::fmod(kGolden * static_cast<double>(i), 1);
     const auto triangle = static_cast<size_t>(part * static_cast<double>(drawing.triangles.size()));

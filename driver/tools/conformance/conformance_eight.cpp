@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Eight probes, as many as a run may have: what a shape keeps for each needs a place of its own.
+/// Tests eight probes, as many as a run may have: a shape must keep the state of each separately.
 #include <vector>
 
 #include "conformance/conformance_parts.hpp"
@@ -10,10 +10,11 @@ namespace hapticd::conformance {
 namespace {
 
 using Eigen::Vector3d;
-using Positions = std::vector<Vector3d>;  ///< of all probes in one step
+using Positions = std::vector<Vector3d>;  ///< positions of all probes in one step
 
 constexpr uint32_t kProbes = 8;
-/// [bytes] Room after a single record, which ends 8 bytes before what may be guarded; it is checked after each step.
+/// [bytes] Room after a single record, because the record ends this far before the guarded page. This room is checked
+/// after each step.
 constexpr size_t kBehind = 8;
 
 /// One step of the run.
@@ -22,7 +23,8 @@ struct Together {
   uint32_t flags = 0;
 };
 
-/// First each probe follows its own part of the path, then all press, each where the shape can be touched.
+/// Returns the steps: first each probe follows its own part of the path, then each presses where the shape can be
+/// touched.
 std::vector<Together> stepsOf(const Subject& subject) {
   constexpr int kAlong = kConformanceSteps / 4;
   std::vector<Together> steps;
@@ -44,7 +46,7 @@ std::vector<Together> stepsOf(const Subject& subject) {
   return steps;
 }
 
-/// A shape for this number of probes, with guarded memory and guarded records.
+/// Makes a shape for this number of probes, with guarded memory and guarded records.
 std::unique_ptr<Subject> guardedSubject(const Recipe& recipe, uint32_t probes, std::string& error) {
   tellOverruns(probes);
   const GuardedMemory guarded;
@@ -56,7 +58,7 @@ std::unique_ptr<Subject> guardedSubject(const Recipe& recipe, uint32_t probes, s
   return std::move(made.subject);
 }
 
-/// "" or the first probe whose answer depends on another probe.
+/// Returns a text about the first probe whose answer depends on another probe, or "".
 std::string eachAsAlone(const Recipe& recipe, const std::vector<Together>& steps, const std::vector<Answer>& together) {
   for (uint32_t probe = 0; probe < kProbes; ++probe) {
     std::string error;
@@ -66,16 +68,16 @@ std::string eachAsAlone(const Recipe& recipe, const std::vector<Together>& steps
       const Answer& answer = alone->step({steps[i].at[probe]}, kConformanceDt, steps[i].flags);
       if (!alone->roomUntouched())
         return placed(std::string(kBeyond) + " (" + std::to_string(sizeof(hsp_contact)) +
-                          " bytes); expected the record of the probe alone to be written, and the next by HSP_AT",
+                          " bytes); write only the record of the probe, and find the next record with HSP_AT",
                       steps[i].at[probe]);
       const Vector3d expected(answer.contacts[0].force), got(together[i].contacts[probe].force);
       const double apart = (got - expected).norm();
       if (apart <= 1e-6 * (1 + expected.norm())) continue;
-      return placed("probe " + std::to_string(probe + 1) + " of eight in one step gets another force than alone, by " +
-                        text(apart) + " N at step " + std::to_string(i) +
-                        "; expected what is kept for a probe in a place of its own, one for each of "
-                        "activation.max_probes",
-                    steps[i].at[probe]);
+      return placed(
+          "probe " + std::to_string(probe + 1) + " of eight in one step gets another force than alone, by " +
+              text(apart) + " N at step " + std::to_string(i) +
+              "; keep the state of each probe separately: make room for activation.max_probes states in activate()",
+          steps[i].at[probe]);
     }
   }
   return "";
@@ -94,7 +96,7 @@ std::string eightProbes(const Recipe& recipe, uint64_t) {
     if (std::string wrong = wrongStatus(answers.back()); !wrong.empty()) return "with eight probes: " + wrong;
   }
   const bool coupled = subject->moves() || (subject->description().flags & HSP_C_DEFORMS) != 0;
-  return coupled ? "" : eachAsAlone(recipe, steps, answers);  // all of them push what moves or deforms
+  return coupled ? "" : eachAsAlone(recipe, steps, answers);  // all probes together push a shape that moves or deforms
 }
 
 }  // namespace hapticd::conformance

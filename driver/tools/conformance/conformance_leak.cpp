@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Memory that an instance keeps beyond its end.
+/// Finds memory that an instance does not free at its end.
 #include <malloc.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kParts = 4;
 
-/// [bytes] The least and the most memory in each part of the lives.
+/// [bytes] The least and the greatest use of memory in one part of the lives.
 struct Extent {
   double least = 0, most = 0;
 };
@@ -46,10 +46,10 @@ double leakOf(const std::vector<double>& used) {
 std::string createDestroyLeak(const Recipe& recipe, uint64_t) {
   constexpr int kFirst = 5, kLives = 40;
   constexpr Nanoseconds kLong = 3 * kNanosecondsPerSecond;
-  constexpr double kNoLeak = 256;  // [bytes] a life
+  constexpr double kNoLeak = 256;  // [bytes] per life
   const Nanoseconds begun = monotonicNow();
   std::vector<double> used;  // [bytes] after each life
-  used.reserve(kLives);      // or it would count its own memory
+  used.reserve(kLives);      // otherwise the growth of this list would count
   for (int i = 0; i < kFirst + kLives && monotonicNow() - begun < kLong; ++i) {
     {
       const Made made(recipe);

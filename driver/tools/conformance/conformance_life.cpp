@@ -18,7 +18,7 @@ bool blank(const char* words) {
   return words == nullptr || words[0] == '\0';
 }
 
-/// A name that a scene and a command line can use without quotes.
+/// Returns true for a name that a scene and a command line can use without quotes.
 bool plainId(const char* id) {
   for (; *id != '\0'; ++id)
     if (std::isalnum(static_cast<unsigned char>(*id)) == 0 && std::strchr("_.-", *id) == nullptr) return false;
@@ -51,7 +51,8 @@ std::string descriptorComplete(const Recipe& recipe, uint64_t) {
   return "";
 }
 
-/// A hand feels a stiffness that jumps as a blow.
+/// Warns of live parameters that may change the force without consent, because a hand feels a stiffness that jumps as a
+/// blow.
 std::string liveConsent(const Recipe& recipe, uint64_t) {
   const auto objection = [](const hsp_param& p) -> std::string {
     const std::string unit = p.unit != nullptr ? p.unit : "";
@@ -80,7 +81,8 @@ std::string idUnique(const Recipe& recipe, uint64_t) {
   return "";
 }
 
-/// The fastest of three tries: once the machine may stand still, or read the file from a slow disk.
+/// Measures the loading of the file. The fastest of three tries counts, because the machine may be busy or the disk
+/// slow.
 std::string scanTimeLimit(const Recipe& recipe, uint64_t) {
   double least = HUGE_VAL;
   for (int i = 0; i < 3 && least >= 1; ++i) {
@@ -126,7 +128,8 @@ std::string setOutOfRange(const Recipe& recipe, uint64_t) {
                                                                   : "";
 }
 
-/// "" or the parameter whose value was lost when another was set: two lines of a table name one member.
+/// Returns a text about a parameter whose value was lost when another one was set, because two lines of the table name
+/// the same member; or "".
 std::string sharedMember(Subject& subject, const std::vector<double>& values, uint32_t set) {
   const hsp_class& c = subject.description();
   for (uint32_t i = 0; i < set; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Energy of closed ways with a leg along below the surface: a force that circulates, however small, gives energy in
-/// one sense, and a way that only goes through the shape does not meet it.
+/// Measures the energy of closed paths with a leg along below the surface. A force that circulates, however small,
+/// gives energy in one direction; a path straight through the shape would not show it.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -13,13 +13,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What a hand gained on its way.
+/// The work that a hand got on its path.
 struct Work {
-  double given = 0, moved = 0;  ///< [J] in all, and what moved to and fro
-  double aside = 0;             ///< [J] the share of that which the part of the force across the normal gave
+  double given = 0, moved = 0;  ///< [J] sum of the work, and sum of its magnitudes
+  double aside = 0;             ///< [J] work of the part of the force that is across the normal
 };
 
-/// From outside in, along by twice the depth, out, and back outside; the probe rests at each corner.
+/// Returns a path from outside in, along by twice the depth, out, and back outside. The probe rests at each corner.
 std::vector<Vector3d> loopAt(const Place& place, const Vector3d& aside, double depth) {
   constexpr int kLeg = 40, kRest = 10;
   const Vector3d out = depth * place.out, way = 2 * depth * aside;
@@ -48,13 +48,14 @@ Work walk(Subject& subject, const std::vector<Vector3d>& points) {
   return work;
 }
 
-/// Both ways round; a spring gives back what it took, and friction keeps some of it. What a force across the normal did
-/// not give is no circulation: a shape that is softer in places, and pushes along its normal alone, gives a little too.
+/// Returns a text if a loop, in either direction, gives energy to the hand. A spring gives back what it took, and
+/// friction gives back less. Only energy from a force across the normal counts, because a shape that is softer in
+/// places gives a little energy by its normal force too.
 std::string gives(Subject& subject, const Place& place, const Vector3d& aside) {
-  constexpr double kRounding = 0.02, kLeast = 1e-8;  // share of the work that went to and fro; [J]
+  constexpr double kRounding = 0.02, kLeast = 1e-8;  // share of Work::moved; [J]
   const hsp_report& report = subject.report();
   const double depth = pressDepth(subject);
-  const double jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;  // a pulse on purpose does work too
+  const double jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;  // a claimed pulse does work too
   std::vector<Vector3d> points = loopAt(place, aside, depth);
   for (int sense = 0; sense < 2; ++sense) {
     subject.reset();  // what a soft shape stored before is not energy from this loop
@@ -64,8 +65,8 @@ std::string gives(Subject& subject, const Place& place, const Vector3d& aside) {
     if (std::min(work.given, work.aside) > kRounding * work.moved + kLeast + 2 * depth * jump - gained)
       return placed("a loop in, " + text(2 * depth * 1e3) + " mm along below the surface, and out gave " +
                         text(std::min(work.given, work.aside) * 1e3) + " mJ to the hand, of " + text(work.moved * 1e3) +
-                        " mJ that went to and fro: a hand that goes round and round is driven on; expected no force "
-                        "along the surface but friction, which points against the motion",
+                        " mJ exchanged: a hand that moves in loops would be driven; the only force along the surface "
+                        "must be friction, which acts against the motion",
                     place.foot);
     points.assign(points.rbegin(), points.rend());
   }
@@ -85,7 +86,7 @@ std::string loopsGiveNoEnergy(const Recipe& recipe, uint64_t) {
     std::string given = gives(subject, place, u);
     return given.empty() ? gives(subject, place, v) : given;
   });
-  // A soft body answers by its material near the probe, which is not a potential of its place.
+  // The force of a soft body comes from the material near the probe, so it need not be the gradient of a potential.
   const bool soft = (made.subject->description().flags & HSP_C_DEFORMS) != 0;
   return soft && !wrong.empty() && wrong.rfind("skip: ", 0) != 0 ? "note: " + wrong : wrong;
 }

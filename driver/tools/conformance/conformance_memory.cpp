@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The answers of one instance along the path.
+/// Returns the answers of one instance along the path.
 std::vector<Answer> answersOf(Subject& subject, int steps, double phase = 0) {
   std::vector<Answer> answers;
   for (int i = 0; i < steps; ++i)
@@ -37,7 +37,7 @@ std::string resetEqualsFresh(const Recipe& recipe, uint64_t) {
   if (!used.error.empty()) return used.error;
   if (used.subject->moves()) return "skip: it moves, and reset() does not forget its pose";
   size_t steps = answersOf(*used.subject, kConformanceSteps / 2, 0.7).size();
-  constexpr size_t kRounds = 2 * 3 * 5 * 7;  // a phase that is kept shows, unless whole turns have passed
+  constexpr size_t kRounds = 2 * 3 * 5 * 7;  // with whole turns of such periods, a phase that is kept would not show
   for (; steps % kRounds != 1; ++steps) used.subject->step({onPath(*used.subject, 0.5)}, kConformanceDt);
   used.subject->reset();
   const auto a = answersOf(*used.subject, kConformanceSteps / 4), b = answersOf(*fresh.subject, kConformanceSteps / 4);
@@ -49,9 +49,9 @@ std::string resetEqualsFresh(const Recipe& recipe, uint64_t) {
   return "";
 }
 
-/// The two probes stay apart. A plugin may offer to one probe what it found for another nearby, as
-/// TracedShape::searchAbout does; then a search starts elsewhere and ends at the same foot with other last bits (1e-15
-/// N with eight probes of nurbs_rigid, and another "certified" flag). That couples no forces, and is no fault.
+/// The two probes stay apart. A plugin may use what it found for one probe to start the search of another probe nearby,
+/// as TracedShape::searchAbout does. Then the search ends at the same foot with other last bits (1e-15 N with eight
+/// probes of nurbs_rigid, and another "certified" flag). This does not couple forces and is allowed.
 std::string batchEqualsSingle(const Recipe& recipe, uint64_t) {
   const Made batch(recipe, 2), one(recipe), two(recipe);
   if (!batch.error.empty()) return "two probes: " + batch.error;
@@ -77,7 +77,7 @@ std::string determinism(const Recipe& recipe, uint64_t) {
   return firstDifference(answersOf(*first.subject, kConformanceSteps), answersOf(*second.subject, kConformanceSteps));
 }
 
-/// The nearest foot, wherever the probe jumps to.
+/// Fails if the foot after a jump is not the nearest one.
 std::string searchesAfterJump(const Recipe& recipe, Subject& subject, uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> part(0, 1);
@@ -92,17 +92,17 @@ std::string searchesAfterJump(const Recipe& recipe, Subject& subject, uint64_t s
   return "";
 }
 
-/// [N] The force after some steps in which the probe stays at each of `way` for a while, and a jump to `to`.
+/// [N] Returns the force at `to` after a jump. Before the jump, the probe stays at each point of `way` for a while.
 Vector3d forceAfterJump(Subject& subject, const std::vector<Vector3d>& way, const Vector3d& to) {
-  constexpr int kStay = 200;  // ticks: what is filtered has faded by then
+  constexpr int kStay = 200;  // ticks: until then, effects of filters have faded
   for (size_t i = 0; i < way.size(); ++i)
     for (int k = 0; k < kStay; ++k)
       subject.step({way[i]}, kConformanceDt, i + static_cast<size_t>(k) == 0 ? uint32_t{HSP_IN_JUMP} : 0);
   return Vector3d(subject.step({to}, kConformanceDt, HSP_IN_JUMP).contacts[0].force);
 }
 
-/// A detent that has given way, or a hold of friction, belongs to the place that the probe has left. Compared with an
-/// instance that was outside for as long, since a force may go by the time.
+/// Fails if a shape keeps its state (a detent that has given way, a point of static friction) over a jump. The force is
+/// compared with that of an instance whose probe was outside for as long, because a force may depend on time.
 std::string keptOverJump(const Recipe& recipe, const std::vector<Place>& places, Subject& subject) {
   constexpr size_t kMostPlaces = 4;
   const double depth = pressDepth(subject), deep = std::min(5 * depth, deepestPress(subject));
@@ -118,8 +118,8 @@ std::string keptOverJump(const Recipe& recipe, const std::vector<Place>& places,
     return placed(
         "after a jump from a press " + text(deep * 1e3) + " mm deep elsewhere the force differs by " +
             text((got - expected).norm()) + " N from that of an instance that was never pressed; expected " +
-            "what is kept for the probe to be forgotten at HSP_IN_JUMP as in reset() (what the shape itself " +
-            "remembers is offered by hsp.state/1)",
+            "that the shape forgets the state of a probe at HSP_IN_JUMP, as in reset() (what the shape itself " +
+            "remembers is saved by hsp.state/1)",
         to);
   }
   return "";
@@ -208,7 +208,7 @@ std::string layoutGolden(const Recipe& recipe, uint64_t) {
   if (c.param_count > 0 && c.params[0].struct_size < sizeof(hsp_param))
     return "hsp_param is smaller than that of version 1.0";
   if (made.subject->report().struct_size != sizeof(hsp_report)) return "activate() changed report.struct_size";
-  wide.subject->widen(32);  // as a later host does, whose records are larger
+  wide.subject->widen(32);  // the records of a later host may be larger
   for (int i = 0; i < kConformanceSteps / 4; ++i) {
     const Vector3d p = onPath(*made.subject, static_cast<double>(i) / kConformanceSteps);
     const Answer expected = made.subject->step({p}, kConformanceDt);
@@ -219,7 +219,8 @@ std::string layoutGolden(const Recipe& recipe, uint64_t) {
   return "";
 }
 
-/// What the host only fills in for those who ask must not change the answers of one who did not.
+/// Fails if velocity or orientation change the answers of a shape that did not ask for them, because the host fills
+/// them in only if asked.
 std::string asksForWhatItReads(const Recipe& recipe, uint64_t) {
   struct Asked {
     uint32_t flag;

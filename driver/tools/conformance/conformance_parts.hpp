@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the conformance tests of all kinds are made of.
+/// Building blocks that conformance tests of all kinds share.
 #pragma once
 #include <functional>
 #include <memory>
@@ -13,13 +13,13 @@ namespace hapticd::conformance {
 constexpr double kConformanceDt = 1e-3;  ///< [s] of every step
 constexpr int kConformanceSteps = 2000;  ///< once around the path
 
-/// Tests without which others mean nothing.
+/// Names of tests that must pass before others mean anything.
 constexpr const char *kInTime = "steps-end-in-time", *kFinite = "finite-outputs", *kSame = "determinism-bitwise",
                      *kFoot = "foot-and-normal", *kGuarded = "eight-probes";
-/// How an objection begins that names an overrun which did not end the process.
+/// The beginning of an objection about an overrun that did not end the process.
 constexpr const char* kBeyond = "it writes behind its hsp_contact";
 
-/// Gives an active instance, or the reason why there is none.
+/// Makes and activates an instance; otherwise has the reason why there is none.
 struct Made {
   std::unique_ptr<Subject> subject;
   std::string error;
@@ -29,7 +29,7 @@ struct Made {
 std::string text(double value);
 std::string text(const Eigen::Vector3d& p);  ///< "X, Y, Z m"
 
-/// An objection that begins with the place where it was found, because advice often follows.
+/// Returns the objection with the place where it was found in front, because advice often stands at its end.
 std::string placed(const std::string& objection, const Eigen::Vector3d& p);
 
 /// A smooth closed path through and around the shape, from a corner outside its box and back to it.
@@ -40,53 +40,57 @@ Eigen::Vector3d onPath(const Subject& subject, double part, double phase = 0);
 std::string along(Subject& subject, const std::function<std::string(const Answer&, const Eigen::Vector3d&)>& look,
                   int steps = kConformanceSteps);
 
-/// The same, and then straight in at each place, as deep as `deepestPress`, and out again: a click or a second layer
-/// there may allocate, lock or print too.
+/// Does the same as along(), and then goes straight in at each place as deep as deepestPress() and out again, because a
+/// click or a second layer there may allocate, lock or print too.
 std::string alongAndDeep(Subject& subject,
                          const std::function<std::string(const Answer&, const Eigen::Vector3d&)>& look);
 
-/// Runs a test at each place where the shape can be touched, on one instance; the first objection ends it. "skip: why"
-/// where there is none.
+/// Runs a test at each place where the shape can be touched, on one instance. The first objection ends the run. Returns
+/// "skip: WHY" if there is no such place.
 std::string atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test);
 
-/// Why a shape whose force has no surface is not tested.
+/// The outcome for a shape whose force has no surface.
 constexpr const char* kField = "skip: it names no surface (HSP_OUT_TRACED): a force without a surface has no sign";
 
-/// The answer to a probe that jumps to p and rests there; zero if there is none to judge.
+/// Returns the answer to a probe that jumps to p and rests there; zero if no answer can be judged.
 hsp_contact answerAtRest(Subject& subject, const Eigen::Vector3d& p);
 
-/// "" or why point, normal and depth do not belong to one surface.
+/// Returns why point, normal and depth do not belong to one surface, or "".
 std::string footAndNormal(const Recipe& recipe, uint64_t);
 
-/// "" or by how much the force of a shape that only pushes deviates from its normal.
+/// Returns by how much the force of a shape that only pushes deviates from its normal, or "".
 std::string forceAlongNormal(const Recipe& recipe, uint64_t);
 
-/// "" or the energy that a hand gains when it goes in, along below the surface, and out again.
+/// Returns the energy that a hand gains if it goes in, along below the surface, and out again, or "" if it gains none.
 std::string loopsGiveNoEnergy(const Recipe& recipe, uint64_t);
 
-/// "warn: ..." for parameters whose units are not SI.
+/// Returns "warn: ..." if there are parameters whose units are not SI, otherwise "".
 std::string unitsSi(const Recipe& recipe, uint64_t);
 
-/// [bytes] What each life keeps, from the memory in use after each: the least that its growth from one quarter of the
-/// lives to the next explains, by the least and by the most of a quarter. What is taken once, however late, and what an
-/// allocator keeps and gives back, is no leak: it does not grow through all of them. 0 for fewer than eight lives.
+/// [bytes] Returns the memory that leaks in each life of an instance. `used` is the memory in use after each life. The
+/// lives are cut into four quarters; each has a least and a greatest use. The leak is the smallest growth of either
+/// from one quarter to the next, divided by the lives of a quarter. Memory that is taken once, however late, and memory
+/// that an allocator keeps and gives back do not grow in every quarter, so they do not count. Returns 0 for fewer than
+/// eight lives.
 double leakOf(const std::vector<double>& used);
 
-/// "" or what create() to destroy() leaks.
+/// Returns what is leaked from create() to destroy(), or "".
 std::string createDestroyLeak(const Recipe& recipe, uint64_t);
 
-/// "" or why what it draws by hsp.geometry/1 is not where it is felt; "skip: why" if it draws nothing.
+/// Returns why the drawing that the shape gives by hsp.geometry/1 is not where the shape is felt, or "". Returns "skip:
+/// WHY" if the shape draws nothing.
 std::string drawingWhereFelt(const Recipe& recipe, uint64_t);
 
-/// "" or what goes wrong with as many probes as a run may have, in guarded memory.
+/// Returns what goes wrong with as many probes as a run may have, in guarded memory, or "".
 std::string eightProbes(const Recipe& recipe, uint64_t);
 
-/// "" for a status that a step may return, and an answer that is finite.
+/// Returns "" if the status is one that a step may return and the answer is finite, otherwise what is wrong.
 std::string wrongStatus(const Answer& answer);
 
 const hsp_param& paramAt(const hsp_class& c, uint32_t i);
 
-/// "" or a warning: what `objection` says of each parameter, separated by `between`, and then `advice`.
+/// Returns a warning with what `objection` says about each parameter, separated by `between`, and then `advice`; or ""
+/// if there is no objection.
 std::string warningOfParams(const Recipe& recipe, const std::function<std::string(const hsp_param&)>& objection,
                             const std::string& between, const std::string& advice);
 

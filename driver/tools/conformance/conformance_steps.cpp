@@ -28,7 +28,7 @@ std::string finiteOutputs(const Recipe& recipe, uint64_t seed) {
   return "";
 }
 
-/// Asks for bad samples in contact, where a shape that ignores the flag goes on pushing.
+/// Gives bad samples during a contact, where a shape that ignores the flag would go on pushing.
 std::string badSample(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
@@ -81,7 +81,8 @@ std::string forceContinuous(const Recipe& recipe, uint64_t) {
     step.out = contact.flags;
     step.in = answer.jumped ? HSP_IN_JUMP : 0;
     if (answer.jumped) step.velocity.setZero();
-    step.former = true;  // nothing searches here, so a shape must have its surface at once after a jump
+    step.former = true;  // the answer before is compared too; no search runs here, so after a jump a shape must find
+                         // its surface at once
     last = p, force = step.force;
     bool held = false;
     claim.judge(step, bounds, kConformanceDt, held);
@@ -108,7 +109,8 @@ double medianOf(std::vector<double> values) {
   return *middle;
 }
 
-/// Both are lengths in m: depth changes as much as the probe moves along the normal, and the foot is one depth away.
+/// Checks that depths and feet are in m: depth must change by as much as the probe moves along the normal, and outside,
+/// the foot must be as far away as the depth says.
 class LengthsInMetres {
  public:
   void add(const hsp_contact& c, const Vector3d& p, const Vector3d& before, double depth_before) {
@@ -117,13 +119,13 @@ class LengthsInMetres {
       ++outside_;
       if (c.depth_m == 0) ++flat_;
     }
-    constexpr double kLeast = 1e-7, kFar = 1e-5;  // [m] of a step, and of a foot
+    constexpr double kLeast = 1e-7, kFar = 1e-5;  // [m] least step that is judged; [m] tolerance of a foot
     const double out = Vector3d(c.normal).dot(p - before);
     if (std::abs(out) > std::max(kLeast, 0.5 * (p - before).norm())) rates_.push_back((depth_before - c.depth_m) / out);
     if (std::abs(c.depth_m) > kFar) feet_.push_back((p - Vector3d(c.point)).norm() / std::abs(c.depth_m));
   }
   std::string wrong() const {
-    constexpr double kFar = 3;  // a law may measure its depth differently, but in m
+    constexpr double kFar = 3;  // factor, because a shape may measure its depth in another way, but in m
     if (2 * flat_ > outside_)
       return "depth_m is 0 outside of the shape, where HSP_OUT_TRACED is set; expected minus the distance to the "
              "surface";
@@ -140,11 +142,11 @@ class LengthsInMetres {
 
  private:
   std::vector<double> rates_, feet_;
-  size_t outside_ = 0, flat_ = 0;  ///< steps outside, and those of them that report a depth of 0
+  size_t outside_ = 0, flat_ = 0;  ///< number of steps outside, and how many of these report a depth of 0
 };
 
-/// If the probe moves along the normal, depth must fall by as much; otherwise depth or normal has the wrong sign, and
-/// so has the force.
+/// Fails unless depth falls when the probe moves along the normal; otherwise depth or normal has the wrong sign, and so
+/// has the force.
 std::string depthOutward(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
@@ -166,7 +168,8 @@ std::string depthOutward(const Recipe& recipe, uint64_t) {
     return std::string();
   });
   if (agrees < 0) return "depth grows toward the outward normal: depth or normal has the wrong sign";
-  return (made.subject->description().flags & HSP_C_DEFORMS) != 0 ? "" : lengths.wrong();  // there it gives way
+  // a surface that gives way is not judged
+  return (made.subject->description().flags & HSP_C_DEFORMS) != 0 ? "" : lengths.wrong();
 }
 
 std::string energyNonIncreasing(const Recipe& recipe, uint64_t) {
@@ -189,9 +192,9 @@ std::string energyNonIncreasing(const Recipe& recipe, uint64_t) {
         return "";
       },
       kSlow);
-  if (made.subject->moves()) return "";  // gravity and the hand both work on it: the test of its own energy bounds it
+  if (made.subject->moves()) return "";  // gravity also works on a moving shape; another test bounds its stored energy
   const double gained = std::isnan(before) ? 0 : made.subject->energy() - before;
-  constexpr double kRounding = 0.02;  // share of the work that went to and fro, because the path is walked in steps
+  constexpr double kRounding = 0.02;  // share of the work in both directions, because the path is made of steps
   const double allowed = kRounding * moved + 1e-6 - gained;
   return given <= allowed ? "" : "a closed path gave " + text(given) + " J to the hand of " + text(moved) + " J moved";
 }

@@ -22,7 +22,7 @@ namespace {
 
 using Eigen::Vector3d;
 constexpr uint8_t kUntouched = 0xA5;
-constexpr double kTurned[4] = {0.8, 0.36, 0.48, 0};  // any rotation but the identity
+constexpr double kTurned[4] = {0.8, 0.36, 0.48, 0};  // any rotation other than the identity
 
 struct Usage {
   uint64_t cpu_ns = 0;

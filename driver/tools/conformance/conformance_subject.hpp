@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// One instance of a shape under test, driven through the C ABI alone: what a conformance test works with.
+/// One instance of a shape under test, which a conformance test drives through the C ABI alone.
 #pragma once
 #include <Eigen/Core>
 #include <memory>
@@ -16,13 +16,14 @@
 
 namespace hapticd::conformance {
 
-/// What every instance of a check is made from.
+/// Describes how every instance of a check is made.
 struct Recipe {
   std::string file, class_name;
-  std::vector<scene::Value> set;  ///< parameters that were checked against the table; others keep their defaults
-  Touch touch;                    ///< where it can be touched; empty until a place was looked for
+  /// Parameters that were checked against the plugin's table; all others keep their defaults.
+  std::vector<scene::Value> set;
+  Touch touch;  ///< where the shape can be touched; empty until such a place was searched for
 
-  /// The value of a parameter, or nullptr.
+  /// Returns the value of a parameter, or nullptr if it keeps its default.
   const scene::Value* find(const char* id) const;
 };
 
@@ -31,20 +32,20 @@ struct Answer {
   hsp_status status = HSP_OK;
   std::vector<hsp_contact> contacts;
   hsp_pose pose{};
-  bool jumped = false;  ///< the probe jumped there, so nothing may be compared with the answer before
+  bool jumped = false;  ///< the probe jumped, so this answer cannot be compared with the one before
 };
 bool sameBits(const Answer& a, const Answer& b);
 bool finite(const Answer& answer);
 
-/// What one step took.
+/// The cost of one step.
 struct StepCost {
   uint64_t wall_ns = 0, cpu_ns = 0;
-  bool waited = false;  ///< it released the processor by itself
+  bool waited = false;  ///< the step released the processor by itself
 };
 
 class Subject {
  public:
-  /// Loads, creates and sets; the error is in the plugin's own words.
+  /// Loads the plugin, creates an instance and sets its parameters. An error is in the plugin's own words.
   static Result<std::unique_ptr<Subject>> make(const Recipe& recipe);
   ~Subject();
   Subject(const Subject&) = delete;
@@ -54,36 +55,37 @@ class Subject {
   hsp_status activateRaw(uint32_t probes, hsp_report& report);
   void deactivate();
 
-  /// Moves every probe to a position within dt; velocities follow from the last position. It searches every fifth step
-  /// as the host does.
+  /// Moves every probe to a position within dt [s]. Velocities follow from the positions before. Every fifth step also
+  /// makes a proximity search, as the host does.
   const Answer& step(const std::vector<Eigen::Vector3d>& positions, double dt, uint32_t flags = 0);
   /// The same as `step` with one probe, exactly as given.
   const Answer& stepRaw(const hsp_probe& probe, double dt);
-  /// From now on the steps contain what these flags ask for, HSP_R_VELOCITY and HSP_R_ORIENTATION, requested or not.
+  /// From now on probes have what these flags stand for (HSP_R_VELOCITY, HSP_R_ORIENTATION), whether the shape asked
+  /// for it or not.
   void give(uint32_t flags) { given_ = flags; }
   /// From now on `cost` is the cost of the last step.
   void measureCost() { measured_ = true; }
   const StepCost& cost() const { return cost_; }
-  /// Room between the records of a step, which shows whether the strides are used.
+  /// Puts this much room between the records of a step, to show whether the shape uses the strides.
   void widen(size_t bytes) { room_ = bytes; }
   bool roomUntouched() const;
-  /// Allocates the records of a step now, in memory of the caller's kind.
+  /// Allocates the records of a step now, so that they lie in guarded memory if the caller has guarded its allocations.
   void reserve(size_t probes);
   void reset();
 
   const hsp_class& description() const { return *class_; }
   const hsp_report& report() const { return report_; }
-  const std::vector<Place>& places() const { return places_; }  ///< the place where it can be touched
+  const std::vector<Place>& places() const { return places_; }  ///< the places where it can be touched
   hsp_shape* handle() const { return shape_; }
   const void* extension(const char* name) const;
   bool moves() const { return (report_.flags & HSP_R_MOVES) != 0; }
   double damping() const { return damping_; }  ///< [N s/m] the largest damping that its parameters ask for
-  double energy() const;                       ///< [J] stored energy, NaN: it does not say
-  /// Box of the shape in its own frame, or a guess of 0.1 m about the origin.
+  double energy() const;                       ///< [J] stored energy; NaN if the shape does not report it
+  /// Returns the box of the shape in its own frame [m]; if it is unknown, 0.1 m about the origin.
   std::pair<Eigen::Vector3d, Eigen::Vector3d> bounds() const;
-  uint64_t stepNs() const { return step_ns_; }           ///< of the last step, wall clock
-  uint64_t allocations() const { return allocations_; }  ///< in all steps since activate
-  uint64_t locks() const { return locks_; }              ///< the same, since countLocksOf() was called
+  uint64_t stepNs() const { return step_ns_; }           ///< [ns] wall-clock time of the last step
+  uint64_t allocations() const { return allocations_; }  ///< number of allocations in all steps since activate()
+  uint64_t locks() const { return locks_; }  ///< number of locks in all steps since countLocksOf() was called
 
  private:
   Subject() = default;

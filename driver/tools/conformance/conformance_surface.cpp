@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Whether point, normal and depth of an answer belong to one surface, as the ABI promises: the host predicts contacts
-/// by them, judges pulls and edges by them, and draws them.
+/// Tests whether point, normal and depth of an answer belong to one surface, as the ABI requires. The host uses them to
+/// predict contacts, to judge pulls and edges, and to draw.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kOffPart = 0.01;   ///< share of a length: a foot that is followed is not exact
+constexpr double kOffPart = 0.01;   ///< share of a length, because a foot that is followed is not exact
 constexpr double kOffLeast = 1e-6;  ///< [m]
 constexpr double kOffAngle = 0.02;  ///< [rad] a little more than a degree
 
@@ -24,7 +24,7 @@ struct Foot {
   bool edge = false;
 
   double away() const { return (p - point).norm(); }
-  /// [m] By how much such lengths may be wrong.
+  /// [m] Returns the tolerance of lengths.
   double room() const { return kOffLeast + kOffPart * away() + std::abs(residual); }
 };
 
@@ -38,8 +38,8 @@ Foot footFor(Subject& subject, const Vector3d& p) {
   return foot;
 }
 
-/// A probe at the foot is on the surface, so its depth is 0. And the foot is as far away as an outer depth says;
-/// inside, a law may measure its depth differently.
+/// Returns why the foot is not on the surface, or "". A probe at the foot must have a depth of 0. Outside, the foot
+/// must be as far away as the depth says; inside, a shape may measure its depth in another way.
 std::string offTheSurface(Subject& subject, const Foot& foot) {
   const Foot there = footFor(subject, foot.point);
   if (there.known && std::abs(there.depth) > foot.room() + std::abs(there.residual))
@@ -53,15 +53,16 @@ std::string offTheSurface(Subject& subject, const Foot& foot) {
   return "";
 }
 
-/// If the foot stays while the probe goes aside, it lies on an edge, and many normals are right; if it leaps, another
-/// part of the surface is nearer.
+/// Returns true if the normal cannot be judged: if the foot stays while the probe goes aside, it lies on an edge, where
+/// many normals are right; if it leaps, another part of the surface is nearer.
 bool staysOrLeaps(const Foot& before, const Foot& after) {
-  constexpr double kStays = 0.2, kLeaps = 5;  // share of the probe's way
+  constexpr double kStays = 0.2, kLeaps = 5;  // share of the distance that the probe moved
   const double foot = (after.point - before.point).norm(), probe = (after.p - before.p).norm();
   return foot < kStays * probe || foot > kLeaps * probe;
 }
 
-/// The normal points from the foot to the probe outside, and back inside; and depth does not change across it.
+/// Returns what is wrong with the normal, or "". Outside, it must point from the foot to the probe, inside from the
+/// probe to the foot. Depth must not change across the normal.
 std::string wrongNormal(Subject& subject, const Foot& foot, double aside) {
   if (foot.edge || foot.away() < 10 * kOffLeast) return "";
   const Vector3d u = foot.normal.unitOrthogonal(), v = foot.normal.cross(u);

@@ -18,12 +18,13 @@ using Eigen::Vector3d;
 
 constexpr size_t kMostPlaces = 12, kMostOfASize = 6;
 
-/// Where the search starts from: points on a box about the middle.
+/// The start points of a search: points on a box about the middle.
 struct Around {
   Vector3d middle, half;
 };
 
-/// First the box that the shape gives, if it does; then cubes of all sizes about the origin, the likeliest first.
+/// Returns the boxes to search from: first the box that the shape gives, if it does, then cubes of all sizes about the
+/// origin, the likeliest first.
 std::vector<Around> sizes(const Subject& subject) {
   const auto [low, high] = subject.bounds();
   std::vector<Around> all{{(low + high) / 2, 0.6 * (high - low).cwiseMax(1e-3)}};
@@ -32,7 +33,8 @@ std::vector<Around> sizes(const Subject& subject) {
   return all;
 }
 
-/// Faces, corners and edges of a cube, each turned a little: a seed on a plane of symmetry has two nearest points.
+/// Returns the directions of faces, corners and edges of a cube, each turned a little, because a start on a plane of
+/// symmetry has two nearest points.
 std::vector<Vector3d> directions() {
   std::vector<Vector3d> all;
   const Vector3d aside(0.031, 0.017, -0.023);
@@ -55,7 +57,7 @@ struct Search {
     });
   }
 
-  /// True if a press there comes into contact, by the shape's own word or by its force.
+  /// Returns true if a press there makes contact, as its flags or its force show.
   bool touches(const Place& place) {
     bool inside = false;
     press(subject, place, [&](const Answer& answer, const PressStep&) {
@@ -137,7 +139,7 @@ Touch findTouch(const Recipe& recipe) {
       here += search.lookFrom(around.middle + around.half.cwiseProduct(side), around.half.maxCoeff()) ? 1 : 0;
     }
   }
-  std::mt19937_64 random(1);  // a shape that reports nothing outside of its contact is found by chance
+  std::mt19937_64 random(1);  // random points, for a shape that reports nothing outside of a contact
   std::uniform_real_distribution<double> unit(-1, 1);
   for (const Around& around : from)
     for (int i = 0; i < 400 && search.found.places.empty() && !search.found.traced; ++i)

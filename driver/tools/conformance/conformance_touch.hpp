@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Where a shape can be touched, found by its own answers: a test that never touched it would say nothing.
+/// Finds where a shape can be touched from the shape's own answers, because a test that never touches it would show
+/// nothing.
 #pragma once
 #include <Eigen/Core>
 #include <functional>
@@ -25,8 +26,8 @@ struct Touch {
   bool felt = false;    ///< it gave a force or a torque somewhere
 };
 
-/// Follows the foot points that the shape gives, and tries each by pressing there. It throws nothing; a shape that
-/// cannot be made gives an empty answer
+/// Follows the foot points that the shape gives, and presses at each to try it. Throws nothing. Returns an empty Touch
+/// for a shape that cannot be made.
 Touch findTouch(const Recipe& recipe);
 
 /// Writes a Touch as text, to pass it from a child process to its parent, and reads it back.
@@ -36,7 +37,7 @@ Touch touchFromText(const std::string& text);
 /// One position of a press.
 struct PressStep {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< [m]
-  bool settled = false;                         ///< the probe rests and came straight in: no damping, no friction
+  bool settled = false;  ///< the probe rests and came straight in, so damping and friction give no force
 };
 
 /// [m] How deep a press goes, if it begins outside: 1 mm, and less for a small shape.
@@ -45,7 +46,7 @@ double pressDepth(const Subject& subject);
 /// [m] How deep a shape is pressed when its depths are examined: 10 mm, and less for a small shape.
 double deepestPress(const Subject& subject);
 
-/// From outside straight in, once round on a small circle, and out again, without a jump.
+/// Returns the steps of a press: from outside straight in, once round on a small circle, and out again, without a jump.
 std::vector<PressStep> pressAt(const Place& place, double depth);
 
 using PressLook = std::function<std::string(const Answer&, const PressStep&)>;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Units of parameters: a scene is in SI throughout, and a number in mm that stands among metres is read as metres.
+/// Tests the units of parameters. A scene is in SI units throughout, so a person reads a number in mm among metres as
+/// metres.
 #include <cctype>
 #include <string_view>
 
@@ -12,7 +13,7 @@ struct Foreign {
   std::string_view unit, si;
 };
 
-/// Units that authors write, and what a scene has in their place.
+/// Units that authors write, and the SI unit for each.
 constexpr Foreign kForeign[] = {
     {"mm", "m"},       {"cm", "m"},          {"um", "m"},    {"nm", "m"},    {"km", "m"},          {"in", "m"},
     {"inch", "m"},     {"g", "kg"},          {"mg", "kg"},   {"t", "kg"},    {"ms", "s"},          {"us", "s"},
@@ -23,7 +24,7 @@ constexpr Foreign kForeign[] = {
     {"mA", "A"},       {"%", "a part of 1"}, {"mJ", "J"},    {"mW", "W"},
 };
 
-/// The first part of a unit, such as "mm" of "N/mm", that is not SI; nullptr if none is known to be.
+/// Returns the first part of a unit that is known not to be SI, such as "mm" in "N/mm"; nullptr if there is none.
 const Foreign* foreignPart(std::string_view unit) {
   const auto letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '%' || c < 0; };
   for (size_t i = 0; i < unit.size();) {

@@ -12,14 +12,14 @@ namespace hapticd::conformance {
 namespace {
 
 constexpr size_t kPage = 4096;
-constexpr size_t kPages = size_t{1} << 18;     ///< 1 GiB of addresses, of which only the blocks have memory
-constexpr size_t kMostBlocks = 20'000;         ///< each takes two of the 65,530 mappings that Linux allows a process
-constexpr size_t kMostUsed = size_t{1} << 16;  ///< pages, 256 MiB
+constexpr size_t kPages = size_t{1} << 18;  ///< 1 GiB of addresses, of which only the blocks have memory
+constexpr size_t kMostBlocks = 20'000;  ///< [blocks] each takes two of the 65,530 mappings that Linux allows a process
+constexpr size_t kMostUsed = size_t{1} << 16;  ///< [pages] 256 MiB
 
-/// What is known of the block that begins on a page.
+/// The block that begins on a page.
 struct Page {
-  size_t size;  ///< [bytes] of the block; 0: none begins here
-  size_t room;  ///< [bytes] from its beginning to the unreadable page
+  size_t size;  ///< [bytes] size of the block; 0 if none begins here
+  size_t room;  ///< [bytes] from the beginning of the block to the unreadable page
   bool freed;
 };
 
@@ -49,7 +49,7 @@ size_t sizeOf(const void* block) {
   return pages[pageOf(block)].size;
 }
 
-/// Its addresses are never used again, so that code which still uses them is found.
+/// Frees a block. Its addresses are never used again, so that code which still uses them is found.
 void giveBack(void* block) {
   Page& page = pages[pageOf(block)];
   const size_t count = (page.size + kPage - 1) / kPage;

@@ -6,7 +6,7 @@
 namespace hapticd::conformance {
 
 /// While the object lives, blocks that this thread allocates are guarded, as long as there is room. They stay guarded
-/// afterwards, and once they were freed nobody can read them.
+/// after the object has gone. A block that was freed can no longer be read.
 class GuardedMemory {
  public:
   GuardedMemory() noexcept;
@@ -19,14 +19,15 @@ class GuardedMemory {
   bool works_;
 };
 
-/// The block beyond which an access to a guarded page went.
+/// A wrong access to guarded memory: the block that it belongs to, and the place.
 struct Overrun {
-  size_t block = 0;  ///< [bytes] size that was asked for; 0: the address is not in guarded memory
-  size_t at = 0;     ///< [bytes] from its beginning to the address
+  size_t block = 0;  ///< [bytes] size of the block; 0 if the address is not in guarded memory
+  size_t at = 0;     ///< [bytes] from the beginning of the block to the address
   bool freed = false;
 };
 
-/// [any] The block before an address that could not be read. It allocates nothing, because a signal handler calls it.
+/// [any] Returns the block that ends before an address that could not be accessed. Allocates nothing, because a signal
+/// handler calls it.
 Overrun overrunAt(const void* address) noexcept;
 
 }  // namespace hapticd::conformance

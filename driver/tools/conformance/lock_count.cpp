@@ -37,7 +37,7 @@ const Replacement kReplacements[] = {
     {"sem_wait", reinterpret_cast<void*>(&counting<sem_t, &sem_wait>)},
 };
 
-/// Writes through the protection that the loader sets on resolved addresses.
+/// Replaces a function address, although the loader has made the resolved addresses read-only.
 bool put(void** slot, void* function) {
   const auto page_size = static_cast<uintptr_t>(sysconf(_SC_PAGESIZE));
   void* page = reinterpret_cast<void*>(reinterpret_cast<uintptr_t>(slot) & ~(page_size - 1));

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
-/// Counts the locks that a loaded library takes, by putting counting functions in the place of its own calls.
+/// Counts the locks that a loaded library takes. Its calls of lock functions are replaced by calls of functions that
+/// count.
 #pragma once
 #include <cstdint>
 #include <string>
 
 namespace hapticd::conformance {
 
-/// [main] From now on, calls of lock functions by that library are counted. False if it imports none.
+/// [main] From now on, calls of lock functions by that library are counted. Returns false if the library imports no
+/// lock function.
 bool countLocksOf(const std::string& file);
 
-/// [any] The count so far, in all threads.
+/// [any] Returns the number of locks so far, in all threads.
 uint64_t locksCounted();
 
 }  // namespace hapticd::conformance

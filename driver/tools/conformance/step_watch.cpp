@@ -84,14 +84,14 @@ const Named kNames[] = {
 
 uint32_t probes_of_step = 0;
 
-/// Notes what was overrun; then the same access, without a handler, ends the process.
+/// Notes what was overrun, and removes the handler. Then the same access happens again and ends the process.
 void onFault(int signal, siginfo_t* info, void*) {
   last_step->overrun = overrunAt(info->si_addr);
   if (last_step->overrun.block > 0) last_step->probes = probes_of_step;
   ::signal(signal, SIG_DFL);
 }
 
-/// ", in step() with the probe at X, Y, Z m"; with several probes nobody knows which it was.
+/// ", in step() with the probe at X, Y, Z m"; with several probes it is unknown which one it was.
 std::string placesOfStep() {
   std::string places;
   const uint32_t count = std::min(last_step->count, LastStep::kMost);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Watches the steps of a plugin from the process that they run in: where the probe was when it ended, system calls.
+/// Watches the steps of a plugin in the process that runs them: counts their system calls, and remembers where the
+/// probe was if the process ends.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -12,21 +13,22 @@ namespace hapticd::conformance {
 /// The function of a plugin that was called and has not returned.
 enum class Inside : uint32_t { kNothing, kCreate, kSet, kActivate, kStep, kDestroy };
 
-/// Where a child is, in memory that it shares with its parent, because a crash leaves no other trace.
+/// What a child process does at present. It lies in memory that the child shares with its parent, because a crash
+/// leaves no other trace.
 struct LastStep {
   static constexpr uint32_t kMost = 8;
-  double position[kMost][3];  ///< [m] of the probes of a step
-  uint32_t count;             ///< of them
+  double position[kMost][3];  ///< [m] positions of the probes of a step
+  uint32_t count;             ///< number of these positions
   Inside inside;
-  uint32_t probes;  ///< 0, or how many probes there were when a fault ended it in guarded memory
+  uint32_t probes;  ///< number of probes when a fault in guarded memory ended the child; 0 if none did
   Overrun overrun;
 };
 
 /// [main] Makes the shared memory, once and before the first child, and forgets the last step of the previous child.
 void shareLastStep();
 
-/// [main] Where the last child was: ", in step() with the probe at X, Y, Z m", ", in activate()", or "" if it was not
-/// in the plugin; and what it overran.
+/// [main] Returns where the last child ended (", in step() with the probe at X, Y, Z m", ", in activate()", or "" if it
+/// was not in the plugin), and what it overran.
 std::string whereItEnded();
 
 /// [main] True if the last child ended by a fault in guarded memory, so that the overrun block is known.
@@ -35,22 +37,23 @@ bool overran();
 /// [main] True if the last child ended before there was an active shape.
 bool endedBeforeSteps();
 
-/// [main] From now on a fault in guarded memory tells the parent which block was overrun. @param probes of each step
+/// [main] From now on a fault in guarded memory tells the parent which block was overrun. @param probes number of
+/// probes of each step
 void tellOverruns(uint32_t probes);
 
-/// [main] From now on system calls of this thread within steps are counted. False if this kernel or processor cannot do
-/// it.
+/// [main] From now on system calls of this thread within steps are counted. Returns false if this kernel or processor
+/// cannot do this.
 bool watchSystemCalls();
 
 /// The first system call of each step; a step that makes several is counted once.
 struct SystemCalls {
-  uint64_t steps = 0;  ///< that made one
-  long number = 0;     ///< of the last one
+  uint64_t steps = 0;  ///< number of steps that made a system call
+  long number = 0;     ///< number (as in the kernel's table) of the last system call
   bool prints = false;
 };
 SystemCalls systemCalls();
 
-/// "write" for its number, "number 999" for one without a name here.
+/// Returns the name of a system call, such as "write", or "number 999" if its name is unknown here.
 std::string systemCallName(long number);
 
 /// Surrounds a call of the plugin other than step().

@@ -31,7 +31,7 @@ std::string nothingOdd(const Reading&) {
   return "";
 }
 
-/// What has no kinematics cannot be opened; a wrong inverse() spoils nothing else.
+/// Tests the kinematics. Without kinematics no other test can run; a wrong inverse() does not affect other tests.
 Finding kinematics(const scene::Device& device) {
   const auto made = host::DeviceInstance::create(device, nullptr);
   if (!made) return Finding::failed(made.error()).andEnds();
@@ -53,7 +53,7 @@ Finding opens(const scene::Device& device) {
   return Finding::passed(fmt::format("\"{}\", {} joints, {:g} Hz", info.product, info.joint_count, info.rate_hz));
 }
 
-/// A number of hdv_info that no arm has: it was meant in other units.
+/// Returns a text about a number of hdv_info that no arm has, because it was meant in other units; or "".
 std::string unlikely(const hdv_info& info) {
   const std::tuple<double, double, const char*, const char*> numbers[] = {
       {info.rate_hz, 1e5, "rate_hz", "Hz"},
@@ -73,7 +73,7 @@ std::string unlikely(const hdv_info& info) {
   return "";
 }
 
-/// What open() claims and nothing stands behind: a scene that asks for it would run without it.
+/// Tests that the module has what open() claims, because a scene that relies on a false claim would run without it.
 Finding claims(const scene::Device& device) {
   const Opened opened = openArm(device);
   if (opened.arm == nullptr) return Finding::skipped("the arm was not opened");
@@ -83,8 +83,8 @@ Finding claims(const scene::Device& device) {
   };
   const uint32_t claimed = opened.claimed;
   if ((claimed & HDV_C_PACING) != 0 && !has(HDV_EXT_PACE))
-    return Finding::failed("open() claims HDV_C_PACING, but there is no extension " HDV_EXT_PACE
-                           ": a servo with pace: device would run by the clock; expected both or none");
+    return Finding::failed("open() claims HDV_C_PACING, but extension() does not return " HDV_EXT_PACE
+                           ", so `pace: device` would fall back to the clock; expected both, or neither");
   if ((claimed & HDV_C_CALIBRATION) != 0 && !has(HDV_EXT_CALIBRATION))
     return Finding::warned("open() claims HDV_C_CALIBRATION, but there is no extension " HDV_EXT_CALIBRATION
                            ": hapticd device calibrate cannot calibrate it, and no force comes before samples carry "
@@ -100,7 +100,8 @@ Finding claims(const scene::Device& device) {
   return Finding::passed();
 }
 
-/// Where a simulated arm is after some ticks without its motors, which are told torques all the same.
+/// Returns the joints of a simulated arm after some ticks in the mode HDV_OFF, in which every command has torques all
+/// the same. @param share torques of the commands, as a share of the largest torques
 std::optional<std::vector<double>> placeAfter(const scene::Device& device, double share) {
   constexpr uint64_t kPeriod = 1'000'000, kTicks = 200;  // [ns]
   const Opened opened = openArm(device);
@@ -131,19 +132,19 @@ std::optional<std::vector<double>> placeAfter(const scene::Device& device, doubl
   return std::vector<double>(sample.position, sample.position + info.joint_count);
 }
 
-/// HDV_OFF means free motors, whatever numbers stand beside it.
+/// Tests that HDV_OFF frees the motors, whatever torques the command has.
 Finding offIsOff(const scene::Device& device) {
   const Opened opened = openArm(device);
   if (opened.arm == nullptr) return Finding::skipped("the arm was not opened");
   if ((opened.arm->info().capabilities & HDV_C_SIMULATED) == 0)
-    return Finding::skipped("its motors are real: nobody may try that");
+    return Finding::skipped("its motors are real, so this is not tested");
   const auto still = placeAfter(device, 0), again = placeAfter(device, 0), pushed = placeAfter(device, 0.5);
   if (!still || still != again || !pushed) return Finding::skipped("its samples are not the same for the same input");
   for (size_t i = 0; i < still->size(); ++i)
     if ((*still)[i] != (*pushed)[i])
       return Finding::failed(
-          fmt::format("write() with HDV_OFF and torques beside it moves joint {} to {:.4g}, and without them it is at "
-                      "{:.4g}; expected free motors in the mode HDV_OFF, whatever the numbers say",
+          fmt::format("after write() with HDV_OFF and torques, joint {} is at {:.4g}, but without torques it is at "
+                      "{:.4g}; in the mode HDV_OFF the motors must be free, whatever the torques are",
                       i + 1, (*pushed)[i], (*still)[i]));
   return Finding::passed();
 }
@@ -161,7 +162,8 @@ Finding samples(const scene::Device& device) {
   return wrong.empty() ? check.sum() : Finding::failed(wrong);
 }
 
-/// The calls of read() and write() that allocate; the first few are left out, as a thread takes what it keeps.
+/// Counts the calls of read() and write() that allocate. The first few do not count, because a thread then takes memory
+/// that it keeps.
 Finding noAllocation(const scene::Device& device) {
   constexpr uint64_t kFirst = 20;
   const Opened opened = openArm(device);
@@ -178,16 +180,16 @@ Finding noAllocation(const scene::Device& device) {
     if (++calls > kFirst) allocating += allocationsOfThread() != before ? 1 : 0;
   });
   if (!wrong.empty() || allocating == 0) return Finding::of(wrong);
-  return Finding::failed(
-      fmt::format("read() or write() allocates memory, in {} of {} calls, first{}; expected room that start() made",
-                  allocating, calls, conformance::firstAllocationIn(device.library.string())));
+  return Finding::failed(fmt::format(
+      "read() or write() allocated memory in {} of {} calls, the first time{}; allocate all memory in start()",
+      allocating, calls, conformance::firstAllocationIn(device.library.string())));
 }
 
 Finding noSystemCalls(const scene::Device& device) {
   const Opened opened = openArm(device);
   if (opened.arm == nullptr) return Finding::skipped("the arm was not opened");
-  std::setvbuf(stdout, nullptr, _IONBF, 0);  // a print that waits in a buffer is found as well
-  if (!conformance::watchSystemCalls()) return Finding::skipped("this kernel does not tell of system calls");
+  std::setvbuf(stdout, nullptr, _IONBF, 0);  // without a buffer, each print is a system call and is found
+  if (!conformance::watchSystemCalls()) return Finding::skipped("this kernel cannot report system calls");
   hdv_sample sample{};
   uint64_t calls = 0;
   const std::string wrong = readFor(*opened.arm, sample, &nothingOdd, [&](const Call& call) {
@@ -201,8 +203,8 @@ Finding noSystemCalls(const scene::Device& device) {
   const std::string name = conformance::systemCallName(seen.number);
   const bool sleeps = name.find("nanosleep") != std::string::npos || name.find("poll") != std::string::npos;
   const std::string told = fmt::format(
-      "read() or write() {} in {} of {} calls ({}); expected a thread of the module's own for what "
-      "may wait, as io_thread.hpp of the template has it",
+      "read() or write() {} in {} of {} calls ({}); calls that may wait belong in a thread of the module's own, as in "
+      "io_thread.hpp of the template",
       seen.prints ? "prints"
       : sleeps    ? "sleeps"
                   : "makes a system call",
@@ -245,7 +247,7 @@ Outcome tryOne(const Test& test, const scene::Device& device, int limit_ms) {
       limit_ms);
   if (said)
     if (const auto finding = findingFrom(*said)) return {test.name, *finding};
-  const std::string call = trail.call(), how = said ? "answered what is no finding" : said.error();
+  const std::string call = trail.call(), how = said ? "gave an answer that cannot be read" : said.error();
   return {test.name,
           Finding::failed("it " + how + (call.empty() ? "" : ", in " + call + "()") + overrunWords()).andEnds()};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The examination of a device module: what its author must hear before a hand feels it.
+/// The tests of a device module: they tell its author what is wrong before a hand feels it.
 #pragma once
 #include <vector>
 
@@ -9,7 +9,7 @@
 namespace hapticd::device_check {
 
 struct Outcome {
-  const char* name;  ///< of the test
+  const char* name;  ///< name of the test
   Finding found;
 };
 
@@ -21,8 +21,8 @@ struct Test {
 /// All tests, in the order in which they run.
 const std::vector<Test>& tests();
 
-/// [main] Runs one in a child process of its own. A crash or a hang names the call in which it came, and ends the
-/// examination.
+/// [main] Runs one test in a child process of its own. If it crashes or hangs, the outcome names the call in which this
+/// happened, and no further test is run.
 Outcome tryOne(const Test& test, const scene::Device& device, int limit_ms);
 
 }  // namespace hapticd::device_check

@@ -4,7 +4,7 @@
 namespace hapticd::device_check {
 namespace {
 
-constexpr char kVerdicts[] = {'p', 'w', 'f', 's'};  ///< by Verdict
+constexpr char kVerdicts[] = {'p', 'w', 'f', 's'};  ///< one letter for each Verdict
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What one test of a device module found: made in a child process, printed by its parent.
+/// The result of one test of a device module: a child process makes it, and its parent prints it.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,22 +11,23 @@ enum class Verdict { kPassed, kWarned, kFailed, kSkipped };
 struct Finding {
   Verdict verdict = Verdict::kPassed;
   std::string what;   ///< what is wrong, why it was skipped, or what was seen
-  bool ends = false;  ///< the tests after it mean nothing, or cannot be run
+  bool ends = false;  ///< true if the tests after this one mean nothing or cannot be run
 
   static Finding passed(std::string seen = "") { return {Verdict::kPassed, std::move(seen), false}; }
   static Finding warned(std::string what) { return {Verdict::kWarned, std::move(what), false}; }
   static Finding failed(std::string what) { return {Verdict::kFailed, std::move(what), false}; }
   static Finding skipped(std::string why) { return {Verdict::kSkipped, std::move(why), false}; }
-  /// An objection, or "" where there is none.
+  /// Makes a failed finding from an objection, or a passed one from "".
   static Finding of(std::string wrong) { return wrong.empty() ? passed() : failed(std::move(wrong)); }
-  /// Nothing else can be tried then.
+  /// Marks this finding as one after which no other test can be run.
   Finding andEnds() && {
     ends = true;
     return std::move(*this);
   }
 };
 
-/// How a finding goes through a pipe. nullopt: these bytes are no finding.
+/// Convert a finding to the bytes that go through a pipe, and back. findingFrom() returns nullopt if the bytes are not
+/// a finding.
 std::string toBytes(const Finding& finding);
 std::optional<Finding> findingFrom(const std::string& bytes);
 

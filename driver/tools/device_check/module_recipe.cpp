@@ -7,7 +7,8 @@
 namespace hapticd::device_check {
 
 Result<std::vector<scene::Device>> devicesIn(const std::filesystem::path& file) {
-  const auto absolute = std::filesystem::absolute(file);  // a bare name would be looked up in the system's folders
+  // the loader would search a name without a folder in the system's folders
+  const auto absolute = std::filesystem::absolute(file);
   const auto classes = host::describeInChild(absolute);
   if (!classes) return Error{file.string() + ": " + classes.error()};
   std::vector<scene::Device> devices;

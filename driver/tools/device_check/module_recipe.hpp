@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The devices of a module file alone, without a device file: their parameters are the defaults.
+/// Makes devices from a module file alone, without a device file, with default parameters.
 #pragma once
 #include <filesystem>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace hapticd::device_check {
 
-/// [main] One recipe for each device class of the file, which a child process describes.
+/// [main] Returns one device for each device class of the file. A child process loads the file to describe its classes.
 Result<std::vector<scene::Device>> devicesIn(const std::filesystem::path& file);
 
 }  // namespace hapticd::device_check

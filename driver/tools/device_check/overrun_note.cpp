@@ -22,7 +22,7 @@ Note unshared{};
 Note* note = &unshared;
 char* sample_end = nullptr;
 
-/// Notes what was overrun; then the same access, without a handler, ends the process.
+/// Notes what was overrun, and removes the handler. Then the same access happens again and ends the process.
 void onFault(int signal, siginfo_t* info, void*) {
   const auto* at = static_cast<const char*>(info->si_addr);
   note->beyond_sample = sample_end != nullptr && at >= sample_end && at < sample_end + kPage;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a module wrote or read beyond, told by a child that a fault ends.
+/// Tells which memory a module overran, if a fault ends the child process that ran it.
 #pragma once
 #include <string>
 
@@ -7,16 +7,17 @@
 
 namespace hapticd::device_check {
 
-/// [main] Makes the memory that parent and child share, once and before the child, and forgets the previous child.
+/// [main] Makes the memory that parent and child share, if there is none yet, and clears it. Call it before each child
+/// is started.
 void shareOverrun();
 
 /// [main] In the child: from now on a fault in guarded memory, or beyond the sample, is noted before it ends the child.
 void noteOverruns();
 
-/// [main] In the child: a sample that ends where an unreadable page begins; nullptr if there is no memory.
+/// [main] In the child: returns a sample that ends where an unreadable page begins, or nullptr if there is no memory.
 hdv_sample* guardedSample();
 
-/// [main] In the parent: "" or what the last child overran, to be added to a message.
+/// [main] In the parent: returns what the last child overran, to be added to a message, or "".
 std::string overrunWords();
 
 }  // namespace hapticd::device_check

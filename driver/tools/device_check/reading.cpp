@@ -9,7 +9,7 @@
 
 namespace hapticd::device_check {
 
-/// What open() claims, read without the host. The arm is closed again.
+/// Returns the capabilities that open() claims, before the host changes them. Closes the arm again.
 static uint32_t claimsOf(const host::DeviceInstance& arm) {
   hdv_info info{};
   info.struct_size = sizeof info;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// An arm that is read for some time with its motors off.
+/// Reads an arm for some time with its motors off.
 #pragma once
 #include <functional>
 #include <memory>
@@ -14,8 +14,8 @@ namespace hapticd::device_check {
 struct Opened {
   std::unique_ptr<host::DeviceInstance> arm;
   std::string why;
-  bool absent = false;   ///< there is no arm to open: no fault of the module
-  uint32_t claimed = 0;  ///< capabilities as the module gave them: the host takes away those that nothing stands behind
+  bool absent = false;   ///< there is no arm to open, which is not a fault of the module
+  uint32_t claimed = 0;  ///< capabilities as the module claims them, before the host removes any
 };
 Opened openArm(const scene::Device& device);
 
@@ -26,9 +26,9 @@ struct Reading {
   const hdv_sample* sample = nullptr;
 };
 
-/// [main] Starts the arm, reads it for two seconds of a simulated arm's time or half a second of a real one's, and
-/// stops it. Every command is HDV_OFF. @param look its first objection ends the reading
-/// @param around called in the place of each read() and write(), and must call what it is given
+/// [main] Starts the arm, reads it (a simulated arm for two seconds of its own time, a real one for half a second), and
+/// stops it. Every command is HDV_OFF. @param look judges each reading; its first objection ends the reading @param
+/// around called in place of each read() and write(), which it gets as an argument and must call
 std::string readFor(host::DeviceInstance& arm, hdv_sample& sample,
                     const std::function<std::string(const Reading&)>& look,
                     const std::function<void(const std::function<void()>&)>& around);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What samples owe the host.
+/// Checks that samples are as the host needs them.
 #pragma once
 #include <string>
 
@@ -13,7 +13,7 @@ class SampleCheck {
   explicit SampleCheck(const hdv_info& info) : info_(info) {}
   /// @return what is wrong with one sample; "" if nothing is
   std::string look(const Reading& reading);
-  /// Of all of them: fails by what a run faults on, and warns of the rest.
+  /// Judges all samples together: fails for what would be a fault in a run, and warns of everything else.
   Finding sum() const;
 
  private:
@@ -21,7 +21,7 @@ class SampleCheck {
   const hdv_info& info_;
   uint64_t reads_ = 0, fresh_ = 0, last_ = 0, timeless_ = 0, ahead_ = 0, lost_ = 0;
   uint32_t flags_ = 0, buttons_ = 0;
-  int beyond_ = -1;  ///< joint that was far beyond its stops
+  int beyond_ = -1;  ///< index of a joint that was far beyond its stops; -1 if none was
   double beyond_at_ = 0;
 };
 

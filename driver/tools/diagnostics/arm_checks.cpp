@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What happens to the force of one arm when the daemon has gone.
+/// Checks what happens to the force of one arm when the daemon has gone.
 Finding silenced(const ArmControls& found, const std::string& file) {
   if (found.watchdog)
     return {found.arm, Verdict::kOk,
@@ -32,7 +32,8 @@ Finding silenced(const ArmControls& found, const std::string& file) {
           "keep a switch of its power within reach; all of its controls: hapticd device controls " + file};
 }
 
-/// An absent arm is no fault of the machine, but nothing about it was tried.
+/// Returns a warning if the arm could not be opened. An absent arm is not a fault of the machine, but nothing about it
+/// was tested.
 std::optional<Finding> missing(const ArmControls& found) {
   if (found.opened) return std::nullopt;
   return Finding{found.arm, Verdict::kWarn, "cannot be opened: " + found.why.substr(0, found.why.find('\n')),
@@ -46,7 +47,8 @@ std::string lowerCase(std::string text) {
   return text;
 }
 
-/// A line of an installed rule has both numbers. Rules after 73 come too late for the person at the seat.
+/// Returns true if a line of an installed udev rule has both numbers. Rule files that sort after 73 do not count,
+/// because they come too late to give access to the person at the seat.
 bool hasRule(const std::string& vendor, const std::string& product) {
   for (const char* dir : {"/etc/udev/rules.d", "/run/udev/rules.d", "/usr/lib/udev/rules.d", "/lib/udev/rules.d"}) {
     std::error_code code;

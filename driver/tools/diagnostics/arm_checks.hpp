@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What `hapticd doctor FILE` looks at on one arm.
+/// The checks that `hapticd doctor FILE` makes on one arm.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Whether the arm of a device file is present, who may open it, what happens to its force when the daemon has
-/// gone, and whether old reports are noticed. It opens the arm if that is plugged in, and moves nothing.
+/// [main] Checks whether the arm of a device file is present, who may open it, what happens to its force when the
+/// daemon has gone, and whether old reports are noticed. Opens the arm if it is plugged in, and moves nothing.
 std::vector<Finding> checkArm(const std::string& file, host::Catalog& catalog);
 
 }  // namespace hapticd::diagnostics

@@ -25,13 +25,13 @@ ControlState onIf(bool has) {
   return has ? ControlState::kOn : ControlState::kOff;
 }
 
-/// A bound of the device file. @param without what happens without it
+/// Returns the control for a limit of the device file. @param without text if the limit is not given
 Control bound(const char* hazards, const char* name, double value, const char* unit, const std::string& without) {
   return {hazards, name, onIf(value > 0), value > 0 ? numberText(value) + " " + unit : without};
 }
 
-/// What the hardware does by itself when commands stop, and for how long a sample is trusted: an open arm says it, its
-/// wire format says it before.
+/// Adds the controls about time: what the hardware does by itself when commands stop, and how long a sample is trusted.
+/// These facts come from the open arm, or else from its wire format.
 void addTimes(const host::DeviceInstance& device, bool opened, const std::optional<codec::Wire>& wire,
               std::vector<Control>& to) {
   const hdv_info& info = device.info();
@@ -40,7 +40,7 @@ void addTimes(const host::DeviceInstance& device, bool opened, const std::option
   const std::string after = wire && wire->watchdog > 0 ? numberText(wire->watchdog * 1e3) + " ms after the last command"
                                                        : std::string("when commands stop");
   to.push_back({"H30", "the hardware's own watchdog", known ? onIf(watchdog) : ControlState::kUnknown,
-                !known ? "the arm itself says it; it is not plugged in"
+                !known ? "only the arm itself can tell, and it is not plugged in"
                 : watchdog
                     ? "the arm cuts its motors " + after
                     : "the arm holds the last force when the machine dies: keep a switch within reach; if it cuts "
@@ -56,11 +56,11 @@ void addTimes(const host::DeviceInstance& device, bool opened, const std::option
                 !known            ? "the arm itself says its rate"
                 : rate <= 0       ? "only the servo's rate counts: give the rate of the arm"
                 : most < HUGE_VAL ? "at most " + numberText(std::round(1e3 * most) * 1e-3) + " N at " +
-                                        numberText(rate) + " Hz; all of it from 715 Hz on"
-                                  : "all of its force; below 358 Hz of the servo less"});
+                                        numberText(rate) + " Hz; all of its force from 715 Hz on"
+                                  : "all of its force; less if the servo is slower than 358 Hz"});
 }
 
-/// What in a report shows that it is wrong or old.
+/// Adds the controls that detect a wrong or old report.
 void addReports(const std::optional<codec::Wire>& wire, std::vector<Control>& to) {
   if (!wire) return;
   const auto has = [&wire](codec::Role role) {
@@ -71,8 +71,9 @@ void addReports(const std::optional<codec::Wire>& wire, std::vector<Control>& to
              counter = has(codec::Role::kSequence);
   to.push_back({"H1", "a misread report is noticed", onIf(sum && whole),
                 sum && !whole ? "its checksum leaves out positions: see from and to of the checksum"
-                : sum         ? "by its checksum"
-                              : "no checksum in wire.input: only by what the bus itself checks, and by the speed"});
+                : sum ? "by its checksum"
+                      : "wire.input has no checksum, so bad reports are found only by the checks of the bus, or when "
+                        "the tip seems too fast"});
   const bool clock = wire->clockTells();
   to.push_back({"H3", "a repeated report is noticed", onIf(counter || clock),
                 counter ? "by its counter"
@@ -80,7 +81,7 @@ void addReports(const std::optional<codec::Wire>& wire, std::vector<Control>& to
                         : "no counter in wire.input: firmware that hangs may send the last one for ever"});
 }
 
-/// @param buttons of the arm
+/// @param buttons number of buttons of the arm
 Control enableSwitch(const scene::Enable& enable, uint32_t buttons) {
   if (!enable.button)
     return {"H20", "enable switch", ControlState::kOff,
@@ -133,7 +134,7 @@ std::vector<Control> controlsOf(const scene::Device& description, const host::De
                       has(HDV_EXT_CUT) ? "the module cuts its motors from any thread" : "the module has no hdv.cut"});
   controls.push_back({"H30 H32", "silenced by another process", onIf(has("hdv.silence/1")),
                       has("hdv.silence/1") ? "a guard switches the motors off once the daemon is gone"
-                                           : "the module does not say how: nothing but the arm itself is left"});
+                                           : "the module does not say how, so only the arm itself can do it"});
   const auto wire = wireOf(description, device.kinematics().joint_count);
   addTimes(device, opened, wire, controls);
   addReports(wire, controls);
@@ -147,7 +148,8 @@ std::vector<Control> controlsOf(const scene::Device& description, const host::De
   return controls;
 }
 
-/// An arm that is not plugged in is no error here: facts that only the arm can give stay unknown.
+/// Drops messages: an arm that is not plugged in is not an error here, and facts that only the arm can give stay
+/// unknown.
 static void logNothing(int, const std::string&, const std::string&) {}
 
 std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog& catalog,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Which of the controls of driver/docs/hazards.md one arm has: by its device file, by its module, and, where it is
-/// plugged in, by the arm itself.
+/// Finds which of the safety measures (controls) of driver/docs/hazards.md one arm has, from its device file, from its
+/// module, and from the arm itself if it is plugged in.
 #pragma once
 #include <optional>
 #include <string>
@@ -17,19 +17,19 @@ enum class ControlState { kOn, kOff, kUnknown };
 const char* nameOf(ControlState state);  ///< "on", "off", "unknown"
 
 struct Control {
-  std::string hazards;  ///< of hazards.md, "H1 H2"
+  std::string hazards;  ///< numbers of the hazards in hazards.md, such as "H1 H2"
   std::string name;
   ControlState state = ControlState::kUnknown;
-  std::string text;  ///< how far it goes; if it is off, how to enable it
+  std::string text;  ///< how far the control goes; if it is off, how to enable it
 };
 
 /// [main] @param device created from the description, and opened if the arm is present
 std::vector<Control> controlsOf(const scene::Device& description, const host::DeviceInstance& device, bool opened);
 
-/// What was found for one device file.
+/// The controls and facts that were found for one device file.
 struct ArmControls {
   std::string arm;
-  bool opened = false;  ///< it is plugged in; otherwise facts that only it can give are unknown
+  bool opened = false;  ///< false if the arm is absent: facts that only it can give are unknown
   std::vector<Control> controls;
   bool silenced_after_us = false;   ///< something switches its motors off when the daemon has gone
   std::vector<std::string> doubts;  ///< about its module, which no run refuses
@@ -41,7 +41,8 @@ struct ArmControls {
   bool repeats_pass = false;        ///< the same report, sent repeatedly, would not be noticed
 };
 
-/// [main] Loads the file, and opens the arm if it is present; moves nothing. Nothing: `problems` say why.
+/// [main] Loads the file, opens the arm if it is present, and moves nothing. Returns nothing if the file has problems,
+/// which `problems` gets.
 std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog& catalog,
                                           document::Problems& problems);
 

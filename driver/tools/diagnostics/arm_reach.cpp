@@ -13,12 +13,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// [m] From a tip to the model in one of its poses; its box is nearer than the model itself.
+/// [m] Returns the distance from a tip to the box of a model in one pose, which is at most the distance to the model
+/// itself.
 double awayFrom(const Eigen::AlignedBox3d& box, const scene::Pose& pose, const Vector3d& tip) {
   return box.exteriorDistance(Vector3d(pose.orientation.conjugate() * (tip - pose.position)));
 }
 
-/// [m] The least over all poses of its path; nothing if it is unknown.
+/// [m] Returns the least distance over all poses of a model's path; nothing if it is unknown.
 std::optional<double> distanceTo(const scene::Model& model, const host::ShapeInstance& shape,
                                  const servo::Contact& contact, const Vector3d& tip) {
   Eigen::AlignedBox3d box;

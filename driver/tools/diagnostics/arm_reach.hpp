@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// How far an arm can move its tip, and how far away the models of a scene are.
+/// Finds how far an arm can move its tip, and how far away the models of a scene are.
 #pragma once
 #include <Eigen/Core>
 #include <optional>
@@ -10,18 +10,19 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] [m] The farthest that the joints move the tip away from where it is, within arm.limits if they are given;
-/// generous if they are not.
+/// [main] [m] Returns the farthest distance that the joints can move the tip from where it is, within arm.limits.
+/// Without arm.limits the distance is an overestimate.
 double reachOf(const scene::Device& device, const host::DeviceInstance& arm, const Eigen::Vector3d& tip_device);
 
 /// The model that is nearest to a tip.
 struct NearestModel {
   size_t index = 0;
-  double away = 0;  ///< [m] from the tip to the surface, or to a box about the model
+  double away = 0;  ///< [m] distance from the tip to the surface, or to a box around the model
 };
 
-/// [main] Over the whole path of a model that moves along one. Nothing where some model does not say where it is: it
-/// may be anywhere. @param world the scene's, after its first tick @param probe which of its probes `tip` is
+/// [main] Returns the model that is nearest to `tip`. For a model that moves along a path, the nearest pose of the path
+/// counts. Returns nothing if a model does not report its box, because it may be anywhere. @param world world of the
+/// scene, after its first tick @param probe index of the probe whose tip is `tip`
 std::optional<NearestModel> nearestModel(const scene::Scene& scene, const servo::World& world, servo::Core& core,
                                          const Eigen::Vector3d& tip, uint32_t probe);
 

@@ -24,7 +24,7 @@ std::string textOf(const char (&text)[Size]) {
   return {text, strnlen(text, Size)};
 }
 
-/// True if a thread of the process has real-time priority.
+/// Returns true if a thread of the process has real-time priority.
 bool hasFifo(int pid) {
   std::error_code error;
   for (const auto& thread : fs::directory_iterator("/proc/" + std::to_string(pid) + "/task", error)) {
@@ -55,7 +55,8 @@ Finding judge(const std::vector<ClientNow>& clients, double answer_time, Finding
   for (const ClientNow& client : clients) {
     const bool late = record::late(client.report);
     const bool first = before.state.empty();
-    if (!first && before.verdict != Verdict::kOk && !late) continue;  // the late ones matter
+    // programs in time are not listed beside late ones
+    if (!first && before.verdict != Verdict::kOk && !late) continue;
     if (late && before.verdict == Verdict::kOk) before = {before.name, Verdict::kWarn, "", "", ""};
     before.state += (before.state.empty() ? "" : "; ") + stateOf(client.report);
     if (!late) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Programs that push on arms of running daemons, and whether their answers come in time.
+/// Checks programs that push on arms of running daemons: do their answers come in time?
 #pragma once
 #include <string>
 #include <vector>
@@ -13,10 +13,10 @@ namespace hapticd::diagnostics {
 /// A program that pushes now.
 struct ClientNow {
   record::ClientReport report;
-  double force = 0;  ///< [N] now
+  double force = 0;  ///< [N] size of the force that it asks for now
 };
 
-/// [any] The programs of a status page.
+/// [any] Returns the programs that a status page shows.
 std::vector<ClientNow> clientsOf(const status::Page& page);
 
 /// [main] Checks the programs of all daemons whose status pages are in a folder.

@@ -14,13 +14,13 @@
 namespace hapticd::diagnostics {
 namespace {
 
-/// The numbers of a list as YAML, "[[0, 0], [0.003, 4]]".
+/// Collects the numbers of a YAML list such as [[0, 0], [0.003, 4]].
 void collect(const document::Node& node, std::vector<double>& numbers) {
   if (const auto number = node.isScalar() ? document::toNumber(node.scalar) : std::nullopt) numbers.push_back(*number);
   for (const document::Node& item : node.items) collect(item, numbers);
 }
 
-/// A list as given, or the plugin's default for it; empty: the plugin has no such parameter.
+/// Returns a list as the file gives it, or the plugin's default; empty if the plugin has no such parameter.
 std::vector<double> listOf(const scene::Model& model, const hsp_class& plugin, const char* id) {
   if (const scene::Value* value = givenIn(model.parameters, id)) return value->numbers;
   std::vector<double> numbers;
@@ -33,7 +33,7 @@ std::vector<double> listOf(const scene::Model& model, const hsp_class& plugin, c
   return numbers;
 }
 
-/// [m] of travel at which the force first falls; 0: it never does, so nothing clicks.
+/// [m] Returns the travel at which the force first falls; 0 if it never does, so that nothing clicks.
 double clickOf(const std::vector<double>& detent) {
   for (size_t i = 0; i + 3 < detent.size(); i += 2)
     if (detent[i + 3] < detent[i + 1]) return detent[i];
@@ -49,7 +49,7 @@ std::string direction(const Eigen::Vector3d& v) {
 
 bool tellNoClick(const scene::Model& model, size_t index, const host::ShapeInstance& shape, const WalkedModel& seen,
                  bool whole, document::Problems& warnings) {
-  constexpr double kStill = 1e-9, kPressed = 0.1, kAlong = 0.1;  // [m]; [N]; of the axis
+  constexpr double kStill = 1e-9, kPressed = 0.1, kAlong = 0.1;  // [m]; [N]; cosine of the angle to the axis
   const std::vector<double> detent = listOf(model, shape.description(), "detent");
   const std::vector<double> axis = listOf(model, shape.description(), "axis");
   const double click = clickOf(detent);
@@ -71,13 +71,13 @@ bool tellNoClick(const scene::Model& model, size_t index, const host::ShapeInsta
   const double size = known ? box.diagonal().norm() : 0;
   if (known && click > size)
     return tell("detent",
-                fmt::format("{} clicks at a travel of {:.4g} m, and is {:.3g} m large: the hand presses it by "
-                            "{:.3g} mm, with {:.2g} N at most; expected travel in m (5 mm are 0.005)",
+                fmt::format("{} clicks at a travel of {:.4g} m, but it is only {:.3g} m large, and the hand presses it "
+                            "by {:.3g} mm, with {:.2g} N at most; travel must be in m (5 mm is 0.005)",
                             model.name, click, size, seen.travel * 1e3, seen.force));
   if (!whole || seen.force < kPressed) return false;
   return tell("detent",
-              fmt::format("{} never clicks: the hand presses it by {:.3g} mm, with {:.3g} N at most, and it "
-                          "clicks at {:.4g} mm; expected a hand that goes deeper (hand.radius, hand.rise), or "
+              fmt::format("{} never clicks: the hand presses it by {:.3g} mm, with {:.3g} N at most, but it clicks at "
+                          "{:.4g} mm; expected a hand that goes deeper (hand.radius, hand.rise), or "
                           "less travel or force",
                           model.name, seen.travel * 1e3, seen.force, click * 1e3));
 }

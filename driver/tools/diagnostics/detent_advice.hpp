@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A button that is pressed and does not click.
+/// Finds buttons that a simulated hand presses and that do not click.
 #pragma once
 #include "description/scene.hpp"
 #include "diagnostics/hand_walk.hpp"
@@ -8,8 +8,8 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Judges a model that has a detent and was touched. @param whole the hand went everywhere it goes
-/// @return a warning was told
+/// [main] Judges a model that has a detent and was touched. @param whole true if the hand has done its whole motion
+/// @return true if it added a warning
 bool tellNoClick(const scene::Model& model, size_t index, const host::ShapeInstance& shape, const WalkedModel& seen,
                  bool whole, document::Problems& warnings);
 

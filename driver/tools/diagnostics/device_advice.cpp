@@ -29,7 +29,7 @@ namespace {
 
 using document::Node;
 
-/// Encoders count, so without a scale each count would be a whole radian.
+/// Warns of whole-number positions without a scale, because each count would then be a whole radian.
 void countsWithoutScale(const Node& root, const std::string& file, document::Problems& warnings) {
   const Node* fields = find(root, {"parameters", "wire", "input", "fields"});
   if (fields == nullptr || !fields->isSequence()) return;
@@ -44,20 +44,21 @@ void countsWithoutScale(const Node& root, const std::string& file, document::Pro
   }
 }
 
-/// An arm whose lengths differ from the built-in one's, while that one's weight is used: it would be pushed up, or
-/// sag.
+/// Warns of an arm with its own lengths but without masses: the weight of another arm would be used, so it would be
+/// pushed up, or sag.
 void massesOfAnotherArm(const Node& root, const std::string& file, document::Problems& warnings) {
   const Node *lengths = find(root, {"parameters", "arm", "lengths"}), *kind = find(root, {"parameters", "arm", "kind"});
   const bool delta = kind != nullptr && kind->scalar == "delta", chain = kind != nullptr && kind->scalar == "chain";
   if (lengths == nullptr || chain || find(root, {"parameters", "wire"}) == nullptr) return;
   if (find(root, {"parameters", "arm", "masses"}) != nullptr) return;
   document::report(warnings, file, lengths->line, lengths->column, "parameters.arm.masses",
-                   fmt::format("not given, so this arm is carried with the masses of {}; expected its own [kg], or "
-                               "masses: [{}]: its weight is not carried",
+                   fmt::format("not given, so the motors carry the weight of {} instead of this arm's; expected its "
+                               "own masses [kg], or masses: [{}] if its weight is not to be carried",
                                delta ? "a Falcon" : "a Premium 1.5", delta ? "0, 0, 0" : "0, 0, 0, 0"));
 }
 
-/// Masses at the far ends of their links weigh about twice as much about the joints, so the arm would be pushed up.
+/// Warns of masses without centres. At the far ends of their links they need about twice the torque, so the arm would
+/// be pushed up.
 void massesAtTheEnds(const Node& root, const std::string& file, document::Problems& warnings) {
   const Node *masses = find(root, {"parameters", "arm", "masses"}), *kind = find(root, {"parameters", "arm", "kind"});
   if (kind == nullptr || kind->scalar != "chain" || masses == nullptr || !masses->isSequence()) return;
@@ -66,11 +67,11 @@ void massesAtTheEnds(const Node& root, const std::string& file, document::Proble
   if (std::none_of(masses->items.begin(), masses->items.end(), weighs)) return;
   document::report(
       warnings, file, masses->line, masses->column, "parameters.arm.centers",
-      "not given, so each of these masses is carried as if it were at the far end of its link, and the arm "
-      "is pushed up; expected one [x, y, z] for each link, in m from its far end, in its frame");
+      "not given, so each of these masses is carried as if it were at the far end of its link, and the arm is pushed "
+      "up; expected the centre of mass of each link, [x, y, z] in m from the link's far end, in the link's frame");
 }
 
-/// Warns if the arm would be calibrated in a pose that lies beyond its stops: nobody can hold it there.
+/// Warns if the calibration pose lies beyond the stops of the arm, because nobody can hold the arm there.
 void poseBeyondStops(const Node& root, const scene::Device& device, document::Problems& warnings) {
   const Node* pose = find(root, {"parameters", "calibration", "pose"});
   const scene::Value* limits = nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What is allowed in a device file and yet hardly meant: told as warnings, without touching hardware.
+/// Warns, without touching hardware, about what a device file may contain but its author hardly meant.
 #pragma once
 #include <filesystem>
 
@@ -8,8 +8,9 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warnings of a device file without problems: `limits.force` above what the arm gives, positions of whole
-/// numbers without a scale, and a `limits.workspace` that leaves out the tip of the arm at rest.
+/// [main] Returns warnings about a device file that has no problems: `limits.force` above what the arm gives,
+/// whole-number positions without a scale, a `limits.workspace` that does not contain the tip of the arm at rest, and
+/// all that the other headers here judge.
 document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog& catalog);
 
 }  // namespace hapticd::diagnostics

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Public vendor and product ids; "": every product of the vendor.
+/// Known public vendor and product ids; a product of "" stands for every product of the vendor.
 struct Known {
   const char *vendor, *product, *name, *module;
 };

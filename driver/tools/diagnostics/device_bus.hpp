@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What is plugged in: known haptic devices on the machine's buses, read from /sys without opening anything.
+/// Lists known haptic devices on the machine's buses. They are read from /sys; no device is opened.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -10,13 +10,13 @@ namespace hapticd::diagnostics {
 struct BusDevice {
   std::string bus;      ///< "usb 1-2", "firewire fw1", "vme"
   std::string id;       ///< "0403:cb48"
-  std::string product;  ///< known product, and the name that the bus gives it
+  std::string product;  ///< name of the known product, and the name that the bus gives it
   std::string module;   ///< device module that supports it; "" if none does
-  std::string node;     ///< device node; "" none
+  std::string node;     ///< device node; "" if it has none
   bool may_open = false;
 };
 
-/// [main] The known devices that were found. @param sys "/sys", or another folder in tests; @param dev "/dev"
+/// [main] Returns the known devices that were found. @param sys "/sys", or another folder in tests; @param dev "/dev"
 std::vector<BusDevice> scanBuses(const std::filesystem::path& sys = "/sys", const std::filesystem::path& dev = "/dev");
 
 }  // namespace hapticd::diagnostics

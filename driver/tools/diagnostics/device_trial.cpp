@@ -18,7 +18,7 @@ namespace {
 
 using document::Node;
 
-/// The node of a path such as "wire.input.fields[3].at", or the last existing one on the way.
+/// Returns the node of a path such as "wire.input.fields[3].at", or the last node on this path that exists.
 const Node* walk(const Node* at, const std::string& path) {
   for (size_t i = 0; i < path.size();) {
     const size_t end = std::min(path.find_first_of(".[", i + 1), path.size());
@@ -36,7 +36,7 @@ const Node* walk(const Node* at, const std::string& path) {
   return at;
 }
 
-/// The key with which a message begins: "wire.rate: ..." after the name of the device.
+/// Returns the key in a message such as "NAME: wire.rate: ...", and where it begins; "" if there is none.
 std::string keyIn(const std::string& message, const Node& parameters, size_t& begin) {
   for (begin = 0; begin < message.size();) {
     const size_t end = message.find(": ", begin);
@@ -49,7 +49,7 @@ std::string keyIn(const std::string& message, const Node& parameters, size_t& be
   return "";
 }
 
-/// True for what the module says about a value that it did not get because it was wrong or missing.
+/// Returns true for a message about a value that the module did not get, because it was wrong or missing.
 bool follows(const std::string& key, const document::Problems& known) {
   if (key.empty()) return !known.empty();
   return std::any_of(known.begin(), known.end(), [&](const document::Problem& problem) {
@@ -59,7 +59,7 @@ bool follows(const std::string& key, const document::Problems& known) {
   });
 }
 
-/// A module reports all that is wrong with its parameters, one line each.
+/// Splits the message of a module, which has one line for each thing that is wrong.
 std::vector<std::string> linesOf(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream in(text);
@@ -67,17 +67,18 @@ std::vector<std::string> linesOf(const std::string& text) {
   return lines;
 }
 
-/// As DeviceInstance describes what its module is, not what was given to it.
+/// The beginning of messages of DeviceInstance about the module itself, not about its parameters.
 constexpr const char* kOfModule = "module '";
 
-/// An error of the module itself names nothing in the file, so it is placed where the file names the module.
+/// Reports an error of the module itself at the place where the file names the module, because it names no key of the
+/// file.
 void placeAtModule(const std::string& error, const Node& root, const std::string& file, document::Problems& problems) {
   const Node* module = root.find("module");
   const Node& at = module != nullptr ? *module : root;
   for (const std::string& line : linesOf(error)) document::report(problems, file, at.line, at.column, "module", line);
 }
 
-/// What a module says about its parameters, each placed where it stands in the file.
+/// Reports what a module says about its parameters, each message at the place of its key in the file.
 void placeComplaints(const std::string& error, const Node& parameters, const Node& root, const std::string& file,
                      const document::Problems& known, document::Problems& problems) {
   for (const std::string& message : linesOf(error)) {
@@ -94,7 +95,7 @@ void placeComplaints(const std::string& error, const Node& parameters, const Nod
   }
 }
 
-/// The report of a child that made the instance: "+", then a line for each doubt; or "-", then the error.
+/// The answer of the child process: "+" if it made the instance, then a line for each doubt; or "-" and the error.
 constexpr char kMade = '+', kNotMade = '-';
 
 std::string madeInChild(const scene::Device& device, host::Trail& trail) {
@@ -145,7 +146,7 @@ document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& c
   const auto draft = scene::deviceDraft(file, catalog);
   if (!draft) return problems;  // this is a scene, or its module is unknown
   const ModuleTrial trial = tryModule(*draft);
-  document::Problems unread;  // the loader of the file reports it
+  document::Problems unread;  // not reported here, because the loader of the file reports them
   const auto root = document::parseFile(file, unread);
   if (!root) return problems;
   const Node* parameters = root->find("parameters");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What only a device module can judge of its device file, found without touching hardware.
+/// Finds problems of a device file that only its module can judge, without touching hardware.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -11,19 +11,19 @@
 
 namespace hapticd::diagnostics {
 
-/// What was found when a module got its parameters.
+/// What a module said when it got its parameters.
 struct ModuleTrial {
-  std::string error;                ///< "": an instance can be made; otherwise a line for each thing that is wrong
-  std::vector<std::string> doubts;  ///< what causes no fault in a run, but is hardly intended
+  std::string error;                ///< "" if an instance can be made; otherwise a line for each thing that is wrong
+  std::vector<std::string> doubts;  ///< what is no error, but was hardly meant
 };
 
-/// [main] Makes an instance in a child process, and tries its kinematics there: a module that crashes or hangs is
-/// named, with the call. Touches no hardware.
+/// [main] Makes an instance in a child process and tests its kinematics there. If the module crashes or hangs, the
+/// error names the module and the call. Touches no hardware.
 ModuleTrial tryModule(const scene::Device& device);
 
-/// [main] Gives the parameters to the module; what it refuses is placed in the file by the key that it names.
-/// @param known what reading the file has told already: a module's words about that are left out
-/// @param warnings where doubts go; nullptr: they are not asked for
+/// [main] Gives the parameters to the module, and returns a problem for each that it refuses, at the place of the key
+/// that the module names. @param known problems that reading the file has found; what the module says about them is
+/// left out @param warnings gets the doubts; nullptr if they are not wanted
 document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& catalog,
                              const document::Problems& known = {}, document::Problems* warnings = nullptr);
 

@@ -44,7 +44,7 @@ bool listed(const std::array<std::string_view, N>& keys, const std::string& key)
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
-/// A map without some of its keys, as one line of YAML.
+/// Returns a map without some of its keys, as one line of YAML.
 template <size_t N>
 std::string flowWithout(Node map, const std::array<std::string_view, N>& keys) {
   std::erase_if(map.entries, [&](const document::Entry& entry) { return listed(keys, entry.key.scalar); });
@@ -57,7 +57,8 @@ std::vector<double> numbersOf(const Node& list, size_t count) {
   return numbers.size() == count ? numbers : std::vector<double>();
 }
 
-/// The block `arm`. What the simulated arm names differently, or lacks, is handled separately.
+/// Returns the block `arm`. Keys that the simulated arm lacks are left out, and `origin` of a chain becomes
+/// `base_position`.
 std::string armOfTwin(const Node& arm, bool chain) {
   static constexpr std::array<std::string_view, 9> kSame{
       "kind", "lengths", "masses", "limits", "max_torque", "dh", "centers", "base_orientation", "tool_position"};
@@ -70,7 +71,7 @@ std::string armOfTwin(const Node& arm, bool chain) {
   return text;
 }
 
-/// Encoder counts per turn of each joint, as the scales of the positions say; none if they do not.
+/// Returns the encoder counts per turn of each joint, from the scales of the positions; empty if they cannot be found.
 std::vector<double> countsOf(const Node& parameters) {
   std::vector<double> counts;
   for (const Node& field : below(below(below(parameters, "wire"), "input"), "fields").items) {
@@ -95,7 +96,7 @@ std::string deviceOf(const Node& device, double rate) {
   return text + "}\n";
 }
 
-/// The world's origin in the device frame, where the scenes have their shapes.
+/// Returns the world's origin in the device frame, because the scenes have their shapes there.
 Eigen::Vector3d originOf(const Node& mount) {
   const std::vector<double> p = numbersOf(below(mount, "position"), 3), q = numbersOf(below(mount, "orientation"), 4);
   if (p.empty()) return Eigen::Vector3d::Zero();
@@ -108,7 +109,7 @@ constexpr double kHandBegins = 0.07;  ///< [m] the hand's radius and approach fr
 
 /// Where the twin stands, and in which direction its hand presses.
 struct Stand {
-  std::string mount, hand;  ///< as lines of YAML, "" if nothing is needed; hand: what follows its center
+  std::string mount, hand;  ///< as YAML, "" if nothing is needed; hand is the text after `center` in the block `hand`
   bool pressing = true;     ///< false: the tip has no straight line along which to press
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
 };
@@ -119,13 +120,14 @@ std::string listOf(const Eigen::Vector3d& v) {
   return "[" + digits(v.x()) + ", " + digits(v.y()) + ", " + digits(v.z()) + "]";
 }
 
-/// Such as "joints 0.3, -1.2 rad" or "joints in the middle of arm.limits".
+/// Returns words for a pose, such as "joints at 0.3, -1.2 rad" or "each joint in the middle of arm.limits".
 std::string poseOf(const RestPose& rest, bool limits) {
   if (rest.middle) return limits ? "each joint in the middle of arm.limits" : "each joint at 0";
   return fmt::format("joints at {:g} rad", fmt::join(rest.joints, ", "));
 }
 
-/// A flat arm, or one of fewer than three joints, is pushed along its plane, from the very point at which it rests.
+/// For a flat arm, or one of fewer than three joints: the hand pushes it along its plane, starting exactly where it
+/// rests.
 Stand standOfFlat(const RestPose& rest, const std::string& pose) {
   Stand stand;
   stand.center = rest.tip - kHandBegins * rest.push;
@@ -139,7 +141,8 @@ Stand standOfFlat(const RestPose& rest, const std::string& pose) {
   return stand;
 }
 
-/// It stands as its arm does, or, for a chain that does not say, with its tip where scenes expect a hand.
+/// Returns where the twin stands: at the mount of its arm, or for a chain without a mount, so that its tip is where
+/// scenes expect a hand.
 Stand standOf(const Node& mount, const Node& arm, bool chain) {
   Stand stand;
   stand.center = originOf(mount);
@@ -158,7 +161,8 @@ Stand standOf(const Node& mount, const Node& arm, bool chain) {
   return stand;
 }
 
-/// The block `joint`. Without masses, a joint that can move while the tip stands still would have no inertia.
+/// Returns the block `joint`. It has rotors if a chain has more joints than its tip has directions, because without
+/// masses a joint that can move while the tip stands still would have no inertia.
 std::string jointOf(const Node& parameters, const Node& arm, bool chain) {
   const std::vector<double> counts = countsOf(parameters);
   const bool spare = chain && below(arm, "dh").items.size() > static_cast<size_t>(restPoseOf(arm).freedom);

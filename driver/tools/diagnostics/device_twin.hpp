@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A simulated arm with the mechanism of a real one, to try scenes before the real one is there.
+/// Makes a twin: a simulated arm with the mechanism of a real one, to try scenes before the real arm is there.
 #pragma once
 #include <string>
 
@@ -8,13 +8,13 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] The text of a device file of module `simulated`, with the kinematics, limits and encoders of the arm that
-/// `root` describes, and a hand that presses a sphere of 0.05 m about the world's origin. Fails for an arm without a
-/// twin, or a file that describes none.
-/// @param file its name, for the comment
+/// [main] Returns the text of a device file of module `simulated`, with the kinematics, limits and encoders of the arm
+/// that `root` describes, and a hand that presses a sphere of 0.05 m about the world's origin. Fails if the arm cannot
+/// have a twin, or if the file describes no arm. @param file name of the arm's file, for the comment in the text
 Result<std::string> twinOf(const document::Node& root, const std::string& file);
 
-/// [main] Which numbers of the twin come from elsewhere, because the arm's file lacks them; "" if none do.
+/// [main] Returns a sentence about the numbers of the twin that are those of another arm, because the arm's file lacks
+/// them; "" if there are none.
 std::string borrowedByTwin(const document::Node& root);
 
 }  // namespace hapticd::diagnostics

@@ -32,11 +32,11 @@ Finding ok(std::string name, std::string state) {
   return {std::move(name), Verdict::kOk, std::move(state), "", ""};
 }
 
-/// The commands for a checkout; the packages do the same.
+/// The command if hapticd was built from its sources; the packages do the same.
 constexpr const char* kInstallLimits =
     "sudo install -m 644 config/systemd/70-hapticd.limits /etc/security/limits.d/70-hapticd.conf";
 
-/// Real-time rights are found by asking for them, never by reading what they should be.
+/// Checks real-time rights by asking for them, not by reading limits.
 Finding checkScheduler() {
   std::error_code code;
   std::thread([&code] { code = os::setFifo(os::kServoPriority); }).join();
@@ -47,7 +47,7 @@ Finding checkScheduler() {
           "sudo usermod -aG haptic $USER, then log in again (limits.d/70-hapticd.conf grants rtprio 80)"};
 }
 
-/// With RT_GROUP_SCHED a cgroup with runtime 0 refuses FIFO even to root.
+/// Checks the control group: with RT_GROUP_SCHED, a cgroup with runtime 0 refuses SCHED_FIFO even to root.
 Finding checkGroupScheduling() {
   std::string path = firstLine("/proc/self/cgroup");
   std::ifstream in("/proc/self/cgroup");
@@ -67,7 +67,7 @@ Finding checkGroupScheduling() {
 
 Finding checkMemory() {
   std::error_code code;
-  {  // while a child thread runs, the whole process is locked; undone below
+  {  // this locks the memory of the whole process; undone below
     code = os::lockMemory();
     if (!code) os::unlockMemory();
   }
@@ -80,7 +80,8 @@ Finding checkMemory() {
 Finding checkThrottling() {
   const std::string runtime = firstLine("/proc/sys/kernel/sched_rt_runtime_us"),
                     period = firstLine("/proc/sys/kernel/sched_rt_period_us");
-  constexpr double kServoShare = 0.9;  // share of a processor at most: the wait sleeps, it does not only spin
+  // largest share of a processor that the servo uses, because it sleeps while it waits
+  constexpr double kServoShare = 0.9;
   const std::string state = "real-time threads may use " + runtime + " of every " + period + " us";
   const double share = std::strtod(runtime.c_str(), nullptr) / std::max(1.0, std::strtod(period.c_str(), nullptr));
   if (runtime.empty() || runtime == "-1" || share >= kServoShare)
@@ -95,7 +96,7 @@ bool inGroup(gid_t group) {
   return getegid() == group || std::find(groups, groups + std::max(count, 0), group) != groups + std::max(count, 0);
 }
 
-/// Root is told too, because the rights of its users depend on the group.
+/// Checks the group haptic. Root gets a finding too, because the rights of other users depend on the group.
 Finding checkGroup() {
   const struct group* haptic = getgrnam("haptic");
   if (haptic == nullptr)
@@ -112,7 +113,7 @@ Finding checkGroup() {
           root ? "run hapticd doctor as that user" : "sudo usermod -aG haptic $USER, then log in again"};
 }
 
-/// Limits as `ulimit` and limits.d have them: memory in KiB; unlimited is the largest number.
+/// Checks the limits of `ulimit` and limits.d: memory in KiB; unlimited is the largest number.
 Finding checkLimits() {
   rlimit priority{}, memory{};
   getrlimit(RLIMIT_RTPRIO, &priority);
@@ -131,7 +132,7 @@ Finding checkLimits() {
           std::string(kInstallLimits) + ", then log in again"};
 }
 
-/// The rules must sort before 73-seat-late, or a person at the seat gets no access.
+/// Checks the udev rules. They must sort before 73-seat-late, or a person at the seat gets no access.
 Finding checkUdev() {
   std::string found;
   for (const char* dir : {"/etc/udev/rules.d", "/run/udev/rules.d", "/usr/lib/udev/rules.d", "/lib/udev/rules.d"}) {
@@ -198,7 +199,7 @@ Finding checkDmaLatency() {
           "sudo chgrp haptic /dev/cpu_dma_latency && sudo chmod 660 /dev/cpu_dma_latency"};
 }
 
-/// Every plugin and module of the search path must load and name itself.
+/// Checks that every plugin and module of the search path can be loaded and described.
 Finding checkModules(host::Catalog& catalog, host::Kind kind) {
   const bool shapes = kind == host::Kind::kShape;
   const std::string name = shapes ? "plugins" : "modules";
@@ -233,7 +234,7 @@ Finding checkQuarantine() {
           "hapticd plugin clear NAME, once the plugin is repaired"};
 }
 
-/// Haptic devices on the machine's buses, and whether this process may open them.
+/// Checks whether this process may open the haptic devices on the machine's buses.
 Finding checkDevices() {
   std::string open, closed;
   for (const BusDevice& device : scanBuses()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What can keep real time or a device from working, each as one check with the command that fixes it.
+/// Checks for what can keep real time or a device from working. Each gives the command that fixes the problem.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,14 +11,14 @@ namespace hapticd::diagnostics {
 enum class Verdict { kOk, kWarn, kFail };
 
 struct Finding {
-  std::string name;  ///< "scheduler", stable, because tools read it
+  std::string name;  ///< name such as "scheduler"; it never changes, because other programs read it
   Verdict verdict = Verdict::kOk;
   std::string state;        ///< what was measured
-  std::string consequence;  ///< empty when ok
+  std::string consequence;  ///< what a user notices; empty if all is well
   std::string fix;          ///< a command or an action; empty if all is well
 };
 
-/// [main] Every check except the latency run, quick and without side effects.
+/// [main] Makes every check except the latency run. All are quick and have no side effects.
 std::vector<Finding> checkSystem(host::Catalog& catalog);
 
 /// [main] Wakes up at 1 kHz for `seconds` as the servo would, and judges how late it is.

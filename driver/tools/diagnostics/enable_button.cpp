@@ -13,7 +13,7 @@ namespace {
 
 using document::Node;
 
-/// Buttons of the reports, counted from 1. Nothing if the file describes no reports.
+/// Returns the buttons of the reports, counted from 1; nothing if the file describes no reports.
 std::optional<std::set<int>> buttonsIn(const Node& root) {
   const Node* fields = find(root, {"parameters", "wire", "input", "fields"});
   if (fields == nullptr || !fields->isSequence()) return std::nullopt;
@@ -43,8 +43,8 @@ void checkEnableButton(const Node& root, const std::string& file, document::Prob
     expected += fmt::format("{}{} (button: {} there)", expected.empty() ? "" : " or ", known - 1, known);
   if (expected.empty()) expected = "a field {is: button, button: 1, ...} there, and 0 here";
   document::report(problems, file, button->line, button->column, "limits.enable.button",
-                   fmt::format("{:g} is no button of wire.input, so forces could never be enabled; here buttons count "
-                               "from 0, there from 1; expected {}",
+                   fmt::format("wire.input has no button {:g} (counted from 0), so forces could never be enabled; in "
+                               "wire.input, buttons count from 1; expected {}",
                                number, expected));
 }
 

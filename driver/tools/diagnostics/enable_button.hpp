@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The dead-man button of a device file: whether the arm that the file describes has it.
+/// Checks whether an arm has the enable (dead-man) button that its device file asks for.
 #pragma once
 #include <string>
 
@@ -7,11 +7,11 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Notes limits.enable.button if no field of parameters.wire.input is that button. A file without a wire format
-/// says nothing about its buttons, so `run` finds out.
+/// [main] Adds a problem if no field of parameters.wire.input is the button limits.enable.button. A file without a wire
+/// format does not describe its buttons, so only `run` can check it.
 void checkEnableButton(const document::Node& root, const std::string& file, document::Problems& problems);
 
-/// [any] What to press: "button 0 (counted from 0; button: 1 of a wire format)".
+/// [any] Returns the name of a button: "button 0 (counted from 0; button: 1 of a wire format)".
 std::string enableButtonText(int button);
 
 }  // namespace hapticd::diagnostics

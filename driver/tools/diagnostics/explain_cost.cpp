@@ -22,14 +22,15 @@
 namespace hapticd::diagnostics {
 namespace {
 
-/// Every set-up here returns its error as well, and the same models are set up many times.
+/// Drops messages: every set-up here returns its error as well, and the same models are set up many times.
 void quiet(int, const std::string&, const std::string&) {}
 
 std::string where(const document::Place& place, const std::string& key) {
   return place.line > 0 ? fmt::format("{}:{} {}", place.file, place.line, key) : place.file + " " + key;
 }
 
-/// Mean of all times but the longest hundredth: what interrupted those is no cost of the part.
+/// Returns the mean of all times but the longest hundredth, because interruptions of those do not belong to the cost of
+/// the part.
 double meanOf(std::vector<double>& times) {
   if (times.empty()) return 0;
   std::sort(times.begin(), times.end());
@@ -39,7 +40,7 @@ double meanOf(std::vector<double>& times) {
   return sum / static_cast<double>(kept);
 }
 
-/// [ns] How much reading the clock adds to a measured step.
+/// [ns] Returns how much reading the clock adds to a measured step.
 double clockOverhead() {
   std::vector<double> times;
   for (int i = 0; i < 1000; ++i) {
@@ -51,7 +52,7 @@ double clockOverhead() {
 }
 
 struct Measured {
-  std::vector<double> step_ns;  ///< by model
+  std::vector<double> step_ns;  ///< mean time of a step of each model
   double tick_ns = 0, search_ns = 0;
   double resting_ns() const {
     double sum = tick_ns;
@@ -60,12 +61,12 @@ struct Measured {
   }
 };
 
-/// One pass over the motion.
+/// Measures one pass over the motion.
 Result<Measured> pass(const scene::Scene& scene, const tune::Motion& motion) {
   auto world = servo::World::build(scene, {.rate = 1 / motion.period, .measure = true}, quiet);
   if (!world) return Error{world.error()};
   servo::Core& core = (*world)->core();
-  core.serve({false, false});  // for arms of three joints without a passivity controller; others need more
+  core.serve({false, false});  // as for arms of three joints without a passivity controller; other arms cost more
   servo::Lockstep lockstep = (*world)->lockstep();
   const double overhead = clockOverhead();
   std::vector<std::vector<double>> steps(scene.models.size());
@@ -95,7 +96,7 @@ Result<Measured> pass(const scene::Scene& scene, const tune::Motion& motion) {
   return measured;
 }
 
-/// The least disturbed of three passes, part by part.
+/// Measures three times and keeps the shortest time of each part, because other programs can only make a part slower.
 Result<Measured> measure(const scene::Scene& scene, const tune::Motion& motion) {
   auto best = pass(scene, motion);
   for (int i = 0; i < 2 && best; ++i) {
@@ -108,7 +109,7 @@ Result<Measured> measure(const scene::Scene& scene, const tune::Motion& motion) 
   return best;
 }
 
-/// What a shape asks for at activation.
+/// Returns what a shape asks for at activation.
 std::optional<hsp_report> reportOf(const scene::Scene& scene, const scene::Model& model) {
   scene::Scene alone = scene;
   alone.models = {model};
@@ -122,7 +123,7 @@ scene::Model without(scene::Model model, const scene::Value& value) {
   return model;
 }
 
-/// A parameter without which the shape does not ask for `flag`.
+/// Returns a parameter without which the shape would not ask for `flag`.
 const scene::Value* reasonFor(const scene::Scene& scene, const scene::Model& model, uint32_t flag) {
   for (const scene::Value& value : model.parameters) {
     if (value.kind == HSP_PATH || value.kind == HSP_TEXT) continue;
@@ -132,9 +133,10 @@ const scene::Value* reasonFor(const scene::Scene& scene, const scene::Model& mod
   return nullptr;
 }
 
-/// Resident bytes of a library, and of nothing else.
+/// Returns the resident bytes of a library.
 uint64_t residentOf(const std::filesystem::path& library) {
-  const auto loaded = host::Library::open(library);  // a module is unloaded when its device closes
+  // loaded again, because a module is unloaded when its device closes
+  const auto loaded = host::Library::open(library);
   std::error_code error;
   const std::string file = std::filesystem::canonical(library, error).string();
   std::ifstream maps("/proc/self/smaps");
@@ -191,7 +193,7 @@ class Costs {
         placed ? "probe in, foot and normal out" : "it stands at the world's origin", placed ? transformCost() : 0, 0);
   }
 
-  /// True for a kinematic model that moves: along its path, or by a program.
+  /// Adds the row for the motion of a kinematic model, which moves along its path or by a program.
   void addPath(size_t index) {
     const scene::Model& model = scene_.models[index];
     const std::string key = fmt::format("models[{}]", index), part = "model " + model.name + ": motion";
@@ -207,7 +209,7 @@ class Costs {
         less ? measured_.resting_ns() - less->resting_ns() : 0, model.path.size() * sizeof(scene::PathPoint));
   }
 
-  /// What a parameter caused: the cost of the model with it, less the cost without it.
+  /// Adds the row for what a parameter causes: the cost of the model with the parameter minus the cost without it.
   void addAsked(size_t index, const host::ShapeInstance& shape, uint32_t flag, const char* part, const char* why,
                 const char* why_not) {
     const scene::Model& model = scene_.models[index];
@@ -288,7 +290,7 @@ class Costs {
   std::vector<CostRow> rows_;
 };
 
-/// The hand's motion if one is simulated; otherwise a stroke along the first model's front.
+/// Returns the motion of the simulated hand; without one, a stroke along the front of the first model.
 tune::Motion motionFor(const scene::Scene& scene) {
   if (auto motion = tune::motionOfHand(scene, 1, quiet)) return *motion;
   std::vector<Eigen::Vector3d> position;

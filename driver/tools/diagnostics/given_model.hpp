@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A model as its file gives it, with what its plugin says of its parameters: for who judges whether that was meant.
+/// A model as its file gives it, with what its plugin says about its parameters. Checks of unusual values use it.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -15,7 +15,8 @@ namespace hapticd::diagnostics {
 
 class GivenModel {
  public:
-  /// @param box around the model in its own frame; nothing: unknown  @param info of its plugin; both must stay
+  /// @param box box around the model in its own frame; nothing if unknown  @param info description of its plugin. Scene
+  /// and info must outlive this object.
   GivenModel(const scene::Scene& scene, size_t index, const std::optional<Eigen::AlignedBox3d>& box,
              const host::ClassInfo& info, document::Problems& warnings)
       : scene_(scene), index_(index), box_(box), info_(info), warnings_(warnings), first_(warnings.size()) {}
@@ -24,17 +25,18 @@ class GivenModel {
   const scene::Servo& servo() const { return scene_.servo; }
   const host::ClassInfo& plugin() const { return info_; }
   const std::optional<Eigen::AlignedBox3d>& box() const { return box_; }
-  double size() const { return box_ ? box_->diagonal().norm() : 0; }  ///< [m] 0: unknown
+  double size() const { return box_ ? box_->diagonal().norm() : 0; }  ///< [m] diagonal of the box; 0 if unknown
 
-  /// What the file gives; nullptr: it does not.
+  /// Returns the value that the file gives, or nullptr if it gives none.
   const scene::Value* find(std::string_view id) const;
-  /// What the file gives, or else the plugin's default; 0: it has no such parameter.
+  /// Returns the number that the file gives, or else the plugin's default; 0 if there is no such parameter.
   double number(std::string_view id) const;
-  Eigen::Vector3d vector(std::string_view id) const;  ///< zero unless it has three numbers
-  /// The word of a choice, "" if the plugin has no such parameter.
+  Eigen::Vector3d vector(std::string_view id) const;  ///< zero if the value does not have three numbers
+  /// Returns the chosen word of an enumeration, or "" if the plugin has no such parameter.
   std::string choice(std::string_view id) const;
 
-  /// Warns at the first of these parameters that the file gives, or at the model under the name of the first; once.
+  /// Adds a warning at the first of these parameters that the file gives; if it gives none, at the model under the name
+  /// of the first. Warns only once.
   void warn(std::initializer_list<std::string_view> ids, const std::string& what) const;
 
  private:
@@ -43,7 +45,7 @@ class GivenModel {
   const std::optional<Eigen::AlignedBox3d>& box_;
   const host::ClassInfo& info_;
   document::Problems& warnings_;
-  size_t first_;  ///< warning of this model
+  size_t first_;  ///< index of the first warning about this model
 };
 
 }  // namespace hapticd::diagnostics

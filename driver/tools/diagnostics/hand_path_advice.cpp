@@ -23,15 +23,15 @@ const scene::Value* given(const scene::Device& device, const char* id) {
   return nullptr;
 }
 
-/// The file that the hand follows; "" if it follows none.
+/// Returns the file that the hand follows; "" if it follows none.
 std::string pathOf(const scene::Device& device) {
-  constexpr double kFollows = 5;  // the script `path`
+  constexpr double kFollows = 5;  // number of the script `path` among the choices
   const scene::Value *script = given(device, "hand.script"), *path = given(device, "hand.path");
   const bool follows = device.module == "simulated" && script != nullptr && script->number == kFollows;
   return follows && path != nullptr ? path->text : "";
 }
 
-/// What keeps the arm from a place, searched from the joints of the row before; "" if it gets there.
+/// Returns why the arm cannot reach a place, or "". The search starts from the joints of the row before.
 std::string obstacle(const host::DeviceInstance& arm, const double* place, std::array<double, HDV_MAX_JOINTS>& joints) {
   const hdv_ext_kinematics& kinematics = arm.kinematics();
   if (kinematics.inverse == nullptr) return "";
@@ -47,7 +47,8 @@ std::string obstacle(const host::DeviceInstance& arm, const double* place, std::
   return "";
 }
 
-/// The line of the first row that the arm cannot follow, why, and how many there are; "=" if it follows all.
+/// Returns a text with the first row that the arm cannot follow, the reason, and how many rows there are; "=" if it can
+/// follow all.
 std::string tryRows(const scene::Device& device, const std::string& file) {
   document::Problems told_by_who_opens;
   const auto table =
@@ -72,7 +73,8 @@ std::string tryRows(const scene::Device& device, const std::string& file) {
   }
   if (rows == 0) return "=";
   return first +
-         fmt::format("; so in {} of {} rows, where the arm stops short and pushes back by itself", rows, table->rows());
+         fmt::format("; this happens in {} of {} rows: there the arm stays at its stop, and the hand feels the stop",
+                     rows, table->rows());
 }
 
 }  // namespace

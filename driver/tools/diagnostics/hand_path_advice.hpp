@@ -6,7 +6,8 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of rows that the arm cannot follow: its reach ends before, or a joint stands at its stop there.
+/// [main] Warns of rows that the arm cannot follow, because they are out of its reach or a joint would be beyond its
+/// stop.
 document::Problems unreachableRows(const scene::Scene& scene);
 
 }  // namespace hapticd::diagnostics

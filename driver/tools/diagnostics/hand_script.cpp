@@ -17,11 +17,11 @@ namespace {
 
 using Kind = HandScript::Kind;
 
-constexpr double kFastestHand = 2;   ///< [m/s] of a hand that strokes, presses or taps
-constexpr double kRiseRatio = 0.31;  ///< of a stroke's rise to its rate, as in the module
+constexpr double kFastestHand = 2;   ///< [m/s] greatest speed of a human hand that strokes, presses or taps
+constexpr double kRiseRatio = 0.31;  ///< ratio of the speed of a stroke's rise to rise times rate, as in the module
 constexpr size_t kMaxPathBytes = size_t{1} << 30;
 
-/// A number as given, or the module's default for it.
+/// Returns a number as the files give it, or the module's default.
 double numberOf(const scene::Device& device, const hdv_class& module, const char* id) {
   if (const scene::Value* value = givenIn(device.parameters, id)) return value->number;
   for (uint32_t i = 0; i < module.param_count; ++i) {
@@ -43,13 +43,13 @@ void readPath(const scene::Device& device, HandScript& hand) {
     const double *from = table->row(i - 1), *to = table->row(i);
     const double way = std::hypot(to[1] - from[1], to[2] - from[2], to[3] - from[3]), speed = way / (to[0] - from[0]);
     hand.path_way += way;
-    if (speed <= hand.path_speed * (1 + 1e-9)) continue;  // of equal ones the first
+    if (speed <= hand.path_speed * (1 + 1e-9)) continue;  // of equal speeds, the first counts
     hand.path_speed = speed;
     hand.path_fastest_at = from[0];
   }
 }
 
-/// In which words a script's speed comes about, and what to change.
+/// Returns words for the motion that makes a script so fast.
 std::string wayOf(const HandScript& hand) {
   switch (hand.kind) {
     case Kind::kStroke:
@@ -72,35 +72,35 @@ void judgeSpeed(const scene::Scene& scene, const scene::Device& device, const Ha
   const HandKey key = follows ? keyOfHand(scene, device, {"hand.path"})
                               : keyOfHand(scene, device, {"hand.rate", "hand.rise", "hand.sweep", "hand.radius"});
   document::report(warnings, key.place, key.id,
-                   fmt::format("the hand of {} moves at up to {:.3g} m/s ({}), and hands do not; expected at most {:g} "
-                               "m/s: {}",
+                   fmt::format("the hand of {} moves at up to {:.3g} m/s ({}), which is faster than a human hand; "
+                               "expected at most {:g} m/s: {}",
                                device.name, speed, wayOf(hand), kFastestHand,
                                follows ? "times in s, places in m" : "hand.rate in Hz, lengths in m, angles in rad"));
 }
 
-/// A file whose times are in ms, which makes minutes of seconds.
+/// Warns of a path file whose times seem to be in ms, because its hand is extremely slow.
 void judgeCrawl(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
                 document::Problems& warnings) {
-  constexpr double kCrawl = 2e-3, kLong = 10, kFar = 5e-3;  // [m/s], [s], [m] a hand that rests is none that crawls
+  constexpr double kCrawl = 2e-3, kLong = 10, kFar = 5e-3;  // [m/s]; [s]; [m] a shorter path counts as rest
   if (hand.kind != Kind::kPath || hand.path_end < kLong || hand.path_way < kFar) return;
   if (hand.path_speed > 10 * kCrawl || hand.path_way > kCrawl * hand.path_end) return;
   const HandKey key = keyOfHand(scene, device, {"hand.path"});
-  document::report(warnings, key.place, key.id,
-                   fmt::format("the hand of {} takes {:.4g} s for {:.3g} mm, {:.2g} mm/s; expected times in s (1 ms is "
-                               "0.001)",
-                               device.name, hand.path_end, hand.path_way * 1e3, hand.path_way / hand.path_end * 1e3));
+  document::report(
+      warnings, key.place, key.id,
+      fmt::format("the hand of {} takes {:.4g} s for {:.3g} mm ({:.2g} mm/s); times must be in s (1 ms is 0.001)",
+                  device.name, hand.path_end, hand.path_way * 1e3, hand.path_way / hand.path_end * 1e3));
 }
 
-/// True: it was meant in degrees, which tells enough of the speed too.
+/// Warns of a sweep that was meant in degrees. Returns true if it was, so that the speed needs no warning of its own.
 bool judgeSweep(const scene::Device& device, const HandScript& hand, document::Problems& warnings) {
   const scene::Value* sweep = givenIn(device.parameters, "hand.sweep");
   if (hand.kind != Kind::kStroke || sweep == nullptr || hand.sweep <= std::numbers::pi * 1.001) return false;
-  const std::string meant = hand.sweep <= 360 ? fmt::format(" ({:.4g} degrees are {:.4g} rad)", hand.sweep,
+  const std::string meant = hand.sweep <= 360 ? fmt::format(" ({:.4g} degrees is {:.4g} rad)", hand.sweep,
                                                             hand.sweep * std::numbers::pi / 180)
                                               : "";
   document::report(warnings, sweep->place, "hand.sweep",
-                   fmt::format("{:.4g} rad to either side is more than half a turn, so the hand of {} goes all round "
-                               "what it strokes; expected at most {:.4g} rad{}",
+                   fmt::format("{:.4g} rad to either side is more than half a turn, so the hand of {} goes all the way "
+                               "round the model; expected at most {:.4g} rad{}",
                                hand.sweep, device.name, std::numbers::pi, meant));
   return true;
 }
@@ -142,7 +142,7 @@ double HandScript::speed() const {
 }
 
 double HandScript::once() const {
-  constexpr double kRest = 1;  // [s] of a hand that holds still
+  constexpr double kRest = 1;  // [s] how long a hand that holds still is watched
   if (kind == Kind::kPath) return path_end;
   const bool repeats =
       rate > 0 && (kind == Kind::kStroke || kind == Kind::kCircle || kind == Kind::kPress || kind == Kind::kTap);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the hand of a simulated arm wants, as its files say it: how far round, how often and how fast it goes.
+/// Reads the script of a simulated hand from its files: how far, how often and how fast the hand should move.
 #pragma once
 #include <Eigen/Core>
 #include <initializer_list>
@@ -13,39 +13,39 @@
 namespace hapticd::diagnostics {
 
 struct HandScript {
-  enum class Kind { kHold, kStroke, kPress, kTap, kCircle, kPath, kNone, kGuided };  ///< as the module lists them
+  enum class Kind { kHold, kStroke, kPress, kTap, kCircle, kPath, kNone, kGuided };  ///< in the module's order
   Kind kind = Kind::kHold;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();          ///< [m] device frame
   double radius = 0, sweep = 0, rise = 0, rate = 0;          ///< [m], [rad], [m], [Hz]
   double lead_in = 0;                                        ///< [s]
-  double path_end = 0, path_speed = 0, path_fastest_at = 0;  ///< [s], [m/s], [s] of the file that it follows
-  double path_way = 0;                                       ///< [m] of it in all
+  double path_end = 0, path_speed = 0, path_fastest_at = 0;  ///< path file: end [s], top speed [m/s], its time [s]
+  double path_way = 0;                                       ///< [m] length of that path
 
-  /// It goes a way of its own: nobody else leads it, and it is there.
+  /// True if the hand moves by itself: there is a hand, and no program leads it.
   bool goes() const { return kind != Kind::kNone && kind != Kind::kGuided; }
   bool presses() const { return kind == Kind::kPress || kind == Kind::kTap; }
-  double speed() const;  ///< [m/s] the greatest of what it wants
-  double once() const;   ///< [s] until it went everywhere it goes
+  double speed() const;  ///< [m/s] greatest speed of its motion
+  double once() const;   ///< [s] time until it has done its whole motion once
 };
 
-/// [main] A parameter that the files give; nullptr: none.
+/// [main] Returns the value that the files give for a parameter, or nullptr if they give none.
 const scene::Value* givenIn(const std::vector<scene::Value>& values, const char* id);
 
-/// Where the files say what a hand does.
+/// A place and a key of the files that decide what a hand does.
 struct HandKey {
   document::Place place;
   std::string id = "hand";
 };
-/// [main] The first of some keys that the scene itself gives, else the first that the device file gives; the arm's own
-/// place where neither does. A device file that the scene does not name has no place of its own: it ships, and what a
-/// person can change is the scene.
+/// [main] Returns the first of some keys that the scene itself gives, or else the first that the device file gives, or
+/// else the place of the arm. If the scene names no device file, the default arm is used, whose file ships with
+/// hapticd; then the place is the first line of the scene, because only the scene can be changed.
 HandKey keyOfHand(const scene::Scene& scene, const scene::Device& device, std::initializer_list<const char*> ids);
 
-/// [main] Nothing for an arm that is not simulated, or whose module cannot be loaded.
+/// [main] Returns the script of an arm's hand; nothing if the arm is not simulated or its module cannot be loaded.
 std::optional<HandScript> handScriptOf(const scene::Device& device);
 
-/// [main] Warns of strokes beyond half a turn to either side, which were meant in degrees, and of a hand that goes
-/// faster than hands go, or so slowly that its times were not meant in s.
+/// [main] Warns of strokes of more than half a turn to either side, which were meant in degrees, of a hand that is
+/// faster than human hands, and of a path so slow that its times were not meant in s.
 document::Problems hastyHands(const scene::Scene& scene);
 
 }  // namespace hapticd::diagnostics

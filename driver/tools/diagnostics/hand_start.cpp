@@ -29,7 +29,7 @@ namespace {
 constexpr size_t kMostModels = 100;  ///< more models take too long to set up a second time
 constexpr int kHandLimitMs = 60'000;
 
-/// The joints at the first tick.
+/// Returns the joints of an arm at the first tick.
 std::optional<std::array<double, HDV_MAX_JOINTS>> firstJoints(const scene::Scene& scene, const scene::Device& device,
                                                               host::DeviceInstance& arm) {
   if (device.module != "simulated") {
@@ -49,9 +49,9 @@ std::optional<std::array<double, HDV_MAX_JOINTS>> firstJoints(const scene::Scene
 
 /// One arm at the first tick.
 struct Hand {
-  uint32_t device = 0;  ///< of the scene
+  uint32_t device = 0;  ///< index of the arm in the scene
   servo::Probe probe;   ///< its tip in the world
-  double reach = 0;     ///< [m] that its joints can bring the tip away from there
+  double reach = 0;     ///< [m] how far its joints can move the tip from there
 };
 
 std::optional<Hand> handOf(const scene::Scene& scene, uint32_t index) {
@@ -71,7 +71,8 @@ std::optional<Hand> handOf(const scene::Scene& scene, uint32_t index) {
   return hand;
 }
 
-/// Model, place of the tip and depth, packed: how they travel from the child. @return how many
+/// Packs model, place of the tip and depth for each tip inside a model, to pass them from the child process. @return
+/// how many there are
 uint32_t packInside(uint32_t models, const servo::Core& core, const std::vector<servo::Probe>& tips,
                     host::Packer& found) {
   uint32_t count = 0;
@@ -90,10 +91,10 @@ uint32_t packInside(uint32_t models, const servo::Core& core, const std::vector<
   return count;
 }
 
-/// Arm, model, distance and reach of each arm that no model is near enough to, packed. @return how many
+/// Packs arm, nearest model, distance and reach of each arm that can reach no model. @return how many there are
 uint32_t packFar(const scene::Scene& scene, const servo::World& world, servo::Core& core,
                  const std::vector<Hand>& hands, host::Packer& found) {
-  constexpr double kRoom = 1.1, kLittle = 0.05;  // the poses that were tried are not all; [m]
+  constexpr double kRoom = 1.1, kLittle = 0.05;  // factor, because not all poses were tried; [m]
   uint32_t count = 0;
   host::Packer list;
   for (uint32_t i = 0; i < hands.size(); ++i) {
@@ -150,13 +151,14 @@ std::string tryTips(const scene::Scene& scene, bool may_walk) {
   core.tick(0, 0, tips);
   const uint32_t inside = packInside(static_cast<uint32_t>(scene.models.size()), core, tips, found);
   const uint32_t far = packFar(scene, **world, core, hands, found);
-  // A hand that begins in the wrong place, or wants what no hand does, is told first: the rest follows from it.
+  // The hands run their scripts only if they start in the right place, because other warnings would follow from a wrong
+  // start.
   if (inside + far == 0 && may_walk && tips.size() == scene.devices.size())
     packProblems(adviseWalk(scene, **world), found);
   return found.take();
 }
 
-/// The place where a file says what the hand wants: what a scene says of it comes before what its device file says.
+/// Returns the place of a key of the hand. Keys in the scene come before keys in the device file.
 document::Place placeOfHand(const scene::Device& device) {
   for (const bool in_scene : {true, false})
     for (const char* id : {"hand.path", "hand.center", "hand.radius", "hand.script", "hand.normal", "hand.axis"})
@@ -165,10 +167,10 @@ document::Place placeOfHand(const scene::Device& device) {
   return device.place;
 }
 
-/// "=", or why `run` would refuse the arm: the same calls.
+/// Makes the same calls as `run`. Returns "=", or why `run` would refuse the arm.
 std::string tryStart(const scene::Scene& scene, const scene::Device& device, bool needs_velocity) {
   scene::Servo servo = scene.servo;
-  servo.velocity = {};  // judged for itself, at its own place
+  servo.velocity = {};  // refusedVelocity() judges it
   auto arm = servo::Arm::open(device, servo, {servo.rate, needs_velocity, nullptr, scene.clients}, nullptr);
   if (!arm) return arm.error();
   const auto started = (*arm)->start(0, servo.gravity);
@@ -176,8 +178,8 @@ std::string tryStart(const scene::Scene& scene, const scene::Device& device, boo
   return started ? "=" : started.error();
 }
 
-/// A refusal names the key that is wrong, at its beginning or after what could not be done: "device 'name': cannot be
-/// opened: hand.axis is zero, expected a direction".
+/// Reports a refusal at the place of the key that it names. The key stands at the beginning, or after what could not be
+/// done: "device 'name': cannot be opened: hand.axis is zero, expected a direction".
 void tellRefused(const scene::Scene& scene, const scene::Device& device, const std::string& told,
                  document::Problems& problems) {
   const std::string before = "device '" + device.name + "': ";
@@ -205,7 +207,7 @@ void tellInside(const scene::Scene& scene, const std::string& list, uint32_t cou
     if (!in.good() || model >= scene.models.size()) break;
     document::report(warnings, scene.models[model].place, fmt::format("models[{}].pose", model),
                      fmt::format("the hand starts inside {}: at [{:.4g}, {:.4g}, {:.4g}] the tip is {:.3g} mm deep; "
-                                 "expected it outside: move the model, the arm (mount) or the hand (hand)",
+                                 "expected a start outside: move the model, the arm (mount) or the hand (hand)",
                                  scene.models[model].name, x, y, z, depth * 1e3));
   }
 }
@@ -218,9 +220,9 @@ void tellFar(const scene::Scene& scene, const std::string& list, uint32_t count,
     const double x = in.real(), y = in.real(), z = in.real(), away = in.real(), reach = in.real();
     if (!in.good() || device >= scene.devices.size() || model >= scene.models.size()) break;
     document::report(warnings, scene.models[model].place, fmt::format("models[{}].pose.position", model),
-                     fmt::format("{} is the model nearest to {}, and {:.3g} m away from its tip, which is at [{:.3g}, "
-                                 "{:.3g}, {:.3g}] and reaches {:.3g} m from there: no model can be felt; expected them "
-                                 "together: move the models (pose.position, in m) or the arm (mount.position)",
+                     fmt::format("{} is the model nearest to {}, but {:.3g} m away from its tip, which is at [{:.3g}, "
+                                 "{:.3g}, {:.3g}] and can move only {:.3g} m from there, so no model can be felt; move "
+                                 "the models (pose.position, in m) or the arm (mount.position)",
                                  scene.models[model].name, scene.devices[device].name, away, x, y, z, reach));
   }
 }
@@ -248,7 +250,7 @@ document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog
   const auto& given = loaded.device->parameters;
   const bool own_hand =
       std::any_of(given.begin(), given.end(), [](const scene::Value& value) { return value.id.starts_with("hand."); });
-  if (!own_hand)  // scenes give it one
+  if (!own_hand)  // a scene gives it one
     std::erase_if(problems, [](const document::Problem& one) { return one.key.starts_with("hand"); });
   for (const document::Problem& one : hastyHands(alone)) warnings.push_back(one);
   return problems;
@@ -260,7 +262,7 @@ document::Problems adviseHands(const scene::Scene& scene) {
   warnings = hastyHands(scene);
   const bool may_walk = warnings.empty();
   const auto told = host::runInChild([&] { return tryTips(scene, may_walk); }, kHandLimitMs);
-  if (!told) return warnings;  // a model that crashes is told by who tried it alone
+  if (!told) return warnings;  // the trial of the models reports a model that crashes
   host::Unpacker in(*told);
   const uint32_t inside = in.count();
   tellInside(scene, in.text(), inside, warnings);

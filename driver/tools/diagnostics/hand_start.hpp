@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Where the tip of each arm is when a run begins: within its reach, and not within a model, or the hand is pushed at
-/// once.
+/// Checks where the tip of each arm is when a run begins: it must be within reach of the arm, and outside every model,
+/// or a force pushes the hand at once.
 #pragma once
 #include <filesystem>
 
@@ -10,20 +10,20 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of each model that the tip of an arm is in at the first tick, with the depth, and of each arm that can
-/// reach none of the models. Simulated hands stand where their script begins, other arms in the pose of their
-/// calibration. Where nothing of that is wrong and all arms are simulated, their hands walk through the scene: see
-/// walk_advice.hpp. The models are set up in a child process.
-/// @param scene with the devices that a run would take
+/// [main] Warns if the tip of an arm is inside a model at the first tick, with the depth, and if an arm can reach none
+/// of the models. Simulated hands are where their script begins, other arms in the pose of their calibration. If there
+/// is no such warning and all arms are simulated, their hands then run their scripts through the scene: see
+/// walk_advice.hpp. The models are set up in a child process. @param scene scene with the devices that a run would use
 document::Problems adviseHands(const scene::Scene& scene);
 
-/// [main] A problem for each simulated arm that `run` would refuse, in its words: one that cannot reach where its hand
-/// begins, an enable button that it has not. The arms are started in a child process.
-/// @param scene with the devices that a run would take  @param needs_velocity some model reads the velocity of a probe
+/// [main] Returns a problem for each simulated arm that `run` would refuse, with the text of `run`: an arm that cannot
+/// reach the start of its hand's motion, or that lacks the enable button. The arms are started in a child process.
+/// @param scene scene with the devices that a run would use  @param needs_velocity true if some model reads the
+/// velocity of a probe
 document::Problems refusedArms(const scene::Scene& scene, bool needs_velocity);
 
-/// [main] The same for one device file. Without a hand of its own it waits for that of a scene, which is not judged.
-/// @param warnings get what hastyHands() says of its hand
+/// [main] Does the same for one device file. If the file has no hand, scenes give it one, so its hand is not judged.
+/// @param warnings gets the warnings of hastyHands() about its hand
 document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog& catalog,
                                 document::Problems& warnings);
 

@@ -19,13 +19,13 @@ using servo::Limit;
 
 constexpr double kMostSeconds = 10;
 constexpr uint64_t kMostTicks = 10'000;
-constexpr double kMostProcessor = 3;  ///< [s]
+constexpr double kMostProcessor = 3;  ///< [s] of processor time
 
 double processorSeconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/// Looks at every tick of the walk, and ends it once all was seen.
+/// Looks at every tick, and ends the loop once everything was seen.
 class WalkLog final : public servo::TickLog {
  public:
   WalkLog(const scene::Scene& scene, const servo::World& world, double once)
@@ -58,7 +58,7 @@ class WalkLog final : public servo::TickLog {
     const bool all =
         std::all_of(walk_.arms.begin(), walk_.arms.end(), [](const WalkedArm& arm) { return arm.touched; });
     walk_.whole = t >= once_ || walk_.whole;
-    // What moves by itself may still come to a hand that waits for it.
+    // A model that moves by itself may still come to a hand that waits for it.
     if (!spoiled_ && !(walk_.whole && (all || !moves_))) return;
     ended_ = true;
     loop_->stop();
@@ -105,7 +105,7 @@ class WalkLog final : public servo::TickLog {
     bool cut = false;
     for (size_t limit = 0; limit < servo::kLimitCount; ++limit) {
       const bool now = clips.ticks[limit] > clips_[index].ticks[limit];
-      // The arm's own weight and old samples are nothing of a scene.
+      // Limits for the arm's own weight and for old samples do not depend on the scene.
       if (!now || limit == static_cast<size_t>(Limit::kWeight) || limit == static_cast<size_t>(Limit::kSample))
         continue;
       cut = true;
@@ -137,7 +137,7 @@ std::optional<Walk> walkHands(const scene::Scene& scene, servo::World& world) {
     auto arm = hand ? servo::Arm::open(device, scene.servo,
                                        {scene.servo.rate, world.needsVelocity(), nullptr, scene.clients}, nullptr)
                     : Result<std::unique_ptr<servo::Arm>>(Error{"not simulated"});
-    if (!arm || !(*arm)->start(0, scene.servo.gravity)) return std::nullopt;  // told by who tries to start it
+    if (!arm || !(*arm)->start(0, scene.servo.gravity)) return std::nullopt;  // refusedArms() reports why
     arms.push_back(std::move(*arm));
     once = std::max(once, hand->once());
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Walks the hands of simulated arms through a scene in virtual time, before anybody runs it: the servo loop of a run,
-/// without its books.
+/// Moves the hands of simulated arms through a scene in virtual time, before anybody runs it. This is the servo loop of
+/// a run, without log and recording.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -15,38 +15,39 @@
 
 namespace hapticd::diagnostics {
 
-/// What hands met of one model.
+/// What all hands together met of one model.
 struct WalkedModel {
   uint64_t touched = 0;                            ///< ticks in which a tip was inside
-  double depth = 0, force = 0;                     ///< [m], [N] greatest
-  double travel = 0;                               ///< [m] farthest from where it began
-  Eigen::Vector3d push = Eigen::Vector3d::Zero();  ///< where the tip pressed at the greatest force; unit, model frame
-  bool clicked = false;                            ///< it told of an event
+  double depth = 0, force = 0;                     ///< greatest depth [m], greatest force [N]
+  double travel = 0;                               ///< [m] farthest distance of the model from where it began
+  Eigen::Vector3d push = Eigen::Vector3d::Zero();  ///< unit vector in the model frame: direction in which the tip
+                                                   ///< pressed at the greatest force
+  bool clicked = false;                            ///< the model reported an event (HSP_OUT_EVENT)
 };
 
 /// What one hand met.
 struct WalkedArm {
-  uint64_t contact = 0, cut = 0;                      ///< ticks with a force, at full strength; those where it was cut
-  std::array<uint64_t, servo::kLimitCount> limits{};  ///< those, by limit
-  double asked = 0;                                   ///< [N] greatest force of all models together
-  double depth = 0;                                   ///< [m] greatest
-  uint32_t deepest = 0;                               ///< the model that this was in
+  uint64_t contact = 0, cut = 0;  ///< ticks with a force after the ramp; how many of these had a force that was cut
+  std::array<uint64_t, servo::kLimitCount> limits{};  ///< ticks with a cut force, for each limit
+  double asked = 0;      ///< [N] greatest sum of the forces of all models, before the limits
+  double depth = 0;      ///< [m] greatest depth in any model
+  uint32_t deepest = 0;  ///< index of the model with the greatest depth
   bool touched = false;
-  double away = HUGE_VAL;  ///< [m] least from any model, or from a box about it
-  uint32_t nearest = 0;    ///< that model
+  double away = HUGE_VAL;  ///< [m] least distance from any model, or from a box around it
+  uint32_t nearest = 0;    ///< index of the model at the least distance
 };
 
 struct Walk {
-  bool whole = false;  ///< every hand went everywhere it goes
-  double period = 0;   ///< [s] of a tick
+  bool whole = false;  ///< true if every hand has done its whole motion once
+  double period = 0;   ///< [s] period of a tick
   std::vector<WalkedModel> models;
   std::vector<WalkedArm> arms;
-  std::vector<servo::Limiter> limiters;  ///< of the arms, as they were at the end
+  std::vector<servo::Limiter> limiters;  ///< limiter of each arm, as it was at the end
 };
 
-/// [main] At most 10 s and 10,000 ticks of it. Nothing where an arm is not simulated, where one refuses, and where it
-/// takes more than some seconds of processor time: what was seen until then would depend on the machine.
-/// @param world of the scene, built for as many probes as it has arms
+/// [main] Runs at most 10 s and 10,000 ticks. Returns nothing if an arm is not simulated, if one cannot be started, or
+/// if this takes more than 3 s of processor time, because the result would depend on the speed of the machine. @param
+/// world world of the scene, built for as many probes as it has arms
 std::optional<Walk> walkHands(const scene::Scene& scene, servo::World& world);
 
 }  // namespace hapticd::diagnostics

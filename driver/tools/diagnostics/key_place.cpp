@@ -8,7 +8,7 @@
 namespace hapticd::diagnostics {
 namespace {
 
-/// What "name[3]" names of a mapping.
+/// Returns the node for a part of a path, such as "name[3]", in a mapping.
 const document::Node* step(const document::Node& from, const std::string& part) {
   const size_t bracket = part.find('[');
   const document::Node* at = from.isMap() ? from.find(part.substr(0, bracket)) : nullptr;

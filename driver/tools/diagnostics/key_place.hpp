@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Where a file says what a key names.
+/// Finds the line of a file in which a key stands.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -9,7 +9,8 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] The place of "servo.velocity.parameter" or "devices[1].mount" in a file; nothing if it is not there.
+/// [main] Returns the place of a key such as "servo.velocity.parameter" or "devices[1].mount" in a file; nothing if the
+/// file does not have it.
 std::optional<document::Place> placeOfKey(const std::filesystem::path& file, const std::string& key);
 
 }  // namespace hapticd::diagnostics

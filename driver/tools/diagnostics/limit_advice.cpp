@@ -26,7 +26,7 @@ const scene::Value* valueOf(const scene::Device& device, std::initializer_list<c
   return nullptr;
 }
 
-/// A device whose force may be larger than its arm can give. For an arm that gives 0, nothing is known.
+/// Warns if limits.force is larger than the force of the arm. A force of 0 means that it is unknown.
 void forceBeyondArm(const scene::Device& device, document::Problems& warnings) {
   const scene::Value* most = valueOf(device, {"device.max_force", "max_force"});
   if (most == nullptr || most->number <= 0 || device.limits.force <= most->number) return;
@@ -45,11 +45,11 @@ std::optional<Eigen::Matrix3Xd> jacobianAt(const Joints& q, const host::DeviceIn
   return all.middleRows<3>(first);
 }
 
-/// A force that the motors cannot make at rest in any direction: it was meant in other units, or its limit has no
+/// Warns of a limit that the motors cannot reach at rest in any direction: it was meant in other units, or has no
 /// effect.
 void beyondMotors(const Node* at, const char* key, double given, double reach, const char* unit, const char* where,
                   const std::string& file, document::Problems& warnings) {
-  constexpr double kBeyond = 1.5;  // elsewhere in its workspace an arm may give somewhat more
+  constexpr double kBeyond = 1.5;  // factor, because elsewhere in its workspace an arm may give somewhat more
   if (at == nullptr || given <= kBeyond * reach) return;
   document::report(warnings, file, at->line, at->column, key,
                    fmt::format("{:g} {} is beyond the motors: with arm.max_torque they give at most {:.3g} {} {}; "
@@ -57,18 +57,19 @@ void beyondMotors(const Node* at, const char* key, double given, double reach, c
                                given, unit, reach, unit, where));
 }
 
-/// Motors that push a thousand times harder than allowed: N mm were meant.
+/// Warns of motors that push far harder than allowed, because N mm were meant.
 void motorsBeyondAll(const Node& root, const scene::Device& device, double reach, document::Problems& warnings) {
-  constexpr double kMost = 1000, kTimes = 100;  // N; of limits.force
+  constexpr double kMost = 1000, kTimes = 100;  // [N]; factor of limits.force
   const Node* at = find(root, {"parameters", "arm", "max_torque"});
   if (at == nullptr || reach < kMost || reach < kTimes * device.limits.force) return;
   document::report(warnings, device.file.string(), at->line, at->column, "parameters.arm.max_torque",
-                   fmt::format("these torques are {:.3g} N at the tip, of which limits.force takes {:g} N; expected N "
-                               "m, here and in the scales of the torques: 600 N mm are 0.6 N m",
+                   fmt::format("these torques give {:.3g} N at the tip, but limits.force allows only {:g} N; torques "
+                               "must be in N m, here and in the scales of the torques: 600 N mm is 0.6 N m",
                                reach, device.limits.force));
 }
 
-/// No arm rests beyond its stops; a simulated chain begins in the middle of them.
+/// Moves joints between their stops: those of a simulated chain to the middle, where it begins, and others to the
+/// nearest stop if they are beyond it.
 void keepWithinStops(const Node& root, std::array<double, HDV_MAX_JOINTS>& q, uint32_t joints) {
   const Node *rows = find(root, {"parameters", "arm", "limits"}), *kind = find(root, {"parameters", "arm", "kind"});
   const Node* module = find(root, {"module"});
@@ -149,7 +150,8 @@ void adviseLimits(const Node& root, const scene::Device& device, const host::Dev
     beyondMotors(find(root, {"parameters", "device", "max_force"}), "parameters.device.max_force",
                  claimed == nullptr ? 0 : claimed->number, reach->most, "N", reach->where, file, warnings);
   }
-  // In a direction that no motor turns, the joints carry the load: the motors together bound all other directions.
+  // In a direction in which no motor moves the tip, the mechanism carries the load. Without a bound, the sum of all
+  // motors is used.
   const double together = std::accumulate(motors.begin(), motors.end(), 0.0);
   beyondMotors(find(root, {"limits", "torque"}), "limits.torque", device.limits.torque,
                farthestReach(*angular, motors).value_or(together), "N m", "at rest", file, warnings);

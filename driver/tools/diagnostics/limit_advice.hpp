@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Limits of a device file against what its arm and its motors can give.
+/// Compares the limits of a device file with what its arm and its motors can give.
 #pragma once
 #include <array>
 #include <optional>
@@ -11,13 +11,15 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Joints of the arm at rest [rad]: in the pose of its calibration, else at zero or the stop nearest to it.
+/// [main] Returns the joints of the arm at rest [rad]: those of its calibration pose, or without one zero or the stop
+/// nearest to zero.
 std::array<double, HDV_MAX_JOINTS> restJoints(const document::Node& root, uint32_t joints);
 
-/// [main] arm.max_torque of each joint [N m]; empty if it is not known for all of them.
+/// [main] Returns arm.max_torque of each joint [N m]; empty if it is not known for all joints.
 std::vector<double> motorsOf(const scene::Device& device, size_t joints);
 
-/// [main] [N] The force that the motors give at rest in the arm's strongest direction; nothing if it is unknown.
+/// [main] [N] Returns the force that the motors give at rest in the arm's strongest direction; nothing if it is
+/// unknown.
 std::optional<double> forceOfMotors(const document::Node& root, const scene::Device& device,
                                     const host::DeviceInstance& arm);
 

@@ -10,7 +10,7 @@
 namespace hapticd::diagnostics {
 namespace {
 
-constexpr int kTrialLimitMs = 300'000;  ///< thousands of models may need minutes; a hang needs an end
+constexpr int kTrialLimitMs = 300'000;  ///< long, because thousands of models may need minutes
 
 hsp_activation activationOf(const scene::Scene& scene, const scene::Model& model, double max_force) {
   hsp_activation activation{};
@@ -27,7 +27,8 @@ hsp_activation activationOf(const scene::Scene& scene, const scene::Model& model
   return activation;
 }
 
-/// The value with which a plugin's words begin, as "stiffness: has no effect"; `text` keeps the rest. nullptr: none.
+/// Returns the value that a plugin's message names at its beginning, as in "stiffness: has no effect", and removes the
+/// name from `text`; nullptr if there is none.
 const scene::Value* valueNamed(const scene::Model& model, std::string& text) {
   const std::string before = "model '" + model.name + "': cannot be set up: ";
   const size_t begin = text.rfind(before, 0) == 0 ? before.size() : 0, colon = text.find(": ", begin);
@@ -73,22 +74,22 @@ class Remarks {
   host::Packer list_;
 };
 
-/// A body that does not move has a parameter for moving ones: somebody waits for it to give way.
+/// Warns of parameters for moving bodies on a model that does not move by forces.
 void adviseMotion(const scene::Model& model, size_t index, document::Problems& warnings) {
   for (const scene::Value& value : model.parameters)
     for (const char* id : {"mass", "inertia", "gravity", "drag", "angular_drag", "joint", "tether", "velocity"})
       if (value.id == id)
         document::report(warnings, value.place, "models[" + std::to_string(index) + "].parameters." + id,
-                         "acts on a model that moves by its plugin, which this one does not: motion: dynamic under "
-                         "parameters makes it do so, where the plugin has that");
+                         "has no effect, because this model does not move by forces; set parameters.motion: dynamic if "
+                         "the plugin has that parameter, or remove this line");
 }
 
-/// A crash, an exit or a hang, with the model whose plugin did it.
+/// Reports a crash, an exit or a hang, with the model whose plugin caused it.
 void reportEnd(const std::string& how, const host::Trail& trail, const scene::Scene& scene,
                document::Problems& problems) {
   const uint32_t index = trail.item();
   if (*trail.call() == '\0' || index >= scene.models.size())
-    return document::report(problems, scene.file.string(), 1, 1, "models", "setting them up " + how);
+    return document::report(problems, scene.file.string(), 1, 1, "models", "setting up the models " + how);
   const scene::Model& model = scene.models[index];
   const bool more = index + 1 < scene.models.size();
   document::report(problems, model.place, "models[" + std::to_string(index) + "]",
@@ -97,7 +98,7 @@ void reportEnd(const std::string& how, const host::Trail& trail, const scene::Sc
                        "; hapticd plugin check FILE.so looks for the cause");
 }
 
-/// Where a model is, in its own frame; an empty box: its plugin does not say.
+/// Packs the box of a model in its own frame; an empty box if its plugin does not report one.
 void packBox(const host::ShapeInstance* shape, host::Packer& out) {
   Eigen::AlignedBox3d box;
   if (shape != nullptr && !shape->bounds(box.min().data(), box.max().data())) box.setEmpty();

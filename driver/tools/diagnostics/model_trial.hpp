@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Trying a scene's models: what only a plugin can judge, such as the content of a geometry file.
+/// Sets up a scene's models to find what only a plugin can judge, such as the content of a geometry file.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -10,10 +10,10 @@
 
 namespace hapticd::diagnostics {
 
-/// The box around each model in its own frame, in scene order; nothing where its plugin says of none.
+/// The box around each model in its own frame, in scene order; nothing if its plugin does not report a box.
 using ModelBoxes = std::vector<std::optional<Eigen::AlignedBox3d>>;
 
-/// What plugins say of a scene's models.
+/// What plugins say about a scene's models.
 struct ModelTrial {
   document::Problems problems, warnings;
   std::vector<double> stiffness;  ///< [N/m] that each model claims, in scene order
@@ -21,10 +21,11 @@ struct ModelTrial {
   ModelBoxes boxes;
 };
 
-/// [main] Creates and activates every model in a child process, one after the other, and collects what the plugins
-/// object to. A crash or a hang becomes a problem too.
-/// @param max_force [N] that any arm of the run lets through to the hand (servo::maxForceOf); 0: unknown
-/// @param unsound models that are left out, by number: what is known of them is wrong; their stiffness counts as 0
+/// [main] Creates and activates every model in a child process, one after the other, and collects the objections of the
+/// plugins. A crash or a hang becomes a problem too.
+/// @param max_force [N] largest force that any arm of the run lets through to the hand (servo::maxForceOf); 0 if
+/// unknown
+/// @param unsound true for each model that is left out because it has problems already; its stiffness counts as 0
 ModelTrial tryModels(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound = {});
 
 }  // namespace hapticd::diagnostics

@@ -33,7 +33,7 @@ void adviseMotors(const Node& root, const scene::Device& device, size_t joints, 
   if (list == nullptr || !list->isSequence()) return;
   if (const size_t given = device.limits.motors.size(); given < joints && given > 0)
     document::report(warnings, device.file.string(), list->line, list->column, "limits.motors",
-                     fmt::format("{} of {} joints: nobody reckons the heat of the other motors; expected an entry for "
+                     fmt::format("{} of {} joints: the heat of the other motors is not computed; expected an entry for "
                                  "each joint, in their order",
                                  given, joints));
   if (torque.empty()) return;
@@ -47,11 +47,11 @@ void adviseMotors(const Node& root, const scene::Device& device, size_t joints, 
                *at = constant != nullptr ? constant : &list->items[i];
     document::report(
         warnings, device.file.string(), at->line, at->column, fmt::format("limits.motors[{}].torque_constant", i),
-        fmt::format(
-            "with ratio {:g} the {:g} N m of arm.max_torque are {:.3g} A and {:.3g} W in the winding, so its heat "
-            "is {}; expected N m/A ({:g} mN m/A are {:g} N m/A) and ratio: joint torque over motor torque",
-            motor.ratio, torque[i], current, heat, heat < kCold ? "never noticed" : "always too much",
-            motor.torque_constant, motor.torque_constant / 1000));
+        fmt::format("with ratio {:g}, the {:g} N m of arm.max_torque need {:.3g} A, which makes {:.3g} W in the "
+                    "winding, so its heat is {}; the value must be in N m/A ({:g} mN m/A is {:g} N m/A), and ratio "
+                    "must be joint torque over motor torque",
+                    motor.ratio, torque[i], current, heat, heat < kCold ? "never noticed" : "always too much",
+                    motor.torque_constant, motor.torque_constant / 1000));
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Whether the motors of a device file can be those of its arm: units and gears that make their heat meaningless.
+/// Judges whether the motors of a device file can be those of its arm: wrong units or gears make their computed heat
+/// meaningless.
 #pragma once
 #include "description/scene.hpp"
 #include "document/node.hpp"
@@ -7,7 +8,7 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of motors that would make more heat at arm.max_torque than any winding bears.
+/// [main] Warns of motors whose windings would get far too hot, or not at all warm, at arm.max_torque.
 void adviseMotors(const document::Node& root, const scene::Device& device, size_t joints, document::Problems& warnings);
 
 }  // namespace hapticd::diagnostics

@@ -9,7 +9,7 @@
 namespace hapticd::diagnostics {
 namespace {
 
-constexpr double kSlack = 1e-9;  ///< relative, because a corner lies on its own bounds
+constexpr double kSlack = 1e-9;  ///< relative tolerance, because a corner lies on its own bounds
 
 bool within(const Eigen::Matrix3Xd& jacobian, const std::vector<double>& torque, const Eigen::Vector3d& x) {
   for (Eigen::Index i = 0; i < jacobian.cols(); ++i)
@@ -17,7 +17,8 @@ bool within(const Eigen::Matrix3Xd& jacobian, const std::vector<double>& torque,
   return true;
 }
 
-/// The farthest of the eight corners at which three motors give their full torque and no other needs more.
+/// Returns the farthest of the eight corners at which three motors give their full torque and no other motor needs more
+/// than it has.
 double farthestCorner(const Eigen::Matrix3Xd& jacobian, const std::vector<double>& torque, const Eigen::Vector3i& of) {
   constexpr double kParallel = 1e-14;  // volume of the three columns, relative to their lengths
   const Eigen::Vector3d a = jacobian.col(of[0]), b = jacobian.col(of[1]), c = jacobian.col(of[2]);

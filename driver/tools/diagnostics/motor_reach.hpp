@@ -7,10 +7,11 @@
 
 namespace hapticd::diagnostics {
 
-/// [any] The largest |x| with |J^T x| at most `torque`, joint by joint: the farthest corner of what the motors bound.
-/// @param jacobian 3 rows (of the tip's velocity, or of its angular velocity), a column a joint
-/// @param torque of each motor at its joint [N m]
-/// @return [N] or [N m]; nothing where some direction is carried by the joints alone, so that no motor bounds it
+/// [any] Returns the largest |x| for which |J^T x| is at most `torque` in each joint. It lies at a corner of the
+/// polytope of all such x.
+/// @param jacobian 3 rows (for the tip's velocity, or for its angular velocity), one column per joint @param torque
+/// greatest torque of each motor at its joint [N m] @return [N] or [N m]; nothing if in some direction the mechanism
+/// carries the load, so that no motor bounds it
 std::optional<double> farthestReach(const Eigen::Matrix3Xd& jacobian, const std::vector<double>& torque);
 
 }  // namespace hapticd::diagnostics

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A node of a document by its keys.
+/// Finds a node of a document by its keys.
 #pragma once
 #include <initializer_list>
 
@@ -7,7 +7,7 @@
 
 namespace hapticd::diagnostics {
 
-/// [any] The node at a path of keys; nullptr where one is missing.
+/// [any] Returns the node at a path of keys, or nullptr if one of the keys is missing.
 inline const document::Node* find(const document::Node& root, std::initializer_list<const char*> keys) {
   const document::Node* at = &root;
   for (const char* key : keys) {

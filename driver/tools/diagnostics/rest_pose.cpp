@@ -13,7 +13,7 @@ using document::Node;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// The numbers of a list of this length; none for any other list.
+/// Returns the numbers of a list of this length; empty for any other list.
 std::vector<double> numbersOf(const Node* list, size_t count) {
   std::vector<double> numbers;
   if (list == nullptr || list->items.size() != count) return numbers;
@@ -26,7 +26,8 @@ struct Link {
   double low = -M_PI / 2, high = M_PI / 2;  // [rad]; without limits, half of a joint's usual range
 };
 
-/// Standard Denavit-Hartenberg, read leniently, because what is wrong in the file was reported before.
+/// The links of an arm in standard Denavit-Hartenberg parameters. Errors are ignored, because they were reported
+/// before.
 struct Links {
   std::vector<Link> rows;
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
@@ -52,7 +53,7 @@ Links linksOf(const Node& arm) {
   return links;
 }
 
-/// The tip and how it moves with each joint, as singular values, the largest first.
+/// The place of the tip, and the singular values of its Jacobian, the largest first.
 struct Motion {
   Vector3d tip, values = Vector3d::Zero();
   Matrix3d directions;
@@ -84,8 +85,7 @@ Motion motionAt(const Links& links, const std::vector<double>& q) {
   return motion;
 }
 
-/// A pose to choose: how far the tip moves in its worst direction, and how far the pose is from the
-/// middle.
+/// A pose to choose from: how well the tip moves in its worst direction, and how far the pose is from the middle.
 struct Candidate {
   std::vector<double> q;
   Motion motion;
@@ -98,7 +98,7 @@ std::vector<double> middleOf(const Links& links) {
   return q;
 }
 
-/// The middle comes first, then random poses, which are the same in every run.
+/// Returns the poses to choose from: first the middle, then random poses, which are the same in every run.
 std::vector<Candidate> candidatesFor(const Links& links) {
   constexpr int kPoses = 3000;
   constexpr double kInside = 0.8;  // share of the range between the stops
@@ -110,7 +110,7 @@ std::vector<Candidate> candidatesFor(const Links& links) {
     for (size_t i = 0; i < middle.size(); ++i) {
       const double part = (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5) * kInside;
       const double joint = middle[i] + part * (links.rows[i].high - links.rows[i].low);
-      one.q[i] = std::round(joint * 100) / 100;  // as it is told
+      one.q[i] = std::round(joint * 100) / 100;  // as it will be printed
       one.away += part * part;
     }
     one.motion = motionAt(links, one.q);
@@ -119,7 +119,7 @@ std::vector<Candidate> candidatesFor(const Links& links) {
   return all;
 }
 
-/// Directions in which the tip moves at some pose.
+/// Returns the number of independent directions in which the tip can move at some pose.
 int freedomOf(const std::vector<Candidate>& all) {
   constexpr double kMoves = 1e-3;  // share of the motion in the best direction
   Vector3d most = Vector3d::Zero();
@@ -129,14 +129,15 @@ int freedomOf(const std::vector<Candidate>& all) {
   return freedom;
 }
 
-/// True if the tip stays in one plane whatever the joints are, and not on the surface of a ball.
+/// Returns true if the tip of an arm with two directions stays in a plane whatever the joints are, and not on the
+/// surface of a ball.
 bool staysInPlane(const std::vector<Candidate>& all, const Motion& motion) {
   const Vector3d across = motion.directions.col(2);
   return std::all_of(all.begin(), all.end(),
                      [&](const Candidate& one) { return std::abs(across.dot(one.motion.tip - motion.tip)) < 1e-9; });
 }
 
-/// z if the tip can move along it, or y, or x.
+/// Returns z if the tip can move along z, otherwise y or x.
 Vector3d pushOf(const Motion& motion, int freedom) {
   if (freedom == 3 || freedom == 0) return Vector3d::UnitZ();
   const auto moves = motion.directions.leftCols(freedom);
@@ -163,7 +164,7 @@ RestPose restPoseOf(const Node& arm) {
   const int last = std::max(rest.freedom - 1, 0);
   double best = 0;
   for (const Candidate& one : all) best = std::max(best, one.motion.values[last]);
-  constexpr double kWellEnough = 0.2, kWell = 0.6;  // of the best
+  constexpr double kWellEnough = 0.2, kWell = 0.6;  // shares of the best pose's value
   const Candidate* chosen = &all.front();
   rest.middle = chosen->motion.values[last] >= kWellEnough * best;
   for (const Candidate& one : all) {

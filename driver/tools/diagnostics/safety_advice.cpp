@@ -40,14 +40,15 @@ void noForceLimit(const File& file, const host::DeviceInstance& arm) {
   const Node* limits = file.root.find("limits");
   const auto reach = forceOfMotors(file.root, file.device, arm);
   file.warn(limits != nullptr ? *limits : file.root, "limits.force",
-            "not given, nor parameters.device.max_force, so the motors alone bound the force" +
+            "not given, and neither is parameters.device.max_force, so only the motors bound the force" +
                 (reach ? fmt::format(": about {:.3g} N at rest", *reach) : std::string()) +
                 "; expected what a hand may feel, such as 0.5 N to begin with");
 }
 
-/// An arm of more than three joints can turn the hand, and no device tells the largest torque of its handle.
+/// Warns of a missing limits.torque. An arm of more than three joints can turn the hand, and no device reports the
+/// largest torque at its handle.
 void noTorqueLimit(const File& file, const codec::Wire& wire, const host::DeviceInstance& arm) {
-  constexpr double kHandle = 0.1;  // m from the tip, where a hand holds it
+  constexpr double kHandle = 0.1;  // [m] lever arm at which a hand holds the handle
   const scene::Limits& limits = file.device.limits;
   const bool turns = arm.kinematics().joint_count > 3 &&
                      std::any_of(wire.output.fields.begin(), wire.output.fields.end(), [](const Field& field) {
@@ -58,24 +59,25 @@ void noTorqueLimit(const File& file, const codec::Wire& wire, const host::Device
   const double force = limits.force > 0 ? limits.force : file.number("device.max_force");
   file.warn(
       given != nullptr ? *given : file.root, "limits.torque",
-      "not given, so the motors alone bound how hard shapes may turn the hand; expected what a wrist may feel" +
+      "not given, so only the motors bound the torque on the hand; expected a torque that a wrist can bear" +
           (force > 0 ? fmt::format(", such as {:.2g} N m: limits.force at a handle of {:g} m", kHandle * force, kHandle)
                      : ", such as 0.05 N m to begin with"));
 }
 
-/// Forces of an arm described in this way draw the hand in where they should push it out.
+/// Warns of opposite signs, because forces then pull the hand in instead of pushing it out.
 void oppositeSigns(const File& file, const codec::Wire& wire) {
-  if (file.number("loader") > 0) return;  // a Falcon's board turns the signs of all three
+  if (file.number("loader") > 0) return;  // the board of a Falcon reverses all three signs
   const Node* fields = find(file.root, {"parameters", "wire", "output", "fields"});
   for (const Field& in : wire.input.fields)
     for (size_t i = 0; i < wire.output.fields.size() && fields != nullptr && i < fields->items.size(); ++i) {
       const Field& out = wire.output.fields[i];
       if (in.role != Role::kPosition || out.role != Role::kTorque || in.index != out.index) continue;
       if (in.scale * out.scale > 0) continue;
-      file.warn(fields->items[i], fmt::format("parameters.wire.output.fields[{}].scale", i),
-                fmt::format("its sign is not that of the position of joint {}: if the board does not turn one of them, "
-                            "forces draw the hand in; try the signs with the smallest force first",
-                            in.index + 1));
+      file.warn(
+          fields->items[i], fmt::format("parameters.wire.output.fields[{}].scale", i),
+          fmt::format("the scale of this torque and the scale of the position of joint {} have opposite signs; unless "
+                      "the board reverses one of them, forces pull the hand in; check with a very small force first",
+                      in.index + 1));
     }
 }
 
@@ -84,11 +86,13 @@ void slowWatchdog(const File& file, const codec::Wire& wire) {
   const Node* watchdog = find(file.root, {"parameters", "wire", "watchdog"});
   if (watchdog == nullptr || wire.watchdog <= kSlow) return;
   file.warn(*watchdog, "parameters.wire.watchdog",
-            fmt::format("{:g} s: so long the last force stays when commands stop; expected seconds, such as 0.02",
+            fmt::format("{:g} s is long: when commands stop, the arm keeps its last force for this time; give a time "
+                        "in s, such as 0.02",
                         wire.watchdog));
 }
 
-/// Only the arm is judged, because the scene has the rate of the servo.
+/// Warns of samples that come so rarely that the arm pushes less. The servo is assumed to be fast, because its rate is
+/// in the scene.
 void slowSamples(const File& file, const codec::Wire& wire) {
   constexpr double kServoAtItsBest = 1e4;  // Hz
   const Node* rate = find(file.root, {"parameters", "wire", "rate"});
@@ -96,7 +100,7 @@ void slowSamples(const File& file, const codec::Wire& wire) {
     file.warn(*rate, "parameters.wire.rate", fmt::format("{:g} Hz: ", wire.rate) + slow);
 }
 
-/// Encoders that wrap are at zero wherever the arm was switched on.
+/// Warns of a missing calibration, because encoders that wrap have their zero wherever the arm was switched on.
 void noCalibration(const File& file, const codec::Wire& wire) {
   const bool wraps = std::any_of(wire.input.fields.begin(), wire.input.fields.end(),
                                  [](const Field& field) { return field.role == Role::kPosition && field.wraps; });
@@ -105,8 +109,8 @@ void noCalibration(const File& file, const codec::Wire& wire) {
   if (!wraps || says || file.number("calibration.method") > 0) return;
   const Node *given = find(file.root, {"parameters", "calibration"}), *parameters = file.root.find("parameters");
   file.warn(given != nullptr ? *given : *parameters, "parameters.calibration.method",
-            "none, though positions wrap: they count from where the arm was switched on; expected method: pose (or "
-            "device), or no wraps where the encoders are absolute");
+            "is none, but the encoders wrap, so their zero is wherever the arm was switched on; set method: pose (or "
+            "device), or remove wraps if the encoders are absolute");
 }
 
 void tooHeavy(const File& file, const host::DeviceInstance& arm) {
@@ -119,14 +123,13 @@ void tooHeavy(const File& file, const host::DeviceInstance& arm) {
   if (arm.kinematics().gravity(arm.handle(), q.data(), gravity, tau.data()) < 0) return;
   for (size_t i = 0; i < motors.size(); ++i)
     if (std::abs(tau[i]) > motors[i])
-      return file.warn(
-          *masses, "parameters.arm.masses",
-          fmt::format("its weight asks joint {} for {:.3g} N m at rest, and its motor gives {:g}; expected "
-                      "kg",
-                      i + 1, std::abs(tau[i]), motors[i]));
+      return file.warn(*masses, "parameters.arm.masses",
+                       fmt::format("with these masses, joint {} needs {:.3g} N m to hold the arm at rest, but its "
+                                   "motor gives only {:g} N m; masses must be in kg",
+                                   i + 1, std::abs(tau[i]), motors[i]));
 }
 
-/// Keys that a field of this kind reads, besides those of every field.
+/// Returns the keys that a field of this kind reads, including those that every field reads.
 std::set<std::string> keysOf(Role role) {
   std::set<std::string> keys{"is", "at", "type", "endian", "bit_offset"};
   const auto add = [&keys](std::initializer_list<const char*> more) { keys.insert(more.begin(), more.end()); };
@@ -159,11 +162,12 @@ void unusedKeys(const File& file, const codec::Report& report, const char* which
     for (const document::Entry& entry : fields->items[i].entries)
       if (used.count(entry.key.scalar) == 0)
         file.warn(entry.key, key + "." + entry.key.scalar,
-                  fmt::format("not read: a field that is {} has no {}", is != nullptr ? is->scalar : "this",
-                              entry.key.scalar));
+                  fmt::format("this key is ignored, because a field that is {} has no {}",
+                              is != nullptr ? is->scalar : "this", entry.key.scalar));
     const Node* value = fields->items[i].find("value");
     if (field.role == Role::kEnable && field.bit < 0 && field.value == 0 && value != nullptr)
-      file.warn(*value, key + ".value", "0, which is what off is: the motors could never be enabled; expected another");
+      file.warn(*value, key + ".value",
+                "0 is also sent when the motors are off, so they could never be enabled; give another value");
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a device file leaves out or turns round that a hand would feel: told before any force.
+/// Warns, before any force, of what a device file leaves out or reverses that a hand would feel.
 #pragma once
 #include "description/scene.hpp"
 #include "document/node.hpp"
@@ -7,10 +7,9 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of an arm without any bound of its force, or of its torque, of a joint whose position and torque have
-/// opposite signs, of a watchdog that is slow, of samples that come so rarely that the arm pushes less, of relative
-/// encoders without a calibration, of a weight beyond the motors, and of keys of a report's field that what it is does
-/// not use.
+/// [main] Warns of an arm whose force or torque nothing bounds, of a joint whose position and torque have opposite
+/// signs, of a slow watchdog, of samples so rare that the arm pushes less, of relative encoders without a calibration,
+/// of a weight that the motors cannot hold, and of keys of a report's field that this kind of field does not use.
 void adviseSafety(const document::Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                   document::Problems& warnings);
 

@@ -18,13 +18,15 @@ double number(const scene::Device& device, const char* id) {
   return 0;
 }
 
-/// [N] as the limiter has it: the smaller of the two that are known.
+/// [N] Returns the largest force as the limiter uses it: the smaller of limits.force and the arm's own force, as far as
+/// they are known.
 double forceOf(const scene::Device& device, double own) {
   const double asked = device.limits.force;
   return asked > 0 && own > 0 ? std::min(asked, own) : std::max(asked, own);
 }
 
-/// The arm's own rate is too low, not that of the servo: where its file has a rate, it is told there.
+/// Adds the warning. If the arm's own rate is too low, it is placed at the rate in the device file, otherwise at the
+/// rate of the servo.
 void tellSlow(const scene::Scene& scene, const scene::Device& device, const std::string& slow,
               document::Problems& warnings) {
   const bool own = slow.starts_with("its own rate");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Real arms that push less than their limits say, because a command may stay on for long after a fault: told from the
-/// files alone, before an arm is opened.
+/// Finds real arms that push less than their limits allow, because a command may stay on for long after a fault. Only
+/// the files are read; no arm is opened.
 #pragma once
 #include <string>
 
@@ -9,15 +9,16 @@
 
 namespace hapticd::diagnostics {
 
-inline constexpr double kFastServo = 1e4;  ///< [Hz] used if an arm is judged without a scene
+inline constexpr double kFastServo = 1e4;  ///< [Hz] servo rate to assume without a scene
 
-/// [main] [Hz] of the samples of an arm that is not opened, by its file; 0: only the arm itself says it.
+/// [main] [Hz] Returns the rate of an arm's samples as its file gives it; 0 if only the opened arm could tell it.
 double namedRate(const scene::Device& device);
 
-/// [main] Why an arm pushes less at a rate of the servo [Hz], and the cure; "" if it does not, as for simulated arms.
+/// [main] Returns why an arm pushes less than its limits allow at this rate of the servo [Hz], and what to do; "" if it
+/// does not push less, as all simulated arms.
 std::string slownessOf(const scene::Device& device, double servo_rate);
 
-/// [main] The same, as a warning for each arm of a scene.
+/// [main] Returns a warning with that text for each such arm of a scene.
 document::Problems slowArms(const scene::Scene& scene);
 
 }  // namespace hapticd::diagnostics

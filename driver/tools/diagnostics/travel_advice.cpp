@@ -21,13 +21,13 @@ using codec::Field;
 using codec::Role;
 using document::Node;
 
-/// From least to greatest.
+/// A range, from least to greatest.
 struct Way {
   double low = 0, high = 0;
   double length() const { return high - low; }
 };
 
-/// The range of a field; nothing for one that continues past its end.
+/// Returns the range that a field can express; nothing for a field that continues past its end.
 std::optional<Way> sayable(const Field& field) {
   if (field.role != Role::kPosition || field.wraps || field.type == codec::Type::kFloat) return std::nullopt;
   const auto [least, most] = codec::rangeOf(field.type, field.bits);
@@ -41,13 +41,13 @@ std::vector<double> limitsOf(const scene::Device& device) {
   return {};
 }
 
-/// Its zero is where the arm was held during calibration, so only the length of a range is known.
+/// Returns true if the zero is where the arm was held during calibration, so that only the length of a range is known.
 bool zeroedByPose(const scene::Device& device) {
   return std::any_of(device.parameters.begin(), device.parameters.end(),
                      [](const scene::Value& value) { return value.id == "calibration.method" && value.number > 1; });
 }
 
-/// "" or which part of the range between the stops a field cannot express.
+/// Returns a text if a field cannot express the whole range between the stops, or "".
 std::string tooShort(const Field& field, const Way& said, const Way& stops, bool placed) {
   const double room = 0.02 * stops.length();  // stops are not measured more accurately
   const bool covers =
@@ -57,13 +57,13 @@ std::string tooShort(const Field& field, const Way& said, const Way& stops, bool
                                     std::max({std::abs(said.low), std::abs(said.high), 1e-300})
                               : stops.length() / said.length();
   return fmt::format(
-      "its numbers end at {:.4g} and {:.4g}, before arm.limits of joint {} do, {:.4g} and {:.4g}; expected "
-      "{}a wider type, an offset, or wraps: true where it counts on past its end",
+      "this field covers only {:.4g} to {:.4g} rad, but arm.limits of joint {} go from {:.4g} to {:.4g}; expected {}a "
+      "wider type, an offset, or wraps: true if the counter continues past its end",
       said.low, said.high, field.index + 1, stops.low, stops.high,
       times > 1.05 ? fmt::format("a scale that is {:.3g} times as large, ", times) : std::string());
 }
 
-/// The box around all places of the tip, with each joint in three positions.
+/// Returns the box around all places of the tip, with each joint in three positions.
 Eigen::AlignedBox3d placesOf(const host::DeviceInstance& arm, const std::vector<Way>& ways) {
   Eigen::AlignedBox3d box;
   size_t count = 1;
@@ -80,13 +80,13 @@ Eigen::AlignedBox3d placesOf(const host::DeviceInstance& arm, const std::vector<
   return box;
 }
 
-/// [m] The diagonal of that box.
+/// [m] Returns the diagonal of that box.
 double extentOf(const host::DeviceInstance& arm, const std::vector<Way>& ways) {
   const Eigen::AlignedBox3d box = placesOf(arm, ways);
   return box.isEmpty() ? 0 : box.diagonal().norm();
 }
 
-/// A sphere that the arm cannot leave bounds nothing: millimetres were meant.
+/// Warns of a workspace that the arm can never leave, because millimetres were meant.
 void workspaceBeyondReach(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                           document::Problems& warnings) {
   constexpr size_t kMostJoints = 6;  // 729 poses
@@ -103,16 +103,17 @@ void workspaceBeyondReach(const Node& root, const scene::Device& device, const h
   if (device.limits.workspace <= kTimes * reach) return;
   document::report(
       warnings, device.file.string(), given->line, given->column, "limits.workspace",
-      fmt::format("{:g} m about the origin, but the tip never is farther from it than {:.2g} m, so this "
-                  "bounds nothing; expected metres: {:g} mm are {:g} m",
+      fmt::format("{:g} m about the origin bounds nothing, because the tip is never farther from it than {:.2g} m; the "
+                  "value must be in m: {:g} mm is {:g} m",
                   device.limits.workspace, reach, device.limits.workspace, device.limits.workspace / 1000));
 }
 
-/// Without stops in the file, only its workspace shows how far the arm was meant to move.
+/// Warns if the positions can express only a small part of limits.workspace. Without stops in the file, only the
+/// workspace shows how far the arm should move.
 void narrowWorkspace(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                      const codec::Wire& wire, document::Problems& warnings) {
   constexpr size_t kMostJoints = 6;  // 729 poses
-  constexpr double kSmall = 0.35;    // of the workspace's width
+  constexpr double kSmall = 0.35;    // share of the workspace's width
   const Node* given = find(root, {"limits", "workspace"});
   const size_t joints = arm.kinematics().joint_count;
   if (given == nullptr || device.limits.workspace <= 0 || joints > kMostJoints) return;
@@ -125,12 +126,10 @@ void narrowWorkspace(const Node& root, const scene::Device& device, const host::
     }
   const double extent = extentOf(arm, ways), whole = extentOf(arm, std::vector<Way>(joints, Way{-M_PI, M_PI}));
   if (extent >= kSmall * 2 * device.limits.workspace || extent >= 0.5 * whole) return;
-  document::report(
-      warnings, device.file.string(), given->line, given->column, "limits.workspace",
-      fmt::format("{:g} m about the origin, but the positions that wire.input can say move the tip by {:.3g} "
-                  "m at most; expected a larger scale of the positions (rad of one count), or a smaller "
-                  "workspace",
-                  device.limits.workspace, extent));
+  document::report(warnings, device.file.string(), given->line, given->column, "limits.workspace",
+                   fmt::format("{:g} m is more than the tip can move: the positions in wire.input reach only {:.3g} m; "
+                               "expected a larger scale (rad per count) in wire.input, or a smaller workspace",
+                               device.limits.workspace, extent));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The way that counts times scale give, against the way that the arm has.
+/// Compares the range of positions that a report can express (raw numbers times scale) with the range that the arm has.
 #pragma once
 #include "description/scene.hpp"
 #include "document/node.hpp"
@@ -7,8 +7,9 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of positions whose numbers end before `arm.limits` do, and of a `limits.workspace` that is far larger
-/// than what they can bring the tip through: their scale is too small, or their type too narrow.
+/// [main] Warns of positions whose type cannot express all of `arm.limits`, and of a `limits.workspace` that is far
+/// larger than the region that these positions let the tip reach. In both cases the scale is too small or the type too
+/// narrow.
 void adviseTravel(const document::Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                   document::Problems& warnings);
 

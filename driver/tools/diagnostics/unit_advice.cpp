@@ -15,7 +15,7 @@ namespace {
 
 using document::Node;
 
-/// All numbers of a list, or of a list of lists.
+/// Returns all numbers of a list, or of a list of lists.
 std::vector<double> numbersIn(const Node* list) {
   std::vector<double> numbers;
   if (list == nullptr) return numbers;
@@ -34,13 +34,14 @@ double largest(const std::vector<double>& numbers) {
 void beyondATurn(const Node* list, const char* key, const std::string& file, document::Problems& warnings) {
   const double most = largest(numbersIn(list));
   if (most <= 2 * M_PI) return;
-  document::report(warnings, file, list->line, list->column, key,
-                   fmt::format("{:g} rad is more than a whole turn; expected rad: {:g} degrees are {:.4g} rad", most,
-                               most, most * M_PI / 180));
+  document::report(
+      warnings, file, list->line, list->column, key,
+      fmt::format("{:g} rad is more than a whole turn; the value must be in rad: {:g} degrees is {:.4g} rad", most,
+                  most, most * M_PI / 180));
 }
 
-/// Degrees below 10 pass the range of the parameter, which ends at 10 rad. No table of a real arm has a whole number of
-/// radians, nor more than half a turn.
+/// Warns of angles in degrees. Below 10, they are within the range of the parameter, which ends at 10 rad; but the
+/// table of a real arm has no whole numbers of radians, and no angles of more than half a turn.
 void twistInDegrees(const Node* rows, const std::string& file, document::Problems& warnings) {
   if (rows == nullptr || !rows->isSequence()) return;
   for (size_t row = 0; row < rows->items.size(); ++row) {
@@ -53,21 +54,22 @@ void twistInDegrees(const Node* rows, const std::string& file, document::Problem
       document::report(
           warnings, file, link.items[column].line, link.items[column].column,
           fmt::format("parameters.arm.dh[{}][{}]", row, column),
-          fmt::format("{:g} rad is {:.4g} degrees, as {} of joint {}; expected rad: {:g} degrees are "
-                      "{:.4g} rad",
+          fmt::format("{:g} rad is {:.4g} degrees, which is unusual for {} of joint {}; the value must be in rad: {:g} "
+                      "degrees is {:.4g} rad",
                       angle, angle * 180 / M_PI, column == 1 ? "alpha" : "theta", row + 1, angle, angle * M_PI / 180));
     }
   }
 }
 
-/// Lengths are in metres, and their decimals may be wrong; limits and masses depend on them.
+/// Warns of a link that is too long, because its length is not in metres or its decimal point is wrong.
 void linkTooLong(const Node* lengths, const std::string& file, document::Problems& warnings) {
   constexpr double kLong = 2;  // m: longer than a person's arm, and than any device for one
   const double most = largest(numbersIn(lengths));
   if (most <= kLong) return;
-  document::report(warnings, file, lengths->line, lengths->column, "parameters.arm.lengths",
-                   fmt::format("{:g} m is longer than an arm that a hand leads; expected metres: {:g} mm are {:g} m",
-                               most, most, most / 1000));
+  document::report(
+      warnings, file, lengths->line, lengths->column, "parameters.arm.lengths",
+      fmt::format("{:g} m is too long for an arm that a hand moves; the value must be in m: {:g} mm is {:g} m", most,
+                  most, most / 1000));
 }
 
 /// The same of a chain, whose lengths are in two columns.
@@ -92,12 +94,12 @@ void lengthBelowZero(const Node* lengths, const std::string& file, document::Pro
   for (const double length : numbersIn(lengths))
     if (length < 0)
       return document::report(warnings, file, lengths->line, lengths->column, "parameters.arm.lengths",
-                              fmt::format("{:g} m is below 0; expected 0 or more: signs are those of the positions and "
-                                          "torques",
+                              fmt::format("{:g} m is below 0; expected 0 or more; to reverse a direction, change the "
+                                          "signs of the positions and torques",
                                           length));
 }
 
-/// A zero that is many turns away was given in degrees, or in counts.
+/// Warns of an offset of more than a turn, which was meant in degrees or in counts.
 void offsetBeyondATurn(const Node* fields, const std::string& file, document::Problems& warnings) {
   if (fields == nullptr || !fields->isSequence()) return;
   for (size_t i = 0; i < fields->items.size(); ++i) {
@@ -105,11 +107,11 @@ void offsetBeyondATurn(const Node* fields, const std::string& file, document::Pr
     if (is == nullptr || is->scalar != "position" || offset == nullptr) continue;
     const double value = document::toNumber(offset->scalar).value_or(0);
     if (std::abs(value) <= 2 * M_PI) continue;
-    document::report(
-        warnings, file, offset->line, offset->column, fmt::format("parameters.wire.input.fields[{}].offset", i),
-        fmt::format("{:g} rad is more than a whole turn; expected rad (or m): for degrees, offset_degrees: "
-                    "{:g}",
-                    value, value));
+    document::report(warnings, file, offset->line, offset->column,
+                     fmt::format("parameters.wire.input.fields[{}].offset", i),
+                     fmt::format("{:g} rad is more than a whole turn; the value must be in rad (or m); if it is in "
+                                 "degrees, write offset_degrees: {:g}",
+                                 value, value));
   }
 }
 
@@ -118,8 +120,8 @@ void mountFarAway(const Node* position, const std::string& file, document::Probl
   const double most = largest(numbersIn(position));
   if (most <= kFar) return;
   document::report(warnings, file, position->line, position->column, "mount.position",
-                   fmt::format("{:g} m from the world's origin, where the scenes have their shapes; expected metres: "
-                               "{:g} mm are {:g} m",
+                   fmt::format("{:g} m from the world's origin, where the scenes have their shapes; the value must be "
+                               "in m: {:g} mm is {:g} m",
                                most, most, most / 1000));
 }
 
@@ -131,7 +133,7 @@ void quaternionTurnedRound(const Node* orientation, const char* key, const std::
                    "is w, x, y, z, so this is a half turn about z; expected [1, 0, 0, 0] where no turn was meant");
 }
 
-/// "05", "-0800": a number with a meaningless leading zero.
+/// Returns true for a number with a meaningless leading zero, such as "05" or "-0800".
 bool idleZero(const std::string& text) {
   const size_t first = text.find_first_not_of("+-");
   return first != std::string::npos && first + 1 < text.size() && text[first] == '0' &&
@@ -145,7 +147,7 @@ void adviseZeros(const Node& root, const std::string& file, document::Problems& 
     document::report(warnings, file, root.line, root.column, "",
                      "\"" + root.scalar +
                          "\" begins with a zero: a comma separates numbers, and decimals have a point (0." +
-                         root.scalar + " is one number, 0," + root.scalar + " are two)");
+                         root.scalar + " is one number, 0," + root.scalar + " is two)");
   for (const Node& item : root.items) adviseZeros(item, file, warnings);
   for (const document::Entry& entry : root.entries) adviseZeros(entry.value, file, warnings);
 }

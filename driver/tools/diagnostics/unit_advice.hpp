@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Numbers of a device file that look like another unit: degrees for radians, millimetres for metres.
+/// Finds numbers of a device file that seem to be in another unit: degrees instead of radians, millimetres instead of
+/// metres.
 #pragma once
 #include <string>
 
@@ -11,7 +12,7 @@ namespace hapticd::diagnostics {
 /// that was probably written x, y, z, w.
 void adviseUnits(const document::Node& root, const std::string& file, document::Problems& warnings);
 
-/// [main] Warns of whole numbers that begin with a zero, as in [0,05, 0]: the comma separated two numbers.
+/// [main] Warns of whole numbers that begin with a zero, as in [0,05, 0], where a comma was meant as a decimal point.
 void adviseZeros(const document::Node& root, const std::string& file, document::Problems& warnings);
 
 }  // namespace hapticd::diagnostics

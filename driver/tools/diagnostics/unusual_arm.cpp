@@ -19,7 +19,7 @@ namespace {
 
 using document::Node;
 
-/// The device file, and what its arm says of itself: as it is opened, or as the file claims.
+/// The device file, and what its arm says about itself: when opened if it is simulated, otherwise as the file claims.
 struct Told {
   const Node& root;
   const scene::Device& device;
@@ -51,16 +51,19 @@ hdv_info infoOf(const scene::Device& device, host::DeviceInstance& arm) {
 }
 
 void judgeForce(const Told& told, const Node* at, const char* key, double force) {
-  constexpr double kUnfelt = 0.05, kMost = 300;  // N: most arms rub as much; more than what a hand holds against
+  // [N] most arms have as much friction; more than a hand can hold against
+  constexpr double kUnfelt = 0.05, kMost = 300;
   if (at == nullptr || force <= 0) return;
   if (force < kUnfelt)
-    return told.warn(*at, key,
-                     fmt::format("{0:g} N cannot be felt: most arms rub more; expected N: {0:g} kN are {1:g} N", force,
-                                 force * 1000));
+    return told.warn(
+        *at, key,
+        fmt::format(
+            "{0:g} N cannot be felt, because most arms have more friction; the value must be in N: {0:g} kN is {1:g} N",
+            force, force * 1000));
   if (force > kMost && !told.knows(key))
     told.warn(*at, key,
-              fmt::format("{0:g} N throws the hand that holds the arm; expected N: {0:g} mN are {1:g} N", force,
-                          force / 1000));
+              fmt::format("{0:g} N throws the hand that holds the arm; the value must be in N: {0:g} mN is {1:g} N",
+                          force, force / 1000));
 }
 
 void judgeForces(const Told& told) {
@@ -88,13 +91,13 @@ void judgeStiffness(const Told& told) {
   if (at == nullptr || given <= 0) return;
   if (given < kUnfelt)
     told.warn(*at, "parameters.device.max_stiffness",
-              fmt::format("{0:g} N/m cannot be felt: 1 mm gives {1:g} N, and all models are said to be too stiff; "
-                          "expected N/m: {0:g} N/mm are {2:g} N/m",
+              fmt::format("{0:g} N/m cannot be felt: 1 mm gives {1:g} N, and every model would be called too stiff; "
+                          "the value must be in N/m: {0:g} N/mm is {2:g} N/m",
                           given, given * 1e-3, given * 1000));
   else if (given > kMost)
     told.warn(*at, "parameters.device.max_stiffness",
-              fmt::format("{:g} N/m is stiffer than any arm that a hand leads can show, so no model is ever said to be "
-                          "too stiff; expected what was found stable, such as 1000 N/m",
+              fmt::format("{:g} N/m is stiffer than any arm that a hand moves can be, so no model would ever be called "
+                          "too stiff; expected the stiffness that was found stable, such as 1000 N/m",
                           given));
 }
 
@@ -104,14 +107,15 @@ void judgeMass(const Told& told) {
   const double mass = told.info.mass_kg;
   if (at == nullptr || mass <= kMost) return;
   told.warn(*at, "parameters.device.mass",
-            fmt::format("{0:g} kg are more than a hand moves; expected kg felt at the tip: {0:g} g are {1:g} kg", mass,
-                        mass / 1000));
+            fmt::format("{0:g} kg is more than a hand can move; the value must be the mass felt at the tip, in kg: "
+                        "{0:g} g is {1:g} kg",
+                        mass, mass / 1000));
 }
 
-/// What an arm weighs at its tip is carried by its motors only as far as limits.weight goes: the rest hangs on the
-/// hand.
+/// Warns of a weight far above limits.weight, because the motors carry the weight of the arm only up to that limit, and
+/// the hand must carry the rest.
 void judgeWeight(const Told& told, const host::DeviceInstance& arm) {
-  constexpr double kMostly = 0.5;  // of the weight is carried: less is no slip of a digit, but another unit
+  constexpr double kMostly = 0.5;  // share of the weight that is carried: if it is less, the masses are in another unit
   const Node* masses = find(told.root, {"parameters", "arm", "masses"});
   const scene::Limits& limits = told.device.limits;
   const double force = limits.force > 0 ? limits.force : told.info.max_force, most = limits.weight.value_or(force);
@@ -126,14 +130,13 @@ void judgeWeight(const Told& told, const host::DeviceInstance& arm) {
     return;
   const double share = servo::shareWithin(most, tau, all.topRows<3>());
   if (!(share < kMostly)) return;
-  told.warn(
-      *masses, "parameters.arm.masses",
-      fmt::format("these weigh {:.3g} N at the tip at rest, and motors may carry {:g} N of it ({}): the arm falls "
-                  "on the hand; expected kg: 30 g are 0.03 kg",
-                  most / share, most, limits.weight ? "limits.weight" : "limits.force"));
+  told.warn(*masses, "parameters.arm.masses",
+            fmt::format("these masses weigh {:.3g} N at the tip at rest, but the motors may carry only {:g} N of it "
+                        "({}), so the arm would sink onto the hand; masses must be in kg: 30 g is 0.03 kg",
+                        most / share, most, limits.weight ? "limits.weight" : "limits.force"));
 }
 
-/// Steps of a simulated encoder that a tip would be seen to jump by.
+/// Warns of counts of a simulated encoder that are so coarse that the tip visibly jumps.
 void judgeCounts(const Told& told) {
   constexpr double kCoarse = 1e-3;  // m
   const Node *joint = find(told.root, {"parameters", "joint"}),
@@ -146,7 +149,7 @@ void judgeCounts(const Told& told) {
                         told.info.resolution_m * 1e3));
 }
 
-/// Two links that are as long reach every place up to their sum; unlike ones leave a hollow about the shoulder.
+/// Warns of two links of very different lengths, because the tip then cannot come near the shoulder.
 void judgeLengths(const Told& told) {
   constexpr double kUnlike = 5;
   const Node *lengths = find(told.root, {"parameters", "arm", "lengths"}),
@@ -158,8 +161,8 @@ void judgeLengths(const Told& told) {
   if (less <= 0 || more < kUnlike * less) return;
   const Node& at = lengths->items[a < b ? 0 : 1];
   told.warn(at, fmt::format("parameters.arm.lengths[{}]", a < b ? 0 : 1),
-            fmt::format("{:g} m beside a link of {:g} m: the tip never comes nearer to its shoulder than {:.3g} m; "
-                        "expected links of about one length, in m",
+            fmt::format("{:g} m, but the other link has {:g} m: the tip never comes nearer to its shoulder than {:.3g} "
+                        "m; expected links of about the same length, in m",
                         less, more, more - less));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Numbers of a device file that its format allows and nobody means: grams, newtons per millimetre, a sustained force
-/// above the largest one.
+/// Finds numbers of a device file that are allowed but were hardly meant: grams, newtons per millimetre, a sustained
+/// force above the largest force.
 #pragma once
 #include "description/scene.hpp"
 #include "document/node.hpp"
@@ -8,13 +8,13 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of them, each at its key.
-/// @param arm is opened if it is simulated, which touches no hardware
+/// [main] Warns of such numbers, each at its key. @param arm is opened if it is simulated, which touches no hardware
 void unusualArm(const document::Node& root, const scene::Device& device, host::DeviceInstance& arm,
                 document::Problems& warnings);
 
-/// [main] Warns of fields of the wire format that are not as those of the other joints are: another byte order, another
-/// sign, a decimal point elsewhere; and of counts that move the tip by more than a hand can be shown.
+/// [main] Warns of a field of the wire format that differs from the same field of the other joints in byte order, in
+/// sign, or by powers of ten in scale; and of positions of which one count moves the tip so far that a hand feels the
+/// step.
 void unusualFields(const document::Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                    document::Problems& warnings);
 

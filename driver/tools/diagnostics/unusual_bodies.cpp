@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Bodies that move by themselves: where their weight takes them, and whether it can be theirs.
+/// Judges bodies that move by themselves: where their weight takes them, and whether their masses are plausible.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,9 +20,9 @@ Vector3d inModel(const GivenModel& given, const Vector3d& in_world) {
   return given.model().pose.orientation.conjugate() * in_world;
 }
 
-/// Its weight along what it can do: nothing holds it, or a spring that gives way too far.
+/// Warns of a body that its weight would move too far, because nothing holds it or its tether is too soft.
 void judgeHold(const GivenModel& given) {
-  constexpr double kSizes = 2, kUnknownSize = 0.25;  // of what it may hang below its place; [m]
+  constexpr double kSizes = 2, kUnknownSize = 0.25;  // sizes of the body that it may hang below its place; [m]
   const std::string joint = given.choice("joint");
   Vector3d pull = inModel(given, given.servo().gravity);
   const Vector3d axis = given.vector("axis");
@@ -41,7 +41,7 @@ void judgeHold(const GivenModel& given) {
                                                tether, weight, given.model().name, sag));
 }
 
-/// The mass of a body is among its surfaces.
+/// Warns of a centre of mass far outside of the body's surfaces.
 void judgeCenter(const GivenModel& given) {
   constexpr double kOutside = 0.5;  // of the size
   const scene::Value* center = given.find("center");
@@ -49,19 +49,21 @@ void judgeCenter(const GivenModel& given) {
   if (const double away = given.box()->exteriorDistance(Vector3d(center->numbers.data()));
       away > kOutside * given.size())
     given.warn({"center"},
-               fmt::format("of mass lies {:.3g} m outside of the surfaces, which are {:.3g} m large; expected "
-                           "m in the model's frame, or [] for the middle of their volume",
+               fmt::format("the centre of mass lies {:.3g} m outside the surfaces, which are {:.3g} m large; expected "
+                           "a place in m in the model's frame, or [] for the middle of their volume",
                            away, given.size()));
 }
 
-/// No part of a body is farther from its centre than the body is large. @param reach [m] of it
+/// Warns of an inertia that is too large for the body's mass and size. @param reach [m] farthest place of the body from
+/// the axis
 void judgeInertia(const GivenModel& given, double most, double reach) {
   constexpr double kTimes = 2;
   const double radius = std::sqrt(std::max(most, 0.0) / given.number("mass"));
   if (!given.box() || radius <= kTimes * reach) return;
-  given.warn({"inertia"}, fmt::format("{:g} kg m^2 with {:g} kg is that of a body whose mass is {:.3g} m away from the "
-                                      "axis, and it is {:.3g} m large; expected kg m^2 (1 kg mm^2 is 1e-6)",
-                                      most, given.number("mass"), radius, given.size()));
+  given.warn({"inertia"},
+             fmt::format("{:g} kg m^2 with {:g} kg means that the mass is {:.3g} m away from the axis, but the body is "
+                         "only {:.3g} m large; the value must be in kg m^2 (1 kg mm^2 is 1e-6)",
+                         most, given.number("mass"), radius, given.size()));
 }
 
 void judgeDynamic(const GivenModel& given) {
@@ -77,13 +79,13 @@ double farthestCorner(const Eigen::AlignedBox3d& box, const Vector3d& from) {
 }
 
 void judgePendulum(const GivenModel& given) {
-  constexpr double kAcross = 0.02, kOutside = 0.5;  // of gravity across the axis; of the size
+  constexpr double kAcross = 0.02, kOutside = 0.5;  // share of gravity across the axis; share of the size
   const Vector3d gravity = inModel(given, given.servo().gravity), axis = given.vector("axis").stableNormalized();
   if (gravity.norm() < kWeightless || axis.norm() < 0.5) return;
   const Vector3d across = gravity - gravity.dot(axis) * axis, pivot = given.vector("pivot");
   if (across.norm() < kAcross * gravity.norm())
     return given.warn({"axis"}, "is along gravity, so no weight turns " + given.model().name +
-                                    " back; expected one across it, as [0, 0, 1]");
+                                    " back; expected an axis across it, such as [0, 0, 1]");
   if (!given.box()) return;
   if (given.number("inertia") > 0)
     judgeInertia(given, given.number("inertia"), std::max(given.number("length"), farthestCorner(*given.box(), pivot)));
@@ -91,22 +93,23 @@ void judgePendulum(const GivenModel& given) {
   if (const double away = given.box()->exteriorDistance(center); away > kOutside * given.size())
     given.warn(
         {"pivot", "length"},
-        fmt::format("the centre of mass is drawn {:.3g} m (length) below the pivot, and there it is {:.3g} m away "
-                    "from the surfaces; expected a pivot above them (their middle is at [{:.3g}, {:.3g}, {:.3g}])",
+        fmt::format("the centre of mass hangs {:.3g} m (length) below the pivot, and this point is {:.3g} m away from "
+                    "the model's surfaces; expected a pivot above them (their middle is at [{:.3g}, {:.3g}, {:.3g}])",
                     given.number("length"), away, given.box()->center().x(), given.box()->center().y(),
                     given.box()->center().z()));
 }
 
-/// Below the power of 1 a wall is steeper the less deep a tip is: it begins with a jump.
+/// Warns of an exponent below 1 that makes contact begin with a jump, because the wall is then steepest at its surface.
 void judgeFirstTouch(const GivenModel& given) {
-  constexpr double kFirst = 1e-5, kJump = 1;  // [m] less than a tick brings, [N]
+  constexpr double kFirst = 1e-5, kJump = 1;  // [m] less than a hand moves in a tick; [N]
   const double scale = given.number("depth_scale"), power = given.number("exponent");
   if (!(power > 0 && power < 1 && scale > 0)) return;
   const double force = given.number("stiffness") * scale * std::pow(kFirst / scale, power);
   if (force > kJump)
-    given.warn({"exponent"}, fmt::format("with a depth_scale of {:g} m the first {:g} um give {:.2g} N, which a hand "
-                                         "feels as a blow; expected depth_scale in m (1 mm is 0.001), or exponent: 1",
-                                         scale, kFirst * 1e6, force));
+    given.warn({"exponent"},
+               fmt::format("with a depth_scale of {:g} m the first {:g} um give {:.2g} N, which a hand "
+                           "feels as a blow; depth_scale must be in m (1 mm is 0.001), or set exponent: 1",
+                           scale, kFirst * 1e6, force));
 }
 
 }  // namespace

@@ -30,21 +30,21 @@ struct Side {
   document::Problems& warnings;
 
   size_t count() const { return std::min(report.fields.size(), fields.items.size()); }
-  /// Once for each key: who knows it already has said more of it.
+  /// Adds a warning, unless the key has one already, which says more.
   void warn(size_t i, const char* key, const std::string& what) const {
     const Node *given = fields.items[i].find(key), *at = given != nullptr ? given : &fields.items[i];
     const std::string path = fmt::format("parameters.wire.{}.fields[{}].{}", name, i, key);
     if (std::none_of(warnings.begin(), warnings.end(), [&](const auto& told) { return told.key == path; }))
       document::report(warnings, device.file.string(), at->line, at->column, path, what);
   }
-  /// Numbers of more than one byte, which have an order.
+  /// Returns the fields with numbers of more than one byte, which have a byte order.
   std::vector<size_t> wide() const {
     std::vector<size_t> found = of({Role::kPosition, Role::kVelocity, Role::kTorque, Role::kReference});
     std::erase_if(found,
                   [this](size_t i) { return report.fields[i].bits <= 8 || codec::isText(report.fields[i].type); });
     return found;
   }
-  /// The fields of all joints of one kind.
+  /// Returns the fields of these kinds, for all joints.
   std::vector<size_t> of(std::initializer_list<Role> roles) const {
     std::vector<size_t> found;
     for (size_t i = 0; i < count(); ++i)
@@ -53,7 +53,7 @@ struct Side {
   }
 };
 
-/// Those that differ from most others; of two halves the later ones.
+/// Returns the fields that differ from most others; if they are half of all, those of the later half.
 std::vector<size_t> theFew(const std::vector<size_t>& all, const std::function<bool(size_t)>& is) {
   std::vector<size_t> yes, no;
   for (const size_t i : all) (is(i) ? yes : no).push_back(i);
@@ -66,17 +66,16 @@ const char* orderOf(bool big) {
   return big ? "big" : "little";
 }
 
-/// One board writes all of its numbers in one byte order.
+/// Warns of mixed byte orders in one report, because a board writes all its numbers in the same order.
 void mixedOrder(const Side& side) {
   for (const size_t i : theFew(side.wide(), [&](size_t at) { return side.report.fields[at].big_endian; }))
-    side.warn(
-        i, "endian",
-        fmt::format("{}, and most other numbers of this report are {}; expected one byte order for all, unless the "
-                    "firmware has it so",
-                    orderOf(side.report.fields[i].big_endian), orderOf(!side.report.fields[i].big_endian)));
+    side.warn(i, "endian",
+              fmt::format("{}, but most other numbers of this report are {}; expected one byte order for all, unless "
+                          "the firmware mixes them",
+                          orderOf(side.report.fields[i].big_endian), orderOf(!side.report.fields[i].big_endian)));
 }
 
-/// And reads them as it writes them.
+/// Warns if the output has another byte order than the input.
 void otherOrderOut(const Side& in, const Side& out) {
   const std::vector<size_t> read = in.wide(), sent = out.wide();
   if (read.empty() || sent.empty()) return;
@@ -84,14 +83,14 @@ void otherOrderOut(const Side& in, const Side& out) {
   for (const auto& [side, fields, order] : {std::tuple(&in, &read, !big), std::tuple(&out, &sent, big)})
     for (const size_t i : *fields)
       if (side->report.fields[i].big_endian != order) return;
-  out.warn(
-      sent[0], "endian",
-      fmt::format("{} in all of wire.output, and {} in all of wire.input; expected one byte order for both, unless "
-                  "the firmware has it so",
-                  orderOf(big), orderOf(!big)));
+  out.warn(sent[0], "endian",
+           fmt::format("{} in all of wire.output, but {} in all of wire.input; expected one byte order for both, "
+                       "unless the firmware mixes them",
+                       orderOf(big), orderOf(!big)));
 }
 
-/// "u16" for one joint beside "i16" for the others: below zero it would jump by a whole range.
+/// Warns of, for example, u16 for one joint and i16 for the others, because below zero its position would jump by the
+/// whole range.
 void mixedSigns(const Side& side, Role role) {
   std::vector<size_t> whole;
   for (const size_t i : side.of({role})) {
@@ -103,15 +102,15 @@ void mixedSigns(const Side& side, Role role) {
   for (const size_t i :
        theFew(whole, [&](size_t at) { return side.report.fields[at].type == codec::Type::kUnsigned; })) {
     const bool plain = side.report.fields[i].type == codec::Type::kUnsigned;
-    side.warn(
-        i, "type",
-        fmt::format("{}signed, and those of the other joints are {}; expected one type for all, unless the firmware "
-                    "has it so",
-                    plain ? "un" : "", plain ? "signed" : "unsigned"));
+    side.warn(i, "type",
+              fmt::format("{}signed, but the types of the other joints are {}; expected one type for all, unless the "
+                          "firmware mixes them",
+                          plain ? "un" : "", plain ? "signed" : "unsigned"));
   }
 }
 
-/// The joints of these arms are alike, so the largest of them tells of a slip of the decimal point.
+/// Warns of a scale that is far larger than the others, because the joints of these arms are alike and the decimal
+/// point may be wrong.
 void muchCoarser(const Side& side, Role role, const std::vector<double>& motors) {
   constexpr double kTimes = 8;
   const auto coarseness = [&](size_t i) {
@@ -129,14 +128,14 @@ void muchCoarser(const Side& side, Role role, const std::vector<double>& motors)
     }
     if (coarseness(i) < kTimes * next) continue;
     side.warn(i, "scale",
-              fmt::format("{:.3g} times as coarse as that of any other joint{}: a slip of the decimal point?",
+              fmt::format("{:.3g} times as coarse as that of any other joint{}: is the decimal point wrong?",
                           coarseness(i) / next, role == Role::kTorque ? ", measured by arm.max_torque" : ""));
   }
 }
 
-/// One count that moves the tip by a step that a hand feels, with models as stiff as the arm shows.
+/// Warns if one count moves the tip so far that a hand feels the step, with models as stiff as the arm allows.
 void coarseCounts(const Node& root, const Side& side, const host::DeviceInstance& arm) {
-  constexpr double kAlways = 1e-3, kSmall = 2e-4, kBuzz = 0.5;  // m; m; N
+  constexpr double kAlways = 1e-3, kSmall = 2e-4, kBuzz = 0.5;  // [m]; [m]; [N]
   const uint32_t joints = arm.kinematics().joint_count;
   const auto q = restJoints(root, joints);
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor> J(6, joints);
@@ -152,15 +151,16 @@ void coarseCounts(const Node& root, const Side& side, const host::DeviceInstance
     if (step < kAlways && (step < kSmall || step * stiffness < kBuzz)) continue;
     side.warn(
         i, "scale",
-        fmt::format("one count of joint {} moves the tip by {:.3g} mm{}; expected rad of one count: for degrees, "
-                    "scale_degrees: {:g}",
+        fmt::format("one count of joint {} moves the tip by {:.3g} mm{}; the value must be in rad per count; if it is "
+                    "in degrees, write scale_degrees: {:g}",
                     field.index + 1, step * 1e3,
                     stiffness > 0 ? fmt::format(", a step of {:.2g} N at device.max_stiffness", step * stiffness) : "",
                     field.scale));
   }
 }
 
-/// The numbers of one joint stand at one place in both reports of most boards; crossed ones draw the hand in.
+/// Warns if the joints have another order in the output than in the input, because most boards use one order, and
+/// forces at the wrong joints may pull the hand in.
 void crossedJoints(const Side& in, const Side& out) {
   const auto order = [](const Side& side, Role role) {
     std::vector<size_t> fields = side.of({role});
@@ -177,27 +177,26 @@ void crossedJoints(const Side& in, const Side& out) {
     if (read == sent) continue;
     return out.warn(
         torques[k], "joint",
-        fmt::format("{}, where wire.input has joint {} in its place: if the firmware has one order for both, "
-                    "forces go to the wrong joints; expected joint: {}, or try it with the smallest force "
-                    "first",
+        fmt::format("{}, but wire.input has joint {} at this place: if the firmware has one order for both, forces go "
+                    "to the wrong joints; expected joint: {}, or check with a very small force first",
                     sent + 1, read + 1, read + 1));
   }
 }
 
-/// A second counter tells a half-written report only if it stands elsewhere.
+/// Warns of two counters in the same bytes. A second counter shows a half-written report only if it is elsewhere.
 void twice(const Side& side) {
   for (size_t i = 0; i < side.count(); ++i)
     for (size_t first = 0; first < i; ++first) {
       const Field &a = side.report.fields[first], &b = side.report.fields[i];
       if (a.role != b.role || a.role != Role::kSequence || a.at != b.at || a.bit_skip != b.bit_skip) continue;
       side.warn(i, "at",
-                fmt::format("these bytes are the counter of fields[{}] already, so this one tells nothing; expected "
-                            "another place, or one counter",
+                fmt::format("these bytes are already the counter of fields[{}], so this counter adds nothing; give it "
+                            "another place, or remove it",
                             first));
     }
 }
 
-/// Data sheets of reflected CRCs often write the polynomial as their code shifts it: 0xa001 for 0x8005.
+/// Warns of a polynomial with reversed bits, such as 0xa001 for 0x8005, which data sheets of reflected CRCs often give.
 void polynomialBackwards(const Side& side) {
   for (const size_t i : side.of({Role::kChecksum})) {
     const codec::Check& check = side.report.fields[i].check;
@@ -211,28 +210,27 @@ void polynomialBackwards(const Side& side) {
     };
     if (known(check.polynomial) || !known(back)) continue;
     side.warn(i, "polynomial",
-              fmt::format("{0:#x} is {1:#x} with its bits turned round, as code of reflected CRCs has it; expected "
+              fmt::format("{0:#x} is {1:#x} with its bits reversed, as in program code of reflected CRCs; expected "
                           "polynomial: {1:#x} and reflected: true",
                           check.polynomial, back));
   }
 }
 
-/// Calibration in a pose takes the zero from where the arm is held.
+/// Warns of an offset that has no effect, because calibration in a pose takes the zero from where the arm is held.
 void idleOffset(const Side& side) {
   const auto given = [&side](const char* id) {
     for (const scene::Value& value : side.device.parameters)
       if (value.id == id) return value.number;
     return 0.0;
   };
-  constexpr double kPose = 2;  // none, device, pose
+  constexpr double kPose = 2;  // index in the choices none, device, pose
   if (given("calibration.method") != kPose) return;
   for (const size_t i : side.of({Role::kPosition}))
     for (const char* key : {"offset", "offset_degrees"})
       if (side.fields.items[i].find(key) != nullptr && side.report.fields[i].offset != 0)
-        side.warn(
-            i, key,
-            "has no effect: with calibration.method pose the zero comes from where the arm is held; expected none, "
-            "or calibration.method none where the encoders are absolute");
+        side.warn(i, key,
+                  "has no effect: with calibration.method pose, the zero comes from where the arm is held; remove this "
+                  "key, or set calibration.method: none if the encoders are absolute");
 }
 
 }  // namespace

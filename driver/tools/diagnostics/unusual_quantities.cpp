@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What is usual for a kind of quantity is known by its unit: it holds for the parameters of every plugin.
+/// Judges parameters of any plugin by their units, because the usual range of a quantity follows from its unit.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 constexpr double kMilli = 1e-3;
 constexpr double kOutOfReach = 5;  ///< [m] farther than anybody reaches
 
-/// "m" of column 0 of "m, N".
+/// Returns the unit of a column, such as "m" for column 0 of "m, N".
 std::string unitOf(const host::ParamInfo& param, size_t column) {
   std::string unit = param.unit;
   if (param.columns < 2 || unit.find(',') == std::string::npos) return unit;
@@ -33,7 +33,7 @@ double lengthOf(const scene::Value& value) {
   return std::sqrt(sum);
 }
 
-/// The largest number of a value in the columns of this unit; of a single number, that one.
+/// Returns the largest magnitude of a value in the columns with this unit, or the magnitude of a single number.
 double mostIn(const scene::Value& value, const host::ParamInfo& param, const char* unit) {
   if (value.numbers.empty()) return param.unit == unit ? std::abs(value.number) : 0;
   double most = 0;
@@ -46,106 +46,120 @@ void judgeAngle(const GivenModel& given, const scene::Value& value, const host::
   constexpr double kHair = 1e-3;
   const double most = mostIn(value, param, "rad");
   if (most > M_PI + kHair)
-    given.warn({value.id},
-               fmt::format("{0:g} rad is more than half a turn; expected rad: {0:g} degrees are {1:.4g} rad", most,
-                           most * M_PI / 180));
+    given.warn(
+        {value.id},
+        fmt::format(
+            "{0:g} rad is more than half a turn; the value must be in rad: if you meant {0:g} degrees, write {1:.4g}",
+            most, most * M_PI / 180));
 }
 
-/// A place that a person gives lies in the model or near it.
+/// Warns of a place that is far away from the model.
 void judgePlace(const GivenModel& given, const scene::Value& value) {
-  constexpr double kNear = 2, kSizes = 10;  // [m]; a pendulum of a small bob is long
+  constexpr double kNear = 2, kSizes = 10;  // [m]; [sizes] a pendulum with a small bob is long
   const Vector3d place(value.numbers.data());
   const double away = given.box() ? given.box()->exteriorDistance(place) : place.norm();
   if (away <= std::max(given.box() ? kNear : kOutOfReach, kSizes * given.size())) return;
   const std::string seen_from = given.box() ? fmt::format("the surfaces, which are {:.3g} m large", given.size())
                                             : std::string("the model's origin");
   const double most = place.cwiseAbs().maxCoeff();
-  given.warn({value.id}, fmt::format("lies {:.4g} m from {}; expected metres: {:g} mm are {:g} m", away, seen_from,
-                                     most, most * kMilli));
+  given.warn({value.id}, fmt::format("lies {:.4g} m from {}; the value must be in m: {:g} mm is {:g} m", away,
+                                     seen_from, most, most * kMilli));
 }
 
 void judgeLength(const GivenModel& given, const scene::Value& value, const host::ParamInfo& param) {
-  // A contact hysteresis of a metre is for ever; a pendulum may be longer than its bob.
+  // A contact hysteresis of a metre is allowed: it means that the contact never changes its face. A pendulum may be
+  // longer than its bob.
   for (const char* id : {"contact_hysteresis", "hold"})
     if (value.id == id) return;
   const double most = mostIn(value, param, "m");
-  const bool own = host::ships(given.model().library);  // whose lengths are known to be those of the model
+  // for plugins that ship, lengths are known to be those of the model
+  const bool own = host::ships(given.model().library);
   const double bound = given.box() && value.id != "length" ? (own ? 2 : 10) * given.size() : kOutOfReach;
   if (most <= bound) return;
   const std::string than = given.box() && value.id != "length"
                                ? fmt::format("the model, which is {:.3g} m large", given.size())
                                : std::string("anybody reaches");
-  given.warn({value.id},
-             fmt::format("{0:g} m is more than {1}; expected metres: {0:g} mm are {2:g} m", most, than, most * kMilli));
+  given.warn({value.id}, fmt::format("{0:g} m is more than {1}; the value must be in m: {0:g} mm is {2:g} m", most,
+                                     than, most * kMilli));
 }
 
-/// As fast as a model may move that does not yield: what yields is out of reach or in the hand as soon.
+/// Warns of a speed above the limit for kinematic models. A body that yields may not be faster either, because it would
+/// hit the hand or be out of reach at once.
 void judgeSpeed(const GivenModel& given, const scene::Value& value) {
   if (const double speed = lengthOf(value); speed > servo::MinimumJerk::kMostSpeed)
-    given.warn({value.id},
-               fmt::format("{0:g} m/s is faster than what a hand is to meet ({1:g} m/s); expected m/s: {0:g} "
-                           "mm/s are {2:g} m/s",
-                           speed, servo::MinimumJerk::kMostSpeed, speed * kMilli));
+    given.warn({value.id}, fmt::format("{0:g} m/s is faster than a model may move toward a hand ({1:g} m/s, the limit "
+                                       "of ctl move); the value must be in m/s: {0:g} mm/s is {2:g} m/s",
+                                       speed, servo::MinimumJerk::kMostSpeed, speed * kMilli));
 }
 
 void judgeTurn(const GivenModel& given, const scene::Value& value) {
   constexpr double kFast = 5, kFastest = 100;  // [m/s] of the surface; [rad/s]
   const double turn = lengthOf(value), speed = turn * given.size() / 2;
   if (turn > kFastest || speed > kFast)
-    given.warn({value.id}, fmt::format("{0:g} rad/s is {1:.3g} turns a second; expected rad/s: {0:g} degrees/s are "
-                                       "{2:.4g} rad/s",
-                                       turn, turn / (2 * M_PI), turn * M_PI / 180));
+    given.warn(
+        {value.id},
+        fmt::format(
+            "{0:g} rad/s is {1:.3g} turns per second; the value must be in rad/s: {0:g} degrees/s is {2:.4g} rad/s",
+            turn, turn / (2 * M_PI), turn * M_PI / 180));
 }
 
 void judgeForce(const GivenModel& given, const scene::Value& value, const host::ParamInfo& param) {
-  constexpr double kUnfelt = 0.05, kMost = 100;  // [N] less than most arms rub; more than any arm of a hand gives
+  // [N] less than the friction of most arms; more than any arm for a hand gives
+  constexpr double kUnfelt = 0.05, kMost = 100;
   const double most = mostIn(value, param, "N");
   if (most > 0 && most < kUnfelt)
-    given.warn({value.id},
-               fmt::format("{:g} N cannot be felt: most arms rub more; expected N (1 mN is 0.001 N)", most));
+    given.warn(
+        {value.id},
+        fmt::format(
+            "{:g} N cannot be felt, because most arms have more friction; the value must be in N (1 mN is 0.001 N)",
+            most));
   if (most > kMost)
-    given.warn({value.id},
-               fmt::format("{0:g} N is more than an arm gives or a hand presses with; expected N: {0:g} mN are "
-                           "{1:g} N",
-                           most, most * kMilli));
+    given.warn(
+        {value.id},
+        fmt::format(
+            "{0:g} N is more than an arm gives or a hand presses with; the value must be in N: {0:g} mN is {1:g} N",
+            most, most * kMilli));
 }
 
-/// A spring beside the one of the surface, in N/mm as data sheets have it.
+/// Warns of a further stiffness (other than the surface's) that is too small to feel, because it was given in N/mm as
+/// in data sheets.
 void judgeSpring(const GivenModel& given, const scene::Value& value) {
-  constexpr double kUnfelt = 5;  // [N/m] 10 mm of it give 0.05 N, less than most arms rub
+  constexpr double kUnfelt = 5;  // [N/m] 10 mm give 0.05 N, less than the friction of most arms
   if (value.id != "stiffness" && value.id.ends_with("stiffness") && value.number < kUnfelt)
-    given.warn({value.id}, fmt::format("{:g} N/m cannot be felt: 1 mm gives {:g} N; expected N/m (1 N/mm is 1000 N/m)",
-                                       value.number, value.number * kMilli));
+    given.warn({value.id},
+               fmt::format("{:g} N/m cannot be felt: 1 mm gives {:g} N; the value must be in N/m (1 N/mm is 1000 N/m)",
+                           value.number, value.number * kMilli));
 }
 
-/// Dampers of the surface: what they hold a hand with that strokes calmly.
+/// Warns of dampers of the surface that hold back a slow hand with a large force.
 void judgeDamper(const GivenModel& given, const scene::Value& value) {
   constexpr double kMost = 50, kCalm = 0.1;  // [N s/m], [m/s]
   if (value.number > kMost && (value.id == "damping" || value.id == "viscosity") && given.choice("motion") != "dynamic")
     given.warn({value.id},
-               fmt::format("{0:g} N s/m hold a hand that moves at {1:g} m/s with {2:.3g} N, more than most arms keep "
-                           "stable; expected at most {3:g} N s/m (1 N s/mm is 1000 N s/m)",
+               fmt::format("{0:g} N s/m hold back a hand that moves at {1:g} m/s with {2:.3g} N, which most arms "
+                           "cannot render stably; expected at most {3:g} N s/m (1 N s/mm is 1000 N s/m)",
                            value.number, kCalm, value.number * kCalm, kMost));
 }
 
-/// Heavier than any metal is, and than what a hand moves with ease: a light knob may stand for a whole machine.
+/// Warns of a mass that is both denser than any metal and more than a hand moves with ease. Smaller masses are not
+/// judged by density, because a light knob may stand for a whole machine.
 void judgeMass(const GivenModel& given, const scene::Value& value) {
-  constexpr double kDensest = 25'000, kEasy = 3, kThin = 0.02;  // [kg/m^3], [kg], of the size
+  constexpr double kDensest = 25'000, kEasy = 3, kThin = 0.02;  // [kg/m^3], [kg], share of the size
   if (!given.box() || value.number <= kEasy) return;
   const Vector3d sides = given.box()->sizes().cwiseMax(kThin * given.size());
   const double density = value.number / sides.prod();
   if (density > kDensest)
     given.warn({value.id},
-               fmt::format("{0:g} kg in a box of {1:.3g} x {2:.3g} x {3:.3g} m is {4:.3g} times as dense as "
-                           "lead; expected kg: {0:g} g are {5:g} kg",
+               fmt::format("{0:g} kg in a box of {1:.3g} x {2:.3g} x {3:.3g} m is {4:.3g} times as dense as lead; the "
+                           "value must be in kg: {0:g} g is {5:g} kg",
                            value.number, sides.x(), sides.y(), sides.z(), density / 11'340, value.number * kMilli));
 }
 
 void judgeFriction(const GivenModel& given, const scene::Value& value) {
   constexpr double kRoughest = 2;
   if (value.number > kRoughest)
-    given.warn({value.id}, fmt::format("{:g} is friction over pressing force, and more than any material has (rubber: "
-                                       "about 1): a hand sticks; expected 0 to {:g}",
+    given.warn({value.id}, fmt::format("{:g} is more than any material has (friction over pressing force; rubber has "
+                                       "about 1), so the tip would stick; expected 0 to {:g}",
                                        value.number, kRoughest));
 }
 
@@ -174,9 +188,8 @@ void judgeQuantities(const GivenModel& given) {
   const scene::Value* sticks = given.find("friction_static");
   if (sticks != nullptr && sticks->number > 0 && given.plugin().indexOf("friction_dynamic") >= 0 &&
       given.find("friction_dynamic") == nullptr && given.number("friction_dynamic") == 0)
-    given.warn(
-        {"friction_static"},
-        "holds the tip until it slides, and then nothing rubs: friction_dynamic is not given, so 0; expected both");
+    given.warn({"friction_static"},
+               "friction_dynamic is not given, so it is 0: once the tip slides, there is no friction; give both");
 }
 
 }  // namespace hapticd::diagnostics

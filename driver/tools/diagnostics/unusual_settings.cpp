@@ -16,13 +16,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Where the scene says it, or the scene.
+/// Returns the place of a key in the scene, or the beginning of the scene if it is not there.
 document::Place placeIn(const scene::Scene& scene, const std::string& key) {
   return placeOfKey(scene.file, key).value_or(document::Place{scene.file.string(), 1, 1});
 }
 
 void judgeGravity(const scene::Scene& scene, document::Problems& warnings) {
-  constexpr double kEarth = 9.81, kStrong = 3, kLow = 0.5;  // [m/s^2]; of the Earth's; cosine to straight down
+  // [m/s^2]; factor of the Earth's; cosine of the angle to straight down
+  constexpr double kEarth = 9.81, kStrong = 3, kLow = 0.5;
   const Vector3d& g = scene.servo.gravity;
   const auto tell = [&](const std::string& what) {
     document::report(warnings, placeIn(scene, "servo.gravity"), "servo.gravity",
@@ -38,16 +39,18 @@ void judgeServo(const scene::Scene& scene, document::Problems& warnings) {
   constexpr double kWidest = 2, kLeast = 2;  // [m] beyond the reach of arms; [us] of a tick, less than any shape needs
   const scene::Servo& servo = scene.servo;
   if (servo.activation_radius > kWidest)
-    document::report(warnings, placeIn(scene, "servo.activation_radius"), "servo.activation_radius",
-                     fmt::format("{0:g} m: all is traced, wherever the hand is; expected metres: {0:g} mm are {1:g} m",
-                                 servo.activation_radius, servo.activation_radius / 1000));
+    document::report(
+        warnings, placeIn(scene, "servo.activation_radius"), "servo.activation_radius",
+        fmt::format(
+            "{0:g} m is so large that every surface is always traced; the value must be in m: {0:g} mm is {1:g} m",
+            servo.activation_radius, servo.activation_radius / 1000));
   if (servo.budget_us > 0 && servo.budget_us < kLeast)
     document::report(warnings, placeIn(scene, "servo.budget_us"), "servo.budget_us",
-                     fmt::format("{0:g} us: no shape answers within that; expected microseconds: {0:g} ms are {1:g}",
+                     fmt::format("{0:g} us is too short for any shape; the value must be in us: {0:g} ms is {1:g} us",
                                  servo.budget_us, servo.budget_us * 1000));
 }
 
-/// What a scene says of the hand that leads a simulated arm: two that are led apart meet no more than two people do.
+/// Returns the settings of a simulated hand as text. Two arms in the same place are allowed if their hands differ.
 std::string handOf(const scene::Device& device) {
   std::string text;
   for (const scene::Value& value : device.parameters) {
@@ -72,7 +75,7 @@ void judgeArms(const scene::Scene& scene, document::Problems& warnings) {
       const auto mount = placeOfKey(scene.file, key + ".mount");
       document::report(
           warnings, mount ? *mount : placeIn(scene, key), key + ".mount",
-          fmt::format("{} stands where {} stands; expected a mount of its own: {{position: [x, y, z]}} in m",
+          fmt::format("{} is in the same place as {}; expected a mount of its own: {{position: [x, y, z]}} in m",
                       scene.devices[i].name, scene.devices[first].name));
       break;
     }
@@ -130,7 +133,7 @@ document::Problems stiffTogether(const scene::Scene& scene, const scene::Device&
     model.name += fmt::format(" with {} in its place", group.size() == 2 ? scene.models[group[1]].name
                                                                          : fmt::format("{} models", group.size() - 1));
     for (document::Problem& one : tune::unstableSettings(together, device, info, sum)) {
-      if (one.key.rfind("models[0]", 0) != 0) continue;  // told without them
+      if (one.key.rfind("models[0]", 0) != 0) continue;  // reported elsewhere
       one.key.replace(0, 9, fmt::format("models[{}]", group[0]));
       warnings.push_back(std::move(one));
     }
@@ -139,7 +142,7 @@ document::Problems stiffTogether(const scene::Scene& scene, const scene::Device&
 }
 
 document::Problems lightAdmittance(const scene::Scene& scene, const scene::Device& device, const hdv_info& info) {
-  constexpr double kLightest = 0.1;  // of the felt mass: what an arm can be made to seem is not much lighter than it is
+  constexpr double kLightest = 0.1;  // share of the felt mass: an arm cannot seem much lighter than it is
   document::Problems warnings;
   if (!device.admittance || info.mass_kg <= 0 || device.admittance->mass >= kLightest * info.mass_kg) return warnings;
   document::Place place = device.place.file.empty() ? document::Place{device.file.string()} : device.place;
@@ -154,7 +157,7 @@ document::Problems lightAdmittance(const scene::Scene& scene, const scene::Devic
     if (const auto found = placeOfKey(device.file, key)) place = *found;
   document::report(warnings, place, key,
                    fmt::format("{:g} kg is {:.3g} times less than the {:.3g} kg of {}, which cannot follow so light a "
-                               "mass; expected kg; nearest: {:.2g} kg",
+                               "mass; the value must be in kg; nearest: {:.2g} kg",
                                device.admittance->mass, info.mass_kg / device.admittance->mass, info.mass_kg,
                                device.name, kLightest * info.mass_kg));
   return warnings;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What of a scene's servo and arms nobody can mean: gravity that points up, a search radius of 100 m, two arms in one
-/// place.
+/// Finds settings of a scene's servo and arms that were hardly meant: gravity that points up, a search radius of 100 m,
+/// two arms in one place.
 #pragma once
 #include <vector>
 
@@ -15,12 +15,13 @@ namespace hapticd::diagnostics {
 /// @param boxes as tryModels() found them
 document::Problems unusualSettings(const scene::Scene& scene, const ModelBoxes& boxes = {});
 
-/// [main] What models that lie in one place do together to an arm: tune::unstableSettings() with the sum of their
-/// stiffness. @param info what the arm says of itself  @param stiffness [N/m] that each model claims, in scene order
+/// [main] Judges models that lie in the same place by tune::unstableSettings() with the sum of their stiffness, because
+/// a hand feels them together. @param info what the arm says about itself  @param stiffness [N/m] stiffness that each
+/// model claims, in scene order
 document::Problems stiffTogether(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
                                  const std::vector<double>& stiffness);
 
-/// [main] Warns of a virtual mass that an arm of the felt mass of `info` cannot follow.
+/// [main] Warns of a virtual mass (admittance.mass) so small that an arm with the felt mass in `info` cannot follow it.
 document::Problems lightAdmittance(const scene::Scene& scene, const scene::Device& device, const hdv_info& info);
 
 }  // namespace hapticd::diagnostics

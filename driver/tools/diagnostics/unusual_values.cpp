@@ -16,8 +16,8 @@ const scene::Value* valueOf(const scene::Model& model, const char* id) {
   return nullptr;
 }
 
-/// What two models have in common that lie in one place: their file, its part that is shown, the side that is felt, and
-/// the pose to the micrometre.
+/// Returns a text that is equal for two models in the same place: it has their file, its part that is shown, the side
+/// that is felt, and the pose to the micrometre.
 std::string placeText(const scene::Model& model) {
   constexpr double kSame = 1e-6;
   const scene::Value* geometry = valueOf(model, "geometry");
@@ -50,11 +50,10 @@ document::Problems tellModelsInOnePlace(const scene::Scene& scene) {
   for (const std::vector<size_t>& group : modelsInOnePlace(scene))
     for (size_t i = 1; i < group.size(); ++i) {
       const scene::Model &first = scene.models[group[0]], &model = scene.models[group[i]];
-      document::report(
-          warnings, model.place, fmt::format("models[{}].pose", group[i]),
-          fmt::format("{} lies in {} (line {}): the same geometry in the same place, so a hand feels the sum "
-                      "of both; expected another pose",
-                      model.name, first.name, first.place.line));
+      document::report(warnings, model.place, fmt::format("models[{}].pose", group[i]),
+                       fmt::format("{} and {} (line {}) have the same geometry in the same place, so a hand feels the "
+                                   "sum of both; give one of them another pose",
+                                   model.name, first.name, first.place.line));
     }
   return warnings;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Values of models that their plugins take and that nobody can mean: millimetres, degrees, grams, a sign.
+/// Finds values of models that their plugins accept but that were hardly meant: millimetres, degrees, grams, a wrong
+/// sign.
 #pragma once
 #include "description/scene.hpp"
 #include "diagnostics/model_trial.hpp"
@@ -11,18 +12,18 @@ namespace hapticd::diagnostics {
 class GivenModel;
 
 /// [main] Warns of each parameter that is beyond what is usual for a quantity of its unit, of bodies that fall or hang
-/// far from their place, and of models that lie in one another.
-/// @param boxes as tryModels() found them, or none: then nothing is held against the models' sizes
+/// far from their place, and of models that lie in the same place. @param boxes boxes that tryModels() found; if empty,
+/// nothing is compared with the sizes of the models
 document::Problems unusualValues(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog);
 
-/// Those of each parameter by itself, by the unit that its plugin says of it.
+/// Warns of each parameter by itself, by the unit that its plugin gives for it.
 void judgeQuantities(const GivenModel& given);
 
-/// Those of a body that moves by its weight and the forces on it.
+/// Warns of parameters of a body that moves by its weight and the forces on it.
 void judgeBody(const GivenModel& given);
 
-/// [main] Models that lie in one place as copies do whose pose was forgotten, and the groups that they make: indices,
-/// each group in scene order.
+/// [main] Returns the groups of models that have the same geometry in the same place, as a copy whose pose was not
+/// changed. Each group has the indices of its models, in scene order.
 std::vector<std::vector<size_t>> modelsInOnePlace(const scene::Scene& scene);
 document::Problems tellModelsInOnePlace(const scene::Scene& scene);
 

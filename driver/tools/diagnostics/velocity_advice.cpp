@@ -24,7 +24,7 @@ document::Place placeInServo(const scene::Scene& scene, const std::string& key) 
   return {scene.file.string()};
 }
 
-/// Some arm of the run estimates velocities, as it opens.
+/// Returns true if some arm of the run estimates velocities.
 bool isUsed(const scene::Scene& scene, bool needs_velocity) {
   return std::any_of(scene.devices.begin(), scene.devices.end(), [&](const scene::Device& device) {
     return servo::usesVelocity(device, scene.clients, needs_velocity);
@@ -48,7 +48,7 @@ document::Problems refusedVelocity(const scene::Scene& scene, bool needs_velocit
 }
 
 document::Problems lateVelocity(const scene::Scene& scene, bool needs_velocity) {
-  constexpr double kLate = 0.02;  // [s] a hand moves at up to 10 Hz: by a fifth of a turn
+  constexpr double kLate = 0.02;  // [s] a fifth of the period of a hand that moves at 10 Hz, which is fast
   document::Problems warnings;
   const scene::Velocity& how = scene.servo.velocity;
   const double delay = servo::estimatorDelay(how, scene.servo.rate);
@@ -57,7 +57,7 @@ document::Problems lateVelocity(const scene::Scene& scene, bool needs_velocity) 
   const double most = 2 * kLate * scene.servo.rate;
   const std::string lags = cut_off ? fmt::format("a cut-off of {:.4g} Hz", how.parameter)
                                    : fmt::format("{} over {:.4g} samples", how.estimator, how.parameter);
-  const std::string mend = cut_off                     ? "expected 50 Hz or more; a number of samples is for window"
+  const std::string mend = cut_off ? "expected 50 Hz or more (only the estimator window takes a number of samples)"
                            : how.estimator == "kalman" ? "expected a higher servo.rate"
                                                        : fmt::format("expected at most {:.0f}", std::floor(most));
   document::report(
@@ -78,17 +78,16 @@ document::Problems wideScales(const scene::Scene& scene) {
     if (scale == nullptr || damping == nullptr || scale->number < kWideScale || damping->number <= 0) continue;
     document::report(
         warnings, scale->place, fmt::format("models[{}].parameters.depth_scale", i),
-        fmt::format("{:g} m: only so deep in {} is its damping the {:g} N s/m of the file, and 1 mm deep it "
-                    "is {:.2g} N s/m; expected m (1 mm is 0.001)",
+        fmt::format("{:g} m: {} has its full damping of {:g} N s/m only at this depth; at 1 mm it has {:.2g} N s/m; "
+                    "the value must be in m (1 mm is 0.001)",
                     scale->number, scene.models[i].name, damping->number,
                     damping->number * std::pow(1e-3 / scale->number, exponent != nullptr ? exponent->number : 1)));
   }
   if (scene.servo.hysteresis > kWideHysteresis)
-    document::report(
-        warnings, placeInServo(scene, "servo.hysteresis"), "servo.hysteresis",
-        fmt::format("{:g} m beyond the radius of {:g} m: what is traced once is traced for ever; expected m "
-                    "(50 mm are 0.05)",
-                    scene.servo.hysteresis, scene.servo.activation_radius));
+    document::report(warnings, placeInServo(scene, "servo.hysteresis"), "servo.hysteresis",
+                     fmt::format("{:g} m beyond the radius of {:g} m: a surface that is traced once is never dropped; "
+                                 "the value must be in m (50 mm is 0.05)",
+                                 scene.servo.hysteresis, scene.servo.activation_radius));
   return warnings;
 }
 

@@ -15,9 +15,10 @@
 namespace hapticd::diagnostics {
 namespace {
 
-constexpr double kContactSeconds = 0.02;  ///< a shorter one says little
+constexpr double kContactSeconds = 0.02;  ///< [s] a shorter contact is not judged
 
-/// The middle of its way is within the model, or a box about it: the way is too wide, and not elsewhere.
+/// Returns true if the centre of the hand's motion is inside the box of the model: then the motion is at the right
+/// place, but too wide.
 bool goesRound(const scene::Device& device, const HandScript& hand, const scene::Model& model,
                const host::ShapeInstance& shape) {
   Eigen::AlignedBox3d box;
@@ -33,7 +34,7 @@ void tellAway(const scene::Scene& scene, uint32_t index, const HandScript& hand,
   const std::string where = seen.away > 0
                                 ? fmt::format("comes no nearer than {:.3g} mm to any model ({} is the nearest)",
                                               seen.away * 1e3, nearest.name)
-                                : fmt::format("goes where {} is and touches no surface", nearest.name);
+                                : fmt::format("moves where {} is, but touches no surface", nearest.name);
   const std::string what = fmt::format("the hand of {} {}: it feels nothing; expected ", device.name, where);
   if (hand.kind == HandScript::Kind::kPath) {
     const HandKey key = keyOfHand(scene, device, {"hand.path"});
@@ -44,13 +45,14 @@ void tellAway(const scene::Scene& scene, uint32_t index, const HandScript& hand,
     return document::report(
         warnings, key.place, key.id,
         what + (seen.away > 0
-                    ? fmt::format("a hand.radius that is less by more than that ({:.4g} m now; it is no diameter)",
+                    ? fmt::format("a hand.radius that is smaller by more than this distance (it is {:.4g} m now; it is "
+                                  "a radius, not a diameter)",
                                   hand.radius)
-                    : fmt::format("a hand.radius that leads through its surface ({:.4g} m now)", hand.radius)));
+                    : fmt::format("a hand.radius with which it meets the surface (it is {:.4g} m now)", hand.radius)));
   }
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
   const std::string at = fmt::format(
-      "the hand about a model: its middle (hand.center) is at [{:.3g}, {:.3g}, {:.3g}] in "
+      "a hand that moves near a model: its centre (hand.center) is at [{:.3g}, {:.3g}, {:.3g}] in "
       "the world, and {} at [{:.3g}, {:.3g}, {:.3g}]; move the arm (mount.position), "
       "hand.center or the model (pose.position)",
       center.x(), center.y(), center.z(), nearest.name, nearest.pose.position.x(), nearest.pose.position.y(),
@@ -61,7 +63,7 @@ void tellAway(const scene::Scene& scene, uint32_t index, const HandScript& hand,
   document::report(warnings, nearest.place, fmt::format("models[{}].pose.position", seen.nearest), what + at);
 }
 
-/// A model that is touched, and pushes so little that nobody feels it.
+/// Warns of a model that is touched, but pushes so little that nobody feels it.
 void tellUnfelt(const scene::Model& model, size_t index, const WalkedModel& seen, document::Problems& warnings) {
   document::Place place = model.place;
   std::string key = fmt::format("models[{}]", index), mend = "expected more stiffness";
@@ -69,36 +71,37 @@ void tellUnfelt(const scene::Model& model, size_t index, const WalkedModel& seen
     if (const scene::Value* value = givenIn(model.parameters, id)) {
       place = value->place;
       key += std::string(".parameters.") + id;
-      if (id != std::string_view("stiffness")) mend = "expected depth_scale in m (1 mm is 0.001), or more stiffness";
+      if (id != std::string_view("stiffness"))
+        mend = "depth_scale must be in m (1 mm is 0.001), or give more stiffness";
       break;
     }
   document::report(
       warnings, place, key,
-      fmt::format("{} cannot be felt: the hand is up to {:.3g} mm deep in it, and the most it gives is {:.2g} "
-                  "N; {}",
+      fmt::format("{} cannot be felt: the hand is up to {:.3g} mm deep in it, but its force is at most {:.2g} N; {}",
                   model.name, seen.depth * 1e3, seen.force, mend));
 }
 
-/// The limit that cuts most often.
+/// Returns the limit that cuts most often.
 size_t strictest(const WalkedArm& seen) {
   return static_cast<size_t>(std::max_element(seen.limits.begin(), seen.limits.end()) - seen.limits.begin());
 }
 
 void tellCut(const scene::Scene& scene, const scene::Device& device, const HandScript& hand, const WalkedArm& seen,
              const servo::Limiter& limiter, document::Problems& warnings) {
-  constexpr double kDeep = 5e-3;  // [m] beyond it the hand is what asks for too much
+  constexpr double kDeep = 5e-3;  // [m] for deeper presses, the hand is the cause, not the stiffness
   const scene::Model& model = scene.models[seen.deepest];
   const scene::Value* stiffness = givenIn(model.parameters, "stiffness");
   HandKey key = hand.presses() ? keyOfHand(scene, device, {"hand.rise", "hand.radius", "hand.script"})
                                : keyOfHand(scene, device, {"hand.radius", "hand.path", "hand.script"});
   if (seen.depth < kDeep && stiffness != nullptr)
     key = {stiffness->place, fmt::format("models[{}].parameters.stiffness", seen.deepest)};
-  const std::string most = limiter.maxForce() > 0 ? fmt::format(", and {:.3g} N are allowed", limiter.maxForce()) : "";
+  const std::string most =
+      limiter.maxForce() > 0 ? fmt::format(", but only {:.3g} N are allowed", limiter.maxForce()) : "";
   document::report(
       warnings, key.place, key.id,
       fmt::format(
           "the hand of {} is up to {:.3g} mm deep in {} and asks for up to {:.3g} N{}: limits.{} cuts the force in "
-          "{:.0f} % of the ticks with one; expected a hand that presses less (hand.radius, hand.rise in m) or "
+          "{:.0f} % of the ticks with a force; expected a hand that presses less (hand.radius, hand.rise in m) or "
           "less stiffness",
           device.name, seen.depth * 1e3, model.name, seen.asked, most,
           servo::nameOf(static_cast<servo::Limit>(strictest(seen))),
@@ -107,7 +110,7 @@ void tellCut(const scene::Scene& scene, const scene::Device& device, const HandS
 
 void judgeArm(const scene::Scene& scene, uint32_t index, const Walk& walk, const servo::World& world,
               document::Problems& warnings) {
-  constexpr double kOften = 0.05;  // of the ticks with a force
+  constexpr double kOften = 0.05;  // share of the ticks with a force
   const WalkedArm& seen = walk.arms[index];
   const auto hand = handScriptOf(scene.devices[index]);
   if (!hand || !hand->goes()) return;
@@ -122,7 +125,7 @@ void judgeArm(const scene::Scene& scene, uint32_t index, const Walk& walk, const
 
 void judgeModel(const scene::Scene& scene, size_t index, const Walk& walk, const servo::World& world,
                 document::Problems& warnings) {
-  constexpr double kUnfelt = 0.03;  // [N] less than an arm rubs with
+  constexpr double kUnfelt = 0.03;  // [N] less than the friction of an arm
   const WalkedModel& seen = walk.models[index];
   if (static_cast<double>(seen.touched) * walk.period < kContactSeconds) return;
   if (tellNoClick(scene.models[index], index, *world.shapes()[index], seen, walk.whole, warnings)) return;

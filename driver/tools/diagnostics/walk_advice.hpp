@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What hands met in a scene that nobody can have meant: nothing at all, what cannot be felt, what the limits cut.
+/// Warns of what a simulated hand meets in a scene and nobody meant: no model at all, a force that cannot be felt, a
+/// force that the limits cut.
 #pragma once
 #include "description/scene.hpp"
 #include "document/problem.hpp"
@@ -7,9 +8,9 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Walks the hands of simulated arms through a scene, and warns of what that shows: a hand that never comes near
-/// a model, a model whose force nobody feels, limits that cut the force asked, a button that does not click.
-/// @param world of the scene, built for as many probes as it has arms
+/// [main] Moves the hands of simulated arms through a scene, and warns of a hand that touches no model, of a model
+/// whose force is too small to feel, of limits that cut the force, and of a button that does not click. @param world
+/// world of the scene, built for as many probes as it has arms
 document::Problems adviseWalk(const scene::Scene& scene, servo::World& world);
 
 }  // namespace hapticd::diagnostics

@@ -24,55 +24,56 @@ const scene::Value* valueOf(const scene::Device& device, const char* id) {
   return found == device.parameters.end() ? nullptr : &*found;
 }
 
-/// [N m] of a joint; 0: not known.
+/// [N m] Returns arm.max_torque of a joint; 0 if unknown.
 double maxTorque(const scene::Device& device, size_t joint) {
   const scene::Value* value = valueOf(device, "arm.max_torque");
   if (value == nullptr || value->numbers.empty()) return 0;
   return value->numbers.size() == 1 ? value->numbers[0] : joint < value->numbers.size() ? value->numbers[joint] : 0;
 }
 
-/// What is odd about the torque that a field can carry, and the key that causes it; "" if nothing is.
+/// What is wrong with the torque that a field can carry, and the key that causes it; "" if nothing is.
 struct Odd {
   const char* key = "scale";
   std::string what;
 };
 
-/// The N m of the greatest raw number in either direction.
+/// [N m] Returns the torque that the field can express in both directions.
 double rangeOf(const Field& field, double least, double most) {
   const double a = least * field.scale + field.offset, b = most * field.scale + field.offset;
   return std::min(std::abs(a), std::abs(b));
 }
 
 Odd tooCoarse(const Field& field, double most, bool scaled) {
-  constexpr double kSteps = 8, kFewSteps = 200;  // with fewer than 8 steps, the hand feels each
-  constexpr double kIdle = 50;                   // times more than the motor has: N mm were meant, or counts
+  constexpr double kSteps = 8, kFewSteps = 200;  // [steps] with fewer than 8 steps, a hand feels each one; with fewer
+                                                 // than 200, N mm may have been meant
+  constexpr double kIdle = 50;  // factor: with a range so far above the motor's torque, N mm or counts were meant
   const double range = rangeOf(field, field.least, field.most), step = std::abs(field.scale);
   if (step * kSteps > most)
-    return {"scale", fmt::format("{}one raw unit is {:g} N m, of arm.max_torque's {:g} N m: most torques would be sent "
-                                 "as 0; expected the N m of one raw unit",
+    return {"scale", fmt::format("{}one raw unit is {:g} N m, but arm.max_torque is {:g} N m: most torques would be "
+                                 "sent as 0; expected the torque of one raw unit in N m",
                                  scaled ? "" : "not given, so ", step, most)};
   if (field.bits >= 12 && range > kIdle * most && step * kFewSteps > most)
-    return {"scale",
-            fmt::format("one raw unit is {:g} N m, so its largest number is {:.3g} N m, and arm.max_torque's {:g} N m "
-                        "only {:.0f} steps; expected N m: {:g} N mm are {:g} N m",
-                        step, range, most, most / step, step, step / 1000)};
+    return {"scale", fmt::format("one raw unit is {:g} N m: the field then reaches {:.3g} N m, and arm.max_torque "
+                                 "({:g} N m) is only {:.0f} steps; scale must be in N m: {:g} N mm is {:g} N m",
+                                 step, range, most, most / step, step, step / 1000)};
   return {};
 }
 
 Odd oddTorque(const Field& field, double most, bool scaled) {
-  constexpr double kNearly = 0.9;  // rounded data sheets
+  constexpr double kNearly = 0.9;  // share, because data sheets round
   if (field.type != codec::Type::kFloat)
     if (Odd coarse = tooCoarse(field, most, scaled); !coarse.what.empty()) return coarse;
   const double range = rangeOf(field, field.least, field.most), step = std::abs(field.scale);
   if (range >= kNearly * most) return {};
   const auto [least, greatest] = codec::rangeOf(field.type, field.bits);
   if (rangeOf(field, least, greatest) >= kNearly * most)
-    return {"limit", fmt::format("no more than {:g} N m is sent with it, less than arm.max_torque's {:g} N m; expected "
-                                 "limit: {:.0f} or none, or a smaller max_torque",
+    return {"limit", fmt::format("with this limit no more than {:g} N m is sent, which is less than arm.max_torque "
+                                 "({:g} N m); expected limit: {:.0f}, no limit, or a smaller max_torque",
                                  range, most, most / step)};
-  return {"scale", fmt::format("its largest raw number is {:g} N m, less than arm.max_torque's {:g} N m: all above is "
-                               "cut off; expected {:.3g} or more, or a smaller max_torque",
-                               range, most, step * most / std::max(range, 1e-300))};
+  return {"scale",
+          fmt::format("the largest raw number is {:g} N m, which is less than arm.max_torque ({:g} N m): larger "
+                      "torques are cut off; expected a scale of {:.3g} or more, or a smaller max_torque",
+                      range, most, step * most / std::max(range, 1e-300))};
 }
 
 void adviseTorques(const Node& fields, const codec::Report& report, const scene::Device& device,
@@ -136,7 +137,8 @@ void adviseChecksum(const Node& fields, const codec::Report& report, const char*
   }
 }
 
-/// "i16 in the place of an i24" seems right while angles are small: a byte between two joints' numbers is in no field.
+/// Warns of a byte between two positions that is in no field: an i16 in the place of an i24 seems right while angles
+/// are small.
 void adviseGaps(const Node& fields, const codec::Report& report, const scene::Device& device,
                 document::Problems& warnings) {
   for (size_t i = 0; i + 1 < report.fields.size() && i + 1 < fields.items.size(); ++i) {
@@ -148,17 +150,16 @@ void adviseGaps(const Node& fields, const codec::Report& report, const scene::De
       return field.at < next.at && field.at + field.bytes() > end;
     });
     if (used || free >= one.bytes()) continue;
-    document::report(
-        warnings, device.file.string(), fields.items[i].line, fields.items[i].column,
-        fmt::format("parameters.wire.input.fields[{}].type", i),
-        fmt::format("no field has byte {}, between the positions of joints {} and {}; expected a type of {} "
-                    "bytes, if the number is that wide",
-                    end, one.index + 1, next.index + 1, one.bytes() + free));
+    document::report(warnings, device.file.string(), fields.items[i].line, fields.items[i].column,
+                     fmt::format("parameters.wire.input.fields[{}].type", i),
+                     fmt::format("byte {}, between the positions of joints {} and {}, belongs to no field; expected a "
+                                 "type of {} bytes if the number is that wide",
+                                 end, one.index + 1, next.index + 1, one.bytes() + free));
     return;
   }
 }
 
-/// The start-up sequence is sent before every limit, and while forces are off, so no command in it may push.
+/// Warns of torques in the start-up sequence. No limit applies to it, and forces must be off then.
 void adviseStartup(const Node& steps, const codec::Wire& wire, const scene::Device& device,
                    document::Problems& warnings) {
   codec::Report torques = wire.output;
@@ -169,13 +170,12 @@ void adviseStartup(const Node& steps, const codec::Wire& wire, const scene::Devi
     if (bytes.size() != torques.bytes() || decode(torques, bytes, sent) != codec::Verdict::kGood) continue;
     for (const Field& field : torques.fields) {
       const double torque = sent.torque[field.index];
-      if (std::abs(torque) <= std::abs(field.scale)) continue;  // as close to zero as it can be sent
-      document::report(
-          warnings, device.file.string(), steps.items[i].line, steps.items[i].column,
-          fmt::format("parameters.wire.startup[{}].send", i),
-          fmt::format("as wire.output has it, these bytes are a torque of {:.3g} N m at joint {}, which goes "
-                      "out before every limit; expected torques of 0",
-                      torque, field.index + 1));
+      if (std::abs(torque) <= std::abs(field.scale)) continue;  // zero, within one raw unit
+      document::report(warnings, device.file.string(), steps.items[i].line, steps.items[i].column,
+                       fmt::format("parameters.wire.startup[{}].send", i),
+                       fmt::format("read as wire.output, these bytes command {:.3g} N m at joint {}, and no limit "
+                                   "applies to start-up bytes; send zero torques here",
+                                   torque, field.index + 1));
       break;
     }
   }

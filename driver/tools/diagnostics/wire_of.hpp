@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The wire format of a device file, for checks that need no arm.
+/// Reads the wire format of a device file, for checks that need no arm.
 #pragma once
 #include <optional>
 #include <stdexcept>
@@ -9,7 +9,7 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Nothing for an arm without one, or whose format is wrong, which is told as a problem.
+/// [main] Returns nothing if the arm has no wire format or a wrong one; others report a wrong format as a problem.
 inline std::optional<codec::Wire> wireOf(const scene::Device& device, size_t joints) {
   try {
     for (const scene::Value& value : device.parameters)

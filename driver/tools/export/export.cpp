@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kNanoseconds = 1e9;
 
-/// [ns] since 1970 when the run started; 0 if the recording does not say.
+/// [ns] Returns when the run started, since 1970; 0 if the recording does not say.
 uint64_t startOf(const Recording& recording) {
   const auto about = nlohmann::json::parse(recording.aboutJson(), nullptr, false);
   if (!about.is_object() || !about.contains("started") || !about["started"].is_string()) return 0;
@@ -46,7 +46,7 @@ struct Outgoing {
   uint64_t next = 0;
 };
 
-/// Writes the rows of a stream up to a tick.
+/// Writes the rows of a stream up to and including a tick.
 void send(McapWriter& out, Outgoing& from, uint64_t tick, uint64_t time) {
   const RecordedStream& stream = *from.stream;
   const std::string_view head(kCdrHead.data(), kCdrHead.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Recordings for other tools.
+/// Converts recordings to formats of other tools.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -14,8 +14,9 @@ struct Exported {
   uint64_t rows = 0, bytes = 0;
 };
 
-/// [main] Every row of every stream as a message of its channel, /hapticd/STREAM, in the order of their ticks; the
-/// description as an attachment. Times are the run's start plus the tick's own time.
+/// [main] Writes an MCAP file. Every row of every stream becomes a message of the channel /hapticd/STREAM, in the order
+/// of the ticks; the description of the run becomes an attachment. The time of a message is the start of the run plus
+/// the time of its tick.
 Result<Exported> exportMcap(const Recording& recording, const std::string& file);
 
 /// [main] Writes one stream as a table with a header, with 17 digits per number.

@@ -17,7 +17,7 @@ static_assert(std::endian::native == std::endian::little, "numbers are stored as
 
 constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 constexpr size_t kChunkBytes = 1u << 20;  ///< size before compression: a reader unpacks one chunk to seek
-constexpr int kLevel = 3;                 ///< of zstd, its default
+constexpr int kLevel = 3;                 ///< compression level of zstd, which is its default
 
 /// Op codes of records.
 enum Record : uint8_t {
@@ -38,7 +38,7 @@ enum Record : uint8_t {
   kDataEnd
 };
 
-/// The content of a record, number after number.
+/// Builds the content of a record from numbers and texts.
 class Body {
  public:
   template <class T>
@@ -48,7 +48,7 @@ class Body {
     text_.append(raw, sizeof raw);
     return *this;
   }
-  Body& text(std::string_view value) {  ///< with its length
+  Body& text(std::string_view value) {  ///< with its length in front
     n(static_cast<uint32_t>(value.size()));
     text_ += value;
     return *this;
@@ -66,7 +66,7 @@ class Body {
   std::string text_;
 };
 
-/// A map of the specification: the length of its entries in bytes, then keys and values.
+/// Encodes a map as in the specification: the length of its entries in bytes, then keys and values.
 std::string counts(const std::map<uint16_t, uint64_t>& map) {
   Body entries;
   for (const auto& [key, value] : map) entries.n(key).n(value);
@@ -113,7 +113,7 @@ uint16_t McapWriter::addChannel(const std::string& topic, const std::string& typ
   return static_cast<uint16_t>(channels_.size());
 }
 
-/// Schemas and channels, which are before the messages and again in the summary.
+/// Returns the records of schemas and channels, which stand before the messages and again in the summary.
 std::string McapWriter::schemas() const {
   std::string records;
   for (size_t i = 0; i < channels_.size(); ++i) {
@@ -187,7 +187,7 @@ std::string McapWriter::statistics() const {
   return body.record(kStatistics);
 }
 
-/// Everything that a reader needs to find its way, at the end of the file.
+/// Writes the summary at the end of the file, with which a reader finds everything else.
 void McapWriter::summary() {
   const uint64_t start = offset_;
   std::string bytes = schemas() + statistics();
@@ -212,7 +212,7 @@ void McapWriter::summary() {
 Result<void> McapWriter::close() {
   if (chunks_.empty() && chunk_.empty()) write(schemas());
   endChunk();
-  write(Body().n(uint32_t{0}).record(kDataEnd));  // 0: there is no checksum of the whole
+  write(Body().n(uint32_t{0}).record(kDataEnd));  // 0 means that there is no checksum of the data section
   summary();
   write(kMagic);
   if (std::fclose(std::exchange(out_, nullptr)) != 0 && error_ == 0) error_ = errno;

@@ -22,26 +22,27 @@ class McapWriter {
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
-  /// [main] A channel of messages of one type, encoded as CDR. Call before the first message. @return its number
+  /// [main] Adds a channel of messages of one type, encoded as CDR. Call it before the first message. @return the
+  /// number of the channel
   uint16_t addChannel(const std::string& topic, const std::string& type, const std::string& definition);
 
-  /// [main] Appends a message: `head` and `body` are one after the other. Times of one channel may not fall.
+  /// [main] Appends a message that consists of `head` and then `body`. The times of a channel must not decrease.
   void message(uint16_t channel, uint64_t time_ns, std::string_view head, std::string_view body);
 
-  /// [main] Adds a text that belongs to the messages.
+  /// [main] Adds a text as an attachment of the file.
   void attach(const std::string& name, const std::string& media_type, const std::string& text, uint64_t time_ns);
 
-  /// [main] Writes the messages that wait, the index and the end.
+  /// [main] Writes the messages that are still in memory, the index and the end of the file.
   Result<void> close();
 
   uint64_t messages() const { return messages_; }
-  uint64_t bytes() const { return offset_; }  ///< of the file
+  uint64_t bytes() const { return offset_; }  ///< bytes of the file so far
 
  private:
   struct Channel {
     std::string topic, type, definition;
     uint64_t messages = 0;
-    std::vector<std::pair<uint64_t, uint64_t>> index;  ///< time and place in the present chunk
+    std::vector<std::pair<uint64_t, uint64_t>> index;  ///< time, and byte of the present chunk, of each message
   };
   struct ChunkPlace {
     uint64_t start, end, offset, length, index_length, compressed, uncompressed;
@@ -69,7 +70,7 @@ class McapWriter {
   std::vector<AttachmentPlace> attachments_;
 };
 
-/// [any] CRC-32 of IEEE 802.3 (as zlib's).
+/// [any] Computes the CRC-32 of IEEE 802.3, as zlib does. @param before CRC of the bytes before these
 uint32_t crc32(std::string_view bytes, uint32_t before = 0);
 
 }  // namespace hapticd::record

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Rows as ROS 2 messages. Columns are aligned as CDR aligns them (OMG DDS-XTypes 1.3, 7.4.3: each number at a multiple
-/// of its size), so four bytes in front of a row make it a message of its column table; nothing is encoded again.
+/// Turns rows into ROS 2 messages. Columns have the same alignment as in CDR (OMG DDS-XTypes 1.3, 7.4.3: each number at
+/// a multiple of its size). So a row with four bytes in front of it is such a message already, and nothing is encoded
+/// again.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,13 +12,13 @@
 
 namespace hapticd::record {
 
-/// The head before a row: plain CDR, little-endian, no options.
+/// The four bytes before a row; they mean plain CDR, little-endian, no options.
 constexpr std::array<char, 4> kCdrHead = {0, 1, 0, 0};
 
-/// [any] "hapticd_msgs/msg/Ticks" for "ticks".
+/// [any] Returns the name of the message type, such as "hapticd_msgs/msg/Ticks" for "ticks".
 std::string rosType(const std::string& stream);
 
-/// [any] The .msg text: one field per column, with its unit and meaning as a comment.
+/// [any] Returns the text of the .msg file: one field per column, with its unit and meaning as a comment.
 std::string rosDefinition(const std::vector<Column>& columns);
 
 /// [any] True if rows of these columns have the layout of CDR. Otherwise no ROS reader can read them.

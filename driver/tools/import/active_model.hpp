@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A model of a plugin by itself, for who wants to measure it as it will be felt.
+/// Makes a single active model of a plugin, to measure how it will be felt.
 #pragma once
 #include <Eigen/Core>
 #include <filesystem>
@@ -12,13 +12,13 @@
 
 namespace hapticd::importing {
 
-/// [main] An active model of `plugin` with this geometry for this number of probes. `more` has further parameters, each
-/// after a comma, as in a scene file.
+/// [main] Makes an active model of `plugin` with this geometry for this number of probes. `more` has further parameters
+/// as in a scene file, with a comma before each.
 Result<std::unique_ptr<host::ShapeInstance>> activated(const char* plugin, const std::filesystem::path& geometry,
                                                        host::Catalog& catalog, const std::string& more = "",
                                                        uint32_t probes = 1);
 
-/// [main] What a resting probe meets that was placed at `p` [m], in the model's frame.
+/// [main] Returns the contact of a resting probe that was placed at `p` [m], in the model's frame.
 Result<hsp_contact> touched(host::ShapeInstance& body, const Eigen::Vector3d& p);
 
 }  // namespace hapticd::importing

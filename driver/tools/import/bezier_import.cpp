@@ -16,9 +16,9 @@ namespace {
 using Eigen::Vector3d;
 constexpr int kMaxDegree = 15;
 constexpr int kMaxPatches = 100'000;
-constexpr size_t kCleanDigits = 9;  ///< of a coordinate: a nanometre on a metre; hides the dust of scaling
+constexpr size_t kCleanDigits = 9;  ///< digits of a coordinate: hides rounding errors of scaling
 
-/// The numbers of a file with their places, without comments.
+/// Reads the numbers of a file with their lines, and skips comments.
 class Numbers {
  public:
   Numbers(const std::string& text, std::string file, std::vector<std::string>& comments) : file_(std::move(file)) {
@@ -72,7 +72,7 @@ class Numbers {
   size_t at_ = 0;
 };
 
-/// Turns the axis that points up onto y.
+/// Turns a point so that the axis that points up becomes y.
 Vector3d turned(const Vector3d& p, char up) {
   if (up == 'z') return {p.x(), p.z(), -p.y()};
   if (up == 'x') return {-p.y(), p.x(), p.z()};
@@ -92,7 +92,7 @@ double binomial(int n, int k) {
   return result;
 }
 
-/// Bernstein polynomials of a degree and their derivatives at t.
+/// Computes the Bernstein polynomials of a degree and their derivatives at t.
 void bernstein(int degree, double t, std::vector<double>& value, std::vector<double>& slope) {
   const auto at = [](int n, int i, double x) {
     return i < 0 || i > n ? 0.0 : binomial(n, i) * std::pow(x, i) * std::pow(1 - x, n - i);
@@ -194,9 +194,8 @@ void placePoints(std::vector<Vector3d>& points, const std::vector<std::array<std
 
 double signedVolume(const BezierModel& model) {
   constexpr std::array<double, 4> kAt{0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263};
-  constexpr std::array<double, 4> kWeight{
-      0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
-      0.17392742256872693};  // Gauss-Legendre on [0, 1]: only the sign matters
+  constexpr std::array<double, 4> kWeight{0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
+                                          0.17392742256872693};  // Gauss-Legendre on [0, 1]: only the sign matters
   double volume = 0;
   std::vector<double> bu, du, bv, dv;
   for (const BezierPatch& patch : model.patches)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Bezier patches (.bpt) into a model file of format hapticd-model/1.
+/// Converts Bezier patches (.bpt) into a model file of format hapticd-model/1.
 #pragma once
 #include <Eigen/Core>
 #include <string>
@@ -9,23 +9,23 @@
 
 namespace hapticd::importing {
 
-/// One patch as the file has it: (degree_u + 1) x (degree_v + 1) points, u-major.
+/// One patch of the file: (degree_u + 1) x (degree_v + 1) points, u-major.
 struct BezierPatch {
   int degree_u = 0, degree_v = 0;
   std::vector<Eigen::Vector3d> points;
 };
 
 struct BezierModel {
-  std::vector<std::string> comments;  ///< lines that began with #: credit and licence stay with the data
+  std::vector<std::string> comments;  ///< comment lines of the file (#), which keep credit and licence with the data
   std::vector<BezierPatch> patches;
-  bool reversed = false;  ///< Su x Sv points inward
+  bool reversed = false;  ///< true if Su x Sv points inward
 };
 
 /// How a model is brought into the arm's workspace.
 struct Placement {
-  double scale = 1;     ///< file units to m
-  double fit = 0;       ///< [m] largest extent of the control points; replaces scale; 0: not used
-  bool center = false;  ///< middle of the bounding box to the origin
+  double scale = 1;     ///< metres per unit of the file
+  double fit = 0;       ///< [m] largest extent of the control points; replaces scale; 0 if not used
+  bool center = false;  ///< true moves the middle of the bounding box to the origin
   char up = 'y';        ///< axis of the file that points up; the world's is y
 };
 
@@ -35,14 +35,15 @@ Result<BezierModel> parseBpt(const std::string& text, const std::string& file);
 /// [main] Turns, scales and centres all points.
 void placeModel(BezierModel& model, const Placement& placement);
 
-/// [main] The same for the points of triangles; the box holds only the corners that are used.
+/// [main] Does the same for the points of triangles. Only points that are corners of a triangle count for the bounding
+/// box.
 void placePoints(std::vector<Eigen::Vector3d>& points, const std::vector<std::array<std::uint32_t, 3>>& used,
                  const Placement& placement);
 
-/// [main] Volume under the signed surface, by the divergence theorem; negative if Su x Sv points inward.
+/// [main] Returns the enclosed volume by the divergence theorem; negative if Su x Sv points inward.
 double signedVolume(const BezierModel& model);
 
-/// [main] The model as YAML, or as JSON.
+/// [main] Return the model as YAML, or as JSON.
 std::string toModelYaml(const BezierModel& model);
 std::string toModelJson(const BezierModel& model);
 

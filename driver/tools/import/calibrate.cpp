@@ -20,31 +20,31 @@ namespace {
 using document::Node;
 using Eigen::Vector3d;
 
-constexpr int kRounds = 300;          ///< of the fit
+constexpr int kRounds = 300;          ///< number of rounds of the fit
 constexpr double kFitted = 1e-4;      ///< relative error at which the fit ends
 constexpr double kGood = 0.05;        ///< relative error above which a place is reported
-constexpr double kReach = 0.7;        ///< of the distance of neighbouring points: how far a place counts
+constexpr double kReach = 0.7;        ///< share of the distance of points: how far an answer counts
 constexpr double kFarthestReach = 2;  ///< share of that distance: the largest shear reach that is tried
-constexpr double kNoReach = 0.05;     ///< share of it that has practically no effect
-constexpr double kStiffest = 1e6;     ///< [N/m] stiffness that a body may have
+constexpr double kNoReach = 0.05;     ///< share of that distance: a shear reach with practically no effect
+constexpr double kStiffest = 1e6;     ///< [N/m] largest stiffness that a body may have
 
 struct Answer {
   Vector3d place;
   double depth, force;
 };
 
-/// A body of a file: where its points are, and what else the file says.
+/// A body of a file: the places of its points, and the rest of the file.
 struct Body {
   Node root;
   std::vector<Vector3d> points;
-  std::size_t columns = 0;  ///< counts of a grid; 0: it has vertices
+  std::size_t columns = 0;  ///< columns of a grid of points; 0 if the body has vertices
 };
 
-/// What is fitted.
+/// The parameters to fit.
 struct Fitted {
-  std::vector<double> stiffness;  ///< [N/m] one a point
-  double reach = -1;              ///< [m] reach of the shear; < 0: as in the body's file
-  bool still = false;             ///< for measuring, without mass and damping
+  std::vector<double> stiffness;  ///< [N/m] stiffness of each point
+  double reach = -1;              ///< [m] reach of the shear; below 0 keeps that of the file
+  bool still = false;             ///< true writes the body without mass and damping, for measuring
 };
 
 Error first(const document::Problems& problems, const std::string& file) {
@@ -68,7 +68,7 @@ Result<std::vector<Answer>> readAnswers(const std::string& file) {
   return answers;
 }
 
-/// Reads a point or vertex; false if it does not have three numbers.
+/// Reads a point or vertex; returns false if it does not have three numbers.
 bool addPoint(const Node& node, Body& body) {
   Vector3d p;
   if (!node.isSequence() || node.items.size() < 3) return false;
@@ -139,7 +139,7 @@ std::string written(const Body& body, const Fitted& fitted, const Calibration& o
   return text + stiffnessText(body, fitted.stiffness);
 }
 
-/// [m] Mean distance of a point to the nearest other one.
+/// [m] Returns the mean distance of a point to the nearest other point.
 double spacingOf(const Body& body) {
   double spacing = 0;
   for (const Vector3d& a : body.points) {
@@ -151,7 +151,7 @@ double spacingOf(const Body& body) {
   return spacing;
 }
 
-/// The share of each answer in each point: that of the nearest answer is the largest.
+/// Returns how much each answer counts for each point: the nearest answer counts most.
 Eigen::MatrixXd sharesOf(const Body& body, const std::vector<Answer>& answers) {
   const auto count = static_cast<Eigen::Index>(body.points.size()), places = static_cast<Eigen::Index>(answers.size());
   const double width = std::pow(kReach * spacingOf(body), 2);
@@ -168,7 +168,7 @@ Eigen::MatrixXd sharesOf(const Body& body, const std::vector<Answer>& answers) {
   return shares;
 }
 
-/// The force [N] of the written body at each answer.
+/// Returns the force [N] of the written body at the place of each answer.
 Result<std::vector<double>> feltForces(const Calibration& options, const std::vector<Answer>& answers,
                                        host::Catalog& catalog) {
   const auto body = activated("mat_deformable", options.out, catalog);
@@ -177,8 +177,9 @@ Result<std::vector<double>> feltForces(const Calibration& options, const std::ve
   if ((*body)->surfaces()->activate((*body)->handle(), &near) < 0) return Error{"the body cannot be traced"};
   std::vector<double> forces;
   for (const Answer& answer : answers) {
-    (*body)->reset();                                 // the press before has left no dent
-    const auto foot = touched(**body, answer.place);  // the surface of the body, near that of the solid
+    (*body)->reset();  // removes the dent of the press before
+    // foot on the surface of the soft body, which lies near the given place
+    const auto foot = touched(**body, answer.place);
     if (!foot) return Error{foot.error()};
     const Vector3d normal(foot->normal);
     const auto pressed = touched(**body, Vector3d(foot->point) - answer.depth * normal);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd import --calibrate`: stiffness and shear of a soft body from measured or computed presses.
+/// `hapticd import --calibrate`: finds stiffness and shear of a soft body from measured or computed presses.
 #pragma once
 #include <string>
 
@@ -11,8 +11,9 @@ namespace hapticd::importing {
 struct Calibration {
   std::string body;     ///< model file with points or vertices
   std::string answers;  ///< CSV x,y,z,depth,force: place on the surface [m], depth of the press [m], force [N]
-  std::string dents;  ///< CSV x,y,z,x2,y2,z2,dent: share of a press's depth by which a second place sinks; "": none
-  std::string out;    ///< the same body with a stiffness per point (.yaml), hapticd-model/2: it is felt as it says
+  std::string dents;  ///< CSV x,y,z,x2,y2,z2,dent: how far a second place sinks, as a share of the depth of a press at
+                      ///< the first; "" if there is no such file
+  std::string out;    ///< file to write (.yaml, hapticd-model/2): the same body with a stiffness for each point
 };
 
 /// [main] Fits the stiffness of each point so that the plugin gives the forces of all answers, writes the body and

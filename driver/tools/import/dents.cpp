@@ -15,20 +15,20 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPress = 1e-4;    ///< [m] deep, both probes
+constexpr double kPress = 1e-4;    ///< [m] depth of the press of both probes
 constexpr double kTick = 1e-3;     ///< [s]
-constexpr int kMostTicks = 4000;   ///< ticks until both forces settle
-constexpr int kQuiet = 20;         ///< ticks without a change
-constexpr double kSettled = 1e-7;  ///< relative change of a force
+constexpr int kMostTicks = 4000;   ///< largest number of ticks until both forces settle
+constexpr int kQuiet = 20;         ///< ticks without a change, after which forces count as settled
+constexpr double kSettled = 1e-7;  ///< relative change of a force that counts as no change
 constexpr int kLooks = 12;         ///< reaches that are tried before the best one is refined
-constexpr int kRefinements = 14;   ///< of the golden section
+constexpr int kRefinements = 14;   ///< steps of the golden section search
 constexpr double kGolden = 0.61803398874989485;
 
 double along(const hsp_contact& contact) {
   return Vector3d(contact.force).dot(Vector3d(contact.normal));
 }
 
-/// Both probes, from the first tick until they rest.
+/// Presses with both probes until their forces settle.
 Result<std::array<hsp_contact, 2>> heldTogether(host::ShapeInstance& body, const std::array<Vector3d, 2>& at) {
   std::array<hsp_probe, 2> probes{};
   std::array<hsp_contact, 2> contacts{};
@@ -61,7 +61,8 @@ Result<std::array<hsp_contact, 2>> heldTogether(host::ShapeInstance& body, const
   return contacts;
 }
 
-/// One probe alone has the stiffness of its place; of two, each also sinks by what the other one does.
+/// Measures the share of one dent. A single probe feels the stiffness of its place; with two probes, each place also
+/// sinks by the press of the other.
 Result<double> dentOf(host::ShapeInstance& body, const Dent& dent) {
   std::array<Vector3d, 2> at;
   std::array<double, 2> stiffness{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// How far beside a press the surface of a soft body goes down, and the shear reach that makes it so.
+/// Measures how the surface of a soft body goes down beside a press, and finds the shear reach that fits given dents.
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
@@ -11,8 +11,8 @@
 #include "host/catalog.hpp"
 
 namespace hapticd::importing {
-
-inline constexpr std::size_t kMostTableBytes = std::size_t{1} << 26;  ///< of a CSV file of presses or dents
+/// Largest size of a CSV file of presses or dents.
+inline constexpr std::size_t kMostTableBytes = std::size_t{1} << 26;
 
 /// A press at one place and its effect at another.
 struct Dent {
@@ -20,18 +20,19 @@ struct Dent {
   double share;                     ///< share of the press's depth by which `beside` sinks
 };
 
-/// [main] CSV x,y,z,x2,y2,z2,dent.
+/// [main] Reads a CSV file with the columns x,y,z,x2,y2,z2,dent.
 Result<std::vector<Dent>> readDents(const std::string& file);
 
-/// [main] What a body does at each of `dents`, by two probes that press it a little.
+/// [main] Measures the share of each of `dents` on a body, with two probes that press it a little.
 Result<std::vector<double>> dentsOf(const std::string& body, const std::vector<Dent>& dents, host::Catalog& catalog);
 
 struct ReachFit {
   double reach = 0;            ///< [m]
-  std::vector<double> shares;  ///< error of the body that has this reach
+  std::vector<double> shares;  ///< share at each of the dents of a body with this reach
 };
 
-/// [main] The shear reach from 0 to `most` [m] with the least squares. `write(reach)` writes such a body to `file`.
+/// [main] Finds the shear reach from 0 to `most` [m] that gives the given dents best (least squares). `write(reach)`
+/// writes a body with that reach to `file`.
 Result<ReachFit> fitReach(const std::string& file, double most, const std::vector<Dent>& dents,
                           const std::function<Result<void>(double)>& write, host::Catalog& catalog);
 

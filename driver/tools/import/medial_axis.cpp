@@ -16,12 +16,12 @@ using Eigen::Vector3d;
 using Eigen::Vector4d;
 
 constexpr int kMostShrinks = 50;
-constexpr double kShrunk = 1e-9;               ///< relative change of a radius below which a ball is done
-constexpr std::size_t kMostCandidates = 6000;  ///< balls that may be kept
-constexpr std::size_t kMostCovered = 12000;    ///< samples that must be covered
-constexpr std::size_t kTold = 10000;           ///< balls or candidates between two messages
+constexpr double kShrunk = 1e-9;               ///< relative change of a radius below which a ball no longer shrinks
+constexpr std::size_t kMostCandidates = 6000;  ///< balls from which to choose
+constexpr std::size_t kMostCovered = 12000;    ///< [samples] at most so many must be covered
+constexpr std::size_t kTold = 10000;           ///< balls or candidates between two messages of progress
 constexpr int kChecks = 8;                     ///< spheres that are checked along an edge
-constexpr double kFlatCosine = 0.94;  ///< of 20 degrees: triangles that meet flatter stand for a smooth surface
+constexpr double kFlatCosine = 0.94;           ///< cosine of 20 degrees: flatter edges belong to a smooth surface
 
 using Progress = std::function<void(const std::string&)>;
 
@@ -34,8 +34,9 @@ struct Ball {
   double radius;
 };
 
-/// The ball that touches the surface at sample i from inside and holds no sample that is seen from its middle farther
-/// than `least_angle` from it. Nearer ones are the continuing surface, with the ripples of its triangles.
+/// Returns the ball that touches the surface at sample i from inside and contains no other sample. Samples that are
+/// seen from its centre at less than `least_angle` from sample i do not count, because they are the surface around
+/// sample i, with the ripples of its triangles.
 Ball shrink(const SurfaceSamples& samples, const NearestPoints& nearest, uint32_t i, double start, double least_angle) {
   const Vector3d &p = samples.points[i], &n = samples.normals[i];
   const NearestPoints::Beyond opposite{p, -n, std::sin(least_angle / 2)};
@@ -55,7 +56,7 @@ Ball shrink(const SurfaceSamples& samples, const NearestPoints& nearest, uint32_
   return ball;
 }
 
-/// Every k-th sample, so that at most `most` are left.
+/// Returns every k-th element, so that at most `most` are left.
 template <class T>
 std::vector<T> thinned(const std::vector<T>& all, std::size_t most) {
   const std::size_t stride = (all.size() + most - 1) / most;
@@ -64,7 +65,7 @@ std::vector<T> thinned(const std::vector<T>& all, std::size_t most) {
   return some;
 }
 
-/// Repeatedly takes the ball that covers most of the samples that are not covered yet.
+/// Chooses balls: repeatedly takes the ball that covers most of the samples that are not covered yet.
 std::vector<Ball> cover(const std::vector<Ball>& candidates, const std::vector<Vector3d>& points,
                         const MedialOptions& options, double& covered) {
   std::vector<std::vector<uint32_t>> covers(candidates.size());
@@ -79,7 +80,8 @@ std::vector<Ball> cover(const std::vector<Ball>& candidates, const std::vector<V
   const auto gain = [&](std::size_t b) {
     return std::count_if(covers[b].begin(), covers[b].end(), [&](uint32_t i) { return bare[i]; });
   };
-  // What a ball covers of the rest never grows, so a ball whose old count is not the greatest needs no new count.
+  // The number of uncovered samples that a ball covers never grows, so a ball whose old count is not the greatest needs
+  // no new count.
   std::vector<std::pair<std::ptrdiff_t, std::size_t>> heap;
   for (std::size_t b = 0; b < candidates.size(); ++b) heap.emplace_back(gain(b), b);
   std::make_heap(heap.begin(), heap.end());
@@ -104,7 +106,7 @@ std::vector<Ball> cover(const std::vector<Ball>& candidates, const std::vector<V
   return kept;
 }
 
-/// True if a sphere extends out of the body by more than the tolerance.
+/// Returns true if a sphere extends out of the body by more than the tolerance.
 bool standsOut(const Vector3d& center, double radius, const SurfaceSamples& samples, const NearestPoints& nearest,
                double tolerance) {
   const uint32_t i = nearest.nearest(center);
@@ -128,7 +130,7 @@ std::vector<Ball> innerBalls(const SurfaceSamples& samples, const NearestPoints&
   return balls;
 }
 
-/// The three spheres nearest to a witness, nearest first.
+/// Returns the three spheres nearest to a witness, nearest first.
 std::array<int, 3> threeNearest(const std::vector<Ball>& kept, const Vector3d& p) {
   std::array<int, 3> best{-1, -1, -1};
   std::array<double, 3> distance{HUGE_VAL, HUGE_VAL, HUGE_VAL};
@@ -144,7 +146,7 @@ std::array<int, 3> threeNearest(const std::vector<Ball>& kept, const Vector3d& p
   return best;
 }
 
-/// Which spheres hang together.
+/// Tells which spheres are connected.
 class Parts {
  public:
   explicit Parts(std::size_t count) : part_(count), count_(static_cast<int>(count)) {
@@ -167,7 +169,7 @@ class Parts {
   int count_;
 };
 
-/// Which edges and triangles of balls stay inside the body.
+/// Tells which edges and triangles of balls stay inside the body.
 class Soundness {
  public:
   Soundness(const std::vector<Ball>& kept, const SurfaceSamples& samples, const NearestPoints& nearest,
@@ -206,7 +208,7 @@ class Soundness {
 
 using Edges = std::set<std::array<int, 2>>;
 
-/// Where samples were too few to decide, the shortest edge inside the body joins two parts.
+/// Joins two parts by the shortest edge inside the body, in case the samples were too few to find it.
 void bridgeGaps(const std::vector<Ball>& kept, const Soundness& sound, Parts& parts, Edges& edges) {
   std::vector<std::pair<double, std::array<int, 2>>> gaps;
   const int count = static_cast<int>(kept.size());
@@ -224,7 +226,7 @@ void bridgeGaps(const std::vector<Ball>& kept, const Soundness& sound, Parts& pa
   }
 }
 
-/// Edges and triangles between the balls nearest to the same witness, if they stay inside the body.
+/// Adds edges and triangles between the balls nearest to the same witness, if they stay inside the body.
 void join(const std::vector<Ball>& kept, const std::vector<Ball>& witnesses, const Soundness& sound, MedialAxis& axis) {
   Edges edges, refused;
   std::set<std::array<int, 3>> triangles;
@@ -248,9 +250,10 @@ void join(const std::vector<Ball>& kept, const std::vector<Ball>& witnesses, con
   axis.edges.assign(edges.begin(), edges.end());
 }
 
-/// The normal at each corner of each triangle: the mean, weighted by angle, of the triangles about it that are no edge
-/// away from this one. With the flat triangle's own, a ball between two feet 60 degrees apart is off by three times the
-/// turn from facet to facet, times its radius.
+/// Returns the normal at each corner of each triangle: the mean, weighted by angle, of the normals of the triangles
+/// around the corner that no sharp edge separates from this triangle. With the normal of the flat triangle alone, the
+/// centre of a ball between two feet 60 degrees apart would have an error of three times the angle between facets,
+/// times its radius.
 std::vector<std::array<Vector3d, 3>> cornerNormals(const Triangles& mesh) {
   struct Fan {
     Vector3d normal;

@@ -22,8 +22,8 @@ namespace {
 using Eigen::Vector3d;
 namespace fs = std::filesystem;
 
-constexpr double kToleranceShare = 0.01;  ///< of the body's size
-constexpr double kLarge = 1.0;            ///< [m] no hand reaches around a larger body
+constexpr double kToleranceShare = 0.01;  ///< default tolerance, as a share of the body's size
+constexpr double kLarge = 1.0;            ///< [m] a larger body was probably given in millimetres
 constexpr double kChordShare = 0.002;     ///< share of a NURBS model's size: chord error of its triangles
 constexpr std::size_t kMostFileBytes = std::size_t{1} << 30;
 
@@ -71,7 +71,7 @@ struct Deviation {
   double most = 0, mean = 0;
 };
 
-/// The distance of the given surface from the body's, as the plugin that will be felt gives it.
+/// Measures the distance of the given surface from the surface of the body, as the plugin computes it.
 Result<Deviation> deviationFrom(host::ShapeInstance& body, const std::vector<Vector3d>& points) {
   const hsp_near near{};
   if (body.surfaces()->activate(body.handle(), &near) < 0) return Error{"the body cannot be traced"};
@@ -93,12 +93,13 @@ Result<void> report(const MedialImport& options, const MedialOptions& settings, 
   if (!body) return Error{body.error()};
   const auto there = deviationFrom(**body, samples.points);
   if (!there) return Error{there.error()};
-  // Creases are rounded by a cell. Cells finer than the tolerance give no more information, and cost its square.
+  // The drawn surface rounds creases by the size of a cell. Cells smaller than the tolerance show no more, and the time
+  // grows with the square of their number.
   const double chord = 0.5 * settings.tolerance / (*body)->report().size_m;
   const auto drawn = tessellated(**body, std::clamp(chord, kChordShare, kToleranceShare));
   if (!drawn) return Error{drawn.error()};
   const NearestPoints nearest(samples.points);
-  double back = 0, beyond = 0;  // to the nearest sample, and to the plane there
+  double back = 0, beyond = 0;  // [m] distance to the nearest sample, and to its tangent plane
   for (const Vector3d& p : drawn->points) {
     const uint32_t i = nearest.nearest(p);
     const Vector3d off = samples.points[i] - p;
@@ -122,7 +123,7 @@ Result<void> report(const MedialImport& options, const MedialOptions& settings, 
   return {};
 }
 
-/// A file in millimetres that is read as metres makes a hand as large as a house.
+/// Warns of a large body, because its file was probably in millimetres.
 void tellSize(const Eigen::AlignedBox3d& box, const std::string& file) {
   const Vector3d size = box.sizes();
   std::printf("%s: %.4g x %.4g x %.4g m\n", file.c_str(), size.x(), size.y(), size.z());
@@ -142,7 +143,8 @@ Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalo
   if (endsWith(options.file, ".yaml") || endsWith(options.file, ".yml") || endsWith(options.file, ".json")) {
     const auto shape = activated("nurbs_rigid", options.file, catalog);
     if (!shape) return Error{shape.error()};
-    constexpr double kOfTolerance = 0.25;  // so that the triangles do not keep the body from it
+    // chord error as a share of the tolerance, so that the triangles are exact enough for it
+    constexpr double kOfTolerance = 0.25;
     const double wanted = options.tolerance > 0 ? kOfTolerance * options.tolerance / (*shape)->report().size_m : 1;
     return tessellated(**shape, std::min(kChordShare, wanted));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd import --medial`: a soft body from a closed surface.
+/// `hapticd import --medial`: makes a soft body from a closed surface.
 #pragma once
 #include <string>
 
@@ -12,14 +12,14 @@ namespace hapticd::importing {
 struct MedialImport {
   std::string file, out;
   double scale = 1;      ///< metres per unit of an OBJ or STL
-  double tolerance = 0;  ///< [m]; 0: a hundredth of the body's size
-  int samples = 20000;   ///< points on the surface
+  double tolerance = 0;  ///< [m] tolerance of the medial axis; 0 means a hundredth of the body's size
+  int samples = 20000;   ///< number of points on the surface
   int most_spheres = 2000;
-  double least_angle = 60;  ///< [degrees]
+  double least_angle = 60;  ///< [degrees] see MedialOptions
   double stiffness = 300, damping = 0.5, mass = 0.01;
 };
 
-/// [main] The closed surface of `options.file`. An error is the fault of the file or of the names.
+/// [main] Reads the closed surface of `options.file`. An error means that the file or a file name is wrong.
 Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalog);
 
 /// [main] Finds the medial axis, writes `options.out` and measures the written body. Reports progress on standard error

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Nearest of many points: a k-d tree over a fixed set.
+/// Finds the nearest of many fixed points, with a k-d tree.
 #pragma once
 #include <Eigen/Core>
 #include <cmath>
@@ -11,12 +11,13 @@ namespace hapticd::importing {
 class NearestPoints {
  public:
   explicit NearestPoints(const std::vector<Eigen::Vector3d>& points);  ///< [main] points must outlive it
-  /// Restricts which points count: seen from `from`, they lie deeper along `inward` than `sine` of their distance.
+  /// Restricts which points q count: those with (q - from) . inward > sine * |q - from|.
   struct Beyond {
     Eigen::Vector3d from, inward;
     double sine;
   };
-  /// [main] Index of the point nearest to p; UINT32_MAX if there is none, or none nearer than `limit`.
+  /// [main] Returns the index of the point nearest to p, or UINT32_MAX if no point counts or none is nearer than
+  /// `limit`.
   uint32_t nearest(const Eigen::Vector3d& p, const Beyond* only = nullptr, double limit = HUGE_VAL) const;
 
  private:
@@ -25,8 +26,8 @@ class NearestPoints {
             double& best2) const;
 
   const std::vector<Eigen::Vector3d>& points_;
-  std::vector<uint32_t> order_;  ///< the middle of each range is its root
-  std::vector<uint8_t> axis_;    ///< axis by which a root divides its range
+  std::vector<uint32_t> order_;  ///< indices of the points; the middle of each range is the root of its subtree
+  std::vector<uint8_t> axis_;    ///< axis (0 to 2) along which a root divides its range
 };
 
 }  // namespace hapticd::importing

@@ -20,8 +20,8 @@ struct Triangles {
 Result<Triangles> parseObj(const std::string& text, const std::string& file);
 Result<Triangles> parseStl(const std::string& bytes, const std::string& file);
 
-/// [main] Turns the outside outward. Fails for a surface with a hole, with an edge of more than two triangles, or
-/// without volume, since then nobody could say which points are inside.
+/// [main] Reverses all triangles if the surface is inside out. Fails for a surface with a hole, with an edge of more
+/// than two triangles, or without volume, because then it is not defined which points are inside.
 Result<void> orientClosed(Triangles& mesh, const std::string& file);
 
 }  // namespace hapticd::importing

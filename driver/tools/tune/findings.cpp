@@ -12,7 +12,7 @@ const Candidate& chosenOf(const Findings& findings) {
   return findings.tuning.candidates[findings.tuning.chosen];
 }
 
-/// The candidates worth having, cheapest first.
+/// Returns the candidates on the front, cheapest first.
 std::vector<Candidate*> front(Findings& findings) {
   std::vector<Candidate*> all;
   for (Candidate& candidate : findings.tuning.candidates)
@@ -71,8 +71,8 @@ std::string noise(const Findings& findings) {
   for (const Candidate* c : points(findings))
     widest = std::max(widest, c->cost.p50_high_ns / std::max(c->cost.p50_low_ns, 1.0) - 1);
   return fmt::format(
-      "noise: medians of one setting lay up to {:.0f} % apart; costs whose intervals meet are equal, and so are errors "
-      "below {:g} um and {:g} N",
+      "noise: medians of one setting lay up to {:.0f} % apart; costs whose intervals overlap count as equal, and so do "
+      "errors below {:g} um and {:g} N",
       100 * widest, kErrorNoise * 1e6, kForceNoise);
 }
 

@@ -13,7 +13,7 @@
 namespace hapticd::tune {
 namespace {
 
-/// Decades about the default within the range, plus the scene's own value.
+/// Returns decades around the default within the range, and the scene's own value.
 std::vector<double> ladderOfReal(const host::ParamInfo& param, double present) {
   std::set<double> values{present};
   for (int decade = -3; decade <= 3; ++decade) {
@@ -23,7 +23,7 @@ std::vector<double> ladderOfReal(const host::ParamInfo& param, double present) {
   return {values.begin(), values.end()};
 }
 
-/// Every whole number of a short range; doubling steps for a long range.
+/// Returns every whole number of a short range; for a long range, the default times 1/4, 1/2, 1, 2 and 4.
 std::vector<double> ladderOfInteger(const host::ParamInfo& param, double present) {
   constexpr double kFew = 5;
   std::set<double> values{present, param.def};
@@ -36,7 +36,7 @@ std::vector<double> ladderOfInteger(const host::ParamInfo& param, double present
   return {values.begin(), values.end()};
 }
 
-/// A list of equal counts, from one to the default, which is "[4, 4]".
+/// Returns lists of equal counts, from 1 to the default, such as "[4, 4]".
 std::vector<double> ladderOfList(const host::ParamInfo& param, double present) {
   std::set<double> values{present};
   const double most = param.def_text ? std::strtod(param.def_text->c_str() + 1, nullptr) : present;

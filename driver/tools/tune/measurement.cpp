@@ -34,7 +34,7 @@ double quantile(std::vector<double>& times, double share) {
   return *at;
 }
 
-/// Passes over the motion once; keeps the answers if asked to.
+/// Passes over the motion once. Appends to `answers` unless it is nullptr.
 Result<Cost> pass(const scene::Scene& scene, const Motion& motion, VelocityFrom from, std::vector<Answer>* answers,
                   const host::Services::Log& log) {
   auto world = servo::World::build(scene, {.rate = 1 / motion.period}, log);
@@ -70,8 +70,9 @@ Result<Cost> pass(const scene::Scene& scene, const Motion& motion, VelocityFrom 
   return cost;
 }
 
-/// Feet a millimetre apart and equally near: there the motion crossed the medial axis. A foot that is wrong by so much
-/// on the same face is hundreds of times farther away, since the distance grows with the square.
+/// Returns true if the two feet are a millimetre apart and equally near, so that the motion crossed the medial axis
+/// there. A foot on the same face that is wrong by so much would differ far more in its distance, because the distance
+/// grows with the square of the error.
 bool ambiguous(const Answer& a, const Answer& b) {
   constexpr double kApart = 1e-3, kShare = 1e-3;  // [m]; share of the way between the feet
   const double foot = (a.point - b.point).norm();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Cost and error of one setting: the servo core run over a motion, timed, and compared with a reference.
+/// Measures cost and error of one setting: runs the servo core over a motion, takes the time, and compares the answers
+/// with a reference.
 #pragma once
 #include <Eigen/Core>
 #include <vector>
@@ -11,18 +12,18 @@
 
 namespace hapticd::tune {
 
-/// What one model answered in one tick; world frame.
+/// The answer of one model in one tick, in the world frame.
 struct Answer {
   Eigen::Vector3d point = Eigen::Vector3d::Zero(), normal = point, force = point;  ///< [m], unit, [N]
-  double depth = 0;                                                                ///< [m] > 0 inside
+  double depth = 0;  ///< [m] penetration depth, positive inside
   bool traced = false;
 };
 
 struct Cost {
-  double p50_ns = 0, p99_ns = 0;  ///< time of a tick of the core with all models, velocity estimation included
-  /// The medians of its passes lie between these, which never count as more exact than kCostNoise.
+  double p50_ns = 0, p99_ns = 0;  ///< [ns] time of a tick of the core with all models, including velocity estimation
+  /// [ns] Smallest and largest median of all measurements; at least kCostNoise apart after widen().
   double p50_low_ns = 0, p50_high_ns = 0;
-  uint64_t bytes = 0;  ///< bytes that the models hold in locked memory
+  uint64_t bytes = 0;  ///< memory that the models hold locked
 };
 
 struct Run {
@@ -31,36 +32,36 @@ struct Run {
   Cost cost;
 };
 
-/// Largest difference from the reference, over every tick and model. Where a probe is equally near to two places of
-/// a model, as between the faces of a leaf, either foot is right: there only depths and sizes of forces are
-/// compared.
+/// Largest difference from the reference, over every tick and model. If a probe is equally near to two places of a
+/// model, as in the middle between the faces of a thin sheet, either foot is right. Then only depths and sizes of
+/// forces are compared.
 struct Difference {
-  double foot_m = 0;  ///< where the nearest foot is one point
+  double foot_m = 0;  ///< [m] only where there is a single nearest point
   double depth_m = 0;
-  double normal_deg = 0;   ///< as foot_m
-  double force_n = 0;      ///< of one model
-  uint64_t ambiguous = 0;  ///< answers at another foot that is equally near
-  uint64_t untraced = 0;   ///< answers that only one of the two has
-
-  double geometry() const { return untraced > 0 ? 1 : std::max(foot_m, depth_m); }  ///< [m] 1 m: nothing was traced
+  double normal_deg = 0;   ///< only where there is a single nearest point
+  double force_n = 0;      ///< [N] force of a single model
+  uint64_t ambiguous = 0;  ///< answers with another foot that is equally near
+  uint64_t untraced = 0;   ///< answers that only one of the two runs has
+  /// [m] larger of foot_m and depth_m; 1 m if a surface was traced in only one of the two runs
+  double geometry() const { return untraced > 0 ? 1 : std::max(foot_m, depth_m); }
 };
 
-constexpr double kCostNoise = 0.05;  ///< relative: timings of the same thing differ at least by this
+constexpr double kCostNoise = 0.05;  ///< share of a time: measurements of the same thing differ by at least this
 
-/// Adds another measurement of the same setting: the least disturbed one counts, and the interval includes both.
+/// Adds another measurement of the same setting. The shorter times count, and the interval includes both medians.
 void widen(Cost& cost, const Cost& again);
 
 enum class VelocityFrom { kEstimator, kMotion };
 
-/// [main] The answers over a motion; the costs are those of this one pass.
+/// [main] Returns the answers over a motion. The cost is that of a single pass.
 Result<Run> answer(const scene::Scene& scene, const Motion& motion, VelocityFrom velocity,
                    const host::Services::Log& log);
 
-/// [main] Answers with the motion's own velocity, so that the estimator's error does not count as another setting's;
-/// costs with the scene's estimator, from the least disturbed of `passes`.
+/// [main] Returns answers computed with the motion's own velocity, so that errors of the velocity estimator do not
+/// count as errors of a setting. The cost is measured with the scene's estimator; the shortest of `passes` counts.
 Result<Run> measure(const scene::Scene& scene, const Motion& motion, int passes, const host::Services::Log& log);
 
-/// [main] Both runs are of the same motion and models.
+/// [main] Compares two runs over the same motion with the same models.
 Difference compare(const Run& run, const Run& reference);
 
 }  // namespace hapticd::tune

@@ -9,7 +9,7 @@
 namespace hapticd::tune {
 namespace {
 
-/// Slope of the least-squares line through the samples around each one.
+/// Returns the slope of the least-squares line through the samples around each sample.
 std::vector<Eigen::Vector3d> slopes(const std::vector<Eigen::Vector3d>& position, double period) {
   constexpr long kHalf = 4;
   const long count = static_cast<long>(position.size());

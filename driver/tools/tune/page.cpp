@@ -6,14 +6,14 @@
 namespace hapticd::tune {
 namespace {
 
-/// For text between tags.
+/// Escapes text for HTML.
 std::string escaped(const std::string& words) {
   std::string safe;
   for (const char c : words) safe += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
   return safe;
 }
 
-/// The cells of one row of a table. @param tag td or th
+/// Returns one row of a table. @param tag td or th
 std::string row(const std::vector<std::string>& cells, const char* tag = "td", const std::string& kind = "") {
   std::string text = kind.empty() ? "<tr>" : "<tr class=\"" + kind + "\">";
   for (const std::string& cell : cells) text += fmt::format("<{0}>{1}</{0}>", tag, escaped(cell));

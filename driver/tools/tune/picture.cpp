@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char *kChosen = "#c0392b", *kCurrent = "#2962a3", *kFront = "#222", *kTried = "#bbb";
 
-/// [um] Values below the rounding error are drawn at it.
+/// [um] Returns the error to draw; values below the rounding error are drawn at the rounding error.
 double errorOf(const Candidate& c) {
   return std::max(c.error.geometry(), kErrorNoise) * 1e6;
 }

@@ -11,8 +11,8 @@ namespace hapticd::tune {
 namespace {
 
 constexpr int kPasses = 3;
-constexpr size_t kFewTogether = 256;  ///< so many combinations are all tried
-constexpr double kMargin = 0.5;       ///< share of a tolerance, because another motion may exceed what one motion shows
+constexpr size_t kFewTogether = 256;  ///< up to so many combinations, all are tried
+constexpr double kMargin = 0.5;       ///< share of a tolerance to use: errors may be larger elsewhere
 
 double geometryOf(const Candidate& c) {
   return std::max(c.error.geometry(), kErrorNoise);
@@ -21,7 +21,7 @@ double forceOf(const Candidate& c) {
   return std::max(c.error.force_n, kForceNoise);
 }
 
-/// True if it is better in at least one respect, and worse in none.
+/// Returns true if a is better than b in at least one respect, and worse in none.
 bool beats(const Candidate& a, const Candidate& b) {
   const bool cheaper = clearlyCheaper(a, b), no_dearer = a.cost.p50_ns <= b.cost.p50_ns;
   const bool no_worse = geometryOf(a) <= geometryOf(b) && forceOf(a) <= forceOf(b);
@@ -34,7 +34,7 @@ bool meets(const Candidate& c, const Goal& goal) {
   return c.error.geometry() <= kMargin * goal.tolerance_m && c.error.force_n <= kMargin * goal.force_tolerance_n;
 }
 
-/// Compares two that both meet the goal, or that both do not.
+/// Returns true if a is preferred to b. Either both meet the goal (`met`), or neither does.
 bool preferred(const Candidate& a, const Candidate& b, const Goal& goal, bool met) {
   const bool by_cost = goal.budget_ns ? !met : met;
   if (by_cost) return clearlyCheaper(a, b);
@@ -104,8 +104,8 @@ class Search {
     return choice;
   }
 
-  /// Measures a choice once. The first one is the scene's own. A choice that a model refuses, such as a method that its
-  /// geometry does not support, is no candidate.
+  /// Measures a choice, unless it was measured before. The first choice is the scene's own. A choice that a model
+  /// refuses, such as a method that its geometry does not support, does not become a candidate.
   Result<void> attempt(const Choice& choice) {
     if (!going_ || !seen_.insert(choice).second) return {};
     const bool own = candidates_.empty();
@@ -131,9 +131,9 @@ class Search {
     return {};
   }
 
-  /// The first setting is the scene's own, which every other is held against; a machine that was busy or had its
-  /// processor slow at the start would make all the others look cheaper. So each of the front is measured once more,
-  /// and the first one with it; the difference between the times of one setting is the noise that is reported.
+  /// Measures the first setting (the scene's own) and each setting of the front once more. All settings are compared
+  /// with the first, so if the machine was busy or its processor slow at the start, all others would look cheaper. The
+  /// difference between the two times of a setting is reported as noise.
   Result<void> measureAgain() {
     constexpr int kMost = 12;
     if (auto done = measureAgain(candidates_[0]); !done) return done;
@@ -157,7 +157,7 @@ class Search {
 
   double secondsSpent() const { return static_cast<double>(monotonicNow() - begun_) * kSecondsPerNanosecond; }
 
-  /// The settings to try, as far as no model is known to refuse them.
+  /// Returns the number of settings to try, without those that a model has refused.
   size_t distinct() const {
     std::set<Choice> choices(planned_.begin(), planned_.end());
     for (const Choice& choice : refused_) choices.erase(choice);

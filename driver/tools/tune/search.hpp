@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Which settings to try, which of them are worth having, and which to take.
+/// Decides which settings to try, which of them are worth having, and which one to choose.
 #pragma once
 #include <functional>
 #include <optional>
@@ -11,19 +11,21 @@
 
 namespace hapticd::tune {
 
-/// What the user asks for. Errors are kept at half the tolerance, so that other motions stay within it too.
+/// What the user asks for. Errors of the chosen setting are at most half the tolerance, so that other motions stay
+/// within the tolerance too.
 struct Goal {
-  std::optional<double> budget_ns;  ///< most accurate with a p99 below this; none: cheapest within the tolerances
-  double tolerance_m = 1e-6;        ///< of foot and depth
+  std::optional<double> budget_ns;  ///< if given, choose the most accurate setting whose p99 is below this; if not,
+                                    ///< choose the cheapest one within the tolerances
+  double tolerance_m = 1e-6;        ///< [m] tolerance of foot and depth
   double force_tolerance_n = 0.1;
 };
 
 struct Candidate {
   Choice choice;
   Cost cost;
-  Difference error;  ///< from the converged reference
+  Difference error;  ///< difference from the converged reference
   bool on_front = false;
-  size_t point = 0;  ///< number in tables and pictures, from 1; 0: only a dot
+  size_t point = 0;  ///< number in tables and pictures, from 1; 0 if it has none and is only a dot
 };
 
 struct Progress {
@@ -32,39 +34,41 @@ struct Progress {
 };
 
 struct Tuning {
-  std::vector<Candidate> candidates;  ///< [0] is the scene as it is
+  std::vector<Candidate> candidates;  ///< candidates[0] is the scene as written
   size_t chosen = 0;
-  bool reached = false;      ///< the chosen setting meets the goal
-  bool complete = false;     ///< neither the time limit nor the user cut it short
-  bool out_of_time = false;  ///< the time limit cut it short
+  bool reached = false;      ///< true if the chosen setting meets the goal
+  bool complete = false;     ///< true if neither the time limit nor the user stopped the search
+  bool out_of_time = false;  ///< true if the time limit stopped the search
   size_t planned = 0;        ///< how many settings there were to try
 };
 
 struct SearchOptions {
   Goal goal;
-  double seconds = 50;                         ///< stop trying after this
-  std::function<bool(const Progress&)> go_on;  ///< called after each; false: stop with the results so far
+  double seconds = 50;  ///< [s] time limit of the search
+  /// Called after each setting; false stops the search with the results so far.
+  std::function<bool(const Progress&)> go_on;
   host::Services::Log log;
 };
 
-/// [main] Measures the scene as it is and each value of each knob alone. If there are few combinations it measures them
-/// all, and otherwise those on the way down from the scene's settings, one knob at a time.
+/// [main] Measures the scene as written and each value of each knob alone. If there are few combinations, it measures
+/// them all. Otherwise it starts from the best setting so far, changes one knob at a time, and goes on as long as that
+/// helps.
 Result<Tuning> search(const scene::Scene& scene, const Motion& motion, const std::vector<Knob>& knobs,
                       const SearchOptions& options);
+/// [m], [N] errors below these are rounding errors and count as equal
+constexpr double kErrorNoise = 1e-10, kForceNoise = 1e-7;
 
-constexpr double kErrorNoise = 1e-10, kForceNoise = 1e-7;  ///< [m], [N] rounding errors: smaller errors count as equal
-
-/// True if a costs less than b beyond the noise: the intervals of their times do not overlap.
+/// Returns true if a costs less than b by more than the noise, so that the intervals of their times do not overlap.
 bool clearlyCheaper(const Candidate& a, const Candidate& b);
 
-/// Marks the candidates that no other beats. Another beats one if its errors are nowhere larger and it is clearly
-/// cheaper; or its median is no larger and one of its errors is smaller.
+/// Marks the candidates that no other candidate beats. A beats B if none of A's errors is larger and A is clearly
+/// cheaper, or if A's median is not larger and one of A's errors is smaller.
 void markFront(std::vector<Candidate>& candidates);
 
-/// True if they are equal except for the noise of timing and rounding.
+/// Returns true if two candidates are equal except for the noise of timing and rounding.
 bool alike(const Candidate& a, const Candidate& b);
 
-/// The index of the candidate to choose, and whether it meets the goal.
+/// Returns the index of the candidate to choose, and whether it meets the goal.
 std::pair<size_t, bool> choose(const std::vector<Candidate>& candidates, const Goal& goal);
 
 }  // namespace hapticd::tune

@@ -20,7 +20,7 @@ std::string text(double value) {
   return buffer;
 }
 
-/// Two digits, rounded down, as a person would write a setting.
+/// Rounds down to two digits, as a person would write a setting.
 double roundedDown(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
   return std::floor(value / unit) * unit;
@@ -36,8 +36,8 @@ void judgeModel(const scene::Scene& scene, size_t index, const scene::Device& de
   const std::string key = "models[" + std::to_string(index) + "]";
   const auto given = std::find_if(model.parameters.begin(), model.parameters.end(),
                                   [](const scene::Value& value) { return value.id == "stiffness"; });
-  const bool named =
-      given != model.parameters.end() && given->place.line > 0;  // else the plugin's default, or a file's
+  const bool named = given != model.parameters.end() &&
+                     given->place.line > 0;  // otherwise it is the plugin's default, or comes from a geometry file
   const auto warn = [&](const std::string& what) {
     document::report(problems, named ? given->place : model.place, named ? key + ".parameters.stiffness" : key, what);
   };
@@ -47,27 +47,28 @@ void judgeModel(const scene::Scene& scene, size_t index, const scene::Device& de
          " N/m; nearest: " + text(roundedDown(info.max_stiffness)) + " N/m");
   if (alone > 0 && stiffness > alone)
     warn(claim + ", and at " + text(scene.servo.rate) + " Hz a felt mass of " + text(info.mass_kg) +
-         " kg bears at most " + text(alone) + " N/m without damping of the arm; nearest: " + text(roundedDown(alone)) +
-         " N/m, or " + text(std::ceil(scene.servo.rate * std::sqrt(stiffness / alone) / 100) * 100) + " Hz");
+         " kg is stable up to " + text(alone) +
+         " N/m without damping of the arm; nearest: " + text(roundedDown(alone)) + " N/m, or " +
+         text(std::ceil(scene.servo.rate * std::sqrt(stiffness / alone) / 100) * 100) + " Hz");
   if (info.resolution_m > 0 && stiffness * info.resolution_m > kBuzz)
     warn(claim + ", so one count of " + text(info.resolution_m * 1e6) + " um is a step of " +
          text(stiffness * info.resolution_m) +
          " N, which a hand feels as buzz; nearest: " + text(roundedDown(kBuzz / info.resolution_m)) + " N/m");
 }
 
-/// The motors of a simulated arm do not burn.
+/// Warns of a force that the arm cannot sustain. Simulated arms are left out, because their motors cannot burn.
 void judgeHeat(const scene::Device& device, const hdv_info& info, document::Problems& problems) {
   const double most = device.limits.force > 0 ? device.limits.force : info.max_force;
   const bool guarded = !device.limits.motors.empty() || (info.capabilities & HDV_C_SIMULATED) != 0;
   if (guarded || info.continuous_force <= 0 || most <= info.continuous_force) return;
-  document::report(
-      problems, device.place, "limits.force",
-      text(most) + " N, and " + device.name + " sustains " + text(info.continuous_force) +
-          " N continuously, and no model of the motors' heat limits it; expected limits.motors; nearest: " +
-          text(info.continuous_force) + " N");
+  document::report(problems, device.place, "limits.force",
+                   text(most) + " N, and " + device.name + " sustains " + text(info.continuous_force) +
+                       " N continuously, and nothing protects its motors from heat; expected limits.motors, or a lower "
+                       "limit; nearest: " +
+                       text(info.continuous_force) + " N");
 }
 
-/// Compares samples and ticks: who drives the loop, and how often.
+/// Compares the rate of the servo with that of the samples, and checks which of them drives the loop.
 void judgeRate(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
                document::Problems& problems) {
   constexpr double kSlack = 1.001;
@@ -75,23 +76,23 @@ void judgeRate(const scene::Scene& scene, const scene::Device& device, const hdv
   const std::string own = " (" + text(info.rate_hz) + " Hz)", nearest = "; nearest: " + text(info.rate_hz) + " Hz";
   const bool paced = scene.servo.pace == scene::Pace::kDevice;
   if (paced && (info.capabilities & HDV_C_PACING) == 0)
-    document::report(
-        problems, file, 0, 0, "servo.pace",
-        "device, but " + device.name +
-            " has a sample at any time, so the clock drives the loop unless another arm can; expected clock");
+    document::report(problems, file, 0, 0, "servo.pace",
+                     "device, but " + device.name +
+                         " gives a sample whenever it is asked, so it cannot drive the loop, and the clock does unless "
+                         "another arm can; expected clock");
   if (info.rate_hz <= 0) return;
   const double ratio = scene.servo.rate / info.rate_hz;
   if (paced && (ratio > kSlack || ratio < 1 / kSlack))
     document::report(problems, file, 0, 0, "servo.rate",
                      rates + ", but the samples of " + device.name + own +
-                         " drive the loop, and budgets and estimators are made for another rate" + nearest);
+                         " drive the loop, so budgets and estimators are made for the wrong rate" + nearest);
   else if (ratio > kSlack && (info.capabilities & HDV_C_SIMULATED) == 0)
     document::report(
         problems, file, 0, 0, "servo.rate",
         rates + " is faster than the samples of " + device.name + own + ": some ticks get no new sample" + nearest);
 }
 
-/// The place where a model's path is named, or the model's own place if its file no longer has it.
+/// Returns the place where a model's path is given, or the model's own place if its file no longer has the path.
 document::Place placeOfPath(const scene::Model& model) {
   document::Problems unread;
   const auto root = document::parseFile(model.place.file, unread);
@@ -106,7 +107,7 @@ document::Place placeOfPath(const scene::Model& model) {
   return model.place;
 }
 
-/// The largest of some rates, and its time.
+/// The largest of several rates, and its time.
 struct Fastest {
   double rate = 0, at = 0;
   void take(double now, double t) {
@@ -169,7 +170,8 @@ std::string overheating(const std::string& device, double sustained, const std::
   if (effective <= sustained) return "";
   return device + " gave " + text(effective) + " N (root of the mean square of the last " +
          text(std::round(static_cast<double>(forces.size()) / rate)) + " s) and sustains " + text(sustained) +
-         " N: real motors would overheat; a softer model or limits.force: " + text(sustained) + " keeps within that";
+         " N: real motors would overheat; use a softer model, or limits.force: " + text(sustained) +
+         " , which they sustain";
 }
 
 }  // namespace hapticd::tune

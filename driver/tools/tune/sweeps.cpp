@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFastest = 10'000;  // [Hz]
 
-/// The sum over the models, which the hand feels.
+/// Returns the sum of the forces of all models, which the hand feels.
 Eigen::Vector3d forceAt(const Run& run, size_t tick) {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   for (size_t i = 0; i < run.models; ++i) force += run.answers[tick * run.models + i].force;
@@ -25,7 +25,7 @@ double p99(std::vector<double>& errors) {
   return *at;
 }
 
-/// p99 of the difference between a force that is held for a period and the continuous force.
+/// Returns the p99 of the difference between a force that is held for a period and the force at the fastest rate.
 double holdError(const Run& slow, double rate, const Run& fast) {
   std::vector<double> errors;
   const size_t slow_ticks = slow.answers.size() / slow.models, fast_ticks = fast.answers.size() / fast.models;

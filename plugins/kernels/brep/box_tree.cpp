@@ -12,7 +12,7 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
 constexpr int kBins = 16;
-constexpr int kTooDeep = 20;  // from this depth on, rows are halved by count, so that the depth stays bounded
+constexpr int kTooDeep = 20;  // from this depth on, ranges are halved by count, so that the depth stays bounded
 
 double areaOf(const AlignedBox3d& box) {
   if (box.isEmpty()) return 0;
@@ -27,7 +27,7 @@ struct Bin {
 
 }  // namespace
 
-/// A range of the order, and the box of its elements.
+/// Builds the nodes of a tree from the top down.
 struct BoxTree::Builder {
   struct Range {
     std::size_t first = 0, count = 0;
@@ -44,8 +44,8 @@ struct BoxTree::Builder {
     return range;
   }
 
-  /// Where the surface area heuristic splits (Wald 2007, "On fast construction of SAH-based bounding volume
-  /// hierarchies"): elements before the returned place go left.
+  /// Partitions a range in two by the surface area heuristic (Wald 2007, "On fast construction of SAH-based bounding
+  /// volume hierarchies"). Returns the place where the second part begins.
   std::size_t split(const Range& range, int depth) const {
     AlignedBox3d centers;
     for (std::size_t i = range.first; i < range.first + range.count; ++i)
@@ -77,7 +77,7 @@ struct BoxTree::Builder {
     return range.first + static_cast<std::size_t>(middle - begin);
   }
 
-  /// The bin after which to split; -1: all elements are in one.
+  /// Returns the last bin of the first part, or -1 if all elements are in one bin.
   static int cheapest(const std::array<Bin, kBins>& bins) {
     std::array<double, kBins> right{};
     AlignedBox3d box;
@@ -104,7 +104,7 @@ struct BoxTree::Builder {
     return best;
   }
 
-  /// Makes up to four ranges: the larger ones are split first.
+  /// Cuts a range into up to four ranges; the range with the largest box is split first. Returns their number.
   int cut(const Range& whole, int depth, std::array<Range, 4>& ranges) const {
     int count = 1;
     ranges[0] = whole;
@@ -174,7 +174,7 @@ void BoxTree::build(std::span<const AlignedBox3d> boxes, int row) {
   }
   if (boxes.empty()) return;
   origin_ = bounds_.center();
-  // For a probe up to twice the extent away, rounding is less than this; see kBoundShare for those farther away.
+  // The rounding of a probe up to twice the extent away is less than this. For probes farther away see kBoundShare.
   margin_ = static_cast<float>(bounds_.diagonal().norm() * std::ldexp(1.0, -21));
   Builder builder{*this, boxes, static_cast<std::size_t>(std::clamp(row, 1, kMaxRow))};
   builder.build(builder.rangeOf(0, boxes.size()), 0);

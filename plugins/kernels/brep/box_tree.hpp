@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A tree of bounding boxes, four to a node, in single precision: where a search for the nearest element need not look.
+/// A tree of bounding boxes in single precision, four boxes per node. It tells a search for the nearest element which
+/// elements it can leave out.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -10,22 +11,24 @@
 
 namespace hapticd::brep {
 
-/// Four floats that are compared at once.
+/// Four floats, on which one instruction works at once.
 using Float4 = float __attribute__((vector_size(16)));
 
 inline Float4 squareRoots(const Float4& x) noexcept {
   return Float4{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
 }
 
-/// Boxes of four children. An empty place has lo = +infinity and hi = -infinity: it is infinitely far from everything.
+/// The boxes of four children. An unused place has lo = +infinity and hi = -infinity, so it is infinitely far from
+/// every probe.
 struct alignas(64) BoxNode {
   Float4 lo[3], hi[3];
-  /// A node (0 or more), or ~(8 * first + count - 1): elements first to first + count - 1 of the tree's order.
+  /// The index of a node if 0 or more. Otherwise the row of elements first to first + count - 1 in the tree's order,
+  /// written as ~(8 * first + count - 1).
   std::array<std::int32_t, 4> child{};
-  std::array<std::int32_t, 4> row{};  ///< for a child that is a row: its number among all rows
+  std::array<std::int32_t, 4> row{};  ///< number of the row, for a child that is a row
 };
 
-/// The elements for which a child of a node stands.
+/// A row of elements: those with the places first to first + count - 1 in the tree's order.
 struct ElementRow {
   std::uint32_t first, count;
 };
@@ -33,35 +36,37 @@ struct ElementRow {
 class BoxTree {
  public:
   static constexpr int kMaxRow = 4;     ///< elements in one row
-  static constexpr int kMaxDepth = 60;  ///< nodes on the longest way down
+  static constexpr int kMaxDepth = 60;  ///< most nodes on the way from the root to a row
   static constexpr int kMaxStack = 3 * kMaxDepth + 4;
 
-  /// [main] Arranges elements by their boxes, at most `row` of them together. Afterwards order()[i] is the element at
-  /// place i. All boxes must be finite and not empty.
+  /// [main] Builds the tree from the boxes of the elements, with at most `row` elements in a row. Afterwards order()[i]
+  /// is the element at place i. All boxes must be finite and not empty.
   void build(std::span<const Eigen::AlignedBox3d> boxes, int row);
 
-  /// A row of one element as the nodes tell it.
+  /// How a node refers to a row of one element: its BoxNode::child and BoxNode::row.
   struct RowPlace {
     std::int32_t child, row;
   };
-  /// [main] A second tree over some of the elements, with the boxes given: for those who search these alone. Its nodes
-  /// stand behind those of the first, and its rows are those of the first. Returns its root.
+  /// [main] Adds a second tree over some of the elements, with the given boxes, for searches of these elements alone.
+  /// Its nodes are appended to the nodes of the first tree, and it refers to rows of the first tree. Returns the index
+  /// of its root node.
   std::int32_t graft(std::span<const Eigen::AlignedBox3d> boxes, std::span<const RowPlace> rows);
 
   const std::vector<std::uint32_t>& order() const noexcept { return order_; }
-  /// [main] Frees order() and all that building left over.
+  /// [main] Frees order() and the spare memory of the nodes.
   void forgetOrder() {
     order_ = {};
     nodes_.shrink_to_fit();
   }
   bool empty() const noexcept { return nodes_.empty(); }
-  /// [any] Without those that were grafted.
+  /// [any] Number of nodes, without those that graft() added.
   std::size_t nodeCount() const noexcept { return own_nodes_; }
   const BoxNode& node(std::int32_t index) const noexcept { return nodes_[static_cast<std::size_t>(index)]; }
   /// [any] The middle of all boxes; the nodes hold coordinates relative to it.
   const Eigen::Vector3d& origin() const noexcept { return origin_; }
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }
-  /// [any] How much larger the boxes are, so that a probe in single precision is never farther from them [m].
+  /// [any] Returns by how much the boxes are enlarged [m], so that rounding the probe to single precision never makes a
+  /// box look farther away than it is.
   double margin() const noexcept { return static_cast<double>(margin_); }
   std::int32_t rowCount() const noexcept { return row_count_; }
   std::size_t bytes() const noexcept { return nodes_.size() * sizeof(BoxNode) + order_.size() * sizeof order_[0]; }
@@ -86,9 +91,9 @@ class BoxTree {
   std::size_t own_nodes_ = 0;
 };
 
-/// A probe as the nodes of one tree see it.
+/// A probe in the coordinates of the nodes of one tree.
 struct BoxProbe {
-  /// [any] `p` in the frame of the boxes from which the tree was built.
+  /// [any] `p` is the probe in the frame of the boxes from which the tree was built.
   BoxProbe(const BoxTree& tree, const Eigen::Vector3d& p) noexcept {
     const Eigen::Vector3d q = p - tree.origin();
     for (int axis = 0; axis < 3; ++axis) {
@@ -99,11 +104,12 @@ struct BoxProbe {
   Float4 at[3];
 };
 
-/// The bound of a box as a distance that no element in it undercuts: rounding of the probe to single precision moves a
-/// far probe by less than this share of its distance, and that of a near one is in the margin of the boxes.
+/// The squared distance to a box times this factor is a safe lower bound for every element inside. Rounding a far probe
+/// to single precision changes its squared distance by less than 4e-6 of it; for a near probe, the margin of the boxes
+/// covers the rounding.
 inline constexpr float kBoundShare = 1 - 4e-6F;
 
-/// [rt] Lower bounds of the squared distances [m^2] from the probe to the elements in each of four boxes.
+/// [rt] Returns lower bounds of the squared distances [m^2] from the probe to the elements in each of four boxes.
 inline Float4 boxDistances(const BoxNode& node, const BoxProbe& probe) noexcept {
   constexpr Float4 kZero{};
   Float4 sum{};

@@ -7,7 +7,7 @@
 namespace hapticd::brep {
 namespace {
 
-constexpr std::uint32_t kPolynomial = 0x82f63b78u;  // reflected
+constexpr std::uint32_t kPolynomial = 0x82f63b78u;  // bits in reflected order
 constexpr std::size_t kSlices = 8;
 using Tables = std::array<std::array<std::uint32_t, 256>, kSlices>;
 
@@ -29,8 +29,8 @@ constexpr Tables kTables = makeTables();
 
 }  // namespace
 
-/// Eight bytes a step by eight tables (Kounavis & Berry 2005, "A systematic approach to building high performance
-/// software-based CRC generators").
+/// Takes eight bytes per step, with eight tables (Kounavis & Berry 2005, "A systematic approach to building high
+/// performance software-based CRC generators").
 std::uint32_t crc32c(std::span<const std::byte> bytes) noexcept {
   std::uint32_t crc = 0xffffffffu;
   std::size_t i = 0;

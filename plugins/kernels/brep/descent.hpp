@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How a search goes down a tree of boxes: nearest children first, and what is left out is counted by its bound.
+/// How a search goes down a tree of boxes: nearest children first. It records the least bound of the boxes that it
+/// leaves out.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,14 +12,14 @@
 
 namespace hapticd::brep {
 
-/// A box that is still to be looked into.
+/// A box that the search has yet to open.
 struct DescentEntry {
-  float bound;  ///< [m^2] nothing in it is nearer
+  float bound;  ///< [m^2] lower bound of the squared distance to everything in the box
   std::int32_t child, row;
 };
 
-/// Sorts the four children of a node by their bounds, farthest first. Returns how many are within `limit`; `beyond`
-/// falls to the least bound of the others.
+/// Sorts those of the four children of a node whose bounds are within `limit`, farthest first, and returns their
+/// number. `beyond` is lowered to the least bound of the other children.
 inline int sortChildren(const BoxNode& node, const Float4& bounds, double limit, std::array<DescentEntry, 4>& children,
                         double& beyond) noexcept {
   int count = 0;
@@ -28,7 +29,7 @@ inline int sortChildren(const BoxNode& node, const Float4& bounds, double limit,
       beyond = std::min(beyond, static_cast<double>(bound));
       continue;
     }
-    if (!(bound < std::numeric_limits<float>::infinity())) continue;  // an empty place
+    if (!(bound < std::numeric_limits<float>::infinity())) continue;  // an unused place
     int at = count++;
     for (; at > 0 && children[static_cast<std::size_t>(at - 1)].bound < bound; --at)
       children[static_cast<std::size_t>(at)] = children[static_cast<std::size_t>(at - 1)];
@@ -38,7 +39,8 @@ inline int sortChildren(const BoxNode& node, const Float4& bounds, double limit,
   return count;
 }
 
-/// Whether the box of a row is farther than `limit`; then `beyond` falls to its bound. Else `bound` grows to it.
+/// Returns true if the row's own box is farther than `limit`. `bound` is raised to the bound of this box; if the box is
+/// farther, `beyond` is lowered to it.
 inline bool rowIsFarther(const BodyTree& body, std::int32_t row, const BoxProbe& probe, double limit, double& bound,
                          double& beyond) noexcept {
   const auto at = static_cast<std::size_t>(row);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Which side of a part the probe is on, decided where the nearest point lies: on a face, an edge or a corner.
+/// Decides on which side of a part the probe is, from the nearest point and the normals around it: on a face, an edge
+/// or a corner.
 #include <Eigen/Geometry>
 #include <cmath>
 
@@ -16,17 +17,18 @@ using contact::Foot;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// [m] Nearer to an edge, the direction from the foot to the probe is a rounding error, and the force is nearly zero.
+/// [m] If the probe is nearer to an edge than this, the direction from the foot to the probe is mostly rounding error;
+/// the force is nearly zero there.
 constexpr double kTouching = 1e-7;
 
-/// What a nearest point says about the outside around it.
+/// The outward direction around a nearest point.
 struct Around {
-  Vector3d normal{0, 0, 1};  ///< outward; on edges and corners it is the pseudonormal (Baerentzen & Aanaes 2005)
-  Vector3d felt{0, 0, 0};    ///< interpolated normal of a smoothed mesh; 0: none
-  double u = 0, v = 0;       ///< of the face
-  bool inside = true;        ///< in the interior of a face, so that the normal is exact
-  bool open = false;         ///< the surface ends there
-  bool sharp = false;        ///< the normal turns there
+  Vector3d normal{0, 0, 1};  ///< outward normal; on edges and corners the pseudonormal (Baerentzen & Aanaes 2005)
+  Vector3d felt{0, 0, 0};    ///< interpolated normal of a smoothed mesh, or 0
+  double u = 0, v = 0;       ///< parameters on the face
+  bool inside = true;        ///< true in the interior of a face, where the normal is exact
+  bool open = false;         ///< true if the surface ends there
+  bool sharp = false;        ///< true if the normal jumps there
 };
 
 std::uint32_t edgeOf(const Model& model, const Hit& hit) noexcept {
@@ -34,7 +36,7 @@ std::uint32_t edgeOf(const Model& model, const Hit& hit) noexcept {
   return hit.element.kind() == ElementKind::kPiece ? model.piece(i).edge : i;
 }
 
-/// The coedge of an edge on a face; the first one if the face has none.
+/// Returns the coedge of an edge on a face, or the edge's first coedge if the edge is not on the face.
 const Coedge& coedgeOn(const Part& part, const Edge& edge, std::uint32_t face) noexcept {
   for (std::uint32_t c = edge.first_coedge; c != kNone; c = part.coedges[c].next)
     if (part.coedges[c].face == face) return part.coedges[c];
@@ -89,7 +91,7 @@ Around onEdge(const Model& model, const Hit& hit, std::uint32_t face) noexcept {
   return a;
 }
 
-/// The normal interpolated over a smoothed triangle; 0 if it is not smoothed.
+/// Returns the normal interpolated over a smoothed triangle, or 0 if the triangle is not smoothed.
 Vector3d smoothed(const Model& model, std::uint32_t triangle, double s, double t) noexcept {
   const Eigen::Vector3f* corner[3];
   for (int k = 0; k < 3; ++k) corner[k] = model.smoothNormal(triangle, k);
@@ -99,7 +101,8 @@ Vector3d smoothed(const Model& model, std::uint32_t triangle, double s, double t
   return n.squaredNorm() > 0 ? Vector3d(n.normalized()) : n;
 }
 
-/// True if two triangles continue into each other: normals are interpolated over their edge, or agree.
+/// True if the surface is smooth over edge k: the normals of the two triangles are interpolated over the edge, or
+/// agree.
 bool isSmooth(const Model& model, std::uint32_t triangle, std::uint32_t k) noexcept {
   const Part& part = model.part();
   const std::uint32_t code = part.triangles[triangle].across[k];
@@ -148,13 +151,14 @@ Around onTriangle(const Model& model, const Hit& hit) noexcept {
   return a;
 }
 
-/// Depth and normal of a foot, in the frame of its body.
+/// Sets the depth and the normal of a foot, in the frame of its body.
 void decideSide(const Around& a, const Vector3d& r, Foot& foot) noexcept {
   foot.normal = a.normal;
   foot.on_edge = a.sharp || a.open;
   const double behind = -r.dot(a.normal);
   if (a.open && !a.inside) {
-    // The solid behind an open surface ends in a bevel of 45 degrees: the force fades out as the probe slides off.
+    // The solid behind an open surface ends in a bevel of 45 degrees, so that the force fades out when the probe slides
+    // off.
     foot.behind = behind;
     foot.aside = (r + behind * a.normal).norm();
     foot.depth = behind > foot.aside ? behind - foot.aside : -foot.distance;

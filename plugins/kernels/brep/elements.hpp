@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What a search looks at: faces with a closed-form foot, pieces of spline surfaces, edges and pieces of edges, poles,
-/// triangles.
+/// The elements that a search examines: faces with a closed-form foot, leaves (pieces of other faces), edges and pieces
+/// of edges, poles, triangles.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -36,13 +36,14 @@ struct Element {
   static constexpr std::uint32_t kMostElements = (1u << 29) - 1;
 };
 
-/// A nearest point, in the frame of its body.
+/// The nearest point on one element, in the frame of its body.
 struct Hit {
   double d2 = std::numeric_limits<double>::infinity();  ///< [m^2] squared distance to the probe
   Eigen::Vector3d point{0, 0, 0};
-  double u = 0, v = 0;  ///< of the face; edges and pieces: u is t; triangles: s and t of triangleFoot()
+  /// Parameters on the face; for edges and pieces u is t; for triangles s and t of triangleFoot().
+  double u = 0, v = 0;
   Element element;
-  std::uint8_t region = 0;  ///< triangles: TriangleRegion; edges and pieces: EdgeRegion
+  std::uint8_t region = 0;  ///< TriangleRegion for triangles, EdgeRegion for edges and pieces
 };
 
 enum class EdgeRegion : std::uint8_t { kInside, kFirst, kLast };
@@ -50,33 +51,37 @@ enum class EdgeRegion : std::uint8_t { kInside, kFirst, kLast };
 /// A trimmed face, ready for search.
 struct FaceShape {
   Eigen::Vector3d o{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< unit axes
-  double r0 = 0, r1 = 0;  ///< [m] radii; cone: radius at v = 0, slope dr/ds along the slant line
-  double rise = 1;        ///< cone: dz/ds
-  double per_x = 1,
-         per_y = 1;    ///< plane: parameters per metre; others: per_y is v per metre of z, or of the slant line
-  double nappe = 1;    ///< -1: the face is where the radius is negative (far nappe, inside of a spindle torus)
-  double outward = 1;  ///< sign of the outward normal relative to the radial one, or for planes to x cross y
-  Eigen::Array2d middle{0, 0};  ///< of [lo, hi]
-  Eigen::Array2d period{0, 0};  ///< 0: none
+  double r0 = 0, r1 = 0;  ///< [m] radii; for a cone, radius at v = 0 and slope dr/ds along the slant line
+  double rise = 1;        ///< for a cone, dz/ds along the slant line
+  /// On a plane: parameters per metre. On other surfaces per_y is v per metre of z, or per metre of the slant line.
+  double per_x = 1, per_y = 1;
+  /// -1 if the face lies where the radius is negative (far nappe of a cone, inside of a spindle torus).
+  double nappe = 1;
+  double outward = 1;  ///< +1 or -1: outward normal relative to the radial direction, or to x cross y for planes
+  Eigen::Array2d middle{0, 0};  ///< middle of [lo, hi] of the face
+  Eigen::Array2d period{0, 0};  ///< of u and v; 0 if not periodic
   SurfaceKind kind = SurfaceKind::kPlane;
   Trim trim;
 };
 
 /// An edge that is a line or a circle.
 struct EdgeShape {
-  Eigen::Vector3d o{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0};  ///< line: unit x; circle: unit x and y
+  /// For a line x is its direction, for a circle x and y span its plane; all unit.
+  Eigen::Vector3d o{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0};
   double t0 = 0, t1 = 0;
-  double size = 1;                                                  ///< line: [m] per t; circle: [m] radius
-  std::uint32_t guise = std::numeric_limits<std::uint32_t>::max();  ///< of a spline: which of the model's guised edges
+  double size = 1;  ///< line: [m] per unit of t; circle: [m] radius
+  /// Index for Model::guised() if the curve in the file is a spline, else kNone.
+  std::uint32_t guise = std::numeric_limits<std::uint32_t>::max();
 };
 
 /// A piece of a face without a closed-form foot, flat enough that Newton's method converges directly to its foot.
 struct Leaf {
-  Eigen::Array2d lo, hi;  ///< of (u, v)
-  float bend_front = 0;   ///< [1/m] the piece curves toward its outward normal by at most this; 0: not at all
-  float bend_back = 0;    ///< likewise toward the other side
+  Eigen::Array2d lo, hi;  ///< range of (u, v)
+  float bend_front = 0;   ///< [1/m] largest curvature toward the outward normal; 0 if it never curves that way
+  float bend_back = 0;    ///< the same toward the other side
   std::uint32_t face = 0;
-  std::uint32_t borders = 0;  ///< bit 2 axis + (0: lo, 1: hi): the surface ends there, or its loops' box
+  /// Bit 2 axis (lo) or 2 axis + 1 (hi) is set if the surface, or the box of its loops, ends on that side.
+  std::uint32_t borders = 0;
   LeafBow bow;
 
   Eigen::Array2d middle() const noexcept { return 0.5 * (lo + hi); }
@@ -87,7 +92,7 @@ struct CurvePiece {
   double t0 = 0, t1 = 0;
   double bend = 0;  ///< [1/m] largest curvature
   std::uint32_t edge = 0;
-  std::uint32_t ends = 0;  ///< bit 0: t0 is the edge's, bit 1: t1 is
+  std::uint32_t ends = 0;  ///< bit 0 is set if t0 is the t0 of the edge, bit 1 if t1 is its t1
   PieceBow shape{};
 };
 

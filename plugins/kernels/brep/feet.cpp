@@ -12,12 +12,12 @@ namespace {
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
-/// Moves a parameter by whole periods into the window about the middle of the face.
+/// Moves a parameter by whole periods to within half a period of the middle of the face.
 double wrapped(double u, double middle, double period) noexcept {
   return period > 0 ? u - period * std::floor((u - middle) / period + 0.5) : u;
 }
 
-/// A probe in cylindrical coordinates about the axis of a face.
+/// A probe in cylindrical coordinates around the axis of a face.
 struct AboutAxis {
   double a, b, height, radius;
   AboutAxis(const FaceShape& f, const Vector3d& p) noexcept {
@@ -27,7 +27,7 @@ struct AboutAxis {
     height = w.dot(f.z);
     radius = std::sqrt(a * a + b * b);
   }
-  /// Unit radial direction; on the axis, where all directions are alike, that of the face's middle.
+  /// Unit radial direction. On the axis, where it is not defined, the direction at the face's middle.
   Vector3d radial(const FaceShape& f) const noexcept {
     if (radius > 0) return (a * f.x + b * f.y) / radius;
     return f.nappe * (std::cos(f.middle[0]) * f.x + std::sin(f.middle[0]) * f.y);
@@ -64,8 +64,8 @@ double cylinderFoot(const FaceShape& f, const Vector3d& p, Hit& hit) noexcept {
   return take(f, at.angle(f), at.height * f.per_y, d * d, p - d * at.radial(f), hit);
 }
 
-/// In the half-plane through the axis a cone is a line: radius r0 + r1 s at height `rise` s. On the far nappe the
-/// radius counts negative.
+/// Foot on a cone. In the half-plane through the axis the cone is a line: radius r0 + r1 s at height `rise` s. On the
+/// far nappe the radius is negative.
 double coneFoot(const FaceShape& f, const Vector3d& p, Hit& hit) noexcept {
   const AboutAxis at(f, p);
   const double out = f.nappe * at.radius - f.r0;
@@ -77,7 +77,8 @@ double coneFoot(const FaceShape& f, const Vector3d& p, Hit& hit) noexcept {
 }
 
 double sphereFoot(const FaceShape& f, const Vector3d& p, Hit& hit) noexcept {
-  constexpr double kPole = std::numbers::pi / 2 - 1e-12;  // at the pole itself the half-open trim test says outside
+  // at the pole itself the half-open test of the trim would say outside
+  constexpr double kPole = std::numbers::pi / 2 - 1e-12;
   const AboutAxis at(f, p);
   const double length = std::sqrt(at.radius * at.radius + at.height * at.height), d = length - f.r0;
   if (!(d * d < hit.d2)) return d * d;
@@ -87,8 +88,8 @@ double sphereFoot(const FaceShape& f, const Vector3d& p, Hit& hit) noexcept {
   return take(f, at.angle(f), std::clamp(v, -kPole, kPole), d * d, f.o + f.r0 * away, hit);
 }
 
-/// In the half-plane through the axis a torus is a circle about radius r0. Where a spindle torus has a negative radius,
-/// the half-plane is the one behind the axis.
+/// Foot on a torus. In the half-plane through the axis the torus is a circle about radius r0. If the face is where a
+/// spindle torus has a negative radius, the half-plane behind the axis is used.
 double torusFoot(const FaceShape& f, const Vector3d& p, Hit& hit) noexcept {
   const AboutAxis at(f, p);
   const double out = f.nappe * at.radius - f.r0;
@@ -104,7 +105,7 @@ double torusFoot(const FaceShape& f, const Vector3d& p, Hit& hit) noexcept {
   return take(f, at.angle(f), v, d * d, point, hit);
 }
 
-/// True if the middle of a face lies where the radius is negative.
+/// Returns -1 if the radius is negative in the middle of a face, else 1.
 double nappeOf(const Surface& s, const Array2d& middle) {
   if (s.kind == SurfaceKind::kCone) return s.r[0] + middle[1] * s.r[1] < 0 ? -1 : 1;
   if (s.kind == SurfaceKind::kTorus) return s.r[0] + s.r[1] * std::cos(middle[1]) < 0 ? -1 : 1;
@@ -197,7 +198,8 @@ double circleFoot(const EdgeShape& e, const Vector3d& p, Hit& hit) noexcept {
   const double a = w.dot(e.x), b = w.dot(e.y), radius = std::sqrt(a * a + b * b);
   const double off = w.dot(e.x.cross(e.y)), out = radius - e.size;
   const double whole = off * off + out * out;
-  if (!(whole < hit.d2 * (1 + 1e-9))) return whole * (1 - 1e-9);  // the whole circle is farther
+  // even the nearest point of the full circle is farther
+  if (!(whole < hit.d2 * (1 + 1e-9))) return whole * (1 - 1e-9);
   double t = e.t0;
   EdgeRegion region = EdgeRegion::kInside;
   Vector3d direction = std::cos(t) * e.x + std::sin(t) * e.y;
@@ -225,7 +227,7 @@ double circleFoot(const EdgeShape& e, const Vector3d& p, Hit& hit) noexcept {
 Vector3d faceNormal(const FaceShape& f, const Vector3d& q) noexcept {
   if (f.kind == SurfaceKind::kPlane) return f.outward * f.z;
   const AboutAxis at(f, q);
-  const Vector3d radial = f.nappe * at.radial(f);  // it grows with the signed radius
+  const Vector3d radial = f.nappe * at.radial(f);  // direction in which the signed radius grows
   switch (f.kind) {
     case SurfaceKind::kCone:
       return f.outward * f.nappe * (f.rise * radial - f.r1 * f.z);

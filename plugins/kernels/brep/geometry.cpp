@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 using spline::CurvePoint;
 using spline::SurfacePoint;
 
-/// The profile of a surface of revolution P = o + r(v) e(u) + z(v) z, to second order.
+/// The profile of a surface of revolution P = o + r(v) e(u) + z(v) z, with first and second derivatives.
 struct Profile {
   double r, r1, r2, z, z1, z2;
 };
@@ -40,7 +40,7 @@ void plane(const Surface& s, double u, double v, SurfacePoint& out) {
 void revolve(const Surface& s, double u, const CurvePoint& c, SurfacePoint& out) {
   const Vector3d axis = vec(s.z), o = vec(s.o);
   const double cu = std::cos(u), su = std::sin(u);
-  const auto rotated = [&](const Vector3d& w) {  // Rodrigues
+  const auto rotated = [&](const Vector3d& w) {  // Rodrigues' rotation formula
     return Vector3d(cu * w + su * axis.cross(w) + (1 - cu) * axis.dot(w) * axis);
   };
   const Vector3d r = rotated(c.C - o);
@@ -135,7 +135,7 @@ void Geometry::surface(std::uint32_t index, double u, double v, SurfacePoint& ou
   }
 }
 
-/// B + d n with n = N / |N|, N = Bu x Bv: its first derivatives follow from the second ones of B.
+/// Evaluates B + d n with n = N / |N|, N = Bu x Bv. The first derivatives follow from the second derivatives of B.
 void Geometry::offset(const Surface& s, double u, double v, SurfacePoint& out) const noexcept {
   surface(s.basis, u, v, out);
   const Vector3d N = out.Su.cross(out.Sv);
@@ -187,7 +187,7 @@ std::vector<double> Geometry::planeKnots(std::uint32_t index) const {
 
 Vector3d Geometry::normal(const Face& face, const Vector2d& uv) const noexcept {
   constexpr double kVanishing = 1e-9;  // sine of the angle between the tangents
-  constexpr double kCollapsed = 1e-7;  // one tangent over the other, each times the range of its parameter
+  constexpr double kCollapsed = 1e-7;  // ratio of the two tangents' lengths, each times the range of its parameter
   const Vector2d range = vec(face.hi) - vec(face.lo), inside = 0.5 * (vec(face.hi) + vec(face.lo));
   SurfacePoint at;
   Vector2d where = uv;

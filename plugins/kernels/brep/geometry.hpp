@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Evaluation of the surfaces and curves of a part, of every kind.
+/// Evaluation of the surfaces and curves of a part, for all kinds.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -24,35 +24,35 @@ struct PlanePoint {
   Eigen::Vector2d c, c1;
 };
 
-/// [any] A B-spline of a part as the spline kernel wants it. Only for records of kind kSpline.
+/// [any] Copies a B-spline of a part into the form that the spline kernel takes. Only for records of kind kSpline.
 spline::SurfaceData splineOf(const Part& part, const Surface& surface);
 spline::CurveData splineOf(const Part& part, const Curve3& curve);
 
-/// Constant after construction: all threads may share it.
+/// Evaluates all surfaces and curves of one part. Constant after construction, so all threads may share it.
 class Geometry {
  public:
-  /// [main] For a part that checkPart() passed; the part must outlive it. @throws std::bad_alloc
+  /// [main] The part must have passed checkPart() and must outlive this object. @throws std::bad_alloc
   Geometry(const Part& part, spline::Form form);
 
-  /// [any] Point and derivatives to second order. Of an offset the first derivatives are exact, the second ones those
-  /// of its basis.
+  /// [any] Point and derivatives to second order. For an offset surface the first derivatives are exact, but the second
+  /// derivatives are those of its basis surface.
   void surface(std::uint32_t index, double u, double v, spline::SurfacePoint& out) const noexcept;
   /// [any] Point and derivatives to second order.
   void curve(std::uint32_t index, double t, spline::CurvePoint& out) const noexcept;
   /// [any] Point and first derivative of a curve in a parameter plane.
   PlanePoint planeCurve(std::uint32_t index, double t) const noexcept;
-  /// [any] Unit Su x Sv of a face's surface, whichever side is out. Where the tangents vanish: the normal a little
-  /// nearer to the middle of the face, 0 if there is none either.
+  /// [any] Returns Su x Sv of a face's surface with length 1; it may point inward. If the tangents vanish there,
+  /// returns the normal a little nearer to the middle of the face, or 0 if the tangents vanish there too.
   Eigen::Vector3d normal(const Face& face, const Eigen::Vector2d& uv) const noexcept;
 
-  /// [any] Only for splines.
+  /// [any] The index must be that of a surface or curve of kind kSpline.
   const spline::Surface& splineSurface(std::uint32_t index) const noexcept {
     return spline_surfaces_[static_cast<std::size_t>(surface_slot_[index])];
   }
   const spline::Curve& splineCurve(std::uint32_t index) const noexcept {
     return spline_curves_[static_cast<std::size_t>(curve_slot_[index])];
   }
-  /// [main] The distinct knots of a curve in a parameter plane; empty if it is no spline.
+  /// [main] Returns the distinct knots of a curve in a parameter plane; empty if the curve is not a spline.
   std::vector<double> planeKnots(std::uint32_t index) const;
   const Part& part() const noexcept { return part_; }
   std::size_t bytes() const noexcept;

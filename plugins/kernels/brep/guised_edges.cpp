@@ -13,9 +13,9 @@ using Eigen::Vector3d;
 using spline::CurvePoint;
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kOff = 5e-13;  ///< [m] by which the points may deviate from the shape
-/// The square of a rational cubic's distance from a centre has degree 6: what is right at so many points of a span is
-/// right between them.
+constexpr double kOff = 5e-13;  ///< [m] greatest deviation of the points from the shape
+/// Samples per knot span. The squared distance of a rational cubic from a centre has degree 6. So if it is right at
+/// more than 6 points of a span, it is right between them too.
 constexpr int kInSpan = 9;
 
 struct Samples {
@@ -59,7 +59,8 @@ bool findLine(const Samples& samples, GuisedEdge& made) {
 }
 
 bool findCircle(const Samples& samples, GuisedEdge& made) {
-  constexpr double kWidest = 1e3;  // radius over the distance of three points: beyond, the centre is rounding
+  // largest ratio of the radius to the distance of the three points; above it, the centre is mostly rounding error
+  constexpr double kWidest = 1e3;
   const auto at = [&](std::size_t thirds) { return samples.points[(samples.points.size() - 1) * thirds / 3]; };
   EdgeShape& circle = made.shape;
   const Vector3d a = at(0), u = at(1) - a, v = at(2) - a, n = u.cross(v);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Splines that are in truth lines or circles, as many CAD programs write them. Their feet have a closed form, which is
-/// proved to be the nearest from wherever the probe looks; the parameter of the spline is what the faces beside know.
+/// Guised edges: splines that are really lines or circles, as many CAD programs write them. Their foot has a closed
+/// form, which is the nearest point for every probe. The faces beside such an edge still need the parameter of the
+/// spline.
 #pragma once
 #include <optional>
 #include <vector>
@@ -11,17 +12,17 @@
 namespace hapticd::brep {
 
 struct GuisedEdge {
-  EdgeShape shape;  ///< t0 and t1 count radians of a circle, metres of a line
+  EdgeShape shape;  ///< its t0 and t1 are in rad for a circle, in m for a line
   bool is_circle = false;
   std::uint32_t curve = 0;
-  std::vector<double> stops;       ///< rising values of the shape's parameter, from shape.t0 to shape.t1
-  std::vector<double> parameters;  ///< t of the spline there
+  std::vector<double> stops;       ///< increasing values of the shape's parameter, from shape.t0 to shape.t1
+  std::vector<double> parameters;  ///< parameter t of the spline at each of the stops
 };
 
-/// [main] The line or circle that a spline edge is to within 5e-13 m; none if it is neither.
+/// [main] Returns the line or circle from which a spline edge deviates by at most 5e-13 m, or nothing if there is none.
 std::optional<GuisedEdge> unguised(const Geometry& geometry, const Edge& edge);
 
-/// [rt] The spline's t at a point that lies on it, where the shape's parameter is s.
+/// [rt] Returns the spline's parameter t at `point`, which lies on the spline and has the parameter s on the shape.
 double parameterAt(const Geometry& geometry, const GuisedEdge& edge, double s, const Eigen::Vector3d& point) noexcept;
 
 }  // namespace hapticd::brep

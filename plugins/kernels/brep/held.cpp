@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The foot of a held contact: where the probe's way meets a face, and how the foot goes on over edges.
+/// The foot of a held contact: finds where the path of the probe meets a face, and moves the foot on over edges.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -20,13 +20,14 @@ using Eigen::Vector3d;
 
 constexpr int kMaxCrossings = 6;       ///< most changes of faces over edges in one tick
 constexpr int kMaxTriangles = 256;     ///< most triangles that a foot crosses in one tick
-constexpr double kNearer = 1 - 1e-12;  ///< share of a squared distance: a smaller difference is a rounding error
+constexpr double kNearer = 1 - 1e-12;  ///< factor of a squared distance; a smaller difference counts as rounding error
 
 bool isEdge(const Hit& hit) noexcept {
   return hit.element.kind() >= ElementKind::kLine && hit.element.kind() <= ElementKind::kPole;
 }
 
-/// Unit, in the plane of a coedge's face, at right angles to the edge and away from the face.
+/// Returns the unit vector in the tangent plane of a coedge's face that is at right angles to the edge and points out
+/// of the face.
 Vector3d outOf(const Geometry& geometry, const Coedge& coedge, double t, const Vector3d& normal) noexcept {
   const Part& part = geometry.part();
   spline::CurvePoint C;
@@ -54,8 +55,8 @@ void takeNearer(const Hit& hit, Hit& best) noexcept {
   if (hit.d2 < best.d2) best = hit;
 }
 
-/// Looks at the triangles about a corner, beginning over edge k of `first`. The next edge to cross follows the one that
-/// was crossed (`after` 1: turning toward it from the corner's outgoing edge), or goes before it (0).
+/// Examines the triangles around a corner, beginning beyond edge k of `first`. @param after the next edge to cross is
+/// the edge that follows the crossed one in its triangle (1) or precedes it (0), which sets the sense of turning
 void turnAbout(const Part& part, std::uint32_t first, std::uint32_t k, std::uint32_t after, const Vector3d& p,
                Hit& best) noexcept {
   constexpr int kMostAround = 64;
@@ -69,7 +70,7 @@ void turnAbout(const Part& part, std::uint32_t first, std::uint32_t k, std::uint
   }
 }
 
-/// True if the probe has crossed the convex edge k of the held triangle and is in front of the next one.
+/// True if the probe has crossed the convex edge k of the held triangle and is in front of the next triangle.
 bool isReleased(const Part& part, std::uint32_t triangle, const Vector3d& foot, std::uint32_t k, double side,
                 const Vector3d& p) noexcept {
   const Triangle& t = part.triangles[triangle];
@@ -94,7 +95,7 @@ Followed Tracer::follow(double side, const Vector3d& p, Foot& foot) noexcept {
   return Followed::kOn;
 }
 
-/// The nearest point of the held face, or of a neighbour that continues nearer to the probe.
+/// Moves the foot to the nearest point of the held face, or over its edges to a neighbour that is nearer to the probe.
 Followed Tracer::followFace(double side, const Vector3d& p) noexcept {
   for (int i = 0; i < kMaxCrossings; ++i) {
     if (held_.hit.element.kind() == ElementKind::kFace) {
@@ -132,14 +133,15 @@ Followed Tracer::followFace(double side, const Vector3d& p) noexcept {
   return Followed::kOn;
 }
 
-/// What the faces beyond an edge of the held face say. `next` becomes the foot on the nearest of them, if it is nearer.
+/// Examines the faces beyond an edge of the held face. `next` becomes the foot on the nearest of these faces, if that
+/// foot is nearer.
 Followed Tracer::slideOver(std::uint32_t edge, double t, double side, const Vector3d& p, Held& next) noexcept {
   const Part& part = model().part();
   const Geometry& geometry = model().geometry();
   const Coedge* own = nullptr;
   for (std::uint32_t c = part.edges[edge].first_coedge; c != kNone; c = part.coedges[c].next)
     if (part.coedges[c].face == held_.face) own = &part.coedges[c];
-  if (own == nullptr) return Followed::kOn;  // the edge meets the same vertex, but belongs to other faces
+  if (own == nullptr) return Followed::kOn;  // the edge ends at the same vertex, but does not belong to the held face
   const Vector3d r = model().placements()[held_.place].toBody(p) - held_.hit.point;
   const Vector3d here = coedgeNormal(geometry, *own, t);
   const Vector3d out = outOf(geometry, *own, t, here);
@@ -155,7 +157,8 @@ Followed Tracer::slideOver(std::uint32_t edge, double t, double side, const Vect
   return Followed::kOn;
 }
 
-/// Goes downhill from triangle to triangle, until no triangle beside the foot is nearer.
+/// Moves the foot from triangle to triangle while the distance to the probe falls, until no triangle beside the foot is
+/// nearer.
 Followed Tracer::followTriangles(double side, const Vector3d& p_model) noexcept {
   const Vector3d p = model().placements()[held_.place].toBody(p_model);
   held_.hit = footOn(model().part(), held_.face, p);
@@ -182,10 +185,11 @@ Followed Tracer::followTriangles(double side, const Vector3d& p_model) noexcept 
   return Followed::kOn;
 }
 
-/// Goes along the way in steps no longer than the distance to the nearest face: so it meets the first face in its way.
+/// Goes along the path of the probe in steps that are no longer than the distance to the nearest face, so that it finds
+/// the first face on the path.
 bool Tracer::enter(const Vector3d& from, const Vector3d& p, Sides sides, double& side) noexcept {
   constexpr int kMostSteps = 64;
-  constexpr double kMet = 1e-8;  // [m]
+  constexpr double kMet = 1e-8;  // [m] a face that is nearer than this has been reached
   const double length = (p - from).norm();
   if (!(length > 0)) return false;
   const Vector3d way = (p - from) / length;

@@ -18,15 +18,16 @@ using spline::SurfacePoint;
 constexpr int kBowIntervals = 6;       ///< steps between samples along an axis
 constexpr double kBowBetween = 1.25;   ///< factor by which values between the samples may be larger
 constexpr double kSagBetween = 1.5;    ///< the same factor for second derivatives
-constexpr double kBowRounding = 1e-9;  ///< share of the terms that are compared
-constexpr double kSmoothKink = 1e-6;   ///< [rad] two normals across a border that differ by less than this count as one
+constexpr double kBowRounding = 1e-9;  ///< relative to the terms that are compared
+/// [rad] normals on both sides of a border that differ by less than this count as equal.
+constexpr double kSmoothKink = 1e-6;
 
-/// Derivatives along the two directions of a leaf, in its frame.
+/// A point of a leaf and the derivatives there along the leaf's two directions, in the leaf's frame.
 struct LeafSample {
-  Vector3d S, first[2], second[3];  ///< second: 11, 22, 12
+  Vector3d S, first[2], second[3];  ///< order of `second`: 11, 22, 12
 };
 
-/// First and second derivatives along fixed directions of the parameter plane.
+/// Returns the point and its derivatives along the leaf's directions, which are fixed in the parameter plane.
 LeafSample leafSample(const LeafBow& bow, const SurfacePoint& E) {
   const auto second = [&](const Array2d& a, const Array2d& b) {
     return Vector3d(bow.frame * (a[0] * b[0] * E.Suu + (a[0] * b[1] + a[1] * b[0]) * E.Suv + a[1] * b[1] * E.Svv));
@@ -40,7 +41,7 @@ LeafSample leafSample(const LeafBow& bow, const SurfacePoint& E) {
   return sample;
 }
 
-/// Frame and directions from the middle of a leaf; false if the surface is not regular there.
+/// Sets frame and directions from the middle of a leaf. Returns false if the surface is not regular there.
 bool turnToPrincipal(LeafBow& bow, const SurfacePoint& E) {
   const Vector3d across = E.Su.cross(E.Sv);
   const double su = E.Su.norm(), area = across.norm();
@@ -63,7 +64,7 @@ bool turnToPrincipal(LeafBow& bow, const SurfacePoint& E) {
   return bow.frame.allFinite() && bow.along[0].allFinite() && bow.along[1].allFinite();
 }
 
-/// A term as it is measured.
+/// A LeafBow::Term in double precision, while it is measured.
 struct MeasuredTerm {
   double low = 0, high = 0;
   Vector3d middle{0, 0, 0}, off{0, 0, 0};
@@ -83,7 +84,7 @@ struct MeasuredBow {
   MeasuredTerm slope[2], bend[2], twist;
 };
 
-/// Widens a term by what one sample says.
+/// Widens a term so that it includes one sample.
 void extendTerm(MeasuredTerm& term, double value, const Vector3d& vector) {
   term.low = std::min(term.low, value);
   term.high = std::max(term.high, value);
@@ -99,9 +100,10 @@ void extendBow(MeasuredBow& bow, const double (&focus)[2], const LeafSample& s) 
   extendTerm(bow.twist, s.first[0].dot(s.first[1]) + s.S.dot(s.second[2]), s.second[2]);
 }
 
-/// The middle of a leaf: all terms begin with it.
+/// Starts all terms with the values in the middle of a leaf.
 MeasuredBow beginBow(LeafBow& bow, const LeafSample& s, double size) {
-  constexpr double kStraight = 1e-4;  // of the leaf's size times its curvature: the centre would be rounding
+  // size times curvature; below it, the centre of curvature would be mostly rounding error
+  constexpr double kStraight = 1e-4;
   MeasuredBow measured;
   for (int i = 0; i < 2; ++i) {
     const double curvature = s.second[i].z();
@@ -116,7 +118,7 @@ MeasuredBow beginBow(LeafBow& bow, const LeafSample& s, double size) {
   return measured;
 }
 
-/// What is kept of a term, with room for what lies between the samples.
+/// Rounds a term to single precision, with a margin for the points between the samples.
 LeafBow::Term widened(MeasuredTerm term) {
   const double more = (kBowBetween - 1) * (term.high - term.low);
   term.low -= more;
@@ -133,11 +135,11 @@ void keepTerms(const MeasuredBow& measured, LeafBow& bow) {
   bow.twist = widened(measured.twist);
 }
 
-/// What encloses a leaf: a box in its frame, and cylinders about the centres of curvature of the direction along which
-/// it is deeper.
+/// Measures what encloses a leaf: a box in its frame, and cylinders about the centre of curvature of that direction
+/// along which the leaf is deeper.
 class LeafHull {
  public:
-  /// @param corner [m] of the leaf, in the frame of the bow
+  /// @param corner [m] a corner of the leaf, in the frame of the bow
   LeafHull(const LeafBow& bow, const Vector3d& corner) : bow_(bow) {
     const auto depth = [&](int i) { return std::abs(bow.bent[i]) * corner[i] * corner[i]; };
     bent_ = depth(1) > depth(0) ? 1 : 0;
@@ -146,7 +148,7 @@ class LeafHull {
     turn_.row(2) = Vector3d::UnitZ();
     straight_ = bow.focus[bent_] == 0;
   }
-  /// @param S a point, in the frame of the bow
+  /// Adds a point. @param S [m] in the frame of the bow
   void extend(const Vector3d& S) {
     const Vector3d q = turn_ * S;
     box_.extend(q);
@@ -154,7 +156,8 @@ class LeafHull {
     inner_ = std::min(inner_, radius);
     outer_ = std::max(outer_, radius);
   }
-  /// @param sag [m] of a chord between two of the points, in the frame of the bow
+  /// Returns the hull of the points. @param sag [m] greatest deviation of the leaf from the chords between neighbouring
+  /// points, in the frame of the bow
   TurnedBox with(const Vector3d& sag) const {
     const Vector3d room = turn_ * sag + Vector3d::Constant(1e-12 * (1 + bow_.center.norm()));
     TurnedBox hull;
@@ -178,11 +181,12 @@ class LeafHull {
   double inner_ = LeafBow::kEndless, outer_ = 0;
 };
 
-/// True if the normal does not turn on a border, from one side of it to the other.
+/// True if the normals on both sides of one border of a leaf are equal.
 bool isSmoothAcross(const Geometry& geometry, std::uint32_t surface, const Array2d& lo, const Array2d& hi, int axis,
                     bool at_high) {
   constexpr int kPlaces = 5;
-  constexpr double kBeside = 1e-8;  // of the leaf's width: its curvature turns the normal far less there
+  // relative to the leaf's width; over this distance curvature turns the normal far less than kSmoothKink
+  constexpr double kBeside = 1e-8;
   for (int k = 0; k < kPlaces; ++k) {
     std::array<Vector3d, 2> normals;
     for (std::size_t side = 0; side < 2; ++side) {
@@ -197,7 +201,7 @@ bool isSmoothAcross(const Geometry& geometry, std::uint32_t surface, const Array
   return true;
 }
 
-/// The same for all borders except those where the surface ends.
+/// True if the normals are equal on both sides of every border, except those where the surface ends.
 bool goesOnSmoothly(const Geometry& geometry, std::uint32_t surface, const Array2d& lo, const Array2d& hi,
                     std::uint32_t ends) {
   for (int axis = 0; axis < 2; ++axis)
@@ -207,7 +211,7 @@ bool goesOnSmoothly(const Geometry& geometry, std::uint32_t surface, const Array
   return true;
 }
 
-/// The expression of a term, seen from where `from` is o - p.
+/// Returns bounds of a term's derivative for a probe p. @param from o - p
 void rangeOfTerm(const LeafBow::Term& term, const Vector3d& from, double& low, double& high) noexcept {
   const double known = from.dot(term.middle.cast<double>()), off = from.cwiseAbs().dot(term.off.cast<double>());
   const double rounding = kBowRounding * (std::abs(known) + off);
@@ -230,7 +234,7 @@ LeafBow leafBowOf(const Geometry& geometry, std::uint32_t surface, const Array2d
   geometry.surface(surface, lo[0], lo[1], E);
   LeafHull about(bow, bow.local(E.S));
   const Array2d step = (hi - lo) / kBowIntervals;
-  const Array2d end = hi - 1e-9 * (hi - lo);  // derivatives at a knot are those of the span to its right
+  const Array2d end = hi - 1e-9 * (hi - lo);  // at a knot, derivatives are evaluated in the span to its right
   Vector3d sag = Vector3d::Zero();
   for (int i = 0; i <= kBowIntervals; ++i)
     for (int j = 0; j <= kBowIntervals; ++j) {
@@ -268,7 +272,7 @@ LeafSight feetSeenFrom(const LeafBow& bow, const Vector3d& q) noexcept {
 }
 
 Array2d footNear(const LeafBow& bow, const Array2d& middle, const Vector3d& q) noexcept {
-  constexpr double kLeastBend = 0.2;  // below it the quadratic model leads too far
+  constexpr double kLeastBend = 0.2;  // below this second derivative, the step of the quadratic model would be too long
   Array2d uv = middle;
   for (int i = 0; i < 2; ++i) {
     const double bend = 1 - q[2] * bow.bent[i];

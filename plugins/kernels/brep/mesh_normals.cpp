@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The angle of a triangle at a corner.
+/// The angle of a triangle at a corner [rad].
 double angleAt(const Part& part, const Triangle& t, std::size_t corner) {
   const Vector3d a = vec(part.points[t.corner[corner]]);
   const Vector3d b = vec(part.points[t.corner[(corner + 1) % 3]]) - a;
@@ -20,7 +20,7 @@ double angleAt(const Part& part, const Triangle& t, std::size_t corner) {
   return std::atan2(b.cross(c).norm(), b.dot(c));
 }
 
-/// Sets of corners that share one normal (union-find with path halving).
+/// Sets of corners that share one normal, as a union-find structure with path halving.
 class Groups {
  public:
   explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -34,7 +34,7 @@ class Groups {
   std::vector<std::uint32_t> parent_;
 };
 
-/// The angle over which the body of each triangle is smoothed.
+/// Returns smooth_angle [rad] of the body of each triangle.
 std::vector<float> anglesOf(const Part& part) {
   std::vector<float> angles(part.triangles.size(), 0);
   for (const Body& body : part.bodies)
@@ -42,7 +42,8 @@ std::vector<float> anglesOf(const Part& part) {
   return angles;
 }
 
-/// Joins the corners at both ends of every edge that is flat enough and has two triangles.
+/// Joins the corners of two triangles at both ends of their common edge, if the edge is flat enough and has no third
+/// triangle.
 void joinOverFlatEdges(const Part& part, const std::vector<float>& angles, Groups& groups) {
   for (std::uint32_t i = 0; i < part.triangles.size(); ++i) {
     if (!(angles[i] > 0)) continue;
@@ -52,8 +53,9 @@ void joinOverFlatEdges(const Part& part, const std::vector<float>& angles, Group
       if (t.across[k] == kNone) continue;
       const std::uint32_t other = t.across[k] / 4, m = t.across[k] % 4;
       const Triangle& o = part.triangles[other];
-      if (other <= i || o.across[m] != 4 * i + k) continue;  // seen from the other side already, or non-manifold
-      if (o.corner[m] != t.corner[(k + 1) % 3]) continue;    // the two triangles disagree about the outside
+      // the other triangle has handled this edge, or more than two triangles meet there
+      if (other <= i || o.across[m] != 4 * i + k) continue;
+      if (o.corner[m] != t.corner[(k + 1) % 3]) continue;  // the two triangles have opposite orientations
       const Vector3d no = triangleNormal(part, o);
       if (!(std::atan2(n.cross(no).norm(), n.dot(no)) <= static_cast<double>(angles[i]))) continue;
       groups.join(3 * i + k, 3 * other + (m + 1) % 3);

@@ -18,7 +18,7 @@ namespace hapticd::brep {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-/// Fills a Model.
+/// Fills a Model from its part.
 class ModelBuilder {
  public:
   ModelBuilder(Model& model, const ModelOptions& options) : model_(model), part_(model.part_), options_(options) {}
@@ -76,7 +76,9 @@ class ModelBuilder {
   }
 
   static void checkIndex(std::size_t index) {
-    if (index > Element::kMostElements) throw std::invalid_argument("more than 536,870,911 elements of one kind");
+    if (index > Element::kMostElements)
+      throw std::invalid_argument(
+          "the part has more than 536,870,911 elements of one kind, expected fewer (use a simpler part)");
   }
 
   void add(ElementKind kind, std::size_t index, const AlignedBox3d& box, const TurnedBox& turned) {
@@ -94,7 +96,8 @@ class ModelBuilder {
     std::vector<BoxedLeaf> leaves;
     cutFace(*model_.geometry_, f, model_.face(f), leaves);
     if (model_.leaves_.size() + leaves.size() > kMostLeaves)
-      throw std::invalid_argument("the faces fall into more than 20,000,000 flat pieces");
+      throw std::invalid_argument(
+          "the curved faces need more than 20,000,000 flat pieces, expected fewer (use a simpler part)");
     for (const BoxedLeaf& made : leaves) {
       add(ElementKind::kLeaf, model_.leaves_.size(), made.box, made.turned);
       model_.leaves_.push_back(made.leaf);
@@ -137,7 +140,7 @@ class ModelBuilder {
     made.tree.forgetOrder();
   }
 
-  /// The rows of a tree with one element in each.
+  /// Builds the tree of a body with one element per row, and the box of each row.
   void arrange(BodyTree& body) const {
     body.tree.build(boxes_, 1);
     body.elements.reserve(elements_.size());
@@ -148,7 +151,7 @@ class ModelBuilder {
     });
   }
 
-  /// use(number of the row, row)
+  /// Calls use(number of the row, row) for each row of the tree.
   template <class Use>
   static void forEachRow(const BodyTree& body, const Use& use) {
     for (std::size_t n = 0; n < body.tree.nodeCount(); ++n) {
@@ -158,7 +161,7 @@ class ModelBuilder {
     }
   }
 
-  /// Faces that are concerned when an element is examined.
+  /// Calls use(face) for each face to which an element belongs.
   template <class F>
   void forEachFaceOf(Element element, F&& use) const {
     const auto of_edge = [&](std::uint32_t edge) {
@@ -179,7 +182,7 @@ class ModelBuilder {
     }
   }
 
-  /// Where the tree of a body says of each element, in the order in which they were added, that it is.
+  /// Returns how the tree of a body refers to each element, in the order in which the elements were added.
   std::vector<BoxTree::RowPlace> rowPlaces(const BodyTree& body) const {
     std::vector<BoxTree::RowPlace> places(elements_.size());
     forEachRow(body, [&](std::size_t number, const ElementRow& row) {
@@ -188,14 +191,14 @@ class ModelBuilder {
     return places;
   }
 
-  /// A contact that holds a face asks for the nearest point of this one alone.
+  /// Adds a tree over each face and its edges, because a held contact asks for the nearest point of a single face.
   void plantFaceTrees(const Body& body, BodyTree& made) {
     std::vector<std::vector<std::uint32_t>> of_faces(body.face_count);
     for (std::uint32_t i = 0; i < elements_.size(); ++i)
       forEachFaceOf(elements_[i], [&](std::uint32_t face) {
         if (face - body.first_face >= body.face_count) return;
         std::vector<std::uint32_t>& of_face = of_faces[face - body.first_face];
-        if (of_face.empty() || of_face.back() != i) of_face.push_back(i);  // a seam has two coedges on one face
+        if (of_face.empty() || of_face.back() != i) of_face.push_back(i);  // a seam edge has two coedges on one face
       });
     const std::vector<BoxTree::RowPlace> places = rowPlaces(made);
     std::vector<AlignedBox3d> boxes;
@@ -270,9 +273,9 @@ class ModelBuilder {
   Model& model_;
   Part& part_;
   const ModelOptions& options_;
-  std::vector<Element> elements_;  ///< of the body whose tree is being built
+  std::vector<Element> elements_;  ///< elements of the body whose tree is being built
   std::vector<AlignedBox3d> boxes_;
-  std::vector<TurnedBox> turned_;  ///< closer boxes for the same elements
+  std::vector<TurnedBox> turned_;  ///< tighter boxes around the same elements
 };
 
 Model::Model(Part part, const ModelOptions& options) : part_(std::move(part)) {

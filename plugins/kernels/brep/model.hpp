@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A part ready for search: the elements of each body in a tree of boxes, normals of edges and corners, instances.
+/// A part that is ready for search: a tree of boxes over the elements of each body, normals of corners, and the bodies
+/// in their places.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -19,41 +20,42 @@ namespace hapticd::brep {
 
 struct ModelOptions {
   spline::Form form = spline::Form::kTable;  ///< how spline surfaces are stored
-  /// Name of one instance or assembly, or its path "assembly/sub/part"; empty: all of the part. Its pose in the part
-  /// stays.
+  /// Name of one instance or assembly, or its path "assembly/sub/part"; empty for the whole part. It keeps its pose in
+  /// the part.
   std::string instance;
 };
 
-/// A body where it stands.
+/// A body at its pose in the model.
 struct Placement {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< body to model
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< from the body's frame to the model's
   Eigen::Vector3d position{0, 0, 0};
   std::uint32_t body = 0;
-  std::uint32_t instance = 0;       ///< in the part
+  std::uint32_t instance = 0;       ///< index in the part's instances
   std::uint32_t first_feature = 0;  ///< feature number of the body's first face or triangle
-  bool moved = false;               ///< the pose is not the identity
-  bool solid = false;               ///< it bounds a volume, so it has an inside
+  bool moved = false;               ///< true if the pose is not the identity
+  bool solid = false;               ///< true if the body bounds a volume, so that it has an inside
 
   Eigen::Vector3d toBody(const Eigen::Vector3d& p) const noexcept {
     return moved ? Eigen::Vector3d(rotation.transpose() * (p - position)) : p;
   }
 };
 
-/// Normal about a vertex or a point of a mesh.
+/// The normal at a vertex, or at a point of a mesh.
 struct CornerNormal {
   Eigen::Vector3f normal{0, 0, 0};  ///< angle-weighted mean of the outward normals (Baerentzen & Aanaes 2005), unit
-  bool open = false;                ///< a free edge ends there
+  bool open = false;                ///< true if a free edge ends there
 };
 
 /// The elements of one body.
 struct BodyTree {
-  static constexpr std::int32_t kNoRoot = -1;  ///< of a face without elements
-  static constexpr int kMeshRow = 2;  ///< triangles in one row: a look at a disc is cheaper than one at a triangle
+  static constexpr std::int32_t kNoRoot = -1;  ///< root of a face without elements
+  /// Triangles in one row; testing the disc around two triangles is cheaper than testing one triangle.
+  static constexpr int kMeshRow = 2;
 
   BoxTree tree;
-  std::vector<Element> elements;  ///< in the order of the tree
-  std::vector<RowBox> rows;       ///< by the number of the row; all but meshes
-  std::vector<RowSlab> slabs;     ///< the same of meshes
+  std::vector<Element> elements;  ///< elements in the order of the tree
+  std::vector<RowBox> rows;       ///< box of each row, indexed by row number; empty for meshes
+  std::vector<RowSlab> slabs;     ///< disc of each row, indexed by row number; empty except for meshes
 
   /// [rt] Prefetches the memory of a child of a node that will be examined soon.
   void fetchAhead(std::int32_t child, std::int32_t row) const noexcept {
@@ -78,10 +80,11 @@ struct BodyTree {
   }
 };
 
-/// It is built once and then constant: every const function may run in any thread.
+/// A part ready for search. It is built once and is then constant, so every const function may run in any thread.
 class Model {
  public:
-  /// [main] @throws std::invalid_argument for the user, if `options.instance` names nothing or the part has no faces.
+  /// [main] @throws std::invalid_argument with a text for the user, if `options.instance` is not a name in the part or
+  /// the part has no faces.
   explicit Model(Part part, const ModelOptions& options = {});
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
@@ -90,7 +93,7 @@ class Model {
   const Geometry& geometry() const noexcept { return *geometry_; }
   const FaceShape& face(std::uint32_t index) const noexcept { return faces_[index]; }
   const EdgeShape& edge(std::uint32_t index) const noexcept { return edges_[index]; }
-  /// [any] Of an EdgeShape whose `guise` is not kNone.
+  /// [any] @param index EdgeShape::guise, which must not be kNone
   const GuisedEdge& guised(std::uint32_t index) const noexcept { return guised_[index]; }
   const Leaf& leaf(std::uint32_t index) const noexcept { return leaves_[index]; }
   const CurvePiece& piece(std::uint32_t index) const noexcept { return pieces_[index]; }
@@ -98,12 +101,13 @@ class Model {
   std::size_t pieceCount() const noexcept { return pieces_.size(); }
   const CornerNormal& vertexNormal(std::uint32_t vertex) const noexcept { return vertex_normals_[vertex]; }
   const CornerNormal& pointNormal(std::uint32_t point) const noexcept { return point_normals_[point]; }
-  /// [any] Edges that end at a vertex.
+  /// [any] Returns the edges that end at a vertex.
   std::span<const std::uint32_t> edgesAt(std::uint32_t vertex) const noexcept {
     const std::uint32_t first = first_edge_at_[vertex];
     return std::span(edges_at_).subspan(first, first_edge_at_[vertex + 1] - first);
   }
-  /// [any] Normals that are interpolated over a triangle; null: the body has none.
+  /// [any] Returns the normal at a corner that is interpolated over a triangle, or null if normals are not interpolated
+  /// there.
   const Eigen::Vector3f* smoothNormal(std::uint32_t triangle, int corner) const noexcept {
     if (smooth_corner_.empty()) return nullptr;
     const std::uint32_t at = smooth_corner_[3 * std::size_t{triangle} + static_cast<std::size_t>(corner)];
@@ -112,17 +116,18 @@ class Model {
 
   const std::vector<Placement>& placements() const noexcept { return placements_; }
   const BodyTree& body(std::uint32_t index) const noexcept { return bodies_[index]; }
-  /// [any] Where in the tree of its body that of one face begins: of itself or its leaves, and its edges.
+  /// [any] Returns the root node of the tree over one face and its edges alone, inside the tree of its body. @param
+  /// index face in the part
   std::int32_t rootOfFace(std::uint32_t index) const noexcept { return face_roots_[index]; }
-  /// [any] Boxes of the placements in the model's frame; only if there are several.
+  /// [any] Tree of the boxes of all placements in the model's frame; empty if there is only one placement.
   const BoxTree& placementTree() const noexcept { return placement_tree_; }
-  /// [any] The number of faces and triangles over all placements.
+  /// [any] Number of faces and triangles over all instances of the part.
   std::uint32_t featureCount() const noexcept { return feature_count_; }
-  /// [main] Instance and face of a feature, in words: "bolt: face 3 'head'".
+  /// [main] Names the instance and the face of a feature, such as "bolt: face 3 'head'".
   std::string featureName(std::uint32_t feature) const;
 
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }
-  /// [any] True if some body bounds no volume.
+  /// [any] True if at least one body does not bound a volume.
   bool open() const noexcept { return open_; }
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
   std::size_t bytes() const noexcept;
@@ -138,11 +143,11 @@ class Model {
   std::vector<Leaf> leaves_;
   std::vector<CurvePiece> pieces_;
   std::vector<CornerNormal> vertex_normals_, point_normals_;
-  std::vector<std::uint32_t> first_edge_at_, edges_at_;  ///< by vertex
+  std::vector<std::uint32_t> first_edge_at_, edges_at_;  ///< edges at vertex i: edges_at_[first_edge_at_[i]] on
   std::vector<std::uint32_t> smooth_corner_;
   std::vector<Eigen::Vector3f> smooth_normals_;
   std::vector<BodyTree> bodies_;
-  std::vector<std::int32_t> face_roots_;  ///< by face
+  std::vector<std::int32_t> face_roots_;  ///< one per face, see rootOfFace()
   std::vector<Placement> placements_;
   BoxTree placement_tree_;
   Eigen::AlignedBox3d bounds_;

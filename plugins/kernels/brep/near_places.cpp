@@ -15,7 +15,7 @@ int NearPlaces::rows() const noexcept {
   return rows;
 }
 
-/// The elements of one placement. Distances are the same in its frame and in the model's.
+/// Collects the elements of one placement. Distances are equal in the body's frame and in the model's.
 bool NearPlaces::add(const Model& model, std::uint32_t place, const Vector3d& p, double reach) noexcept {
   const Placement& at = model.placements()[place];
   const BodyTree& body = model.body(at.body);
@@ -30,7 +30,7 @@ bool NearPlaces::add(const Model& model, std::uint32_t place, const Vector3d& p,
   return true;
 }
 
-/// Adds the placements within reach; `beyond2` falls to the least bound of all others.
+/// Adds the placements within reach. `beyond2` is lowered to the least bound of all other placements.
 bool NearPlaces::collect(const Model& model, const Vector3d& p, double reach2, double& beyond2) noexcept {
   const BoxTree& tree = model.placementTree();
   const BoxProbe probe(tree, p);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The elements about a probe among several placements: of each placement within reach its own, in its own frame.
+/// The elements around a probe in a model of several placements. Each placement within reach keeps its own list, in the
+/// frame of its body.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -14,8 +15,8 @@ class NearPlaces {
   static constexpr int kMostPlaces = 4;
   static constexpr int kMostRows = kMostPlaces * NearElements::kMostRows;
   using Limits = ElementLimits;
-  /// Boxes of four: if a search of the whole model examines fewer, it is as good as these elements, and gathering costs
-  /// more.
+  /// Nodes of the tree: if a search of the whole model examines fewer nodes than this, gathering elements would cost
+  /// more than it saves.
   static constexpr int kDear = 24;
 
   /// The elements near the probe in one placement.
@@ -24,18 +25,19 @@ class NearPlaces {
     NearElements elements;
   };
 
-  /// [rt] Collects what may be within `reach` [m] of p (frame of the model). False means that nothing is known: there
-  /// are too many placements or elements there, or one is a mesh.
+  /// [rt] Collects the elements that may be within `reach` [m] of p (frame of the model). Returns false, and then
+  /// nothing is known, if there are too many placements or elements near p, or if one of the bodies is a mesh.
   bool gather(const Model& model, const Eigen::Vector3d& p, double reach) noexcept;
-  /// [rt] The probe has moved by this way [m].
+  /// [rt] Tells that the probe has moved by this distance [m].
   void go(double way) noexcept {
     for (int i = 0; i < count_; ++i) places_[static_cast<std::size_t>(i)].elements.go(way);
   }
-  /// [rt] From now on nothing is known.
+  /// [rt] Forgets the collected elements; beyond() is then below 0.
   void forget() noexcept { count_ = 0, beyond_ = -1; }
-  /// [rt] Nothing else is nearer to p than this [m]. Below 0 nothing is known.
+  /// [rt] Returns a lower bound of the distance [m] from p to every element that was not collected. If it is below 0,
+  /// nothing is known.
   double beyond(const Eigen::Vector3d& p) const noexcept { return beyond_ - (p - center_).norm(); }
-  /// [any] Of all placements.
+  /// [any] Returns the number of collected rows in all placements.
   int rows() const noexcept;
   int count() const noexcept { return count_; }
   Near& operator[](int i) noexcept { return places_[static_cast<std::size_t>(i)]; }

@@ -16,7 +16,7 @@ void NearRows<Choice>::add(const Shape& shape, std::int32_t child) noexcept {
   children_[static_cast<std::size_t>(rows_++)] = child;
 }
 
-/// Candidates are the rows within reach; `beyond2` falls to the least bound of all others.
+/// Collects the rows within reach as candidates. `beyond2` is lowered to the least bound of all other rows.
 template <class Choice>
 bool NearRows<Choice>::collect(const BodyTree& body, const Eigen::Vector3d& p, double reach2,
                                double& beyond2) noexcept {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The rows of elements about a probe: while it stays there, a search need look at no others.
+/// The rows of elements around a probe. While the probe stays near, a search needs to examine no other rows.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -10,17 +10,20 @@
 
 namespace hapticd::brep {
 
-/// What bounds the rows of elements, and how many are worth a look in one tick. Examining a spline leaf is expensive.
+/// Limits for bodies of faces and edges: how many rows are collected and examined in one tick. Examining a spline leaf
+/// is expensive.
 struct ElementLimits {
   using Shape = RowBox;
-  static constexpr int kMostFours = 8;         ///< of rows
-  static constexpr int kMostCandidates = 128;  ///< rows within reach, of which the nearest are taken
-  static constexpr int kMostNodes = 32;        ///< nodes of the tree that one gathering examines
-  static constexpr int kFew = 8, kMany = 20;
-  static constexpr double kWorthIt = 1.5;  ///< times the way of a tick: below this, gathering costs more than it saves
-  static constexpr bool kLearns = true;    ///< a measured distance bounds a row more closely than its shape
+  static constexpr int kMostFours = 8;         ///< most groups of four rows
+  static constexpr int kMostCandidates = 128;  ///< most rows within reach, from which the nearest are taken
+  static constexpr int kMostNodes = 32;        ///< most nodes of the tree that gather() examines
+  static constexpr int kFew = 8, kMany = 20;   ///< the reach grows below kFew rows and shrinks above kMany
+  /// Gathering pays only if the reach is at least this many times the probe's motion per tick.
+  static constexpr double kWorthIt = 1.5;
+  /// Measured distances are kept, because they bound a row more closely than its shape does.
+  static constexpr bool kLearns = true;
 };
-/// The same for triangles, which are cheap.
+/// The same limits for meshes: examining a triangle is cheap.
 struct TriangleLimits {
   using Shape = RowSlab;
   static constexpr int kMostFours = 24, kMostCandidates = 96, kMostNodes = 128, kFew = 16, kMany = 32;
@@ -28,9 +31,10 @@ struct TriangleLimits {
   static constexpr bool kLearns = false;
 };
 
-/// Rows whose boxes were within reach of a point, and a bound for all others: every distance changes by at most the way
-/// of the probe. Source: the neighbour lists of Verlet 1967, "Computer experiments on classical fluids". A distance
-/// that was measured to an element bounds it in the same way until the probe has come as much nearer.
+/// The rows whose boxes were within reach of a point, and a lower bound of the distance to all other rows. The bound
+/// stays usable because every distance changes by at most the distance that the probe moves. Source: the neighbour
+/// lists of Verlet 1967, "Computer experiments on classical fluids". Likewise, the measured distance to an element,
+/// less the distance moved since then, is a lower bound.
 template <class Choice>
 class NearRows {
  public:
@@ -39,16 +43,17 @@ class NearRows {
   using Four = decltype(emptyFour(Shape{}));
   static constexpr int kMostRows = 4 * Limits::kMostFours;
 
-  /// [rt] Takes the rows of a body that may be within `reach` [m] of p (frame of the body), the nearest ones if they
-  /// are many. False means that nothing is known, because there are far too many.
+  /// [rt] Takes the rows of a body that may be within `reach` [m] of p (frame of the body); if they are too many, only
+  /// the nearest ones. Returns false, and then nothing is known, if the search exceeds kMostNodes or kMostCandidates.
   bool gather(const BodyTree& body, const Eigen::Vector3d& p, double reach) noexcept;
-  /// [rt] The probe has moved by this way [m].
+  /// [rt] Tells that the probe has moved by this distance [m].
   void go(double way) noexcept { gone_ += way; }
-  /// [rt] From now on nothing is known.
+  /// [rt] Forgets the rows; beyond() is then below 0.
   void forget() noexcept { beyond_ = -1; }
-  /// [rt] No element of other rows is nearer to p than this [m]. Below 0 nothing is known.
+  /// [rt] Returns a lower bound of the distance [m] from p to every element of the other rows. If it is below 0,
+  /// nothing is known.
   double beyond(const Eigen::Vector3d& p) const noexcept { return beyond_ - (p - center_).norm(); }
-  /// [rt] No element of a row is nearer to the present probe than the square root of this [m].
+  /// [rt] Records that no element of a row is nearer to the present probe than sqrt(distance2). @param distance2 [m^2]
   void learn(int four, int lane, double distance2) noexcept {
     if constexpr (!Limits::kLearns) return;
     constexpr double kRoundedDown = 1 - 1e-6;
@@ -57,7 +62,7 @@ class NearRows {
 
   int rows() const noexcept { return rows_; }
   int fours() const noexcept { return (rows_ + 3) / 4; }
-  /// [rt] Lower bounds of the squared distances [m^2] to four rows.
+  /// [rt] Returns lower bounds of the squared distances [m^2] to four rows.
   Float4 distances(int four, const BoxProbe& probe) const noexcept {
     constexpr Float4 kZero{};
     const Float4 boxes = rowDistances(fours_[static_cast<std::size_t>(four)], probe);
@@ -79,11 +84,11 @@ class NearRows {
   void add(const Shape& shape, std::int32_t child) noexcept;
 
   std::array<Four, Limits::kMostFours> fours_;
-  std::array<Float4, Limits::kMostFours> known_{};  ///< [m] measured distances, and the way until then
+  std::array<Float4, Limits::kMostFours> known_{};  ///< [m] measured distance, plus gone_ at that time
   std::array<std::int32_t, kMostRows> children_{};
   Eigen::Vector3d center_{0, 0, 0};
   double beyond_ = -1;
-  double gone_ = 0;  ///< [m] way of the probe since the rows were gathered
+  double gone_ = 0;  ///< [m] distance moved by the probe since the rows were gathered
   int rows_ = 0;
   std::array<Candidate, Limits::kMostCandidates> candidates_;
   int candidate_count_ = 0;

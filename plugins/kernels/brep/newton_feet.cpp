@@ -15,12 +15,14 @@ using spline::CurvePoint;
 using spline::SurfacePoint;
 
 constexpr int kMostSteps = 16;
-/// [m] A Newton step this short leaves an error of its square times the curvature, which is negligible.
+/// [m] A Newton step shorter than this ends the search. The remaining error is the square of the step times the
+/// curvature, which is negligible.
 constexpr double kShortStep = 1e-8;
-/// The Hessian may fall to this share of the first-order one before the step is no longer Newton's.
+/// If the determinant of the Hessian is below this share of the product of its diagonal, the first-order (Gauss-Newton)
+/// step is used instead.
 constexpr double kFlattest = 1e-5;
 
-/// The distance function of a leaf about one point.
+/// The squared distance to the probe and its derivatives at one point of a leaf.
 struct LeafState {
   Array2d uv;
   SurfacePoint E;
@@ -28,14 +30,15 @@ struct LeafState {
   double f;    ///< |r|^2
 };
 
-/// What is to be found on a leaf.
+/// One search for a foot on a leaf.
 struct LeafTask {
   const Geometry& geometry;
   const Leaf& leaf;
-  std::uint32_t surface;  ///< for an offset: its basis, whose feet have the same parameters
+  /// Index of the surface; for an offset its basis, because the foot there has the same parameters.
+  std::uint32_t surface;
   const Vector3d& p;
   int evaluations = 0;
-  bool arrived = true;  ///< the last descent ended at a minimum
+  bool arrived = true;  ///< true if the last descent ended at a minimum
 
   void at(const Array2d& uv, LeafState& state) noexcept {
     state.uv = uv;
@@ -46,7 +49,8 @@ struct LeafTask {
   }
 };
 
-/// The step that leads to the foot of the quadratic model, on the sides that hold the point if it presses there.
+/// Returns the step to the foot of the quadratic model. If the point is pressed against a side of the leaf, the step
+/// runs along that side.
 Vector2d stepFrom(const LeafTask& task, const LeafState& s) noexcept {
   const SurfacePoint& E = s.E;
   const Vector2d g(s.r.dot(E.Su), s.r.dot(E.Sv));
@@ -58,7 +62,7 @@ Vector2d stepFrom(const LeafTask& task, const LeafState& s) noexcept {
   const bool held1 = (s.uv[1] <= task.leaf.lo[1] && g[1] > 0) || (s.uv[1] >= task.leaf.hi[1] && g[1] < 0) || !(g11 > 0);
   if (held0 || held1) return {held0 ? 0 : -g[0] / h00, held1 ? 0 : -g[1] / h11};
   double det = h00 * h11 - h01 * h01;
-  if (!(det > kFlattest * h00 * h11)) {  // no minimum there: the first-order step descends
+  if (!(det > kFlattest * h00 * h11)) {  // the quadratic model has no minimum, but the first-order step descends
     h00 = g00 * (1 + 1e-9);
     h11 = g11 * (1 + 1e-9);
     h01 = g01;
@@ -67,9 +71,10 @@ Vector2d stepFrom(const LeafTask& task, const LeafState& s) noexcept {
   return {(h01 * g[1] - h11 * g[0]) / det, (h01 * g[0] - h00 * g[1]) / det};
 }
 
-/// Newton's method from s on; the distance never grows. It leaves the last short step to the caller.
+/// Runs Newton's method from s on; the distance never grows. Returns the last short step, which the caller must add.
 Vector2d descend(LeafTask& task, LeafState& s) noexcept {
-  constexpr double kStuck = 1e-7;  // of the distance: a step that rounding of its square may make useless
+  // relative to the distance; rounding of the squared distance may hide the gain of a step that is shorter than this
+  constexpr double kStuck = 1e-7;
   Vector2d d = stepFrom(task, s);
   LeafState trial;
   task.arrived = false;
@@ -92,9 +97,9 @@ Vector2d descend(LeafTask& task, LeafState& s) noexcept {
   return ((s.uv + d.array()).max(task.leaf.lo).min(task.leaf.hi) - s.uv).matrix();
 }
 
-/// True if the surface ends where the foot presses against its border.
+/// True if the foot lies at a border where the surface ends, and the distance would still fall beyond that border.
 bool pressesOutward(const Leaf& leaf, const LeafState& s, const Array2d& uv) noexcept {
-  constexpr double kStationary = 1e-9;  // cosine between the way to the probe and the tangent
+  constexpr double kStationary = 1e-9;  // cosine between the direction to the probe and the tangent
   for (int axis = 0; axis < 2; ++axis) {
     const Vector3d& tangent = axis == 0 ? s.E.Su : s.E.Sv;
     const double cosine = s.r.dot(tangent), enough = kStationary * std::sqrt(s.f) * tangent.norm();
@@ -105,7 +110,8 @@ bool pressesOutward(const Leaf& leaf, const LeafState& s, const Array2d& uv) noe
   return false;
 }
 
-/// The foot that s and its last step give, if it is nearer than `hit` and inside the trim.
+/// Replaces `hit` by the foot after the last step from s, if this foot is nearer and inside the trim. Returns its
+/// squared distance.
 double take(const LeafTask& task, const FaceShape& face, const LeafState& s, const Vector2d& d, double offset,
             double& region2, Hit& hit) noexcept {
   const Array2d uv = (s.uv + d.array()).max(task.leaf.lo).min(task.leaf.hi);
@@ -127,14 +133,15 @@ double take(const LeafTask& task, const FaceShape& face, const LeafState& s, con
   return d2;
 }
 
-/// True if the probe is nearer to its foot than the leaf's centres of curvature on its side.
+/// True if the probe is nearer to its foot than every centre of curvature of the leaf on the probe's side.
 bool isWithinFocus(const Leaf& leaf, const FaceShape& face, const LeafState& s, double offset) noexcept {
   const double side = -face.outward * s.r.dot(s.E.Su.cross(s.E.Sv));
   return (std::sqrt(s.f) + offset) * static_cast<double>(side > 0 ? leaf.bend_front : leaf.bend_back) < 1;
 }
 
-/// Lower bound of the squared distance to a leaf that a probe sees to have one foot: it bends up by `least_bend` at
-/// least from the slope at s. Where the leaf ends it can only rise.
+/// Returns a lower bound of the squared distance to a leaf on which the probe has one foot. It follows from the slope
+/// at s and `least_bend`, the least second derivative. A slope that rises inward from a border of the leaf is left out,
+/// because the distance can only grow along it.
 double leastFrom(const LeafTask& task, const LeafState& s, double least_bend) noexcept {
   Vector2d slope(s.r.dot(s.E.Su), s.r.dot(s.E.Sv));
   for (int axis = 0; axis < 2; ++axis)
@@ -169,7 +176,8 @@ PieceAnswer leafFoot(const Geometry& geometry, const Leaf& leaf, const FaceShape
   answer.d2 = take(task, face, s, d, offset, answer.region2, hit);
   answer.alone =
       task.arrived && (start.sight.feet != FeetOfLeaf::kUnknown || isWithinFocus(leaf, face, s, std::abs(offset)));
-  // Beyond a centre of curvature there may be several feet, so it starts from elsewhere too.
+  // If the probe is beyond a centre of curvature, there may be several feet. So the search also starts near the
+  // corners.
   for (int corner = 0; corner < 4 && !answer.alone && start.elsewhere; ++corner) {
     const Array2d share(corner % 2 == 0 ? 0.1 : 0.9, corner < 2 ? 0.1 : 0.9);
     task.at(leaf.lo + share * (leaf.hi - leaf.lo), s);
@@ -183,7 +191,7 @@ PieceAnswer leafFoot(const Geometry& geometry, const Leaf& leaf, const FaceShape
 
 namespace {
 
-/// The distance function of a piece of a curve about one point.
+/// The squared distance to the probe and its derivatives at one point of a curve.
 struct CurveState {
   double t;
   CurvePoint C;
@@ -244,7 +252,8 @@ double take(const CurveTask& task, const CurveState& s, double d, Hit& hit) noex
   return d2;
 }
 
-/// Lower bound of the squared distance to a piece along which it curves upward everywhere; 0: it may not.
+/// Returns a lower bound of the squared distance to a piece if its second derivative is positive everywhere along the
+/// piece, else 0.
 double leastFrom(const CurveTask& task, const CurveState& s) noexcept {
   const double bend = leastBendSeenFrom(task.piece.shape, task.p);
   const double speed2 = s.C.C1.squaredNorm(), slope = s.r.dot(s.C.C1);
@@ -268,7 +277,7 @@ PieceAnswer pieceFoot(const Geometry& geometry, const CurvePiece& piece, const V
     }
   double d = task.descend(s);
   answer.d2 = take(task, s, d, hit);
-  // Beyond a centre of curvature there may be several feet, or only the ends.
+  // If the probe is beyond a centre of curvature, there may be several feet, or only the ends may be minima.
   const FeetOfPiece feet = std::sqrt(s.f) * piece.bend < 1 ? FeetOfPiece::kOne : feetSeenFrom(piece.shape, p);
   answer.alone = feet != FeetOfPiece::kUnknown;
   if (feet != FeetOfPiece::kOne)

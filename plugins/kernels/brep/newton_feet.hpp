@@ -1,35 +1,38 @@
 // SPDX-License-Identifier: MIT
-/// Nearest points of leaves and of pieces of curves: Newton, kept inside the piece.
+/// Nearest points of leaves and of pieces of curves, by Newton's method, whose iterates are kept inside the leaf or
+/// piece.
 #pragma once
 #include "kernels/brep/elements.hpp"
 
 namespace hapticd::brep {
 
-/// What a search learns from one such element.
+/// What a search learns by examining a leaf or a piece of a curve.
 struct PieceAnswer {
-  double d2 = std::numeric_limits<double>::infinity();  ///< [m^2] of the nearest foot found, also if it was not taken
-  double region2 =
-      std::numeric_limits<double>::infinity();  ///< [m^2] of a leaf: the same, including feet that are refused
-  bool alone = true;                            ///< no other point of the element can be nearer than both
+  /// [m^2] squared distance of the nearest foot found, even if `hit` was nearer.
+  double d2 = std::numeric_limits<double>::infinity();
+  /// [m^2] leaves only: the same, including feet that are refused (see leafFoot()).
+  double region2 = std::numeric_limits<double>::infinity();
+  bool alone = true;  ///< true if no other point of the element can be nearer than d2 and region2
   int evaluations = 0;
-  int starts = 1;  ///< of Newton
+  int starts = 1;  ///< starts of Newton's method
 };
 
 /// How to search for a foot on a leaf.
 struct LeafStart {
   Eigen::Array2d uv;
-  LeafSight sight;        ///< how the probe sees the leaf
-  bool elsewhere = true;  ///< if there may be several feet, start from the corners too
-  double limit2 = std::numeric_limits<double>::infinity();  ///< [m^2] a leaf that is farther need not be told exactly
+  LeafSight sight;        ///< how many feet the probe has on the leaf
+  bool elsewhere = true;  ///< start near the corners too if there may be several feet
+  /// [m^2] if the leaf is farther than this, a lower bound is enough.
+  double limit2 = std::numeric_limits<double>::infinity();
 };
 
-/// [rt] Foot of p on a leaf. A foot on a border of the surface, or of the box of the loops, that is not stationary
-/// there is refused, because the edge there is more exact.
+/// [rt] Finds the foot of p on a leaf. A foot at a border of the surface, or of the box of the loops, is refused if the
+/// distance would still decrease beyond the border, because the edge there gives a more exact point.
 PieceAnswer leafFoot(const Geometry& geometry, const Leaf& leaf, const FaceShape& face, std::uint32_t surface,
                      const Eigen::Vector3d& p, const LeafStart& start, Hit& hit) noexcept;
 
-/// [rt] Foot of p on a piece of a curve, from t on. @param limit2 [m^2] a piece that is farther need not be measured
-/// exactly
+/// [rt] Finds the foot of p on a piece of a curve, starting at t. @param limit2 [m^2] if the piece is farther than
+/// this, a lower bound is enough
 PieceAnswer pieceFoot(const Geometry& geometry, const CurvePiece& piece, const Eigen::Vector3d& p, double t,
                       double limit2, Hit& hit) noexcept;
 

@@ -8,7 +8,7 @@ void linkCoedges(Part& part) {
     edge.first_coedge = kNone;
     edge.coedge_count = 0;
   }
-  for (std::size_t i = part.coedges.size(); i-- > 0;) {  // backwards: the lists come out in ascending order
+  for (std::size_t i = part.coedges.size(); i-- > 0;) {  // backwards, so that each list is in ascending order
     Coedge& coedge = part.coedges[i];
     coedge.next = kNone;
     if (coedge.edge >= part.edges.size()) continue;

@@ -26,7 +26,7 @@ Range waveRange(double a, double b, double t0, double t1) {
   return range;
 }
 
-/// The extremes of radius and height of a face of revolution.
+/// Bounds of the radius and the height of a face of revolution.
 struct ProfileBounds {
   Range radius, height;
 };
@@ -55,7 +55,7 @@ AlignedBox3d rounded(const Vector3d& least, const Vector3d& most) {
   return {least - rounding, most + rounding};
 }
 
-/// Unit axes at right angles, the first along `a`, the second near `b`.
+/// Returns unit axes at right angles as rows: the first along `a`, the second near `b`.
 Matrix3d frameOf(const Vector3d& a, const Vector3d& b) {
   Matrix3d frame;
   frame.row(0) = a.normalized();

@@ -11,7 +11,7 @@
 namespace hapticd::brep {
 namespace {
 
-constexpr double kSquare = 1e-9;  // cosine between axes that must be at right angles; lengths that must be 1
+constexpr double kSquare = 1e-9;  // tolerance of cosines that must be 0 and of lengths that must be 1
 
 constexpr double kMostTurn = 2 * 3.14159265358979 * (1 + 1e-9), kFarthestAngle = 1000;  // [rad]
 
@@ -31,11 +31,11 @@ Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Every record of a kind must belong to exactly one body.
+/// Checks that every record of a kind belongs to exactly one body.
 void heldOnce(std::uint64_t held, std::size_t all, const char* what) {
   if (held == all) return;
-  throw PartError("bodies: they hold " + std::to_string(held) + " " + what + ", expected all " + std::to_string(all) +
-                  ", once each");
+  throw PartError("bodies: together they have " + std::to_string(held) + " " + what + ", but the part has " +
+                  std::to_string(all) + "; each must belong to exactly one body");
 }
 
 /// The record that is being checked, for messages.
@@ -48,10 +48,10 @@ struct Where {
   void need(bool good, const char* why) const {
     if (!good) fail(why);
   }
-  /// An index below `count`.
+  /// Checks that an index is below `count`.
   void index_in(std::uint32_t value, std::size_t count, const char* what) const {
     if (value >= count)
-      fail(std::string(what) + " " + std::to_string(value) + ", expected less than " + std::to_string(count));
+      fail(std::string(what) + " " + std::to_string(value) + ", but the index must be below " + std::to_string(count));
   }
   void index_or_none(std::uint32_t value, std::size_t count, const char* what) const {
     if (value != kNone) index_in(value, count, what);
@@ -60,7 +60,7 @@ struct Where {
   void range_in(std::uint64_t first, std::uint64_t length, std::size_t count, const char* what) const {
     if (first > count || length > count - first)
       fail(std::string(what) + " " + std::to_string(first) + " to " + std::to_string(first + length) +
-           ", expected within " + std::to_string(count));
+           ", but there are only " + std::to_string(count));
   }
   template <std::size_t n>
   void finite(const std::array<double, n>& values, double most, const char* what) const {
@@ -75,11 +75,13 @@ struct Where {
     if (!(value >= 0 && value <= kFarthestPart)) fail("tolerance is " + number(value) + ", expected 0 or more");
   }
   void flags_in(std::uint32_t flags, std::uint32_t known) const {
-    if ((flags & ~known) != 0) fail("flags " + std::to_string(flags) + ", expected some of " + std::to_string(known));
+    if ((flags & ~known) != 0)
+      fail("flags " + std::to_string(flags) + " have unknown bits, expected only bits of " + std::to_string(known));
   }
   void ascending(double lo, double hi, const char* what) const {
     if (!(lo < hi && std::abs(lo) <= kWidestParameter && std::abs(hi) <= kWidestParameter))
-      fail(std::string(what) + " from " + number(lo) + " to " + number(hi) + ", expected finite and ascending");
+      fail(std::string(what) + " from " + number(lo) + " to " + number(hi) +
+           ", expected finite numbers, the second greater than the first");
   }
 };
 
@@ -107,14 +109,15 @@ class Checker {
   template <class Record>
   void each(const char* kind, const std::vector<Record>& records,
             void (Checker::*check)(const Where&, const Record&) const) const {
-    if (records.size() >= kNone) throw PartError(std::string(kind) + ": too many, expected less than 4294967295");
+    if (records.size() >= kNone)
+      throw PartError(std::string(kind) + ": too many records, expected fewer than 4294967295");
     for (std::size_t i = 0; i < records.size(); ++i) (this->*check)({kind, i}, records[i]);
   }
 
   void header() const {
     if (!(part_.tolerance >= 0 && part_.tolerance <= kFarthestPart))
       throw PartError("tolerance is " + number(part_.tolerance) + ", expected 0 or more");
-    if (part_.instances.empty()) throw PartError("no instances, expected at least one");
+    if (part_.instances.empty()) throw PartError("the part has no instances, expected at least one");
     for (const Loss& loss : part_.losses)
       if (!(loss.size >= 0 && std::isfinite(loss.size)))
         throw PartError("a loss has size " + number(loss.size) + ", expected 0 or more");
@@ -127,7 +130,8 @@ class Checker {
     for (const Vector* v : {&s.o, &s.x, &s.y, &s.z}) at.finite(*v, kFarthestPart, "an axis");
     at.finite(s.r, kFarthestPart, "a radius");
     for (double period : s.period)
-      at.need(period >= 0 && period <= kWidestParameter, "a period is not 0 or a positive number");
+      at.need(period >= 0 && period <= kWidestParameter,
+              "a period is negative or not finite, expected 0 (not periodic) or a positive number");
     switch (s.kind) {
       case SurfaceKind::kSpline:
         return splineSurface(at, s);
@@ -168,7 +172,7 @@ class Checker {
     square(at, s.y, s.z, kSquare);
     if (s.kind == SurfaceKind::kSphere || s.kind == SurfaceKind::kTorus) unit(at, s.z, "z");
     if (s.kind == SurfaceKind::kCone)
-      at.need(s.r[1] != 0, "r1 is 0, expected a slope (a cone without is a cylinder)");
+      at.need(s.r[1] != 0, "r1 is 0, expected a slope (a cone without a slope is a cylinder)");
     else
       at.positive(s.r[0], "r0");
     if (s.kind == SurfaceKind::kTorus) at.positive(s.r[1], "r1");
@@ -190,10 +194,10 @@ class Checker {
     return std::span(part_.reals).subspan(first, length);
   }
 
-  /// Points of `dimension` coordinates, then weights.
+  /// Checks control points of `dimension` coordinates, and the weights after them.
   void net(const Where& at, std::uint64_t place, std::uint64_t points, std::uint64_t dimension, bool rational,
            double farthest) const {
-    if (points > part_.reals.size()) at.fail("it has more control points than numbers");
+    if (points > part_.reals.size()) at.fail("it has more control points than the part has numbers");
     at.range_in(place, points * (dimension + (rational ? 1 : 0)), part_.reals.size(), "points");
     for (double value : real(place, points * dimension))
       at.finite(std::array{value}, farthest, "a coordinate of a control point");
@@ -223,14 +227,16 @@ class Checker {
     at.positive(norm(c.y), "the length of y");
     square(at, c.x, c.y, kSquare);
     if (c.kind == CurveKind::kCircle)
-      at.need(std::abs(norm(c.x) - norm(c.y)) <= kSquare * norm(c.x), "x and y of a circle differ in length");
+      at.need(std::abs(norm(c.x) - norm(c.y)) <= kSquare * norm(c.x),
+              "x and y of a circle differ in length, expected the radius for both");
   }
 
   void curve2(const Where& at, const Curve2& c) const {
     curve(at, c, 2, kWidestParameter);
     if (c.kind == CurveKind::kSpline) return;
     at.need(c.x[0] != 0 || c.x[1] != 0, "x is 0, expected a direction");
-    if (c.kind != CurveKind::kLine) at.need(c.x[0] * c.y[1] != c.x[1] * c.y[0], "x and y lie on one line");
+    if (c.kind != CurveKind::kLine)
+      at.need(c.x[0] * c.y[1] != c.x[1] * c.y[0], "x and y are parallel, expected two directions");
   }
 
   void vertex(const Where& at, const Vertex& v) const {
@@ -250,17 +256,18 @@ class Checker {
       const CurveKind kind = part_.curves3[e.curve].kind;
       if (kind == CurveKind::kCircle || kind == CurveKind::kEllipse)
         at.need(e.t1 - e.t0 <= kMostTurn && std::abs(e.t0) <= kFarthestAngle,
-                "more than one turn of its circle or ellipse, or angles beyond 1000");
+                "its angles span more than one turn of the circle or ellipse, or are beyond 1000 rad");
     }
     std::uint32_t coedge = e.first_coedge, met = 0;
     for (; coedge != kNone && met <= e.coedge_count; ++met) {
       at.index_in(coedge, part_.coedges.size(), "coedge");
-      if (part_.coedges[coedge].edge != at.index) at.fail("coedge " + std::to_string(coedge) + " is of another edge");
+      if (part_.coedges[coedge].edge != at.index)
+        at.fail("coedge " + std::to_string(coedge) + " belongs to another edge");
       coedge = part_.coedges[coedge].next;
     }
     if (met != e.coedge_count)
       at.fail(std::string("its list has ") + (met > e.coedge_count ? "more" : "fewer") + " than the " +
-              std::to_string(e.coedge_count) + " coedges that it states");
+              std::to_string(e.coedge_count) + " coedges that coedge_count gives");
   }
 
   void coedge(const Where& at, const Coedge& c) const {
@@ -272,8 +279,10 @@ class Checker {
     at.ascending(c.t0, c.t1, "parameters");
     const Edge& e = part_.edges[c.edge];
     const bool pole = e.kind == EdgeKind::kPole;
-    at.need(pole == ((c.flags & kDegenerate) != 0), "a coedge is degenerate if and only if its edge is a pole");
-    at.need(pole || (c.t0 == e.t0 && c.t1 == e.t1), "its parameters are not those of its edge");
+    at.need(pole == ((c.flags & kDegenerate) != 0),
+            "the coedge is degenerate and its edge is not a pole, or the reverse; expected both or neither");
+    at.need(pole || (c.t0 == e.t0 && c.t1 == e.t1),
+            "its t0 and t1 differ from those of its edge, expected the same values");
   }
 
   void loop(const Where& at, const Loop& l) const {
@@ -281,7 +290,7 @@ class Checker {
     at.need(l.count > 0, "no coedges, expected at least one");
     const std::uint32_t face = part_.coedges[l.first].face;
     for (std::uint32_t i = 0; i < l.count; ++i)
-      at.need(part_.coedges[l.first + i].face == face, "its coedges are of different faces");
+      at.need(part_.coedges[l.first + i].face == face, "its coedges belong to different faces, expected one face");
   }
 
   void face(const Where& at, const Face& f) const {
@@ -294,7 +303,8 @@ class Checker {
     at.ascending(f.lo[0], f.hi[0], "u");
     at.ascending(f.lo[1], f.hi[1], "v");
     for (std::uint32_t i = 0; i < f.loop_count; ++i)
-      at.need(part_.coedges[part_.loops[f.first_loop + i].first].face == at.index, "a loop of it is of another face");
+      at.need(part_.coedges[part_.loops[f.first_loop + i].first].face == at.index,
+              "one of its loops belongs to another face");
   }
 
   void body(const Where& at, const Body& b) const {
@@ -306,13 +316,16 @@ class Checker {
     at.range_in(b.first_vertex, b.vertex_count, part_.vertices.size(), "vertices");
     at.range_in(b.first_point, b.point_count, part_.points.size(), "points");
     at.range_in(b.first_triangle, b.triangle_count, part_.triangles.size(), "triangles");
-    at.need(b.smooth_angle >= 0 && b.smooth_angle <= 3.2, "smooth_angle is not within 0 and pi");
-    if (b.kind == BodyKind::kMesh) at.need(b.face_count == 0, "a mesh has faces, expected triangles alone");
-    if (b.kind != BodyKind::kMesh) at.need(b.triangle_count == 0, "triangles, expected those of meshes alone");
+    at.need(b.smooth_angle >= 0 && b.smooth_angle <= 3.2, "smooth_angle is outside 0 to pi rad");
+    if (b.kind == BodyKind::kMesh) at.need(b.face_count == 0, "a mesh has faces, expected only triangles");
+    if (b.kind != BodyKind::kMesh)
+      at.need(b.triangle_count == 0, "it has triangles but is not a mesh, expected triangles only in meshes");
     for (std::uint32_t i = 0; i < b.triangle_count; ++i)
       for (std::uint32_t corner : part_.triangles[b.first_triangle + i].corner)
-        if (corner - b.first_point >= b.point_count)  // unsigned, so it is also false below the first
-          Where{"triangle", b.first_triangle + i}.fail("corner " + std::to_string(corner) + " is not of its body");
+        if (corner - b.first_point >= b.point_count)  // unsigned, so an index below first_point is found too
+          Where{"triangle", b.first_triangle + i}.fail(
+              "corner " + std::to_string(corner) +
+              " is not one of the points of the triangle's own body (import the part again)");
   }
 
   void instance(const Where& at, const Instance& i) const {
@@ -320,7 +333,8 @@ class Checker {
     name(at, i.name);
     if (i.parent != kNone) {
       at.index_in(i.parent, at.index, "parent");
-      at.need(part_.instances[i.parent].body == kNone, "its parent is a body, expected an assembly");
+      at.need(part_.instances[i.parent].body == kNone,
+              "its parent has a body, expected an assembly (an instance without a body)");
     }
     at.finite(i.pose, kFarthestPart, "a number of the pose");
     const auto row = [&](std::size_t r) { return Vector{i.pose[4 * r], i.pose[4 * r + 1], i.pose[4 * r + 2]}; };
@@ -329,7 +343,8 @@ class Checker {
     square(at, x, y, kSquare);
     square(at, y, z, kSquare);
     square(at, z, x, kSquare);
-    at.need(dot(cross(x, y), z) > 0, "the pose mirrors, expected a rotation (a mirrored body is a body of its own)");
+    at.need(dot(cross(x, y), z) > 0,
+            "the pose mirrors, expected a rotation (store a mirrored body as a separate body)");
   }
 
   void point(const Where& at, const Point& p) const { at.finite(p, kFarthestPart, "a coordinate"); }
@@ -339,17 +354,18 @@ class Checker {
     for (std::uint32_t k = 0; k < 3; ++k) {
       if (t.across[k] == kNone) continue;
       at.index_in(t.across[k] / 4, part_.triangles.size(), "the triangle across an edge");
-      at.need(t.across[k] % 4 < 3, "the edge across is 3, expected 0 to 2");
+      at.need(t.across[k] % 4 < 3, "the number of the edge across is 3, expected 0 to 2");
       const Triangle& other = part_.triangles[t.across[k] / 4];
       const std::uint32_t m = t.across[k] % 4;
       const std::uint32_t a = t.corner[k], b = t.corner[(k + 1) % 3];
       const std::uint32_t c = other.corner[m], d = other.corner[(m + 1) % 3];
-      at.need((a == c && b == d) || (a == d && b == c), "the edge across has other corners");
-      at.need(other.across[m] != kNone, "the edge across says that it is free");
+      at.need((a == c && b == d) || (a == d && b == c),
+              "the edge across has other end points, expected the same two points");
+      at.need(other.across[m] != kNone, "the edge across is marked as free, but it has a triangle across");
     }
   }
 
-  /// Faces and triangles belong to the one body whose range holds them.
+  /// Checks that each face and each triangle belongs to exactly one body, the one whose range contains it.
   void owners() const {
     std::uint64_t faces = 0, triangles = 0;
     for (std::size_t b = 0; b < part_.bodies.size(); ++b) {

@@ -7,12 +7,13 @@
 
 namespace hapticd::brep {
 
-/// What is wrong with a part, in words for the user: which record, its value, and what was expected.
+/// An error in a part. Its text tells the user which record is wrong, its value, and what was expected.
 class PartError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// [main] Checks every index, range, kind and number. What passes is safe to read; it may still be poor geometry.
+/// [main] Checks every index, range, kind and number of a part. A part that passes is safe to read, but its geometry
+/// may still be poor.
 /// @throws PartError that names the first record that breaks a rule.
 void checkPart(const Part& part);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Part files (hapticd-part/1) from and to bytes. driver/docs/part_file.md describes the format. No file is opened
-/// here.
+/// Converts parts to and from the bytes of a part file (hapticd-part/1, described in driver/docs/part_file.md). No file
+/// is opened here.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -14,14 +14,14 @@ namespace hapticd::brep {
 /// First line of a part file.
 inline constexpr char kPartMagic[] = "hapticd-part/1\n";
 
-/// [any] True if bytes begin as those of a part file of any version do.
+/// [any] True if the bytes begin like a part file of any version.
 bool looksLikePart(std::span<const std::byte> bytes) noexcept;
 
-/// [main] Reads and checks a part, whatever the bytes are. Messages begin with `name`.
+/// [main] Reads and checks a part. The bytes may be anything. Messages begin with `name`.
 /// @throws PartError that says where the file is wrong and what was expected.
 Part readPart(std::span<const std::byte> bytes, const std::string& name);
 
-/// [main] The bytes of a part file. The same part gives the same bytes.
+/// [main] Returns the bytes of a part file. Equal parts give equal bytes.
 /// @throws PartError if the part breaks a rule of checkPart().
 std::string writePart(const Part& part);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What instances and features of a part are called.
+/// Names of the instances and features of a part, for messages.
 #pragma once
 #include <string>
 
@@ -7,21 +7,21 @@
 
 namespace hapticd::brep {
 
-/// [main] UTF-8 text whose control characters became spaces: names of foreign files are shown in terminals, which would
-/// obey them.
+/// [main] Replaces the control characters of a UTF-8 text by spaces. Names from other programs' files are shown in
+/// terminals, which would act on control characters.
 std::string plainText(std::string text);
 
-/// [main] The name of an instance, else that of its body, else its number as "#3".
+/// [main] Returns the name of an instance. If it has none, returns the name of its body, or else its number as "#3".
 std::string instanceName(const Part& part, std::uint32_t instance);
 
-/// [main] The names from the outermost assembly down to an instance, with slashes; its number if it has no name.
+/// [main] Returns the names from the outermost assembly down to an instance, separated by slashes.
 std::string instancePath(const Part& part, std::uint32_t instance);
 
-/// [main] Instance and face of a feature in words, as "bolt: face 3 'head'"; features count over all instances of the
-/// file. "" if there is no such feature.
+/// [main] Names the instance and the face of a feature, such as "bolt: face 3 'head'". Features are numbered over all
+/// instances of the file. Returns "" if there is no such feature.
 std::string featureName(const Part& part, std::uint32_t feature);
 
-/// [main] A face (index in the part) in the words of featureName(), at the first place of its body.
+/// [main] Names a face (index in the part) as featureName() does, in the first instance of its body.
 std::string faceName(const Part& part, std::uint32_t face);
 
 }  // namespace hapticd::brep

@@ -23,11 +23,12 @@ struct Section {
   std::uint32_t crc = 0;
 };
 
-/// A whole number from the header. @throws PartError
+/// Reads a whole number from the header. @throws PartError
 std::uint64_t wholeNumber(const Json& object, const char* key, const std::string& what) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_number_unsigned())
-    throw PartError(what + ": " + key + " is missing or not a whole number, expected 0 or more");
+    throw PartError(what + ": " + key +
+                    " is missing, negative or not a whole number, expected a whole number of 0 or more");
   return found->get<std::uint64_t>();
 }
 
@@ -40,9 +41,10 @@ std::vector<std::string> textsAt(const Json& object, const char* key) {
   std::vector<std::string> texts;
   const auto found = object.find(key);
   if (found == object.end()) return texts;
-  if (!found->is_array()) throw PartError(std::string("header: ") + key + " is not a list, expected texts");
+  if (!found->is_array()) throw PartError(std::string("header: ") + key + " is not a list, expected a list of texts");
   for (const Json& text : *found) {
-    if (!text.is_string()) throw PartError(std::string("header: ") + key + " holds something other than texts");
+    if (!text.is_string())
+      throw PartError(std::string("header: ") + key + " has an entry that is not a text, expected only texts");
     texts.push_back(plainText(text.get<std::string>()));
   }
   return texts;
@@ -56,9 +58,10 @@ double numberAt(const Json& object, const char* key) {
 void readLosses(const Json& header, Part& part) {
   const auto losses = header.find("losses");
   if (losses == header.end()) return;
-  if (!losses->is_array()) throw PartError("header: losses is not a list, expected {what, reason, size_m}");
+  if (!losses->is_array()) throw PartError("header: losses is not a list, expected a list of {what, reason, size_m}");
   for (const Json& entry : *losses) {
-    if (!entry.is_object()) throw PartError("header: losses holds something other than {what, reason, size_m}");
+    if (!entry.is_object())
+      throw PartError("header: an entry of losses is not an object, expected {what, reason, size_m}");
     Loss loss{textAt(entry, "what"), textAt(entry, "reason"), numberAt(entry, "size_m"), kNone};
     if (const auto face = entry.find("face"); face != entry.end() && face->is_number_unsigned())
       loss.face = static_cast<std::uint32_t>(std::min<std::uint64_t>(face->get<std::uint64_t>(), kNone));
@@ -68,7 +71,8 @@ void readLosses(const Json& header, Part& part) {
 
 std::vector<Section> readSections(const Json& header) {
   const auto list = header.find("sections");
-  if (list == header.end() || !list->is_array()) throw PartError("header: sections is missing, expected a list");
+  if (list == header.end() || !list->is_array())
+    throw PartError("header: sections is missing or not a list, expected a list");
   std::vector<Section> sections;
   for (const Json& entry : *list) {
     const std::string name = textAt(entry, "name");
@@ -81,30 +85,31 @@ std::vector<Section> readSections(const Json& header) {
   return sections;
 }
 
-/// The bytes of a section, checked to be those that were written.
+/// Returns the bytes of a section, after a check of their place, size and checksum.
 std::span<const std::byte> bytesOf(const Section& section, std::span<const std::byte> data) {
   const std::string what = "section " + section.name;
   if (section.count > data.size() / section.record)
     throw PartError(what + ": " + std::to_string(section.count) + " records of " + std::to_string(section.record) +
-                    " bytes, more than the file holds; expected a whole file");
+                    " bytes, which is more than the file holds; the file may be incomplete");
   const std::uint64_t size = section.count * section.record;
   if (section.offset % kSectionAlignment != 0 || section.offset > data.size() || size > data.size() - section.offset)
     throw PartError(what + ": begins at byte " + std::to_string(section.offset) +
-                    ", expected a multiple of 64 inside the file; is it whole?");
+                    ", expected a multiple of 64 inside the file; the file may be incomplete");
   const auto bytes = data.subspan(section.offset, size);
   if (crc32c(bytes) != section.crc)
     throw PartError(what + ": its checksum differs, so the file was damaged; import the part again");
   return bytes;
 }
 
-/// Records in a file of an older version are shorter: members that they lack keep their defaults.
+/// Reads the records of a section. If an older version wrote shorter records, the missing members keep their defaults.
 template <class Record>
 void readRecords(const Section& section, std::span<const std::byte> data, std::vector<Record>& records) {
   if (section.record > sizeof(Record))
     throw PartError("section " + section.name + ": records of " + std::to_string(section.record) +
                     " bytes, expected at most " + std::to_string(sizeof(Record)) +
-                    "; a newer hapticd wrote this file: import it with this one");
-  if (2 * section.record < sizeof(Record))  // of no version, and it would take much more memory than the file is long
+                    "; a newer hapticd wrote this file: import the part again with this one");
+  // no version wrote such short records, and they would need much more memory than the file is long
+  if (2 * section.record < sizeof(Record))
     throw PartError("section " + section.name + ": records of " + std::to_string(section.record) + " bytes, expected " +
                     std::to_string(sizeof(Record)));
   const auto bytes = bytesOf(section, data);
@@ -122,7 +127,7 @@ Json readHeader(std::span<const std::byte> bytes) {
     throw PartError("not a part file of format hapticd-part/1; expected one that hapticd import wrote");
   std::uint32_t length = 0;
   std::memcpy(&length, bytes.data() + kMagicLength, sizeof length);
-  if (length > bytes.size() - kHeadLength) throw PartError("the header is cut off; expected a whole file");
+  if (length > bytes.size() - kHeadLength) throw PartError("the header is cut off; expected a complete file");
   const auto* text = reinterpret_cast<const char*>(bytes.data()) + kHeadLength;
   Json header = Json::parse(text, text + length, nullptr, false);
   if (!header.is_object()) throw PartError("the header is not a JSON object; import the part again");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The sections of a part file: their names, and the arrays of a Part that they hold.
+/// The sections of a part file: the name of each, and the array of Part that it holds.
 #pragma once
 #include "kernels/brep/part.hpp"
 

@@ -45,7 +45,7 @@ std::string writePart(const Part& part) {
                                   {"crc32c", crc32c(bytes)}});
     data.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   });
-  // Names come from other programs, so anything in them that is not UTF-8 is replaced.
+  // Names come from other programs, so bytes that are not UTF-8 are replaced.
   const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
   const auto length = static_cast<std::uint32_t>(text.size());
   std::string file = kPartMagic;

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTermRounding = 1e-9;  ///< of the terms that are compared
+constexpr double kTermRounding = 1e-9;  ///< relative to the terms that are compared
 
 struct Bend {
   Vector3d C, T, K;
@@ -30,9 +30,9 @@ Bend bendAt(const Geometry& geometry, std::uint32_t curve, double t) {
 
 PieceBow bowOf(const Geometry& geometry, std::uint32_t curve, double t0, double t1) {
   constexpr int kSamples = 9;
-  constexpr double kStraight = 1e-6;  // of the piece's length times its curvature: the centre is rounding
+  constexpr double kStraight = 1e-6;  // length times curvature; below it, the centre would be mostly rounding error
   std::array<Bend, kSamples> bends;
-  const double end = t1 - 1e-9 * (t1 - t0);  // derivatives at a knot are those of the span to its right
+  const double end = t1 - 1e-9 * (t1 - t0);  // at a knot, derivatives are evaluated in the span to its right
   for (int i = 0; i < kSamples; ++i)
     bends[static_cast<std::size_t>(i)] = bendAt(geometry, curve, std::min(t0 + (t1 - t0) * i / (kSamples - 1), end));
   const Bend& middle = bends[kSamples / 2];

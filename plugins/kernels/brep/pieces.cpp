@@ -20,10 +20,11 @@ using Eigen::Vector3d;
 using spline::CurvePoint;
 using spline::SurfacePoint;
 
-constexpr double kLeafTurn = 0.44;  ///< [rad] of the normals of a leaf, 25 degrees; of the tangents of a curve's piece
-constexpr int kMostHalvings = 2;    ///< of a leaf that bends unevenly
+/// [rad] (25 degrees) largest turn of the normals of a leaf, or of the tangents of a piece of a curve.
+constexpr double kLeafTurn = 0.44;
+constexpr int kMostHalvings = 2;  ///< how often a leaf that bends unevenly is halved
 
-/// Principal curvatures at a point, positive toward Su x Sv; false if the tangents vanish.
+/// Computes the principal curvatures at a point, positive toward Su x Sv. Returns false if the tangents vanish.
 bool curvatures(const SurfacePoint& E, double& least, double& most) {
   const Vector3d N = E.Su.cross(E.Sv);
   const double E1 = E.Su.squaredNorm(), F1 = E.Su.dot(E.Sv), G1 = E.Sv.squaredNorm(), det = E1 * G1 - F1 * F1;
@@ -55,7 +56,7 @@ class FaceCutter {
   }
 
  private:
-  /// The nets of the Bezier pieces give boxes that are certain to contain them.
+  /// Cuts a spline surface. The control net of each Bezier piece gives a box that certainly contains the piece.
   void cutSpline() {
     const spline::SurfaceData data = splineOf(geometry_.part(), surface_);
     trace::BoxTree pieces;
@@ -67,7 +68,8 @@ class FaceCutter {
     }
   }
 
-  /// Rows and columns of one turn each, with boxes from samples, for the few surfaces of other kinds.
+  /// Cuts a surface of another kind into rows and columns, each of which turns by about the same angle. The boxes come
+  /// from samples.
   void cutEvenly() {
     const Array2d lo = vec(face_.lo).array(), hi = vec(face_.hi).array();
     const std::array<int, 2> count{turnsAlong(0, lo, hi), turnsAlong(1, lo, hi)};
@@ -101,7 +103,8 @@ class FaceCutter {
     return std::clamp(static_cast<int>(std::ceil(widest / kLeafTurn)) + 1, 2, kMost);
   }
 
-  /// A chord over a cell deviates by an eighth of its second differences.
+  /// Returns a box around samples, enlarged because a surface deviates from its chords by an eighth of the second
+  /// differences.
   AlignedBox3d sampledBox(const Array2d& lo, const Array2d& hi) const {
     constexpr int kSamples = 6;
     AlignedBox3d box;
@@ -121,7 +124,7 @@ class FaceCutter {
     return {box.min() - margin, box.max() + margin};
   }
 
-  /// `domain_lo`, `domain_hi`: where the surface ends.
+  /// Adds the leaf from lo to hi. @param domain_lo,domain_hi where the surface ends
   void add(Array2d lo, Array2d hi, const Array2d& domain_lo, const Array2d& domain_hi, const AlignedBox3d& box,
            int halvings = 0) {
     const Array2d first = vec(face_.lo).array().max(domain_lo), last = vec(face_.hi).array().min(domain_hi);
@@ -151,9 +154,11 @@ class FaceCutter {
     leaves_.push_back(made);
   }
 
-  /// The axis along which a leaf bends so unevenly that little is known of it near its centres of curvature; -1: none.
+  /// Returns the axis along which a leaf bends so unevenly that its LeafBow says little near the centres of curvature,
+  /// or -1 if there is none.
   static int roughAxis(const Leaf& leaf) {
-    constexpr double kRough = 0.2;  // of half the squared distance's second derivative on the surface, which is 1
+    // variation of the second derivative of half the squared distance, which is 1 on the surface
+    constexpr double kRough = 0.2;
     int axis = -1;
     double worst = kRough;
     for (int i = 0; i < 2; ++i) {
@@ -191,7 +196,7 @@ class FaceCutter {
   std::vector<BoxedLeaf>& leaves_;
 };
 
-/// The box of an elliptic arc along the rows of `frame`, from the places where it turns along each.
+/// Returns the box of an elliptic arc along the rows of `frame`, from the extreme points along each row.
 AlignedBox3d arcBox(const Curve3& c, double t0, double t1, const Matrix3d& frame) {
   const Vector3d o = frame * vec(c.o), x = frame * vec(c.x), y = frame * vec(c.y);
   const auto at = [&](double t) { return Vector3d(o + std::cos(t) * x + std::sin(t) * y); };
@@ -217,7 +222,8 @@ class EdgeCutter {
   void run() {
     std::vector<double> stops{edge_.t0, edge_.t1};
     const bool is_spline = curve_.kind == CurveKind::kSpline;
-    const double narrow = 1e-9 * (edge_.t1 - edge_.t0);  // an edge may end by a rounding before or behind its last knot
+    // because of rounding, an edge may end just before or after a knot
+    const double narrow = 1e-9 * (edge_.t1 - edge_.t0);
     if (is_spline)
       for (const double knot : geometry_.splineCurve(edge_.curve).breaks())
         if (knot > edge_.t0 + narrow && knot < edge_.t1 - narrow) stops.push_back(knot);
@@ -228,7 +234,7 @@ class EdgeCutter {
  private:
   void halve(double t0, double t1, int depth) {
     constexpr int kSamples = 6, kDeepest = 8;
-    const double end = t1 - 1e-9 * (t1 - t0);  // derivatives at a knot are those of the span to its right
+    const double end = t1 - 1e-9 * (t1 - t0);  // at a knot, derivatives are evaluated in the span to its right
     CurvePoint C;
     Vector3d first = Vector3d::Zero();
     double turn = 0, bend = 0;
@@ -253,7 +259,7 @@ class EdgeCutter {
     made.piece = {t0, t1, bend, edge_index_, (t0 <= edge_.t0 ? 1u : 0u) | (t1 >= edge_.t1 ? 2u : 0u), {}};
     made.piece.shape = bowOf(geometry_, edge_.curve, t0, t1);
     const PieceBow& bow = made.piece.shape;
-    if (bow.along.squaredNorm() > 0.5) {  // otherwise the curve has no speed in the middle
+    if (bow.along.squaredNorm() > 0.5) {  // otherwise the derivative of the curve is 0 in the middle
       made.turned.frame.row(0) = bow.along;
       made.turned.frame.row(1) = bow.across;
       made.turned.frame.row(2) = bow.along.cross(bow.across);
@@ -268,7 +274,7 @@ class EdgeCutter {
     pieces_.push_back(made);
   }
 
-  /// The cylinders about the centre of curvature in the middle.
+  /// Sets the cylinders of `turned` about the centre of curvature in the middle of the piece.
   void bendAbout(const Vector3d& centre, double t0, double t1, TurnedBox& turned) const {
     constexpr int kSamples = 8;
     const Vector3d middle = turned.frame * centre;
@@ -287,7 +293,7 @@ class EdgeCutter {
     turned.outer = outer + sag;
   }
 
-  /// The net of a piece contains it.
+  /// Sets the boxes of a piece of a spline from its control points, whose hull contains the piece.
   void netBoxes(double t0, double t1, BoxedPiece& made) const {
     const spline::CurveData data = splineOf(geometry_.part(), curve_);
     const auto domain = data.domain();

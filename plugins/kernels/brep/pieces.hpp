@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Cuts faces and edges without a closed form into flat pieces, each with a box that holds it.
+/// Cuts faces and edges whose foot has no closed form into nearly flat pieces, each with a box that encloses it.
 #pragma once
 #include <Eigen/Geometry>
 #include <vector>
@@ -20,10 +20,11 @@ struct BoxedPiece {
   TurnedBox turned;
 };
 
-/// [main] The leaves of a spline, extrusion, revolution or offset face that its trim does not leave out whole.
+/// [main] Adds the leaves of a spline, extrusion, revolution or offset face to `leaves`, without those that lie wholly
+/// outside its trim.
 void cutFace(const Geometry& geometry, std::uint32_t face, const FaceShape& shape, std::vector<BoxedLeaf>& leaves);
 
-/// [main] The pieces of an elliptic or spline edge.
+/// [main] Adds the pieces of an elliptic or spline edge to `pieces`.
 void cutEdge(const Geometry& geometry, std::uint32_t edge, std::vector<BoxedPiece>& pieces);
 
 }  // namespace hapticd::brep

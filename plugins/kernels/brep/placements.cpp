@@ -9,12 +9,12 @@
 namespace hapticd::brep {
 namespace {
 
-/// True if `wanted` names the instance itself, by its name or its path.
+/// True if `wanted` is the name or the path of the instance itself.
 bool isNamed(const Part& part, std::uint32_t index, const std::string& wanted) {
   return instanceName(part, index) == wanted || instancePath(part, index) == wanted;
 }
 
-/// True if `wanted` names it or an assembly around it.
+/// True if `wanted` names the instance or an assembly that contains it.
 bool belongs(const Part& part, std::uint32_t index, const std::string& wanted) {
   if (wanted.empty()) return true;
   for (; index != kNone; index = part.instances[index].parent)
@@ -60,8 +60,9 @@ std::vector<Placement> placementsOf(const Part& part, const std::string& wanted,
       placements.push_back(placementOf(part, i));
       placements.back().first_feature = static_cast<std::uint32_t>(features);
     }
-    features += count;  // numbers count over all instances of the file, whichever of them are traced
-    if (features >= kNone) throw std::invalid_argument("more than 4,294,967,294 faces over all instances");
+    features += count;  // features are numbered over all instances of the file, also those that are not traced
+    if (features >= kNone)
+      throw std::invalid_argument("the part has more than 4,294,967,294 faces over all instances, expected fewer");
   }
   feature_count = static_cast<std::uint32_t>(features);
   if (!placements.empty()) return placements;

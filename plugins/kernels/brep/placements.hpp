@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Which bodies of a part are placed where, and under which names.
+/// Selects the bodies of a part that are traced, and their poses.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,8 +8,10 @@
 
 namespace hapticd::brep {
 
-/// [main] The bodies to trace, and how many features they have. `wanted`: see ModelOptions::instance.
-/// @throws std::invalid_argument if `wanted` names nothing or there is nothing to trace; the message lists the names.
+/// [main] Returns the bodies to trace. @param wanted see ModelOptions::instance @param feature_count becomes the number
+/// of features of all instances of the part
+/// @throws std::invalid_argument if `wanted` is not a name in the part (the message lists the names), or if there is
+/// nothing to trace.
 std::vector<Placement> placementsOf(const Part& part, const std::string& wanted, std::uint32_t& feature_count);
 
 }  // namespace hapticd::brep

@@ -11,9 +11,9 @@
 namespace hapticd::brep {
 namespace {
 
-constexpr std::size_t kMostPoints = spline::kMaxDegree + 1;  ///< that act on one span
+constexpr std::size_t kMostPoints = spline::kMaxDegree + 1;  ///< control points that act on one span
 
-/// Where a curve stands among the numbers of its part.
+/// The numbers of a curve inside the numbers of its part.
 struct PlaneNumbers {
   const double *knots, *points, *weights;
   PlaneNumbers(const std::vector<double>& reals, const Curve2& curve)
@@ -32,13 +32,14 @@ spline::CurveData dataOf(const Part& part, const Curve2& curve) {
   return data;
 }
 
-/// The knot at the low end of the span that holds t, which is moved into the domain.
+/// Moves t into the domain and returns the index of the knot at the low end of the span that contains t.
 std::size_t spanOf(const double* knots, const Curve2& curve, double& t) noexcept {
   const double low = knots[curve.degree], high = knots[curve.count];
   if (!(t > low)) t = low;
   if (t > high) t = high;
   auto span = static_cast<std::size_t>(std::upper_bound(knots + curve.degree + 1, knots + curve.count, t) - knots) - 1;
-  while (span > curve.degree && knots[span] == knots[span + 1]) --span;  // the end of the domain
+  // at the end of the domain, take the last span that is not empty
+  while (span > curve.degree && knots[span] == knots[span + 1]) --span;
   return span;
 }
 
@@ -68,7 +69,7 @@ PlaneSplinePoint PlaneSpline::at(const std::vector<double>& reals, const Curve2&
   for (std::size_t j = 1; j <= degree; ++j)
     for (std::size_t r = 0; r < j; ++r) reciprocals[count++] = 1 / (local[r + 1] - *(local + r + 1 - j));
   const spline::KnotWindow along{static_cast<int>(degree), local, reciprocals.data()};
-  const spline::KnotWindow across{0, nullptr, nullptr};  // a surface that does not depend on v
+  const spline::KnotWindow across{0, nullptr, nullptr};  // the kernel evaluates surfaces; this one does not depend on v
   alignas(32) std::array<double, 3 * spline::kOutStride> out;
   kernel_({along, across, points.data(), 1}, t, 0, out.data());
   const double* c1 = out.data() + spline::kOutStride;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// A spline in a parameter plane, evaluated from where it stands in its part. There are more of these than of all other
-/// splines, and few are ever asked in a tick: so they keep no copy, and pay for it by the divisions of their knots.
+/// A spline curve in a parameter plane, evaluated directly from the numbers in its part. A part has more such curves
+/// than other splines, and few are evaluated in a tick. So they keep no copy of their data, and divide by knot spans at
+/// each evaluation.
 #pragma once
 #include <vector>
 
@@ -16,19 +17,21 @@ struct PlaneSplinePoint {
 
 class PlaneSpline {
  public:
-  /// [main] Of a record of kind kSpline. @throws std::invalid_argument as spline::validate() does.
+  /// [main] Takes a curve of kind kSpline. @throws std::invalid_argument as spline::validate() does.
   PlaneSpline(const Part& part, const Curve2& curve);
 
-  /// [any] The same to the last bit as a spline::Curve gives. `reals` and `curve` are those of the constructor.
+  /// [any] Gives bit for bit the same result as spline::Curve. `reals` and `curve` must be those of the constructor's
+  /// part.
   PlaneSplinePoint at(const std::vector<double>& reals, const Curve2& curve, double t) const noexcept;
 
  private:
   spline::NetKernel kernel_ = nullptr;
-  double scale_ = 1;         ///< coordinates = scale_ * what the kernel sees
-  double weight_scale_ = 0;  ///< the kernel sees weight_scale_ * those of the part; 0: the curve is polynomial
+  double scale_ = 1;  ///< coordinates = scale_ * coordinates in the kernel
+  /// Weights in the kernel = weight_scale_ * weights of the part; 0 if the curve is polynomial.
+  double weight_scale_ = 0;
 };
 
-/// [main] The distinct knots of a record of kind kSpline in its domain, ascending.
+/// [main] Returns the distinct knots of a curve of kind kSpline inside its domain, ascending.
 std::vector<double> breaksOf(const Part& part, const Curve2& curve);
 
 }  // namespace hapticd::brep

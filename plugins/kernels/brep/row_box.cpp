@@ -22,11 +22,12 @@ RowBox rowBox(const TurnedBox& turned, const BoxTree& tree) {
   for (int i = 0; i < 3; ++i) {
     row.center[i] = static_cast<float>(center[i]);
     for (int k = 0; k < 3; ++k) row.axis[i][k] = static_cast<float>(turned.frame(i, k));
-    // Along a rounded axis the other two add a little; the margin is for the rounded center and the rounded probe.
+    // The rounding of an axis adds a share of the other two half sizes. The tree's margin covers the rounding of the
+    // center and of the probe.
     row.half[i] = static_cast<float>(half[i] * (1 + 1e-6) + 1e-6 * half.sum() + tree.margin());
   }
-  constexpr double kLeastRadii = 30;  // radii of half the box: a shape as flat as
-                                      // this is enclosed as closely by the box
+  // ratio of radius to half size; above it the shape is so flat that cylinders bound it no better than the box
+  constexpr double kLeastRadii = 30;
   if (!(turned.outer < kLeastRadii * half.maxCoeff())) return row;
   const Vector3d middle = turned.box.center();
   row.focus[0] = static_cast<float>(turned.focus[0] - middle[0]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The box that holds an element, turned with it: nearly flat or straight as they are, it bounds them far
-/// closer than the box of their tree.
+/// A box around one element, with the axes of the element. Elements are nearly flat or straight, so this box is much
+/// tighter than the upright box in the tree.
 #pragma once
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,37 +11,37 @@
 
 namespace hapticd::brep {
 
-/// A box in a frame of its own, as it is measured. A shape that bends like an arc about a line along axis 1 is thinner
-/// than its box: it lies between two cylinders about that line.
+/// A box in a frame of its own, in double precision. A shape that bends like an arc about a line along axis 1 is
+/// thinner than its box. So the shape is also bounded by two cylinders about that line.
 struct TurnedBox {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: unit axes at right angles
-  Eigen::AlignedBox3d box;                              ///< range of frame * x, for every x inside
-  Eigen::Vector2d focus{0, 0};                          ///< where the line is, along axes 0 and 2
-  double inner = 0;                                     ///< [m] radii of the cylinders
+  Eigen::AlignedBox3d box;                              ///< the box in the coordinates frame * x
+  Eigen::Vector2d focus{0, 0};                          ///< position of the line, along axes 0 and 2
+  double inner = 0;  ///< [m] radius of the inner cylinder; `outer` is the radius of the outer one
   double outer = std::numeric_limits<double>::infinity();
 
-  /// [main] The box along the axes around it.
+  /// [main] Returns the upright box around this box.
   Eigen::AlignedBox3d upright() const;
 };
 
-/// The same as a search sees it: in single precision, in the coordinates of its tree's nodes [m].
+/// A TurnedBox as a search uses it: in single precision, in the coordinates of its tree's nodes [m].
 struct RowBox {
   float center[3]{}, axis[3][3]{};
-  float half[3]{};   ///< no point inside is farther than this from the center along each axis
-  float focus[2]{};  ///< of the cylinders, from the center along axes 0 and 2
+  float half[3]{};   ///< half size along each axis
+  float focus[2]{};  ///< position of the cylinders' line, from the center along axes 0 and 2
   float inner = -kWhole, outer = kWhole;
 
-  static constexpr float kWhole = 1e18F;  ///< its square is a float
+  static constexpr float kWhole = 1e18F;  ///< means "no bound"; its square is still a finite float
 };
 
-/// Four of them, which are compared at once.
+/// Four RowBoxes, whose distances are computed at once.
 struct alignas(64) FourRowBoxes {
   Float4 center[3], axis[3][3];
   Float4 half[3];
   Float4 focus[2], inner, outer;
 };
 
-/// [rt] Four empty places, infinitely far from everything.
+/// [rt] Returns four unused places, which are farther away than any box.
 inline FourRowBoxes emptyFour(const RowBox&) noexcept {
   FourRowBoxes boxes{};
   boxes.half[0] = Float4{} - RowBox::kWhole;
@@ -49,7 +49,7 @@ inline FourRowBoxes emptyFour(const RowBox&) noexcept {
   return boxes;
 }
 
-/// [rt] Makes a box one of four.
+/// [rt] Writes a box to place `lane` of four.
 inline void put(const RowBox& box, int lane, FourRowBoxes& to) noexcept {
   for (int i = 0; i < 3; ++i) {
     to.center[i][lane] = box.center[i];
@@ -61,13 +61,14 @@ inline void put(const RowBox& box, int lane, FourRowBoxes& to) noexcept {
   to.outer[lane] = box.outer;
 }
 
-/// [main] The axes after rounding to single precision, along which the result encloses the box.
+/// [main] Rounds a box to single precision. The result encloses the box.
 RowBox rowBox(const TurnedBox& turned, const BoxTree& tree);
 
-/// Rounding of the axes, and of the way to a probe, moves the bound by less than this share.
+/// Safety factor of the bounds: rounding of the axes and of the vector to the probe changes a bound by less than 1e-5
+/// of it.
 inline constexpr float kRowShare = 1 - 1e-5F;
 
-/// [rt] Lower bounds of the squared distances [m^2] to what each of four boxes holds.
+/// [rt] Returns lower bounds of the squared distances [m^2] to the contents of four boxes.
 inline Float4 rowDistances(const FourRowBoxes& boxes, const BoxProbe& probe) noexcept {
   constexpr Float4 kZero{};
   const Float4 way[3] = {probe.at[0] - boxes.center[0], probe.at[1] - boxes.center[1], probe.at[2] - boxes.center[2]};
@@ -87,7 +88,7 @@ inline Float4 rowDistances(const FourRowBoxes& boxes, const BoxProbe& probe) noe
   return ((bent > flat ? bent : flat) + square[1]) * kRowShare;
 }
 
-/// [rt] The same for one box.
+/// [rt] Returns a lower bound of the squared distance [m^2] to the contents of one box.
 inline float rowDistance(const RowBox& box, const BoxProbe& probe) noexcept {
   const float way[3] = {probe.at[0][0] - box.center[0], probe.at[1][0] - box.center[1], probe.at[2][0] - box.center[2]};
   float along[3], square[3];

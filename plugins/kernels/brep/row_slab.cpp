@@ -20,8 +20,9 @@ RowSlab rowSlab(const Part& part, std::span<const std::uint32_t> triangles, cons
     normal += (b - a).cross(c - a);
     for (const Vector3d& p : {a, b, c}) box.extend(p);
   }
-  normal = normal.stableNormalized();  // zero if the triangles have no area or face each other: then it is a ball
-  // The disc after rounding to single precision must enclose the triangles.
+  // zero if the triangles have no area or opposite normals; the disc then becomes a ball
+  normal = normal.stableNormalized();
+  // The disc must enclose the triangles even after rounding to single precision.
   RowSlab slab;
   Vector3d center, n;
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The flat disc that holds a row of triangles: nearly flat as these are, it bounds them far closer than their box.
+/// A flat disc around a row of triangles. The triangles of a row lie nearly in one plane, so the disc is much tighter
+/// than their box.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -17,21 +18,21 @@ struct RowSlab {
   float half = 0, radius = 0;
 };
 
-/// Four of them, which are compared at once.
+/// Four discs, whose distances are computed at once.
 struct alignas(64) FourSlabs {
   Float4 center[3], normal[3];
   Float4 half, radius;
 };
 
-/// [rt] Four empty places, infinitely far from everything.
+/// [rt] Returns four unused places, which are farther away than any disc.
 inline FourSlabs emptyFour(const RowSlab&) noexcept {
-  constexpr float kFar = 1e18F;  // its square is a float
+  constexpr float kFar = 1e18F;  // its square is still a finite float
   FourSlabs slabs{};
   slabs.center[0] = Float4{} + kFar;
   return slabs;
 }
 
-/// [rt] Makes a disc one of four.
+/// [rt] Writes a disc to place `lane` of four.
 inline void put(const RowSlab& slab, int lane, FourSlabs& to) noexcept {
   for (int axis = 0; axis < 3; ++axis) {
     to.center[axis][lane] = slab.center[axis];
@@ -41,13 +42,14 @@ inline void put(const RowSlab& slab, int lane, FourSlabs& to) noexcept {
   to.radius[lane] = slab.radius;
 }
 
-/// [main] The disc about some triangles of a part, at most BoxTree::kMaxRow.
+/// [main] Returns a disc around the given triangles of a part, at most BoxTree::kMaxRow of them.
 RowSlab rowSlab(const Part& part, std::span<const std::uint32_t> triangles, const BoxTree& tree);
 
-/// Rounding of a disc's normal, and of the way to a probe, moves the bound by less than this share.
+/// Safety factor of the bounds: rounding of the normal and of the vector to the probe changes a bound by less than 1e-5
+/// of it.
 inline constexpr float kSlabShare = 1 - 1e-5F;
 
-/// [rt] Lower bounds of the squared distances [m^2] to what each of four discs holds.
+/// [rt] Returns lower bounds of the squared distances [m^2] to the contents of four discs.
 inline Float4 rowDistances(const FourSlabs& slabs, const BoxProbe& probe) noexcept {
   constexpr Float4 kZero{};
   Float4 off{}, whole{};
@@ -65,7 +67,7 @@ inline Float4 rowDistances(const FourSlabs& slabs, const BoxProbe& probe) noexce
   return (high * high + across * across) * kSlabShare;
 }
 
-/// [rt] The same for one disc.
+/// [rt] Returns a lower bound of the squared distance [m^2] to the contents of one disc.
 inline float rowDistance(const RowSlab& slab, const BoxProbe& probe) noexcept {
   float off = 0, whole = 0;
   for (int axis = 0; axis < 3; ++axis) {

@@ -14,10 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostRestarts = 8;  ///< leaves per search on which Newton's method starts from several places
+constexpr int kMostRestarts = 8;  ///< most leaves per search on which Newton's method starts from several places
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A vertex at which an edge has no length. Returns the squared distance; `hit` is replaced where it is nearer.
+/// Examines an edge that is a single point. Returns its squared distance. `hit` is replaced if the point is nearer.
 inline double poleFoot(const Part& part, std::uint32_t edge, const Vector3d& p, Hit& hit) noexcept {
   const Vector3d q = vec(part.vertices[part.edges[edge].first_vertex].point);
   const double d2 = (p - q).squaredNorm();
@@ -27,7 +27,7 @@ inline double poleFoot(const Part& part, std::uint32_t edge, const Vector3d& p, 
   return d2;
 }
 
-/// The same for a triangle of a mesh.
+/// Examines a triangle of a mesh. Returns its squared distance. `hit` is replaced if the triangle is nearer.
 inline double meshFoot(const Part& part, std::uint32_t triangle, const Vector3d& p, Hit& hit) noexcept {
   const Triangle& t = part.triangles[triangle];
   const TriangleFoot foot =
@@ -42,7 +42,7 @@ inline double meshFoot(const Part& part, std::uint32_t triangle, const Vector3d&
   return d2;
 }
 
-/// [m^2] squared distance to a point that is known to be on the part.
+/// Returns the squared distance [m^2] from p to a known point of the part, rounded up.
 double limitOf(const Vector3d& p, const Hit& known) noexcept {
   return (p - known.point).squaredNorm() * (1 + 1e-9);
 }
@@ -59,7 +59,8 @@ double Nearest::distance() const noexcept {
 
 Search::Search(const Model& model) : model_(model) {}
 
-/// A line or a circle. What the faces beside it know is the parameter of the curve that stands in the file.
+/// Finds the foot on a line or a circle. If the edge is guised (a spline in the file), the parameter in `hit` is
+/// converted to that of the spline, which the faces beside the edge use.
 double Search::edgeFoot(Element element, const Vector3d& p, Hit& hit) const noexcept {
   const EdgeShape& edge = model_.edge(element.index());
   const double before = hit.d2;
@@ -69,7 +70,8 @@ double Search::edgeFoot(Element element, const Vector3d& p, Hit& hit) const noex
   return d2;
 }
 
-/// Foot on a leaf. If the last foot is known, it is not known how the probe sees the leaf.
+/// Finds the foot on a leaf. If the last foot is known, Newton's method starts there. Then mayHold() was not called, so
+/// feetSeenFrom() is called here.
 double Search::leafOf(Element element, const Vector3d& p, Look& look, Hit& hit) const noexcept {
   const Leaf& leaf = model_.leaf(element.index());
   LeafStart start{look.uv, look.sight, look.elsewhere, look.limit2};
@@ -85,7 +87,7 @@ double Search::leafOf(Element element, const Vector3d& p, Look& look, Hit& hit) 
   return answer.d2;
 }
 
-/// A lower bound of the squared distance to an element; `hit` is replaced where the element is nearer.
+/// Returns a lower bound of the squared distance to an element. `hit` is replaced if the element is nearer.
 double Search::evaluate(Element element, const Vector3d& p, Look& look, Hit& hit) const noexcept {
   const std::uint32_t i = element.index();
   switch (element.kind()) {
@@ -112,7 +114,8 @@ double Search::evaluate(Element element, const Vector3d& p, Look& look, Hit& hit
   }
 }
 
-/// False if a leaf cannot hold the nearest point: no foot lies on it.
+/// Returns false if a leaf certainly has no foot, so that it cannot have the nearest point. Otherwise sets the start
+/// for Newton's method.
 bool Search::mayHold(Element element, const Vector3d& p, Look& look) const noexcept {
   const Leaf& leaf = model_.leaf(element.index());
   const Vector3d q = leaf.bow.local(p);
@@ -122,7 +125,8 @@ bool Search::mayHold(Element element, const Vector3d& p, Look& look) const noexc
   return true;
 }
 
-/// True if an element that is not nearer than `d2` is equally near: for a face, its foot may be outside the trim.
+/// True if an element, whose examination returned d2, really has a point that near. The foot of a face may be outside
+/// its trim, and then it does not count.
 bool Search::isAsNear(Element element, const Vector3d& p, double d2) const noexcept {
   if (element.kind() != ElementKind::kFace) return true;
   Hit hit;
@@ -130,13 +134,15 @@ bool Search::isAsNear(Element element, const Vector3d& p, double d2) const noexc
   return hit.d2 == d2;
 }
 
-/// What the examination shows about the squared distance to all of the element, including what its trim leaves out.
+/// Returns the lower bound, found by an examination, of the squared distance to the whole element, including the places
+/// outside its trim.
 double Search::leastOf(double d2, const Look& look) noexcept {
   if (look.least2 >= 0) return look.least2;
   return look.alone && d2 < kInfinity ? d2 : 0;
 }
 
-/// Examines one element, whose box is at least bound2 away. Returns what is then known of its squared distance.
+/// Examines one element. @param bound2 [m^2] bound of the element's box. Returns a lower bound of the squared distance
+/// to the whole element.
 double Search::look(std::uint32_t place, Element element, const Vector3d& p, double bound2, Run& run) noexcept {
   Nearest& best = run.best;
   const double before = best.hit.d2;
@@ -168,7 +174,7 @@ void Search::searchTree(const BodyTree& body, std::int32_t root, std::uint32_t p
                         Run& run) noexcept {
   if (body.tree.empty() || root == BodyTree::kNoRoot) return;
   Nearest& best = run.best;
-  const Element first = run.first_place == place ? run.first : Element();  // it was examined already
+  const Element first = run.first_place == place ? run.first : Element();  // begin() has examined this element
   const BoxProbe probe(body.tree, p);
   std::array<DescentEntry, BoxTree::kMaxStack> stack;
   std::array<DescentEntry, 4> children;
@@ -204,7 +210,7 @@ void Search::searchTree(const BodyTree& body, std::int32_t root, std::uint32_t p
   }
 }
 
-/// The same for the boxes of the placements.
+/// Searches the tree of the placements, and in it the trees of their bodies.
 void Search::searchPlaces(const Vector3d& p, Run& run) noexcept {
   const BoxTree& tree = model_.placementTree();
   const BoxProbe probe(tree, p);
@@ -242,8 +248,8 @@ void Search::searchWhole(const Vector3d& p, Run& run) noexcept {
     searchPlaces(p, run);
 }
 
-/// Searches with the limit, and without it where that leaves nothing: the last foot may be one that a gap between a
-/// face and its edge hides now.
+/// Searches within run.limit2, and again without this limit if nothing was found. The last foot may now be missing in a
+/// gap between a face and its edge.
 template <class Whole>
 void Search::searchWithin(Run& run, const Whole& whole) noexcept {
   const Run start = run;
@@ -254,8 +260,8 @@ void Search::searchWithin(Run& run, const Whole& whole) noexcept {
   whole();
 }
 
-/// Every distance changes by at most the way of the probe: while the last element is nearer than the others can be by
-/// now, it has the nearest point.
+/// Returns true if no search is needed, because the last element still has the nearest point. Every distance changes by
+/// at most the distance that the probe has moved. So the others' least distance is still bounded.
 bool Search::goesOn(const Vector3d& p, const Run& run) noexcept {
   if (!last_.proved || run.first_place == kNone) return false;
   const double others = last_.others - (p - last_p_).norm();
@@ -268,8 +274,8 @@ bool Search::goesOn(const Vector3d& p, const Run& run) noexcept {
   return true;
 }
 
-/// Examines the last element first: a near start saves most of the search. Its foot may have left it, but its last
-/// point stays.
+/// Examines the last element first, because a near start saves most of the search. The foot may have left this element,
+/// but the last point is still a point of the part and limits the search.
 void Search::begin(const Vector3d& p, Run& run) noexcept {
   if (!last_.found()) return;
   Look look;
@@ -290,7 +296,8 @@ void Search::begin(const Vector3d& p, Run& run) noexcept {
 
 void Search::finish(Run& run) noexcept {
   Nearest& best = run.best;
-  // A face whose foot is outside its trim counts by its edges: beside the best of these it may come in at any moment.
+  // A face whose foot is outside its trim was counted only by its edges. If the best hit is on an edge, the foot of
+  // such a face may enter its trim at any moment, so nothing is known of the others.
   const ElementKind kind = best.hit.element.kind();
   const bool is_edge = kind != ElementKind::kFace && kind != ElementKind::kLeaf && kind != ElementKind::kTriangle;
   best.others = is_edge ? 0 : std::sqrt(std::min(run.others2, run.open2));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The nearest point of a part: one bounded search a tick, and none where the last one still proves the answer.
+/// Finds the nearest point of a part: at most one search of limited work per tick, and none if the last search still
+/// proves the answer.
 #pragma once
 #include <Eigen/Core>
 #include <algorithm>
@@ -16,75 +17,80 @@ namespace hapticd::brep {
 
 /// Limits of the work of one search.
 struct SearchBudget {
-  int nodes = 2048;    ///< boxes of four
-  int elements = 256;  ///< feet
+  int nodes = 2048;    ///< most nodes of the tree, of four boxes each
+  int elements = 256;  ///< most elements whose foot is computed
 };
 
-/// What a search found.
+/// The result of a search.
 struct Nearest {
-  Hit hit;                      ///< in the frame of the body
-  std::uint32_t place = kNone;  ///< in placements(); kNone: nothing was found
-  /// [m] No other element is nearer to the probe than this. With `proved`, none but this one is nearer than `hit`.
+  Hit hit;                      ///< nearest point, in the frame of the body
+  std::uint32_t place = kNone;  ///< index in Model::placements(); kNone if nothing was found
+  /// [m] Lower bound of the distance from the probe to every other element.
   double others = 0;
-  bool proved = false;     ///< hit is the nearest point of all
-  bool exhausted = false;  ///< the budget ended first
+  bool proved = false;     ///< `hit` is certainly the nearest point of all
+  bool exhausted = false;  ///< the budget ended before the search was finished
   int nodes = 0, elements = 0;
 
   bool found() const noexcept { return place != kNone; }
   double distance() const noexcept;
 };
 
-/// Finds nearest points for one probe. Several share the Model.
+/// Finds nearest points for one probe. Several Search objects can share a Model.
 class Search {
  public:
   /// [main] Allocates everything that searching needs.
   explicit Search(const Model& model);
 
-  /// [rt] Nearest point of all placements to p (model frame).
+  /// [rt] Returns the nearest point of all placements to p (model frame).
   const Nearest& nearest(const Eigen::Vector3d& p, const SearchBudget& budget = {}) noexcept;
-  /// [rt] Nearest point of one placement, from `start` on. Elements of other faces than `face` (an index in the part;
-  /// kNone: all) are ignored; edges belong to all their faces.
+  /// [rt] Returns the nearest point of one placement, starting from `start`. @param face only this face (index in the
+  /// part) and its edges are searched; kNone for all faces
   Nearest nearestOf(std::uint32_t place, std::uint32_t face, const Eigen::Vector3d& p, const Hit& start,
                     const SearchBudget& budget = {}) noexcept;
-  /// [rt] The nearest point of one element from its last one on; d2 stays infinite if it has none.
+  /// [rt] Returns the nearest point of the element of `last`, starting from that point. Its d2 is infinite if the
+  /// element does not contain the foot.
   Hit refine(std::uint32_t place, const Hit& last, const Eigen::Vector3d& p) noexcept;
-  /// [rt] Placements that bound a volume and whose boxes hold p; at most `cap` of them.
+  /// [rt] Finds the placements that bound a volume and whose boxes contain p, and returns how many it wrote to
+  /// `places`, at most `cap`.
   int around(const Eigen::Vector3d& p, std::uint32_t* places, int cap) const noexcept;
-  /// [rt] Forgets the last answer.
+  /// [rt] Forgets the last result.
   void reset() noexcept { last_.place = kNone; }
   const Nearest& last() const noexcept { return last_; }
   const Model& model() const noexcept { return model_; }
 
  private:
-  /// Of a distance: so little beyond the best one, a box or another foot is not counted as farther.
+  /// Relative rounding error of a distance: a box or foot that is farther than the best one by less than this share of
+  /// the distance counts as equally near.
   static constexpr double kRounding = 1e-12;
 
-  /// One search under way.
+  /// The state of one search.
   struct Run {
     Nearest best;
     SearchBudget budget;
-    Element first;                                            ///< the element that was examined before all others
-    std::uint32_t first_place = kNone;                        ///< where it is
-    double first_least2 = 0;                                  ///< leastOf() it
-    double limit2 = std::numeric_limits<double>::infinity();  ///< [m^2] to a point of the part: none farther is nearest
-    double others2 = std::numeric_limits<double>::infinity();  ///< nearest bound of anything except the best
-    double open2 = std::numeric_limits<double>::infinity();    ///< nearest bound of what may hide a nearer foot
-    bool tied = false;  ///< another element than the best is equally near, and neither was examined first
-    int restarts = 0;   ///< leaves on which Newton's method may still start from several places
+    Element first;                      ///< the element that was examined before all others
+    std::uint32_t first_place = kNone;  ///< placement of `first`
+    double first_least2 = 0;            ///< result of leastOf() for `first`
+    /// [m^2] squared distance to a known point of the part: the nearest point is not farther.
+    double limit2 = std::numeric_limits<double>::infinity();
+    double others2 = std::numeric_limits<double>::infinity();  ///< [m^2] least bound of all elements except the best
+    /// [m^2] least bound of the elements that may have a nearer foot that was not found.
+    double open2 = std::numeric_limits<double>::infinity();
+    bool tied = false;  ///< another element is as near as the best one, and neither of them is `first`
+    int restarts = 0;   ///< number of further leaves on which Newton's method may start from several places
 
-    /// [m^2] What is farther cannot be the nearest.
+    /// [m^2] An element that is farther than this cannot be the nearest.
     double within2() const noexcept { return std::min(best.hit.d2, limit2); }
   };
   /// One examination of an element.
   struct Look {
-    const Hit* start = nullptr;  ///< the last foot; null: none is known
+    const Hit* start = nullptr;  ///< the last foot on the element; null if there is none
     LeafSight sight;
-    Eigen::Array2d uv{0, 0};                                  ///< of a leaf: where to start
+    Eigen::Array2d uv{0, 0};                                  ///< leaves: (u, v) where Newton's method starts
     bool elsewhere = true;                                    ///< LeafStart::elsewhere
     double limit2 = std::numeric_limits<double>::infinity();  ///< LeafStart::limit2
-    bool alone = true;                                        ///< out: no nearer point is hidden in the element
-    int starts = 1;                                           ///< out
-    double least2 = -1;                                       ///< out: for a leaf, the result of leastOf()
+    bool alone = true;   ///< out: the element certainly has no nearer point than the one found
+    int starts = 1;      ///< out: PieceAnswer::starts
+    double least2 = -1;  ///< out: leaves only, the result of leastOf()
   };
 
   void begin(const Eigen::Vector3d& p, Run& run) noexcept;
@@ -119,11 +125,11 @@ class Search {
   const Model& model_;
   Nearest last_;
   Eigen::Vector3d last_p_{0, 0, 0};
-  NearElements near_;       ///< of a model that is one body, in its frame
-  NearTriangles nearby_;    ///< the same of one mesh
-  NearPlaces near_places_;  ///< of several placements, in the frame of the model
-  int whole_nodes_ = 0;     ///< of the last search of the whole model
-  double reach_ = 0;        ///< [m] by which their rows extend beyond the nearest point
+  NearElements near_;       ///< used if the model is one body of faces, in the frame of the body
+  NearTriangles nearby_;    ///< used if the model is one mesh, in its frame
+  NearPlaces near_places_;  ///< used if there are several placements, in the frame of the model
+  int whole_nodes_ = 0;     ///< nodes that the last search of the whole model examined
+  double reach_ = 0;        ///< [m] gathered rows may be farther than the nearest point by this
 };
 
 }  // namespace hapticd::brep

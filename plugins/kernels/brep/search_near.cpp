@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The tick of a tracked probe: of the rows that an earlier search found about it, few need a look.
+/// The search for a probe that is tracked: only a few of the rows that an earlier tick gathered around it are examined.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kTaken = std::numeric_limits<float>::infinity();
 
-/// Bounds of the squared distances to the rows around a probe. Rows that were examined are removed.
+/// Lower bounds of the squared distances [m^2] to the gathered rows. Rows that were examined are removed.
 template <class Near>
 class RowBounds {
  public:
@@ -31,7 +31,7 @@ class RowBounds {
     const auto within = four <= limit;
     return (within[0] | within[1] | within[2] | within[3]) != 0;
   }
-  /// The least bound among the remaining rows.
+  /// Returns the least bound of the remaining rows.
   double least() const noexcept {
     Float4 least = Float4{} + kTaken;
     for (int k = 0; k < count_; ++k) {
@@ -40,7 +40,7 @@ class RowBounds {
     }
     return static_cast<double>(std::min(std::min(least[0], least[1]), std::min(least[2], least[3])));
   }
-  /// Removes the row with the least bound; gives 4 times its four plus its lane.
+  /// Removes the row with the least bound. Returns 4 times its group of four plus its lane.
   int takeNearest() noexcept {
     taken_ = least();
     const auto value = static_cast<float>(taken_);
@@ -62,19 +62,19 @@ class RowBounds {
   double taken_ = 0;
 };
 
-/// The only placement of a model, in whose frame p is.
+/// Gathers the elements around p in a model of one placement; p is in the body's frame.
 template <class Near>
 bool gatherFrom(const Model& model, Near& near, const Vector3d& p, double reach) noexcept {
   return near.gather(model.body(model.placements()[0].body), p, reach);
 }
-/// Several.
+/// Gathers the elements around p in a model of several placements; p is in the model's frame.
 bool gatherFrom(const Model& model, NearPlaces& near, const Vector3d& p, double reach) noexcept {
   return near.gather(model, p, reach);
 }
 
 }  // namespace
 
-/// Gathers the rows around p again. How much of the reach they left unused decides how far to reach next time.
+/// Gathers the rows around p again, and adapts the reach of the next gathering to the number of rows found.
 template <class Near>
 bool Search::gatherNear(Near& near, const Vector3d& p, double way, double distance) noexcept {
   using Limits = typename Near::Limits;
@@ -130,7 +130,7 @@ void Search::lookAtAll(Near& near, const Vector3d& p, Run& run) noexcept {
   lookAtRows(near, 0, p, run);
 }
 
-/// The placement of the last point comes first, because the nearest one is most likely there.
+/// The placement of the last point is examined first, because the nearest point is most likely there.
 template <>
 void Search::lookAtAll(NearPlaces& near, const Vector3d& p, Run& run) noexcept {
   for (const bool again : {false, true})
@@ -139,7 +139,7 @@ void Search::lookAtAll(NearPlaces& near, const Vector3d& p, Run& run) noexcept {
         lookAtRows(near[i].elements, place, model_.placements()[place].toBody(p), run);
 }
 
-/// Examines what is around the probe. False if something else may be nearer, or equally near.
+/// Examines the gathered rows. Returns false if another element may be nearer, or equally near.
 template <class Near>
 bool Search::lookAtNear(Near& near, const Vector3d& p, Run& run) noexcept {
   lookAtAll(near, p, run);
@@ -162,7 +162,7 @@ bool Search::searchNear(Near& near, const Vector3d& p, double way, Run& run) noe
   return false;
 }
 
-/// A search of the rows about the probe alone, which gives what one of the whole model would give. False: it does not.
+/// Searches only the rows around the probe. Returns true if the result is the same as from a search of the whole model.
 bool Search::searchNear(const Vector3d& p_model, Run& run) noexcept {
   if (!last_.found() || last_.exhausted) return false;
   const double way = (p_model - last_p_).norm();
@@ -176,7 +176,7 @@ bool Search::searchNear(const Vector3d& p_model, Run& run) noexcept {
   return run.budget.elements > NearTriangles::kMostRows * BodyTree::kMeshRow && searchNear(nearby_, p, way, run);
 }
 
-/// The probe moves to p.
+/// Tells the gathered rows that the probe has moved to p.
 void Search::moveNear(const Vector3d& p) noexcept {
   if (last_.found()) {
     const double way = (p - last_p_).norm();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The rules of knots and weights in a part's numbers. They are those of spline::validate(), without its copies.
+/// Checks the knots and weights of splines directly in a part's numbers, by the rules of spline::validate().
 #pragma once
 #include <cstdint>
 #include <span>
@@ -7,13 +7,13 @@
 
 namespace hapticd::brep {
 
-/// Largest parameter: the squares of products of two stay finite.
+/// Largest absolute value of a parameter: the square of a product of two parameters stays finite.
 inline constexpr double kWidestParameter = 1e30;
 
-/// [main] What is wrong with the knots of a B-spline of `count` control points; empty: nothing.
+/// [main] Returns what is wrong with the knots of a B-spline of `count` control points, or "" if they are good.
 std::string wrongKnots(std::span<const double> knots, std::uint32_t degree, std::uint32_t count);
 
-/// [main] What is wrong with weights; empty: nothing.
+/// [main] Returns what is wrong with the weights, or "" if they are good.
 std::string wrongWeights(std::span<const double> weights);
 
 }  // namespace hapticd::brep

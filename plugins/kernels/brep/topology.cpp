@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSmooth = 0.1 * std::numbers::pi / 180;  ///< [rad] normals that differ by less make a smooth edge
+constexpr double kSmooth = 0.1 * std::numbers::pi / 180;  ///< [rad] an edge is smooth if the normals differ by less
 
 double angleBetween(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -31,7 +31,7 @@ Meeting meetingAt(const Geometry& geometry, const Edge& edge, double t) {
   const Vector3d n1 = coedgeNormal(geometry, a, t), n2 = coedgeNormal(geometry, b, t);
   spline::CurvePoint C;
   geometry.curve(edge.curve, t, C);
-  // Into face a the way is n x T, T along its loop; seen from outside on a reversed face the loop runs clockwise.
+  // n x T points into face a if T runs along its loop. On a reversed face the loop runs clockwise, seen from outside.
   const bool against = ((a.flags & kReversed) != 0) != ((part.faces[a.face].flags & kReversed) != 0);
   const Vector3d into = n1.cross(against ? Vector3d(-C.C1) : C.C1);
   return {angleBetween(n1, n2), into.dot(n2) < 0};
@@ -61,10 +61,10 @@ void classify(const Geometry& geometry, Edge& edge) {
                                 : EdgeKind::kSmooth;
 }
 
-/// Direction of a coedge in space at one of its ends, along its loop.
+/// Returns the direction of a coedge in space at one of its ends, in the direction of its loop.
 Vector3d tangentAt(const Geometry& geometry, const Coedge& c, bool at_end) {
   const bool reversed = (c.flags & kReversed) != 0;
-  const double inward = 1e-6 * (c.t1 - c.t0);  // splines may have no speed at their very ends
+  const double inward = 1e-6 * (c.t1 - c.t0);  // the derivative of a spline may be 0 at its very ends
   const double t = at_end != reversed ? c.t1 - inward : c.t0 + inward;
   spline::CurvePoint C;
   geometry.curve(geometry.part().edges[c.edge].curve, t, C);
@@ -114,7 +114,8 @@ class VertexSums {
     }
   }
 
-  /// The angle of the face at a corner, seen against its surface's own normal, counter-clockwise from the way out.
+  /// Adds a face's normal at a corner, weighted by the angle of the face there. The angle is counted counter-clockwise
+  /// about the normal Su x Sv from the outgoing coedge.
   void addCorner(const Coedge& in, const Coedge& out, std::uint32_t vertex) {
     const double t = (out.flags & kReversed) != 0 ? out.t1 : out.t0;
     const Vector3d n = coedgeNormal(geometry_, out, t);
@@ -126,7 +127,8 @@ class VertexSums {
     if (std::isfinite(angle)) sums_[vertex] += angle * n;
   }
 
-  /// Around a pole the normals turn: those along the collapsed side, equally weighted, add up to its axis.
+  /// Adds the normals around a pole, where they turn: those along the collapsed side of the face, with equal weights,
+  /// add up to a normal along the axis.
   void addPole(const Coedge& c, std::uint32_t vertex) {
     constexpr int kRays = 16;
     for (int i = 0; i < kRays; ++i)

@@ -10,11 +10,11 @@ using contact::FootStatus;
 using Eigen::Vector3d;
 
 namespace {
-constexpr double kFarthest = 1e150;  ///< [m] squares of coordinates beyond overflow
+constexpr double kFarthest = 1e150;  ///< [m] squares of larger coordinates overflow
 constexpr int kMostAround = 8;       ///< most bodies whose boxes contain the probe that one tick examines
 }  // namespace
 
-/// How contact::ContactState sees the part at the probe of this tick.
+/// Lets contact::ContactState query the part at the probe of this tick.
 class Tracer::Faces {
  public:
   Faces(Tracer& tracer, const Vector3d& p) : tracer_(tracer), p_(p) {}
@@ -55,8 +55,8 @@ Tracer::Held Tracer::heldAt(const Nearest& nearest) const noexcept {
   return {nearest.place, faceOf(model(), nearest.hit, held_.face), nearest.hit};
 }
 
-/// The nearest foot of all bodies. A probe in front of the nearest one may be inside another, whose surface is farther:
-/// then that body has the foot, the deepest if there are several.
+/// Returns the nearest foot of all bodies. A probe that is outside the nearest body may be inside another body whose
+/// surface is farther away. Then the foot is on that body, or on the one with the greatest depth if there are several.
 Foot Tracer::nearestFelt(const Vector3d& p) noexcept {
   const Nearest& found = search_.nearest(p, budget_);
   Foot foot;
@@ -102,7 +102,7 @@ void Tracer::count(const Foot& foot) noexcept {
 
 Foot Tracer::step(const Vector3d& p, const contact::ContactRule& rule, const SearchBudget& budget) noexcept {
   Foot foot;
-  if (!(p.lpNorm<1>() <= kFarthest)) {  // also true for not-a-number
+  if (!(p.lpNorm<1>() <= kFarthest)) {  // also true for NaN
     foot.status = FootStatus::kInvalid;
     return foot;
   }

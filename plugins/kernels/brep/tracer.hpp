@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Traces one probe over a part: the nearest foot outside, the held one inside. One Tracer a probe; the Model is
-/// shared.
+/// Traces one probe over a part: outside the part it gives the nearest foot, inside it gives the foot of the held
+/// contact. Each probe needs its own Tracer; all can share the Model.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -10,11 +10,11 @@
 
 namespace hapticd::brep {
 
-/// What a tracer has counted since it was made or its counts were cleared.
+/// What a tracer has counted since it was made.
 struct TraceCounts {
-  std::uint64_t nearest = 0;   ///< ticks whose foot is proved the nearest
-  std::uint64_t held = 0;      ///< ticks with a held contact whose foot is not the nearest, or may not be
-  std::uint64_t degraded = 0;  ///< ticks whose search was not finished, or cannot prove its foot
+  std::uint64_t nearest = 0;   ///< ticks whose foot is certainly the nearest
+  std::uint64_t held = 0;      ///< ticks with a held contact whose foot is not, or not certainly, the nearest
+  std::uint64_t degraded = 0;  ///< ticks whose search was not finished, or whose foot may not be the nearest
 };
 
 class Tracer {
@@ -24,14 +24,15 @@ class Tracer {
 
   /// [rt] Forgets everything.
   void reset() noexcept;
-  /// [rt] Forgets where the probe was: a contact begins on the nearest face.
+  /// [rt] Forgets where the probe was, so the next contact begins on the nearest face.
   void forgetContact() noexcept;
-  /// [rt] A shell gives way: from now on its other side is felt.
+  /// [rt] Lets the probe pop through a shell: from now on the other side of the shell is felt.
   void popThrough() noexcept;
-  /// [rt] Foot of probe p (model frame) as it is felt. A probe that is no finite position leaves everything unchanged.
+  /// [rt] Returns the foot of the probe p (model frame), which is held during a contact. If p is not finite, the status
+  /// is kInvalid and the state stays unchanged.
   contact::Foot step(const Eigen::Vector3d& p, const contact::ContactRule& rule,
                      const SearchBudget& budget = {}) noexcept;
-  /// [rt] The nearest foot of all, with its outward normal; no contact is held.
+  /// [rt] Returns the nearest foot of all, with its outward normal, without regard to a held contact.
   contact::Foot nearest(const Eigen::Vector3d& p, const SearchBudget& budget = {}) noexcept;
 
   const TraceCounts& counts() const noexcept { return counts_; }
@@ -40,10 +41,10 @@ class Tracer {
  private:
   class Faces;
 
-  /// The face that a held contact is on, and its foot there.
+  /// The face on which a contact is held, and the foot on this face.
   struct Held {
     std::uint32_t place = kNone;
-    std::uint32_t face = kNone;  ///< in the part; of meshes: the triangle
+    std::uint32_t face = kNone;  ///< index in the part; for meshes the triangle
     Hit hit;
   };
 
@@ -66,11 +67,12 @@ class Tracer {
   TraceCounts counts_;
 };
 
-/// [rt] The face that a hit belongs to: of an edge, `before` if that is one of its faces, else the first of them. Of a
-/// mesh: the triangle.
+/// [rt] Returns the face to which a hit belongs. For a hit on an edge, this is `before` if it is one of the edge's
+/// faces, or else the first face of the edge. For a mesh, this is the triangle.
 std::uint32_t faceOf(const Model& model, const Hit& hit, std::uint32_t before) noexcept;
 
-/// [rt] A hit as a foot in the model's frame, seen by the outward normal of the part. `face`: see faceOf().
+/// [rt] Converts a hit to a foot in the model's frame, with the outward normal of the part. @param face result of
+/// faceOf()
 contact::Foot describe(const Model& model, std::uint32_t place, const Hit& hit, std::uint32_t face,
                        const Eigen::Vector3d& p) noexcept;
 

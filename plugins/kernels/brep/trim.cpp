@@ -11,21 +11,24 @@ namespace {
 
 using Eigen::Array2d;
 
-/// Half-open, so that a way through the joint of two pieces crosses exactly one of them.
+/// True if a piece from a to b crosses `at`. The interval is half-open, so that a line through the joint of two pieces
+/// crosses exactly one of them.
 bool spans(double a, double b, double at) noexcept {
   return (a <= at) != (b <= at);
 }
 
 }  // namespace
 
-/// The other coordinate where a piece crosses the line `axis` = at: Newton on the parameter, kept in a bracket.
+/// Returns the other coordinate of the point where a piece crosses the line `axis` = at, by Newton's method on the
+/// parameter, kept inside a bracket.
 double Trim::crossing(const TrimPiece& piece, int axis, double at) const noexcept {
   if (piece.kind == TrimPiece::Kind::kCircle) {
     const Curve2& c = geometry_->part().curves2[piece.curve];
     const double r2 = c.x[0] * c.x[0] + c.x[1] * c.x[1];
     const auto i = static_cast<std::size_t>(axis), j = 1 - i;
     const double d = at - c.o[i], half = std::sqrt(std::max(r2 - d * d, 0.0));
-    const double middle = 0.5 * (piece.a[1 - axis] + piece.b[1 - axis]);  // a quarter lies on one side of the center
+    // a monotone piece lies on one side of the center
+    const double middle = 0.5 * (piece.a[1 - axis] + piece.b[1 - axis]);
     return middle >= c.o[j] ? c.o[j] + half : c.o[j] - half;
   }
   constexpr int kMostSteps = 60;
@@ -48,8 +51,8 @@ double Trim::crossing(const TrimPiece& piece, int axis, double at) const noexcep
                     std::max(piece.a[1 - axis], piece.b[1 - axis]));
 }
 
-/// Whether the other coordinate of that crossing is above `than`. It lies between those of the ends of the bracket, so
-/// few points of the curve suffice.
+/// True if the other coordinate of that crossing is greater than `than`. This coordinate lies between its values at the
+/// ends of the bracket, so a few points of the curve are usually enough.
 bool Trim::crossesBeyond(const TrimPiece& piece, int axis, double at, double than) const noexcept {
   if (piece.kind == TrimPiece::Kind::kCircle) return crossing(piece, axis, at) > than;
   constexpr int kMostSteps = 60;
@@ -70,7 +73,8 @@ bool Trim::crossesBeyond(const TrimPiece& piece, int axis, double at, double tha
     if (than < std::min(beside[0], beside[1])) return true;
     if (than >= std::max(beside[0], beside[1])) return false;
     const double step = -off / where.c1[axis];
-    double next = t + (end == last ? 2 * step : step);  // it was twice as far from the same side, so try the other side
+    // two steps in a row moved the same end of the bracket: step twice as far, to reach the other side of the root
+    double next = t + (end == last ? 2 * step : step);
     if (!(next > ends[0] && next < ends[1])) next = 0.5 * (ends[0] + ends[1]);
     if (next <= ends[0] || next >= ends[1]) return here > than;
     last = end;
@@ -79,7 +83,7 @@ bool Trim::crossesBeyond(const TrimPiece& piece, int axis, double at, double tha
   return 0.5 * (beside[0] + beside[1]) > than;
 }
 
-/// True if a piece that crosses the height v does so to the right of u.
+/// True if a piece that crosses the line v = const crosses it to the right of u.
 bool Trim::crossesRight(const TrimPiece& piece, double v, double u) const noexcept {
   if (u < std::min(piece.a[0], piece.b[0])) return true;
   if (u >= std::max(piece.a[0], piece.b[0])) return false;
@@ -89,7 +93,7 @@ bool Trim::crossesRight(const TrimPiece& piece, double v, double u) const noexce
   return crossesBeyond(piece, 1, v, u);
 }
 
-/// True if a piece that crosses the line u = const does so above v.
+/// True if a piece that crosses the line u = const crosses it above v.
 bool Trim::crossesAbove(const TrimPiece& piece, double u, double v) const noexcept {
   if (v < std::min(piece.a[1], piece.b[1])) return true;
   if (v >= std::max(piece.a[1], piece.b[1])) return false;
@@ -99,7 +103,8 @@ bool Trim::crossesAbove(const TrimPiece& piece, double u, double v) const noexce
   return crossesBeyond(piece, 0, u, v);
 }
 
-/// The way from the point to the right border of its cell and along it to the reference point, whose side is known.
+/// Counts the crossings of the loops with a path from the point to the right border of its cell, and along the border
+/// to the reference point. For the reference point it is known whether it is inside.
 bool Trim::insideGrid(double u, double v) const noexcept {
   const int i = std::min(static_cast<int>((u - lo_[0]) * per_cell_[0]), count_u_ - 1);
   const int j = std::min(static_cast<int>((v - lo_[1]) * per_cell_[1]), count_v_ - 1);

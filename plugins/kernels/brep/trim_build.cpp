@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Makes the pieces and the grid of a trim.
+/// Builds the pieces and the grid of a trim.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -34,7 +34,7 @@ class TrimBuilder {
   }
 
  private:
-  /// True if every piece runs along a side of [lo, hi], or there is none.
+  /// True if every piece runs along a side of [lo, hi], or there are no pieces.
   bool isBox() const {
     if (face_.loop_count > 1) return false;
     const Array2d slack = 1e-12 * (trim_.hi_ - trim_.lo_);
@@ -75,7 +75,7 @@ class TrimBuilder {
   /// Calls use(column, row) for the cells that a piece may touch.
   template <class Use>
   void overCells(const TrimPiece& p, const Use& use) const {
-    constexpr double kSlack = 1e-9;  // of a cell
+    constexpr double kSlack = 1e-9;  // relative to the size of a cell
     const double slack_u = kSlack * trim_.cell_[0], slack_v = kSlack * trim_.cell_[1];
     const double low = std::min(p.a[1], p.b[1]), high = std::max(p.a[1], p.b[1]);
     const int last_row = clampCell(1, high + slack_v);
@@ -91,7 +91,7 @@ class TrimBuilder {
     }
   }
 
-  /// u where a piece is at height v, ends included.
+  /// Returns u where a piece crosses the line at v; v may be at an end of the piece.
   double crossingAt(const TrimPiece& p, double v) const {
     if (v == p.a[1]) return p.a[0];
     if (v == p.b[1]) return p.b[0];
@@ -110,7 +110,8 @@ class TrimBuilder {
       overCells(trim_.pieces_[k], [&](int i, int j) { trim_.of_cell_[place[cellOf(i, j)]++] = k; });
   }
 
-  /// The sides of the reference points: a piece that crosses their height to their right changes them.
+  /// Marks which reference points are inside: each piece that crosses a row's height to the right of a reference point
+  /// switches that point between inside and outside.
   void markRows(const TrimPiece& p) {
     const int last = std::min(clampCell(1, std::max(p.a[1], p.b[1])) + 1, trim_.count_v_ - 1);
     for (int j = std::max(clampCell(1, std::min(p.a[1], p.b[1])) - 1, 0); j <= last; ++j) {

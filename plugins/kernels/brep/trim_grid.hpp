@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Where the reference points of the cells of a trim's grid are. Builder and test must compute them alike, bit for bit.
+/// The reference points of the cells of a trim's grid. The builder and Trim::inside() must compute them with the same
+/// result, bit for bit.
 #pragma once
 #include <cstdint>
 
@@ -7,11 +8,12 @@ namespace hapticd::brep {
 
 inline constexpr std::uint32_t kInsideBit = 0x80000000u;
 
-/// [any] The right border of column i.
+/// [any] Returns u at the right border of column i.
 inline double gridBorder(double lo, double cell, int i) noexcept {
   return lo + cell * (i + 1);
 }
-/// [any] The height of the reference points of row j: no border, where loops like to run.
+/// [any] Returns v of the reference points of row j. It is not on a border of the grid, because loops often run along
+/// such lines.
 inline double gridHeight(double lo, double cell, int j) noexcept {
   constexpr double kHeight = 0.437;
   return lo + cell * (j + kHeight);

@@ -20,7 +20,7 @@ class Cutter {
         pieces_(pieces) {}
 
   void addLoop(const Loop& loop, LoopGaps& gaps) {
-    constexpr double kGap = 1e-3;  // of the face's range
+    constexpr double kGap = 1e-3;  // relative to the face's range
     for (std::uint32_t i = 0; i < loop.count; ++i) {
       const Coedge& c = part_.coedges[loop.first + i];
       const Vector2d to = startOf(part_.coedges[loop.first + (i + 1) % loop.count]), end = endOf(c);
@@ -45,7 +45,8 @@ class Cutter {
   Vector2d startOf(const Coedge& c) const { return at(c, (c.flags & kReversed) != 0 ? c.t1 : c.t0); }
   Vector2d endOf(const Coedge& c) const { return at(c, (c.flags & kReversed) != 0 ? c.t0 : c.t1); }
 
-  /// The pieces of one pcurve from `a` at t0 to `b` at t1: the joints that it shares with its neighbours.
+  /// Adds the pieces of one pcurve from `a` at t0 to `b` at t1. These points are the joints with the neighbouring
+  /// pcurves.
   void addCurve(const Coedge& c, const Vector2d& a, const Vector2d& b) {
     if (part_.curves2[c.pcurve].kind == CurveKind::kLine || isStraight(c, a, b)) {
       pieces_.push_back({a, b, 0, 0, c.pcurve, TrimPiece::Kind::kLine, c.t0, c.t1});
@@ -63,11 +64,11 @@ class Cutter {
     }
   }
 
-  /// A spline that is straight from end to end and always goes forward.
+  /// True if a pcurve is a spline that is straight from end to end and never turns back.
   bool isStraight(const Coedge& c, const Vector2d& a, const Vector2d& b) const {
     if (part_.curves2[c.pcurve].kind != CurveKind::kSpline || a == b) return false;
     constexpr int kProbes = 33;
-    constexpr double kStraight = 1e-12;  // of the face's range
+    constexpr double kStraight = 1e-12;  // relative to the face's range
     const Vector2d way = b - a;
     double last = 0;
     for (int i = 1; i < kProbes; ++i) {
@@ -80,7 +81,7 @@ class Cutter {
     return true;
   }
 
-  /// Parameters inside the pcurve where u or v turns back, and inner knots of splines.
+  /// Returns the parameters inside the pcurve where u or v turns back, and the inner knots of a spline.
   std::vector<double> turns(const Coedge& c) const {
     const Curve2& curve = part_.curves2[c.pcurve];
     std::vector<double> found;
@@ -104,7 +105,7 @@ class Cutter {
   }
 
   void sampledTurns(const Coedge& c, std::vector<double>& found) const {
-    constexpr int kSamples = 12;  // to a knot span
+    constexpr int kSamples = 12;  // per knot span
     std::vector<double> stops{c.t0, c.t1};
     for (const double knot : geometry_.planeKnots(c.pcurve))
       if (knot > c.t0 && knot < c.t1) stops.push_back(knot);
@@ -118,9 +119,9 @@ class Cutter {
     }
   }
 
-  /// Adds the parameter between low and high where the slope along an axis changes its sign.
+  /// Adds to `found` the parameter between low and high at which the slope along an axis changes its sign.
   void bisect(std::uint32_t curve, int axis, double low, double high, std::vector<double>& found) const {
-    const double end = high - 1e-9 * (high - low);  // derivatives at a knot are those of the span to its right
+    const double end = high - 1e-9 * (high - low);  // at a knot, derivatives are evaluated in the span to its right
     const auto rises = [&](double t) { return geometry_.planeCurve(curve, t).c1[axis] > 0; };
     const bool rising = rises(low);
     if (rising == rises(end)) return;
@@ -133,11 +134,12 @@ class Cutter {
     found.push_back(b);
   }
 
-  /// Whether few points of the face lie between a piece and its chord, seen along u and along v. Where the piece is
-  /// short that may not be measured against it: by the turns of a curve, and where it runs along u or v but for
-  /// rounding, each half of a piece would be as far from its chord as the whole.
+  /// True if a piece is near its chord, seen along u and along v, so that few points of the face lie between them. The
+  /// deviation is compared with the piece, or with the face if the piece is narrow. Otherwise halving might never end:
+  /// near the turns of a curve, or if the piece runs along u or v except for rounding, each half deviates as much
+  /// relative to its size as the whole.
   bool isNear(const Vector2d& off, const Vector2d& way) const {
-    constexpr double kNear = 0.05, kNarrow = 1e-4;  // of the piece, of the face
+    constexpr double kNear = 0.05, kNarrow = 1e-4;  // relative to the piece, and to the face
     for (int axis = 0; axis < 2; ++axis) {
       const bool narrow = off[axis] <= kNarrow * range_[axis] || std::abs(way[1 - axis]) <= kNarrow * range_[1 - axis];
       if (!narrow && off[axis] > kNear * std::abs(way[axis])) return false;
@@ -145,7 +147,7 @@ class Cutter {
     return true;
   }
 
-  /// Adds a monotone piece, in parts whose chords stay near it.
+  /// Adds a monotone piece, halved until each part is near its chord.
   void addMonotone(const Coedge& c, double t0, double t1, const Vector2d& a, const Vector2d& b, int depth) {
     constexpr int kDeepest = 12;
     TrimPiece piece{a, b, 0, 0, c.pcurve, TrimPiece::Kind::kOther, t0, t1};
@@ -171,7 +173,8 @@ class Cutter {
            std::abs(c.x[0] * c.y[0] + c.x[1] * c.y[1]) <= kRound * x * y;
   }
 
-  /// How far a piece deviates from its chord along u and along v, plus half of that for what lies between the samples.
+  /// Returns the largest deviation of a piece from its chord along u and along v at samples, plus half of that for the
+  /// points between the samples.
   Vector2d offChord(const Coedge& c, double t0, double t1, const Vector2d& a, const Vector2d& b) const {
     constexpr int kSamples = 9;
     Vector2d most(0, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The loops of a face cut into pieces along which both parameters are monotone.
+/// Cuts the loops of a face into pieces along which both parameters are monotone.
 #pragma once
 #include <vector>
 
@@ -7,8 +7,8 @@
 
 namespace hapticd::brep {
 
-/// [main] All pieces of all loops. Neighbours share their ends; `gaps` tells of those so far apart that a line had to
-/// be put between.
+/// [main] Returns the pieces of all loops. Neighbouring pieces share their ends. @param gaps counts the ends that were
+/// so far apart that a straight line was put between them
 std::vector<TrimPiece> trimPieces(const Geometry& geometry, const Face& face, LoopGaps& gaps);
 
 }  // namespace hapticd::brep

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// Contact truth: which foot a probe is felt by, from tick to tick. A small state machine that the kernels share.
+/// Decides from tick to tick at which foot point a probe is felt. A small state machine that all kernels share.
 ///
-/// Outside, the foot is the nearest point of all faces. A contact begins on the face that the probe's way crosses first
-/// and is held: its foot is followed continuously over that face and the next ones, a proxy (Zilles & Salisbury 1995)
-/// on exact geometry, until the probe comes out or goes over a convex edge. In a solid thicker than the press that is
-/// the nearest point as well; in a thin wall it is what keeps the hand out. Where nothing is known of the way (a start
-/// inside, a jump, a lost sample, a contact that ended at an edge), a contact begins on the nearest face.
+/// Outside, the foot is the nearest point of all faces. A contact begins on the face that the probe's path crosses
+/// first, and is then held: its foot is followed continuously over that face and its neighbours, until the probe comes
+/// out or crosses a convex edge. The foot is a proxy (Zilles & Salisbury 1995) on exact geometry. If the solid is
+/// thicker than the probe is deep, this foot is the nearest point too; in a thin wall it keeps the hand from passing
+/// through. If the path of the probe is unknown (a start inside, a jump, a lost sample, a contact that ended at an
+/// edge), a contact begins on the nearest face.
 #pragma once
 #include <Eigen/Core>
 #include <cmath>
@@ -18,36 +19,42 @@ namespace hapticd::contact {
 
 struct ContactRule {
   Sides sides = Sides::kFront;
-  /// [m] Contact hysteresis: a held contact is left for a face that is nearer by more than this. 0: the nearest face
-  /// always, nothing is held. Infinite: held until the probe comes out.
+  /// [m] Contact hysteresis: a held contact changes to another face if that is nearer by more than this. 0: always the
+  /// nearest face, nothing is held. Infinite: the contact is held until the probe comes out.
   double hysteresis = std::numeric_limits<double>::infinity();
 };
 
-/// What became of a held foot that was followed to the probe.
+/// The result of following a held foot to the probe's new position.
 enum class Followed : std::uint8_t {
-  kOn,        ///< it is on the surface; its depth shows whether the probe is still inside
-  kReleased,  ///< it crossed a convex edge, and the probe is in front of the next face
-  kLost       ///< the kernel no longer follows it
+  kOn,        ///< the foot is on the surface; its depth shows whether the probe is still inside
+  kReleased,  ///< the foot crossed a convex edge, and the probe is in front of the next face
+  kLost       ///< the kernel no longer traces the surface
 };
 
-/// The contact of one probe with one solid. `Faces` is the kernel at the probe p of this tick. It has, all [rt]:
-///   Followed follow(double side, Foot& foot)  the held foot, followed to p over edges as atEdge() says
-///   Foot nearest()                            the nearest foot of all faces: kNearest where that is proved
-///   bool enter(from, Sides, double& side)     looks for the first face that the way from `from` to p meets from a side
-///                                             that is felt; it is held from there on, and `side` is that side. In: the
-///                                             side on which `from` is of a face that it is almost on
-///   void holdNearest()                        the nearest foot is held from now on
-///   void release()                            nothing is held
-/// with feet as the outward normal sees them; this class turns them to the side that is felt.
+/// The contact of one probe with one solid. `Faces` is the kernel at the probe's position p of this tick. It has these
+/// functions, all [rt]:
+///   Followed follow(double side, Foot& foot)  follows the held foot to p, over edges as atEdge() says
+///   Foot nearest()                            the nearest foot of all faces; status kNearest if this is certain
+///   bool enter(from, Sides, double& side)     looks for the first face that the path from `from` to p meets
+///                                             from a side that is felt; holds this face and sets `side`
+///                                             to that side. On entry, `side` is the side on which
+///                                             `from` lies if it is almost on a face
+///   void holdNearest()                        holds the nearest foot from now on
+///   void release()                            ends the held contact
+/// Their feet have outward normals; this class turns them to the side that is felt.
 class ContactState {
  public:
-  /// [rt] The foot of this tick, seen from the side that is felt. @param last the probe of the last tick
+  /// [rt] Returns the foot of this tick, seen from the side that is felt.
+  /// @param last position of the probe in the last tick [m]
+  /// @param p its position now [m]
   template <class Faces>
   Foot step(Faces& faces, const Eigen::Vector3d& last, const Eigen::Vector3d& p, const ContactRule& rule) noexcept;
 
-  /// [rt] The common tick, asked before step(): the kernel has the nearest foot of all, in the inside of its face,
-  /// followed there from the last tick (the held one, if one is held). True if nothing else has changed: then this foot
-  /// is the answer, seen from side(). @param height [m] of the probe over the face by its outward normal
+  /// [rt] A shortcut for the most common tick; call it before step(). The kernel must have the nearest foot of all (or
+  /// the held foot, if one is held), followed from the last tick, in the interior of its face. If the function returns
+  /// true, the contact has not changed, and this foot seen from side() is the result of the tick.
+  /// @param height [m] of the probe above the face, along its outward normal
+  /// @param distance [m] from the probe to the foot
   bool goesOn(double height, double distance, const Eigen::Vector3d& p, const ContactRule& rule) noexcept {
     const double out = side_ * height;
     if (phase_ == Phase::kHeld && rule.hysteresis > 0) return out < 0;
@@ -60,8 +67,9 @@ class ContactState {
     return true;
   }
 
-  /// [rt] The same if since the last tick the probe may have met only the face of its foot, and was outside and nearest
-  /// to that face then: it has passed by, however near. @param last the probe of the last tick
+  /// [rt] The same for a probe that was outside in the last tick, and can have met only the face of its foot since
+  /// then. If the function returns true, the probe has only passed by this face, however near.
+  /// @param last position of the probe in the last tick [m]
   bool passesBy(double height, double distance, const Eigen::Vector3d& last, const Eigen::Vector3d& p,
                 const ContactRule& rule) noexcept {
     const double side = rule.sides == Sides::kBoth ? side_ : (rule.sides == Sides::kFront ? 1 : -1);
@@ -71,15 +79,16 @@ class ContactState {
     return true;
   }
 
-  bool held() const noexcept { return phase_ == Phase::kHeld; }  ///< [rt]
-  double side() const noexcept { return side_; }                 ///< [rt] +1: the front is felt, -1: the back
-  /// [rt] It is no longer known where the probe came from: a jump, or a lost sample.
+  bool held() const noexcept { return phase_ == Phase::kHeld; }  ///< [rt] true if a contact is held
+  double side() const noexcept { return side_; }                 ///< [rt] +1 if the front is felt, -1 if the back
+  /// [rt] Forgets where the probe came from, after a jump or a lost sample.
   void forget() noexcept { phase_ = Phase::kUnknown; }
-  /// [rt] step() was skipped because the probe was surely outside: the next way begins at the probe of the last tick.
+  /// [rt] Call it if step() was skipped because the probe was certainly outside. The next path then begins at the
+  /// probe's position of the last tick.
   void pass() noexcept {
     if (phase_ != Phase::kUnknown) phase_ = Phase::kPassed;
   }
-  /// [rt] A shell gives way: the probe, at p, is now on its other side.
+  /// [rt] Lets a probe at p pass through a shell: the probe is then on the other side.
   void popThrough(const Eigen::Vector3d& p) noexcept {
     side_ = -side_;
     beOutside(p, 0);
@@ -87,8 +96,10 @@ class ContactState {
 
  private:
   enum class Phase : std::uint8_t { kUnknown, kPassed, kOutside, kHeld };
-  static constexpr double kTouching = 1e-9;  ///< [m] so near to a face, rounding decides the probe's side
-  static constexpr double kSure = 0.999;     ///< share of a distance: so short a way meets no face
+  /// [m] if a face is nearer than this, rounding would decide on which side the probe is
+  static constexpr double kTouching = 1e-9;
+  /// a path shorter than this share of the distance to the nearest face certainly meets no face
+  static constexpr double kSure = 0.999;
 
   template <class Faces>
   bool stays(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule, Foot& foot) noexcept;
@@ -107,8 +118,8 @@ class ContactState {
 
   Phase phase_ = Phase::kUnknown;
   double side_ = 1;
-  double clearance_ = 0;           ///< [m] no face is nearer to from_
-  Eigen::Vector3d from_{0, 0, 0};  ///< [m] where the probe was last outside
+  double clearance_ = 0;           ///< [m] no face is nearer to from_ than this
+  Eigen::Vector3d from_{0, 0, 0};  ///< [m] last position of the probe outside
 };
 
 template <class Faces>
@@ -126,7 +137,7 @@ Foot ContactState::step(Faces& faces, const Eigen::Vector3d& last, const Eigen::
   return atNearest(faces, p, rule);
 }
 
-/// Follows the held contact. False if it has ended; then what is known of the way is noted.
+/// Follows the held contact. If it has ended, sets the phase for the next test and returns false.
 template <class Faces>
 bool ContactState::stays(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule, Foot& foot) noexcept {
   const Followed how = faces.follow(side_, foot);
@@ -141,17 +152,18 @@ bool ContactState::stays(Faces& faces, const Eigen::Vector3d& p, const ContactRu
   return false;
 }
 
-/// True if another face is nearer by more than the hysteresis. Notes in the held foot whether it is the nearest.
+/// True if another face is nearer than the held foot by more than the hysteresis. Sets the foot's status to kHeld if it
+/// is not the nearest.
 template <class Faces>
 bool ContactState::isLeft(Faces& faces, const ContactRule& rule, Foot& foot) noexcept {
-  constexpr double kSame = 1e-9;  // [m] of two distances
+  constexpr double kSame = 1e-9;  // [m] distances that differ by less count as equal
   const Foot nearest = faces.nearest();
   const bool is_nearest = nearest.status == FootStatus::kNearest && nearest.distance >= foot.distance - kSame;
   if (foot.status == FootStatus::kNearest && !is_nearest) foot.status = FootStatus::kHeld;
   return found(nearest) && nearest.distance < foot.distance - rule.hysteresis;
 }
 
-/// The swept test: whether the way since the probe was outside leads into a face.
+/// The swept test: true if the path since the probe was last outside leads into a face.
 template <class Faces>
 bool ContactState::begins(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule, Foot& foot) noexcept {
   const double way2 = (p - from_).squaredNorm();
@@ -166,11 +178,11 @@ bool ContactState::begins(Faces& faces, const Eigen::Vector3d& p, const ContactR
       return true;
     }
   }
-  faces.release();  // it has come out again in the same tick
+  faces.release();  // the probe has come out again in the same tick
   return false;
 }
 
-/// No contact is held: the nearest foot, and a contact there if the probe is inside after all.
+/// Returns the nearest foot if no contact is held. If the probe is inside, a contact may begin there.
 template <class Faces>
 Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule) noexcept {
   const Foot nearest = faces.nearest();
@@ -183,7 +195,8 @@ Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const Conta
   Foot foot = seenFrom(nearest, side_);
   if (rule.sides != Sides::kBoth && foot.depth > 0) {
     phase_ = Phase::kUnknown;
-    if (foot.status != FootStatus::kNearest) return foot;  // it is felt, but a foot that is not proved is not held
+    // the foot is felt, but it is not certain to be the nearest, so it is not held
+    if (foot.status != FootStatus::kNearest) return foot;
     faces.holdNearest();
     phase_ = Phase::kHeld;
     foot.begins = true;
@@ -194,7 +207,8 @@ Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const Conta
   return foot;
 }
 
-/// Without a hysteresis. A shell keeps the side that the probe came from until the probe has gone round a free edge.
+/// The rule without hysteresis. A shell is felt from the side from which the probe came, until the probe has gone round
+/// a free edge.
 inline Foot ContactState::nearestAlways(const Foot& nearest, const Eigen::Vector3d& p, Sides sides) noexcept {
   if (!found(nearest)) {
     phase_ = Phase::kUnknown;

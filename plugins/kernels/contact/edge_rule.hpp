@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a held contact does when its foot comes to an edge between two faces.
+/// The rule for a held contact whose foot comes to an edge between two faces.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -7,18 +7,19 @@
 
 namespace hapticd::contact {
 
-/// How two faces meet, seen from where the solid is not.
+/// How two faces meet, seen from outside the solid.
 enum class EdgeKind : std::uint8_t {
-  kSmooth,  ///< their normals agree
-  kConvex,  ///< the next face falls away: the edge of a table
-  kConcave  ///< the next face rises, as a wall does from the floor
+  kSmooth,  ///< the normals of both faces agree
+  kConvex,  ///< the next face falls away, as at the edge of a table
+  kConcave  ///< the next face rises, as a wall from the floor
 };
 
-/// [rad] Faces whose normals differ by less are one smooth surface: 0.1 degrees, as CAD files need it.
+/// [rad] Faces whose normals differ by less count as one smooth surface. 0.1 degrees covers the tolerance of CAD files.
 inline constexpr double kSmoothEdge = 1.8e-3;
 
-/// [any] @param here, next outward unit normals of the two faces at a point of the edge @param out unit, in the plane
-/// of the first face, at right angles to the edge and away from the face
+/// [any] Returns how two faces meet.
+/// @param here, next outward unit normals of the first and the next face at a point of the edge
+/// @param out unit vector in the tangent plane of the first face, perpendicular to the edge, away from the face
 inline EdgeKind edgeKind(const Eigen::Vector3d& here, const Eigen::Vector3d& next,
                          const Eigen::Vector3d& out) noexcept {
   if (here.dot(next) > 0 && here.cross(next).squaredNorm() < kSmoothEdge * kSmoothEdge) return EdgeKind::kSmooth;
@@ -26,12 +27,15 @@ inline EdgeKind edgeKind(const Eigen::Vector3d& here, const Eigen::Vector3d& nex
 }
 
 enum class AtEdge : std::uint8_t {
-  kSlide,   ///< continues on the next face if that is nearer to the probe, else stays: both faces push
-  kRelease  ///< the probe is in front of the next face: it crossed the edge, and the contact ends
+  /// the foot continues on the next face if that is nearer to the probe, else it stays on the edge, and both faces push
+  kSlide,
+  kRelease  ///< the probe is in front of the next face: it has crossed the edge, and the contact ends
 };
 
-/// [any] A held foot is on an edge and would continue beyond it. The paper's rule (Thompson et al. 1999, 5.2.4) says
-/// which face comes next; this says whether the probe is still in contact there. @param r from the foot to the probe
+/// [any] Decides for a held foot that is on an edge and would continue beyond it. The paper's rule (Thompson et al.
+/// 1999, 5.2.4) says which face is next; this function says whether the probe is still in contact there.
+/// @param next outward unit normal of the next face
+/// @param r vector from the foot to the probe [m]
 inline AtEdge atEdge(EdgeKind kind, const Eigen::Vector3d& next, const Eigen::Vector3d& r) noexcept {
   return kind == EdgeKind::kConvex && r.dot(next) >= 0 ? AtEdge::kRelease : AtEdge::kSlide;
 }

@@ -1,42 +1,44 @@
 // SPDX-License-Identifier: MIT
-/// The foot of a probe on a model: what every kernel that finds nearest points answers, in the model's frame.
+/// The foot point of a probe on a model, in the model frame: the result of every kernel that finds nearest points.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
 
 namespace hapticd::contact {
 
-/// How much a tick guarantees about its foot.
+/// How reliable the foot of a tick is.
 enum class FootStatus : std::uint8_t {
-  kNearest,   ///< the nearest point of all surfaces that are followed, to the tolerance
-  kHeld,      ///< followed from where the probe entered; another surface is nearer, or may be
-  kDegraded,  ///< the evaluations were used up: the residual is the foot's error, or another foot is nearer
-  kIdle,      ///< nothing is followed: the foot has no meaning
-  kInvalid    ///< the probe's position is not finite; what is followed was kept as it was
+  kNearest,  ///< the nearest point of all surfaces that are traced, to the tolerance
+  kHeld,     ///< the foot of a held contact, followed since the probe entered; another surface may be nearer
+  /// the permitted evaluations were used up: the foot has an error (see residual), or another foot may be nearer
+  kDegraded,
+  kIdle,    ///< no surface is traced: the foot has no meaning
+  kInvalid  ///< the probe's position is not finite; the state of the tracing was not changed
 };
 
 /// Which side of a surface has the solid behind it.
 enum class Sides : std::uint8_t {
   kFront,  ///< the solid is behind the outward normal
-  kBack,   ///< the solid is before it
-  kBoth    ///< a shell: pushes back to the side from which it was entered
+  kBack,   ///< the solid is in front of the surface, on the side of its outward normal
+  kBoth    ///< a shell: pushes the probe back to the side from which it came
 };
 
-/// Nearest point, or the point of a held contact. Inside several parts at once: what leads out of all of them.
+/// The nearest point, or the point of a held contact. If the probe is inside several parts at once, it is the point
+/// that leads out of all of them.
 struct Foot {
-  Eigen::Vector3d point{0, 0, 0};   ///< [m]
-  Eigen::Vector3d normal{0, 0, 1};  ///< unit, away from the solid
-  double depth = 0;                 ///< [m] > 0 inside, minus the distance outside
+  Eigen::Vector3d point{0, 0, 0};   ///< [m] position of the foot
+  Eigen::Vector3d normal{0, 0, 1};  ///< unit normal, pointing away from the solid
+  double depth = 0;                 ///< [m] penetration depth: > 0 inside; outside, minus the distance
   double distance = 0;              ///< [m] from the probe to the point
-  double behind = 0;                ///< [m] of the probe behind the surface, negative in front of it
-  double aside = 0;                 ///< [m] of the probe beside a free edge that has the foot
-  double u = 0, v = 0;              ///< parameters of the surface
+  double behind = 0;                ///< [m] height of the probe behind the surface; negative in front of it
+  double aside = 0;                 ///< [m] distance of the probe sideways from the free edge on which the foot lies
+  double u = 0, v = 0;              ///< parameters of the foot on its surface
   double residual = 0;              ///< [m] estimated error of the point
-  int surface = -1;                 ///< index in the model file
-  int evaluations = 0;              ///< of surfaces, in this tick
+  int surface = -1;                 ///< index of the surface in the model file
+  int evaluations = 0;              ///< number of evaluations of surfaces in this tick
   FootStatus status = FootStatus::kIdle;
   bool on_edge = false;  ///< the foot is on an edge or a corner
-  bool begins = false;   ///< the contact began in this tick, or moved to another place, so the foot may have jumped
+  bool begins = false;   ///< the contact began in this tick or moved to another place: the foot may have jumped
 };
 
 /// [any] True if a foot was found at all.
@@ -44,8 +46,8 @@ inline bool found(const Foot& foot) noexcept {
   return foot.status < FootStatus::kIdle;
 }
 
-/// [any] A foot of the outward normal as it is felt from one side of its surface. @param side +1: the front, -1: the
-/// back
+/// [any] Converts a foot whose normal is the outward one into the foot that is felt from one side of the surface.
+/// @param side +1 for the front, -1 for the back
 inline Foot seenFrom(Foot foot, double side) noexcept {
   foot.normal *= side;
   foot.behind *= side;

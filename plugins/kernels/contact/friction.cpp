@@ -22,13 +22,13 @@ Eigen::Vector3d Friction::step(const FrictionLaw& law, const Eigen::Vector3d& fo
     weakened_ = 0;
     stuck_ = true;
   } else {
-    stretch_ = along(stretch_ + foot - foot_);  // a projection: where the surface turns, stretch is lost, never gained
+    stretch_ = along(stretch_ + foot - foot_);  // projected on the surface: if it turns, stretch is lost, never gained
   }
   foot_ = foot;
 
   const double lowest = std::min(law.dynamic_coefficient, law.static_coefficient);
   const double coefficient = law.static_coefficient + (lowest - law.static_coefficient) * weakened_;
-  const double limit = coefficient * normal_force / law.stiffness;  // as a stretch
+  const double limit = coefficient * normal_force / law.stiffness;  // [m] limit of the stretch
   const double length = stretch_.norm();
   slipping_ = length > limit;
   if (slipping_) {

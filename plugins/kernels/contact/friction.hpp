@@ -5,41 +5,45 @@
 
 namespace hapticd::contact {
 
-/// What a surface does to a probe that moves along it.
+/// The friction of a surface against a probe that moves along it.
 struct FrictionLaw {
-  double static_coefficient = 0;   ///< mu_s: what the stuck probe must overcome
-  double dynamic_coefficient = 0;  ///< mu_d <= mu_s: what a sliding probe feels
-  double stiffness = 800;          ///< [N/m] of the tangential spring between probe and stuck point
-  double viscosity = 0;            ///< [N s/m] drag along the surface, beside the dry friction
+  /// mu_s: a stuck probe slides if the force along the surface exceeds mu_s times the normal force
+  double static_coefficient = 0;
+  double dynamic_coefficient = 0;  ///< mu_d <= mu_s: the friction on a sliding probe is mu_d times the normal force
+  double stiffness = 800;          ///< [N/m] tangential spring between the probe and the stuck point
+  double viscosity = 0;            ///< [N s/m] drag along the surface, in addition to the dry friction
 };
 
-/// The stuck point of one probe, in the model's frame: it moves with the model, so a moving model drags the probe.
+/// The friction of one probe. Its stuck point is in the model frame: it moves with the model, so a moving model drags
+/// the probe.
 ///
-/// The force is a spring from the stuck point to the foot. Where it would exceed the limit the stuck point is dragged
-/// along, so the force is continuous and the spring only ever gives back what was put in. The limit falls from static
-/// to dynamic over a slip as long as the spring's own stretch and returns when the probe sticks again: both changes
-/// leave the force of that moment as it is.
+/// The force is a spring from the stuck point to the foot. If the force would exceed the limit, the stuck point is
+/// dragged along. So the force is continuous, and the spring never returns more energy than it got. While the probe
+/// slips, the limit falls from static to dynamic over a distance equal to the stretch of the spring; it returns when
+/// the probe sticks again. Neither change makes the force jump.
 class Friction {
  public:
-  /// [rt] Force [N] on the probe along the surface: dry friction of at most mu * normal_force, and the drag.
-  /// @param foot nearest point of the surface [m], model frame  @param normal outward unit normal there
+  /// [rt] Returns the force [N] on the probe along the surface: dry friction of at most mu * normal_force, plus the
+  /// drag.
+  /// @param foot nearest point of the surface [m], in the model frame
+  /// @param normal outward unit normal at the foot
   /// @param normal_force [N] of the wall, >= 0; 0 or NaN forgets the stuck point
   /// @param velocity of the probe relative to the model [m/s]; only its part along the surface counts
   Eigen::Vector3d step(const FrictionLaw& law, const Eigen::Vector3d& foot, const Eigen::Vector3d& normal,
                        double normal_force, const Eigen::Vector3d& velocity) noexcept;
 
-  /// [rt] The probe left the surface, or jumped.
+  /// [rt] Forgets the stuck point. Call it if the probe has left the surface, or has jumped.
   void reset() noexcept { stuck_ = slipping_ = false; }
 
-  bool slipping() const noexcept { return slipping_; }    ///< [rt] for the last step
-  double energy(const FrictionLaw& law) const noexcept {  ///< [rt] stored in the spring [J]
+  bool slipping() const noexcept { return slipping_; }    ///< [rt] true if the probe slipped in the last step
+  double energy(const FrictionLaw& law) const noexcept {  ///< [rt] energy stored in the spring [J]
     return stuck_ ? 0.5 * law.stiffness * stretch_.squaredNorm() : 0;
   }
 
  private:
-  Eigen::Vector3d stretch_{0, 0, 0};  // from the stuck point to the foot, along the surface
+  Eigen::Vector3d stretch_{0, 0, 0};  // vector from the stuck point to the foot, along the surface [m]
   Eigen::Vector3d foot_{0, 0, 0};
-  double weakened_ = 0;  // 0: the limit is static; 1: dynamic
+  double weakened_ = 0;  // 0: the limit is the static one; 1: the dynamic one; between: in transition
   bool stuck_ = false, slipping_ = false;
 };
 

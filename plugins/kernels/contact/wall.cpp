@@ -8,8 +8,8 @@ namespace hapticd::contact {
 
 namespace {
 
-/// Returns (x/x0)^n. The exponents in common use are exact and cheap. Two roots are divided, not the root of a quotient
-/// taken, so that the smallest depths do not lose their digits.
+/// Returns (x/x0)^n. The common exponents are computed exactly and cheaply. For a root, two roots are divided: the root
+/// of the quotient would lose precision at the smallest depths.
 double shape(const WallLaw& law, double depth) noexcept {
   if (law.exponent == 1) return depth / law.depth_scale;
   if (law.exponent == 0.5) return std::sqrt(depth) / std::sqrt(law.depth_scale);
@@ -20,7 +20,7 @@ double shape(const WallLaw& law, double depth) noexcept {
 
 WallForce wallForce(const WallLaw& law, double depth, double closing_speed) noexcept {
   if (!(depth > 0)) return {};
-  if (!std::isfinite(closing_speed)) closing_speed = 0;  // only the spring is known
+  if (!std::isfinite(closing_speed)) closing_speed = 0;  // then only the spring acts
   const double at_scale = law.stiffness * law.depth_scale + law.damping * closing_speed;
   const double share = shape(law, depth);
   const double force = at_scale * share;
@@ -29,7 +29,7 @@ WallForce wallForce(const WallLaw& law, double depth, double closing_speed) noex
 
 double wallSlopeAt(const WallLaw& law, double force) noexcept {
   if (law.exponent <= 1) return law.stiffness;
-  const double share = force / (law.stiffness * law.depth_scale);  // (x/x0)^n there
+  const double share = force / (law.stiffness * law.depth_scale);  // (x/x0)^n at this force
   return law.exponent * law.stiffness * std::pow(share, 1 - 1 / law.exponent);
 }
 

@@ -1,38 +1,42 @@
 // SPDX-License-Identifier: MIT
-/// Wall models: the force of a penetrated surface.
+/// Contact laws: the force of a surface on a probe below it.
 #pragma once
 
 namespace hapticd::contact {
 
-/// Material of a wall. Eq. 4 of Thompson et al. 1999 in units that make sense for every exponent n:
+/// Material of a wall: Eq. 4 of Thompson et al. 1999, written so that the units do not depend on the exponent n:
 ///   F = k x0 (x/x0)^n + lambda (x/x0)^n v
-/// so that k stays a stiffness and lambda a damping. At n = 1 this is a linear spring whose damping grows with depth.
+/// with the depth x, the closing speed v, a stiffness k and a damping lambda. At n = 1 this is a linear spring whose
+/// damping grows with depth.
 struct WallLaw {
   double stiffness = 800;     ///< k [N/m]: F = k x0 at depth x0
   double damping = 0;         ///< lambda [N s/m] at depth x0
-  double exponent = 1;        ///< n
-  double depth_scale = 1e-3;  ///< x0 [m]
+  double exponent = 1;        ///< n, without unit
+  double depth_scale = 1e-3;  ///< x0 [m] depth at which the force is k x0
 };
 
 struct WallForce {
-  double force = 0;  ///< [N] along the outward normal, never negative: a wall does not pull
-  double stiffness =
-      0;               ///< [N/m] dF/dx before the clamp, at this speed; for n < 1 it grows beyond bounds toward depth 0
-  double damping = 0;  ///< [N s/m] dF/dv before the clamp
+  double force = 0;  ///< [N] force along the outward normal; never negative, because a wall does not pull
+  /// [N/m] dF/dx at this speed, before negative forces are set to 0; for n < 1 it is unbounded toward depth 0
+  double stiffness = 0;
+  double damping = 0;  ///< [N s/m] dF/dv before negative forces are set to 0
 };
 
-/// [rt] Force at `depth` x [m] (> 0 inside) with `closing_speed` v [m/s] (> 0 going deeper), both relative to the wall:
-/// so the force is the same in every inertial frame. Zero for x <= 0; starts from zero whatever the speed.
+/// [rt] Returns the force at `depth` x [m] (> 0 inside) and `closing_speed` v [m/s] (> 0 if the probe goes deeper).
+/// Both are relative to the wall, so the force is the same in every inertial frame. It is zero for x <= 0, and begins
+/// at zero for every speed.
 WallForce wallForce(const WallLaw& law, double depth, double closing_speed) noexcept;
 
-/// [any] Slope dF/dx [N/m] of the elastic part where its force is `force` [N], and so the steepest that is met up to
-/// there for n >= 1. For n < 1 the law is steepest at depth 0, beyond bounds: the slope at depth x0 is the answer.
+/// [any] Returns the slope dF/dx [N/m] of the elastic part at the depth where its force is `force` [N]. For n >= 1 this
+/// is the greatest slope up to this force. For n < 1 the slope is unbounded at depth 0, and the function returns the
+/// slope at depth x0.
 double wallSlopeAt(const WallLaw& law, double force) noexcept;
 
-/// [any] Depth [m] at which the elastic part pushes back with `force` [N]; infinite where it never does.
+/// [any] Returns the depth [m] at which the elastic part pushes back with `force` [N]; infinite if there is no such
+/// depth.
 double wallDepthAt(const WallLaw& law, double force) noexcept;
 
-/// [any] Energy [J] stored at `depth`: the integral of the elastic part.
+/// [any] Returns the energy [J] stored at `depth`: the integral of the elastic part.
 double wallEnergy(const WallLaw& law, double depth) noexcept;
 
 }  // namespace hapticd::contact

@@ -10,7 +10,7 @@
 namespace hapticd::dynamics {
 namespace {
 
-/// Index of the knot with the greatest force before the curve first falls; -1 if it never does.
+/// Returns the index of the knot with the greatest force before the curve first falls; -1 if the curve never falls.
 int topOf(const DetentCurve& detent) noexcept {
   for (int i = 1; i < detent.pieces(); ++i)
     if (detent.slope(i) < 0) return i;
@@ -33,23 +33,25 @@ int footOf(const DetentCurve& detent, int top) noexcept {
 
 DetentCurve::DetentCurve(std::span<const Knot> knots, double end_stiffness) {
   knots_.reserve(knots.size() + 1);
-  const bool begun = knots.empty() || knots.front().travel > 0;  // at rest, which a file may leave out
+  // a file may leave out the first point, which is (0, 0)
+  const bool begun = knots.empty() || knots.front().travel > 0;
   if (begun) knots_.push_back({0, 0});
   for (const Knot& knot : knots) knots_.push_back(knot);
   const auto wrong = [&](size_t i, const std::string& what) {
     throw std::invalid_argument("detent: row " + std::to_string(i + (begun ? 0 : 1)) + ": " + what +
-                                "; a row is travel [m], then force [N]");
+                                "; each row is [travel in m, force in N]");
   };
-  if (knots_.size() > kMaxKnots) wrong(kMaxKnots, "too many; expected at most 64");
+  if (knots_.size() > kMaxKnots) wrong(kMaxKnots, "there are more than 64 rows, the most that a detent can have");
   if (!(end_stiffness > 0) || !std::isfinite(end_stiffness))
-    throw std::invalid_argument("detent: end_stiffness: expected above 0 N/m");
+    throw std::invalid_argument("detent: end_stiffness must be above 0 N/m");
   for (size_t i = 0; i < knots_.size(); ++i) {
     if (!std::isfinite(knots_[i].travel) || !std::isfinite(knots_[i].force)) wrong(i, "not a finite number");
-    if (i == 0 && (knots_[0].travel != 0 || knots_[0].force != 0)) wrong(i, "expected travel 0 with force 0");
+    if (i == 0 && (knots_[0].travel != 0 || knots_[0].force != 0))
+      wrong(i, "the curve must begin at travel 0 with force 0");
     if (i > 0 && !(knots_[i].travel > knots_[i - 1].travel))
-      wrong(i, "a travel of " + number(knots_[i].travel) + " m; expected more than in the row before, " +
+      wrong(i, "a travel of " + number(knots_[i].travel) + " m is not more than that of the row before, " +
                    number(knots_[i - 1].travel) + " m");
-    if (i > 0 && !(knots_[i].force > 0)) wrong(i, "expected a force above 0 N: the button has to come back");
+    if (i > 0 && !(knots_[i].force > 0)) wrong(i, "the force must be above 0 N, so that the button comes back");
   }
   for (size_t i = 0; i + 1 < knots_.size(); ++i)
     slopes_.push_back((knots_[i + 1].force - knots_[i].force) / (knots_[i + 1].travel - knots_[i].travel));
@@ -81,25 +83,25 @@ Equilibria buttonEquilibria(double k1, const DetentCurve& detent, double travel)
     all.count = 1;
     return all;
   }
-  const double rounding = 1e-14 * travel;  // two lines meet at a knot, and neither may miss the solution there
+  const double rounding = 1e-14 * travel;  // two lines meet at a knot, and a solution there must not be missed by both
   for (int piece = 0; piece < detent.pieces(); ++piece) {
     const DetentCurve::Knot& knot = detent.knot(piece);
     const double slope = detent.slope(piece);
     const double sum = k1 + slope;
-    if (sum == 0) continue;  // a line of equilibria or none; its ends belong to the neighbouring pieces
-    const double way = (k1 * (travel - knot.travel) - knot.force) / sum;  // x2 beyond the knot
+    if (sum == 0) continue;  // the whole piece is an equilibrium, or none; the neighbouring pieces give its ends
+    const double way = (k1 * (travel - knot.travel) - knot.force) / sum;  // distance of x2 beyond the knot
     const double x2 = knot.travel + way;
     const bool first = all.count == 0 || x2 > all.at[static_cast<size_t>(all.count) - 1].x2 + 2 * rounding;
     if (way < -rounding || x2 > detent.end(piece) + rounding || !first) continue;
-    // F as one quotient, Eq. 10: nothing is lost in travel - x2
+    // F as one quotient (Eq. 10), because travel - x2 would lose precision
     const double force = k1 * (knot.force + slope * (travel - knot.travel)) / sum;
     all.at[static_cast<size_t>(all.count++)] = {force / k1, x2, force, piece, sum > 0};
   }
   return all;
 }
 
-/// The stable equilibrium that is reached from where the button is: the force on it, k1 (travel - x2) - F2(x2), says
-/// which way it is pushed, and it stops at the first stable one that way.
+/// Finds the stable equilibrium that the button reaches from its present position. The force on the button, k1 (travel
+/// - x2) - F2(x2), gives its direction, and it stops at the first stable equilibrium in this direction.
 ButtonState::Step ButtonState::step(double k1, const DetentCurve& detent, double travel) noexcept {
   Step result;
   if (!(travel > 0) || !std::isfinite(travel)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A push button without mass: the surface's spring k1 in series with a detent curve (Thompson et al. 1999, Eq. 10,
-/// 11).
+/// A push button without mass: the spring k1 of the surface in series with a detent curve (Thompson et al. 1999, Eq. 10
+/// and 11).
 #pragma once
 #include <array>
 #include <span>
@@ -8,7 +8,8 @@
 
 namespace hapticd::dynamics {
 
-/// The detent: force F2 [N] against the button's movement x2 [m], straight lines between points, then end_stiffness.
+/// The detent: the force F2 [N] over the button's travel x2 [m]. It has straight lines between its points; beyond the
+/// last point it rises with end_stiffness.
 class DetentCurve {
  public:
   struct Knot {
@@ -16,54 +17,60 @@ class DetentCurve {
   };
   static constexpr int kMaxKnots = 64;
 
-  /// [main] `knots` start at (0, 0) or are given that start; travel grows.
-  /// @throws std::invalid_argument that says which knot is wrong.
+  /// [main] Takes points of growing travel; adds the point (0, 0) if `knots` does not begin there. end_stiffness is in
+  /// N/m. @throws std::invalid_argument that names the wrong point.
   DetentCurve(std::span<const Knot> knots, double end_stiffness);
 
-  double force(double travel) const noexcept;   ///< [rt] below 0 the first line continues
-  double energy(double travel) const noexcept;  ///< [rt] [J] stored, travel >= 0
+  double force(double travel) const noexcept;   ///< [rt] [N]; for travel < 0 the first line continues
+  double energy(double travel) const noexcept;  ///< [rt] [J] stored energy; travel must be >= 0
   int pieces() const noexcept { return static_cast<int>(knots_.size()); }
   const Knot& knot(int piece) const noexcept { return knots_[static_cast<size_t>(piece)]; }
-  double slope(int piece) const noexcept { return slopes_[static_cast<size_t>(piece)]; }  ///< [N/m] beyond its knot
-  double end(int piece) const noexcept;  ///< where a piece ends [m]; infinite for the last
+  /// [N/m] slope of the line that begins at this knot
+  double slope(int piece) const noexcept { return slopes_[static_cast<size_t>(piece)]; }
+  double end(int piece) const noexcept;  ///< travel at which a piece ends [m]; infinite for the last piece
 
  private:
   std::vector<Knot> knots_;
   std::vector<double> slopes_;
 };
 
-/// One division of the travel: x1 into the surface, x2 of the button; the force F is the same in both springs.
+/// One way to divide the probe's travel: x1 [m] into the surface, and x2 [m] by which the button moves. The force [N]
+/// is the same in both springs.
 struct Equilibrium {
   double x1 = 0, x2 = 0, force = 0;
   int piece = 0;
-  bool stable = true;  ///< k1 + slope > 0
+  bool stable = true;  ///< true if k1 + slope > 0
 };
 
 struct Equilibria {
-  std::array<Equilibrium, DetentCurve::kMaxKnots> at;  ///< by growing x2
+  std::array<Equilibrium, DetentCurve::kMaxKnots> at;  ///< in the order of growing x2
   int count = 0;
 };
 
-/// [rt] All equilibria at x_travel [m] >= 0 with the surface's spring k1 [N/m]. More than one exists where the detent
-/// falls faster than k1: that is the snap.
+/// [rt] Returns all equilibria at the probe's travel [m] >= 0, with the surface's spring k1 [N/m]. If the detent falls
+/// faster than k1 there is more than one, and the button snaps.
 Equilibria buttonEquilibria(double k1, const DetentCurve& detent, double travel) noexcept;
 
-/// [rt] Follows the branch of the button, and leaves it only where it ends (snap-through, with hysteresis).
+/// [rt] Follows the button's present branch of equilibria, and leaves it only at its end (snap-through, with
+/// hysteresis).
 class ButtonState {
  public:
   struct Step {
     Equilibrium at;
-    bool clicked = false;  ///< it passed the top of the detent going in, or its foot coming back
-    bool snapped = false;  ///< it jumped from one branch to another
+    /// the button went past the detent in this step, or came back from there
+    bool clicked = false;
+    bool snapped = false;  ///< the button jumped from one branch of equilibria to another
   };
-  /// [rt] @param travel [m] of the probe from the button's rest; <= 0: no contact, the button is at rest
+  /// [rt] Advances the button by one tick.
+  /// @param travel [m] of the probe from the surface of the button at rest; if it is <= 0 there is no contact, and the
+  /// button is at rest
   Step step(double k1, const DetentCurve& detent, double travel) noexcept;
   void reset() noexcept {
     x2_ = 0;
     pressed_ = false;
-  }  ///< [rt]
-  double position() const noexcept { return x2_; }    ///< [m] x2
-  bool pressed() const noexcept { return pressed_; }  ///< past the detent
+  }  ///< [rt] puts the button at rest
+  double position() const noexcept { return x2_; }    ///< [m] x2, the travel of the button
+  bool pressed() const noexcept { return pressed_; }  ///< true if the button is past its detent
 
  private:
   double x2_ = 0;

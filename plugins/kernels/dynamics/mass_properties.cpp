@@ -16,7 +16,7 @@ MassProperties boxProperties(const Eigen::AlignedBox3d& box) noexcept {
   return {box.center(), moments.asDiagonal()};
 }
 
-/// Of div(x e_x) = 1, div(x^2/2 e_x) = x, div(x^3/3 e_x) = x^2, div(x^2 y/2 e_x + x y^2/2 e_y)/2 = x y.
+/// Integrates by div(x e_x) = 1, div(x^2/2 e_x) = x, div(x^3/3 e_x) = x^2, div(x^2 y/2 e_x + x y^2/2 e_y)/2 = x y.
 void SolidIntegral::add(const Vector3d& point, const Vector3d& area) noexcept {
   const Vector3d r = point - origin_;
   volume_ += r.dot(area) / 3;
@@ -61,8 +61,9 @@ Vector3d principalMoments(const Matrix3d& inertia) {
 
 void validateSolid(const Matrix3d& inertia) {
   const Vector3d moments = principalMoments(inertia);
-  constexpr double kRounded = 1e-6;  // figures of a data sheet are
-  if (moments[2] > (moments[0] + moments[1]) * (1 + kRounded)) refuse(moments, "none above the sum of the others");
+  constexpr double kRounded = 1e-6;  // tolerance for the rounded numbers of a data sheet
+  if (moments[2] > (moments[0] + moments[1]) * (1 + kRounded))
+    refuse(moments, "no moment above the sum of the other two");
 }
 
 }  // namespace hapticd::dynamics

@@ -1,43 +1,45 @@
 // SPDX-License-Identifier: MIT
-/// Centre and inertia of a solid of constant density, from integrals over its surface.
+/// Centre of mass and inertia of a solid of constant density, from integrals over its surface.
 #pragma once
 #include <Eigen/Geometry>
 
 namespace hapticd::dynamics {
 
-/// Properties of a solid of 1 kg.
+/// Centre of mass and inertia of a solid of 1 kg.
 struct MassProperties {
-  Eigen::Vector3d center{0, 0, 0};                        ///< of mass [m]
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< about the centre [m^2]; times the mass: [kg m^2]
+  Eigen::Vector3d center{0, 0, 0};  ///< centre of mass [m]
+  /// about the centre of mass, for 1 kg [m^2]; multiply by the mass to get kg m^2
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();
 };
 
-/// [any] A full box.
+/// [any] Returns the properties of a solid box.
 MassProperties boxProperties(const Eigen::AlignedBox3d& box) noexcept;
 
 /// The volume integrals of a closed surface, by the divergence theorem.
 class SolidIntegral {
  public:
-  /// [any] @param origin near the solid [m], so that a solid far from the frame's origin loses no digits
+  /// [any] @param origin a point near the solid [m]; it keeps the precision if the solid is far from the frame's origin
   explicit SolidIntegral(const Eigen::Vector3d& origin) noexcept : origin_(origin) {}
-  /// [any] A piece of the surface: a point [m] and its outward area vector [m^2].
+  /// [any] Adds a small piece of the surface: a point of it [m] and its outward area vector [m^2].
   void add(const Eigen::Vector3d& point, const Eigen::Vector3d& area) noexcept;
-  double volume() const noexcept { return volume_; }  ///< [any] [m^3] negative if the surface is inside out
-  /// [any] What the pieces bound; volume() is not 0.
+  double volume() const noexcept { return volume_; }  ///< [any] [m^3]; negative if the surface is inside out
+  /// [any] Returns the properties of the solid that the pieces enclose. volume() must not be 0.
   MassProperties properties() const noexcept;
 
  private:
   Eigen::Vector3d origin_;
   double volume_ = 0;
-  Eigen::Vector3d first_{0, 0, 0};                    // integrals of x
-  Eigen::Matrix3d second_ = Eigen::Matrix3d::Zero();  // integrals of x y
+  Eigen::Vector3d first_{0, 0, 0};                    // volume integral of x
+  Eigen::Matrix3d second_ = Eigen::Matrix3d::Zero();  // volume integrals of the products x_i x_j
 };
 
-/// [any] Principal moments of an inertia [kg m^2], ascending.
-/// @throws std::invalid_argument unless it is symmetric and positive definite.
+/// [any] Returns the principal moments of an inertia [kg m^2] in ascending order. @throws std::invalid_argument unless
+/// the matrix is symmetric and positive definite.
 Eigen::Vector3d principalMoments(const Eigen::Matrix3d& inertia);
 
-/// [any] True if a body of positive mass everywhere can have this inertia about its centre: besides the above, no
-/// principal moment exceeds the sum of the others. @throws std::invalid_argument with the moments.
+/// [any] Checks that a real body can have this inertia about its centre of mass: the conditions of principalMoments()
+/// hold, and no principal moment exceeds the sum of the other two. @throws std::invalid_argument that names the
+/// moments.
 void validateSolid(const Eigen::Matrix3d& inertia);
 
 }  // namespace hapticd::dynamics

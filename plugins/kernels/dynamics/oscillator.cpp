@@ -8,8 +8,9 @@
 namespace hapticd::dynamics {
 namespace {
 
-/// Overdamped or critical: the two real rates -fast and -slow. Their difference is taken by expm1 and the slow one from
-/// the product of both, so that nothing cancels however far apart or near they are.
+/// The overdamped or critical case, with the two real rates -fast and -slow. The difference of the exponentials is
+/// computed by expm1, and the slow rate from the product of both rates. So no digits cancel, even if the rates are
+/// almost equal or far apart.
 OscillatorStep overdamped(double half, double root, double square, double dt) {
   const double fast = half + root;
   const double slow = square / fast;
@@ -33,7 +34,7 @@ OscillatorStep oscillatorStepUnchecked(double mass, double damping, double stiff
   const double half = damping / (2 * mass);
   const double square = stiffness / mass;
   if (half == 0 && square == 0) return {1, dt, 0, 1};
-  // half^2 - square, as a product: exact to rounding where both are nearly the same
+  // half^2 - square as a product, which is exact to rounding even if both are nearly the same
   const double natural = std::sqrt(square);
   const double difference = (half - natural) * (half + natural);
   if (difference >= 0) return overdamped(half, std::sqrt(difference), square, dt);
@@ -44,9 +45,10 @@ OscillatorStep oscillatorStep(double mass, double damping, double stiffness, dou
   const bool good = std::isfinite(mass) && mass > 0 && std::isfinite(damping) && damping >= 0 &&
                     std::isfinite(stiffness) && stiffness >= 0 && std::isfinite(dt) && dt >= 0;
   if (!good)
-    throw std::invalid_argument("oscillator: mass " + std::to_string(mass) + " kg, damping " + std::to_string(damping) +
-                                " N s/m, stiffness " + std::to_string(stiffness) + " N/m, step " + std::to_string(dt) +
-                                " s; expected mass > 0 and the others finite and not negative");
+    throw std::invalid_argument(
+        "oscillator: mass " + std::to_string(mass) + " kg, damping " + std::to_string(damping) + " N s/m, stiffness " +
+        std::to_string(stiffness) + " N/m, step " + std::to_string(dt) +
+        " s; the mass must be above 0, the other numbers must not be negative, and all must be finite");
   return oscillatorStepUnchecked(mass, damping, stiffness, dt);
 }
 

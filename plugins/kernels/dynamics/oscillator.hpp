@@ -4,22 +4,24 @@
 
 namespace hapticd::dynamics {
 
-/// The state (x, v) one step later is a linear map of the state now and of the equilibrium x_e = f/k: four numbers,
-/// computed once (the exponential of the 2x2 system matrix). Stable for every m > 0, b >= 0, k >= 0 and every step.
+/// The exact step. Measured from the equilibrium x_e = f/k, the state (x, v) one step later is a linear map of the
+/// present state: four numbers that are computed once (the exponential of the 2x2 system matrix). It is stable for
+/// every m > 0, b >= 0, k >= 0 and every step.
 struct OscillatorStep {
   double xx = 1, xv = 0;  ///< x' = xx x + xv v
   double vx = 0, vv = 1;  ///< v' = vx x + vv v
 };
 
-/// [main] The step for mass [kg], damping [N s/m], stiffness [N/m] (any unit that makes b/m and k/m rates) over dt [s].
+/// [main] Returns the step over dt [s] for mass [kg], damping [N s/m] and stiffness [N/m], or for other units in which
+/// b/m is in 1/s and k/m in 1/s^2.
 /// @throws std::invalid_argument unless mass > 0, damping >= 0, stiffness >= 0, dt >= 0 and all are finite.
 OscillatorStep oscillatorStep(double mass, double damping, double stiffness, double dt);
 
-/// [rt] The same without a check, for a dt that varies; the caller is responsible for the arguments.
+/// [rt] The same without a check of the arguments, for a dt that varies from tick to tick.
 OscillatorStep oscillatorStepUnchecked(double mass, double damping, double stiffness, double dt) noexcept;
 
-/// [rt] Free motion about 0. With a constant force f shift by the equilibrium: advance(step, x - f/k, v).
-/// T: a scalar or an Eigen vector or array.
+/// [rt] Advances a free motion about 0 by one step. With a constant force f, pass x - f/k for x. T is a scalar, or an
+/// Eigen vector or array.
 template <class T>
 inline void advance(const OscillatorStep& step, T& x, T& v) noexcept {
   const T moved = step.xx * x + step.xv * v;

@@ -11,12 +11,13 @@
 namespace hapticd::dynamics {
 namespace {
 
-constexpr double kLargestPhase = 0.1;         // [rad] of the linear swing per substep of freeStep
-constexpr double kLargestDampedPhase = 0.02;  // of the other two
-constexpr int kPendulumSubsteps = 32;         // most substeps, which bounds the time of a tick
-constexpr double kWeak = 0.05;                // damping times substep, up to which Runge-Kutta resolves the decay
+constexpr double kLargestPhase = 0.1;         // [rad] phase of the linear swing per substep of freeStep()
+constexpr double kLargestDampedPhase = 0.02;  // [rad] the same for the other two methods
+constexpr int kPendulumSubsteps = 32;         // most substeps per step, which bounds the time of a tick
+// damping/inertia times the substep up to which Runge-Kutta resolves the decay
+constexpr double kWeak = 0.05;
 
-/// Without damping: the error of its energy stays bounded, however long it swings.
+/// The step without damping. The error of its energy stays bounded for ever.
 PendulumState freeStep(double w2, double drive, PendulumState s, double h) noexcept {
   Splitting::step(
       h, [&](double time) { s.angle += time * s.rate; },
@@ -24,7 +25,7 @@ PendulumState freeStep(double w2, double drive, PendulumState s, double h) noexc
   return s;
 }
 
-/// Weakly damped: the classical method of fourth order.
+/// The step for weak damping: the classical Runge-Kutta method of fourth order.
 PendulumState rungeKutta(double w2, double c, double drive, PendulumState s, double h) noexcept {
   const auto acceleration = [&](double angle, double rate) { return drive - w2 * std::sin(angle) - c * rate; };
   const double v1 = s.rate, a1 = acceleration(s.angle, v1);
@@ -34,7 +35,8 @@ PendulumState rungeKutta(double w2, double c, double drive, PendulumState s, dou
   return {s.angle + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), s.rate + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)};
 }
 
-/// Strongly damped: v' = a - c v exactly, with the angle of the step's middle, so that no damping is too strong.
+/// The step for strong damping. It solves v' = a - c v exactly, with `a` from the angle in the middle of the step, so
+/// it is stable for every damping.
 PendulumState exponential(double w2, double c, double drive, PendulumState s, double h) noexcept {
   const double decay = std::exp(-c * h), phi = -std::expm1(-c * h) / c;
   const double half_phi = -std::expm1(-c * h / 2) / c;
@@ -56,17 +58,16 @@ void validate(const PendulumLaw& law) {
                       std::isfinite(law.damping) && std::isfinite(law.gravity);
   if (!finite || !(law.mass > 0) || !(law.inertia > 0) || law.length < 0 || law.damping < 0)
     throw std::invalid_argument(
-        "pendulum: expected mass and inertia above 0, length and damping not below 0, all finite");
+        "pendulum: mass and inertia must be above 0, length and damping must not be below 0, and all must be finite");
 }
 
 void validateSwing(double swing_rate, double rate_hz) {
   if (!(rate_hz > 0) || swing_rate <= kLargestSwing * rate_hz) return;
   char text[200];
-  std::snprintf(
-      text, sizeof text,
-      "it swings at %.4g rad/s, expected at most %.4g rad/s at %.4g Hz: more inertia, a weaker pull, or a rate "
-      "of %.0f Hz",
-      swing_rate, kLargestSwing * rate_hz, rate_hz, std::ceil(swing_rate / kLargestSwing));
+  std::snprintf(text, sizeof text,
+                "it swings at %.4g rad/s, but its motion is stable up to at most %.4g rad/s at %.4g Hz; give it more "
+                "inertia or a weaker pull, or set servo.rate to %.0f Hz",
+                swing_rate, kLargestSwing * rate_hz, rate_hz, std::ceil(swing_rate / kLargestSwing));
   throw std::invalid_argument(text);
 }
 
@@ -74,7 +75,7 @@ PendulumState advance(const PendulumLaw& law, PendulumState state, double torque
   if (!(dt > 0) || !std::isfinite(dt) || !std::isfinite(torque)) return state;
   const double w2 = law.frequencySquared();
   const double drive = torque / law.inertia;
-  // by the rate at the bottom: it is the same all the way, so the substeps are, which a bounded energy needs
+  // the rate at the bottom is the same during the whole swing. So all substeps are equal, which a bounded energy needs
   const double lift = std::sin(state.angle / 2);
   const double fastest = std::sqrt(std::max(w2, state.rate * state.rate + 4 * w2 * lift * lift));
   const double largest = law.damping == 0 ? kLargestPhase : kLargestDampedPhase;
@@ -92,7 +93,7 @@ double energy(const PendulumLaw& law, const PendulumState& state) noexcept {
 
 double period(const PendulumLaw& law, double amplitude) noexcept {
   double a = 1, b = std::fabs(std::cos(amplitude / 2));
-  constexpr int kRounds = 40;  // converges quadratically; more steps are needed only for amplitudes near pi
+  constexpr int kRounds = 40;  // it converges quadratically; only amplitudes near pi need many rounds
   for (int i = 0; i < kRounds && std::fabs(a - b) > 1e-16 * a; ++i) {
     const double mean = (a + b) / 2;
     b = std::sqrt(a * b);

@@ -5,44 +5,46 @@
 namespace hapticd::dynamics {
 
 struct PendulumLaw {
-  double mass = 1;        ///< [kg]
-  double inertia = 1;     ///< about the pivot [kg m^2]
-  double length = 1;      ///< pivot to centre of mass [m]
-  double damping = 0;     ///< [N m s/rad]
-  double gravity = 9.81;  ///< part of gravity that acts in the plane of motion [m/s^2]
+  double mass = 1;        ///< [kg] m
+  double inertia = 1;     ///< I: moment of inertia about the pivot [kg m^2]
+  double length = 1;      ///< L: distance from the pivot to the centre of mass [m]
+  double damping = 0;     ///< [N m s/rad] c
+  double gravity = 9.81;  ///< g: component of gravity in the plane of motion [m/s^2]
 
-  double frequencySquared() const noexcept { return mass * gravity * length / inertia; }  ///< [1/s^2]
+  double frequencySquared() const noexcept { return mass * gravity * length / inertia; }  ///< [1/s^2] of a small swing
 };
 
 struct PendulumState {
-  double angle = 0;  ///< [rad] from hanging down
-  double rate = 0;   ///< [rad/s]
+  double angle = 0;  ///< [rad] angle from hanging straight down
+  double rate = 0;   ///< [rad/s] angular velocity
 };
 
-/// [any] @throws std::invalid_argument unless all is finite, mass and inertia above 0, length and damping not below 0.
+/// [any] Checks a law. @throws std::invalid_argument unless all numbers are finite, mass and inertia are above 0, and
+/// length and damping are not below 0.
 void validate(const PendulumLaw& law);
 
-/// [rad] of the linear swing in one step, up to which advance() is stable (test Pendulum.IsStableUpToItsLargestSwing);
-/// accurate it is up to a tenth of that.
+/// [rad] largest phase of the linear swing in one step for which advance() is stable (test
+/// Pendulum.IsStableUpToItsLargestSwing). It is accurate up to a tenth of this.
 inline constexpr double kLargestSwing = 32;
 
-/// [main] @throws std::invalid_argument with the bound if something that swings at `swing_rate` [rad/s] is too fast for
-/// steps at `rate_hz`; a rate of 0 is not known yet.
+/// [main] Checks that a body that swings at `swing_rate` [rad/s] is not too fast for steps at `rate_hz`; 0 means that
+/// the rate is not known yet. @throws std::invalid_argument that names the bound.
 void validateSwing(double swing_rate, double rate_hz);
 
-/// [rt] One step of dt [s] with a constant torque of the user [N m], split where the motion is faster than the step.
-/// Without damping a splitting of fourth order, whose energy stays; with weak damping Runge-Kutta of fourth order;
-/// where damping/inertia times the substep exceeds 0.05 an exponential step of second order, stable however strong the
-/// damping (tests Pendulum.KeepsItsEnergyForTenMillionTicks, Pendulum.ConvergesWithTheOrderItClaims).
+/// [rt] Advances by one step of dt [s] under a constant torque of the user [N m]. A fast motion is divided into
+/// substeps. Without damping the method is a splitting of fourth order, which keeps the energy. With weak damping it is
+/// Runge-Kutta of fourth order. If damping / inertia times the substep exceeds 0.05, it is an exponential step of
+/// second order, which is stable for every damping (tests Pendulum.KeepsItsEnergyForTenMillionTicks,
+/// Pendulum.ConvergesWithTheOrderItClaims).
 PendulumState advance(const PendulumLaw& law, PendulumState state, double torque, double dt) noexcept;
 
-/// [any] Kinetic and potential energy [J], zero hanging at rest.
+/// [any] Returns kinetic plus potential energy [J]; 0 if the pendulum hangs at rest.
 double energy(const PendulumLaw& law, const PendulumState& state) noexcept;
 
-/// [any] Period [s] of free swinging from rest at `amplitude` [rad], by the arithmetic-geometric mean.
+/// [any] Returns the period [s] of a free swing of `amplitude` [rad], by the arithmetic-geometric mean.
 double period(const PendulumLaw& law, double amplitude) noexcept;
 
-/// [any] Rate at the bottom [rad/s] above which it goes all the way round.
+/// [any] Returns the rate at the bottom [rad/s] above which the pendulum goes all the way round.
 double separatrixRate(const PendulumLaw& law) noexcept;
 
 }  // namespace hapticd::dynamics

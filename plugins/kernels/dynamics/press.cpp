@@ -14,13 +14,15 @@ Press foresee(const Pressing& last, const Vector3d& probe_now, double closing_sp
   Press press;
   press.point = last.point;
   press.outward = last.normal;
-  const Vector3d slide = probe_now - last.probe - dt * point_velocity;  // speed of the probe relative to the body
+  const Vector3d slide = probe_now - last.probe - dt * point_velocity;  // [m] motion of the probe relative to the body
   const double depth = last.depth - last.normal.dot(slide);
-  // If the body leaves by itself, its change of velocity may bring it back, so the line continues below zero force.
+  // If the body moves away from the probe by itself, its change of velocity may bring it back. So the force is extended
+  // linearly to negative values.
   const double deepest = std::max(depth, last.depth - last.normal.dot(probe_now - last.probe));
   const contact::WallForce wall = contact::wallForce(last.law, deepest, closing_speed);
   if (!(wall.force > 0)) return press;
-  // The chord to depth 0 for n < 1: where the law is steeper than that, a light body would be thrown out.
+  // For n < 1 the slope of the chord to depth 0 is used. With the steeper slope of the law itself, a light body would
+  // be thrown out.
   const double chord = wall.force / deepest * std::max(1.0, last.law.exponent);
   const double force = wall.force - chord * (deepest - depth);
   const Matrix3d across = last.normal * last.normal.transpose();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What presses on a moving body: contacts foreseen at the end of a step, with the way they give as the body moves.
+/// Contacts that press on a moving body: their forces, predicted for the end of a step, and how these forces change as
+/// the body moves.
 #pragma once
 #include <Eigen/Core>
 
@@ -7,36 +8,43 @@
 
 namespace hapticd::dynamics {
 
-/// A contact as the last step left it, world frame.
+/// A contact at the end of the last step, in the world frame.
 struct Pressing {
-  Eigen::Vector3d probe{0, 0, 0};   ///< where the probe was [m]
-  Eigen::Vector3d point{0, 0, 0};   ///< of the surface under it [m]
-  Eigen::Vector3d normal{0, 0, 1};  ///< outward, unit
-  Eigen::Vector3d along{0, 0, 0};   ///< friction on the probe, along the surface [N]
+  Eigen::Vector3d probe{0, 0, 0};   ///< position of the probe then [m]
+  Eigen::Vector3d point{0, 0, 0};   ///< point of the surface under the probe [m]
+  Eigen::Vector3d normal{0, 0, 1};  ///< outward unit normal of the surface
+  Eigen::Vector3d along{0, 0, 0};   ///< friction force on the probe, along the surface [N]
   contact::WallLaw law;
-  double depth = 0;            ///< [m] > 0 inside; the touch of a probe just outside is foreseen
-  double along_limit = 0;      ///< [N] the friction does not grow beyond this
-  double along_stiffness = 0;  ///< [N/m] of the friction while it sticks
-  double along_damping = 0;    ///< [N s/m]
+  /// [m] > 0 inside; if it is just below 0, a contact that begins within the step is predicted
+  double depth = 0;
+  double along_limit = 0;      ///< [N] greatest friction force
+  double along_stiffness = 0;  ///< [N/m] stiffness of the friction while the probe sticks
+  double along_damping = 0;    ///< [N s/m] damping along the surface
 };
 
-/// One contact in the coming step, world frame. A force held through a step pushes the body on after it has given way:
-/// that gains e^(pi w h/4) a half swing (w^2 = k/m, step h), without end for a light body. So the force at the step's
-/// end is taken, and what the body's own change of velocity takes off it.
+/// One contact in the coming step, in the world frame. A force that is held through a step still pushes the body after
+/// the body has moved away. So each half swing would grow by the factor e^(pi w h/4) (w^2 = k/m, step h), without limit
+/// for a light body. For this reason the force at the end of the step is used, and how much the body's own change of
+/// velocity reduces it.
 struct Press {
-  Eigen::Vector3d point{0, 0, 0};                  ///< [m]
-  Eigen::Vector3d outward{0, 0, 1};                ///< unit: no force ever pulls the body in this direction
-  Eigen::Vector3d force{0, 0, 0};                  ///< on the body at the end of the step, if it keeps its velocity [N]
-  Eigen::Matrix3d give = Eigen::Matrix3d::Zero();  ///< [N s/m] what a change of the point's velocity takes off
+  Eigen::Vector3d point{0, 0, 0};  ///< [m]
+  /// outward unit normal: no force ever pulls the body in this direction
+  Eigen::Vector3d outward{0, 0, 1};
+  /// force on the body at the end of the step, if the body keeps its velocity [N]
+  Eigen::Vector3d force{0, 0, 0};
+  /// [N s/m] reduction of the force per change of the point's velocity
+  Eigen::Matrix3d give = Eigen::Matrix3d::Zero();
 };
 
-/// [rt] The contact `last` at the end of a step of dt [s].
-/// @param probe_now where the probe is now [m]  @param closing_speed of probe against surface, > 0 going deeper [m/s]
-/// @param point_velocity of the body at the contact [m/s]
+/// [rt] Predicts the contact `last` for the end of a step of dt [s].
+/// @param probe_now position of the probe now [m]
+/// @param closing_speed of the probe relative to the surface [m/s], > 0 if it goes deeper
+/// @param point_velocity velocity of the body at the contact [m/s]
 Press foresee(const Pressing& last, const Eigen::Vector3d& probe_now, double closing_speed,
               const Eigen::Vector3d& point_velocity, double dt) noexcept;
 
-/// [rt] The force on the body if the point's velocity changes by `change` [m/s] in the step: a wall does not pull.
+/// [rt] Returns the force [N] on the body if the point's velocity changes by `change` [m/s] in the step. It never pulls
+/// the body outward.
 Eigen::Vector3d forceAfter(const Press& press, const Eigen::Vector3d& change) noexcept;
 
 }  // namespace hapticd::dynamics

@@ -17,10 +17,11 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kLargestTurn = 0.15;  // [rad] of a substep
-constexpr int kBodySubsteps = 4;       // bounds the time of a tick; faster bodies stay bounded but lose digits
+constexpr double kLargestTurn = 0.15;  // [rad] largest turn in a substep
+// most substeps, to bound the time of a tick; a faster body is less accurate, but stable
+constexpr int kBodySubsteps = 4;
 
-/// One coordinate under a constant force: x'' = (force - b x' - k x)/m, exactly.
+/// Advances the position under a constant force exactly: x'' = (force - b x' - k x)/m.
 void drive(double mass, double damping, double stiffness, const Vector3d& force, double dt, Vector3d& x, Vector3d& v) {
   if (stiffness > 0) {
     const Vector3d rest = force / stiffness;
@@ -37,13 +38,13 @@ void drive(double mass, double damping, double stiffness, const Vector3d& force,
 }
 
 void validate(const RigidBodyLaw& law) {
-  if (!(law.mass > 0) || !std::isfinite(law.mass)) throw std::invalid_argument("mass: expected above 0 kg");
-  if (!law.center.allFinite()) throw std::invalid_argument("center: expected finite numbers");
+  if (!(law.mass > 0) || !std::isfinite(law.mass)) throw std::invalid_argument("mass: must be above 0 kg, and finite");
+  if (!law.center.allFinite()) throw std::invalid_argument("center: must be three finite numbers");
   principalMoments(law.inertia);
   if (!(law.damping >= 0) || !(law.angular_damping >= 0) || !(law.tether >= 0))
-    throw std::invalid_argument("damping, angular damping and tether: expected 0 or more");
+    throw std::invalid_argument("damping, angular damping and tether must be 0 or more");
   if (law.joint != Joint::kFree && !(law.axis.norm() > 0))
-    throw std::invalid_argument("axis: no direction, as its numbers are all 0; expected one, such as [0, 1, 0]");
+    throw std::invalid_argument("axis: all three numbers are 0, so it has no direction; give one such as [0, 1, 0]");
 }
 
 }  // namespace
@@ -55,7 +56,7 @@ RigidBody::RigidBody(const RigidBodyLaw& law, const Vector3d& position, const Qu
   const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(law.inertia);
   principal_ = solver.eigenvalues();
   Matrix3d axes = solver.eigenvectors();
-  if (law.inertia.isDiagonal(0)) {  // axes as the user named them
+  if (law.inertia.isDiagonal(0)) {  // keep the order of the axes in which the user gave the moments
     principal_ = law.inertia.diagonal();
     axes.setIdentity();
   }
@@ -84,7 +85,8 @@ void RigidBody::step(const Vector3d& force, const Vector3d& torque, double dt) n
 
 namespace {
 
-/// Velocity of a point from (velocity of the centre, angular velocity); its transpose turns forces into wrenches.
+/// Returns the matrix that maps (velocity of the centre, angular velocity) to the velocity of a point. Its transpose
+/// maps a force at the point to a wrench.
 Eigen::Matrix<double, 3, 6> pointRows(const Vector3d& lever) noexcept {
   Eigen::Matrix<double, 3, 6> rows;
   rows << Matrix3d::Identity(),
@@ -92,8 +94,9 @@ Eigen::Matrix<double, 3, 6> pointRows(const Vector3d& lever) noexcept {
   return rows;
 }
 
-/// A contact whose normal turns with the body pushes it back toward facing the probe: torque lost for a turn [N m/rad].
-/// Where it would push the body over instead (a press from behind the centre) nothing is stiff.
+/// Returns the torsional stiffness [N m/rad] of a contact whose normal turns with the body, and which turns the body
+/// back to face the probe. If the contact would turn the body over instead (a press from behind the centre), the
+/// stiffness is 0.
 Matrix3d facing(const Press& press, const Vector3d& lever) noexcept {
   const double push = std::max(0.0, -press.outward.dot(press.force)) * std::max(0.0, press.outward.dot(lever));
   return push * (Matrix3d::Identity() - press.outward * press.outward.transpose());
@@ -101,7 +104,7 @@ Matrix3d facing(const Press& press, const Vector3d& lever) noexcept {
 
 }  // namespace
 
-/// Mass and inertia, and what tether and drag take of a change of velocity within the step.
+/// Returns mass and inertia, plus the resistance of tether and drag to a change of velocity within the step.
 RigidBody::Matrix6d RigidBody::ownResistance(double dt) const noexcept {
   Matrix6d own = Matrix6d::Zero();
   own.topLeftCorner<3, 3>().diagonal().setConstant(law_.mass + dt * law_.damping + dt * dt * law_.tether);
@@ -118,7 +121,7 @@ RigidBody::Vector6d RigidBody::ownImpulse(double dt) const noexcept {
   return dt * impulse;
 }
 
-/// The change of velocity that the joint lets through.
+/// Returns the change of velocity under an impulse that the joint allows.
 RigidBody::Vector6d RigidBody::changeUnder(const Matrix6d& resisting, const Vector6d& impulse) const noexcept {
   if (law_.joint == Joint::kFree) return resisting.llt().solve(impulse);
   Vector6d free;
@@ -154,13 +157,13 @@ void RigidBody::step(std::span<const Press> presses, double dt) noexcept {
     own_impulse.tail<3>() -= dt * dt * facing(press, lever) * (rate + change.tail<3>());
   }
   if (law_.joint != Joint::kFree) return drift(changeUnder(own, own_impulse), dt);
-  Vector6d alone;  // without contacts a body moves and turns independently
+  Vector6d alone;  // without contacts the motion of the centre and the rotation are independent
   alone << own_impulse.head<3>() / own(0, 0), own.bottomRightCorner<3, 3>().llt().solve(own_impulse.tail<3>());
   drift(alone, dt);
 }
 
-/// The second half of a backward Euler step: the velocity of the end, and the way at that velocity. So a body at rest
-/// on a probe has no velocity.
+/// The second half of a backward Euler step: sets the velocity at the end of the step, and moves the body with this
+/// velocity. So a body that rests on a probe has no velocity.
 void RigidBody::drift(const Vector6d& change, double dt) noexcept {
   if (!change.allFinite()) return step(Vector3d::Zero(), Vector3d::Zero(), dt);
   if (law_.joint == Joint::kHinge) {
@@ -172,7 +175,7 @@ void RigidBody::drift(const Vector6d& change, double dt) noexcept {
   if (law_.joint == Joint::kSlider) return;
   const Matrix3d axes = turn_.matrix();
   l_ += axes * principal_.cwiseProduct(axes.transpose() * change.tail<3>());
-  // Backward Euler is of first order, so a finer turn would cost time without gaining accuracy.
+  // Backward Euler is of first order, so a more accurate turn would only cost time.
   turn_.turnBody(top_.roughBodyTurn(turn_.quaternion().conjugate() * l_, dt));
   turn_.turnWorld(dt * top_.worldRate() * l_);
 }
@@ -195,17 +198,17 @@ void RigidBody::rotate(const Vector3d& torque, double dt) noexcept {
   l_ += dt / 2 * torque;
 }
 
-/// Free of torque.
+/// Turns the body for dt [s] without torque.
 void RigidBody::spin(double dt) noexcept {
   const double turn = top_.symmetric() ? 0 : top_.bodyRate() * l_.norm() * dt;
   const int steps = turn < kBodySubsteps * kLargestTurn ? 1 + static_cast<int>(turn / kLargestTurn) : kBodySubsteps;
   for (int i = 0; i < steps; ++i) {
     turn_.turnBody(top_.bodyTurn(turn_.quaternion().conjugate() * l_, dt / steps));
   }
-  turn_.turnWorld(dt * top_.worldRate() * l_);  // leaves the momentum in the body as it is
+  turn_.turnWorld(dt * top_.worldRate() * l_);  // does not change the momentum as seen from the body
 }
 
-/// Angular drag: the momentum about each principal axis decays by itself.
+/// Applies angular drag: the momentum about each principal axis decays separately.
 void RigidBody::decay(double time) noexcept {
   if (!(law_.angular_damping > 0)) return;
   const Quaterniond& q = turn_.quaternion();
@@ -221,15 +224,15 @@ void RigidBody::swing(const Vector3d& force, const Vector3d& torque, double dt) 
 }
 
 void RigidBody::poseHinge(double angle) noexcept {
-  hinge_angle_ = std::remainder(angle, 2 * M_PI);  // a body that goes round keeps its digits
-  // turned by an angle from the start, never by steps, so that the pose has only the angle's error
+  hinge_angle_ = std::remainder(angle, 2 * M_PI);  // keeps the precision of a body that goes round many times
+  // the pose is computed from the angle since the start, not step by step, so it has only the error of the angle
   const Quaterniond turn = rotationBy(hinge_angle_ * axis_world_);
   turn_.set(turn * start_turn_);
   x_ = pivot_world_ + turn * (start_ - pivot_world_);
   setHingeVelocities();
 }
 
-/// A hinge is a pendulum: weight and tether pull the centre, on its circle, to one lowest point.
+/// Sets up the hinge as a pendulum: weight and tether pull the centre of mass, on its circle, toward one lowest point.
 void RigidBody::hang() noexcept {
   const Vector3d out = (start_ - pivot_world_) - axis_world_ * axis_world_.dot(start_ - pivot_world_);
   const double down = law_.tether * out.squaredNorm() + law_.mass * gravity_.dot(out);
@@ -237,7 +240,7 @@ void RigidBody::hang() noexcept {
   const Vector3d axis = law_.axis.normalized();
   hinge_.inertia = axis.dot(law_.inertia * axis) + law_.mass * out.squaredNorm();
   hinge_.mass = hinge_.length = 1;
-  hinge_.gravity = std::hypot(down, aside);  // spring from which the law makes a torque: [N m]
+  hinge_.gravity = std::hypot(down, aside);  // [N m] restoring torque at 90 degrees; mass and length of the law are 1
   hinge_.damping = law_.angular_damping + law_.damping * out.squaredNorm();
   hinge_rest_ = hinge_.gravity > 0 ? std::atan2(aside, down) : 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A rigid body with its full inertia, free or on a joint to the world.
+/// A rigid body with its full inertia, free or joined to the world by a hinge or a slider.
 #pragma once
 #include <Eigen/Core>
 #include <cmath>
@@ -18,55 +18,64 @@ enum class Joint {
   kSlider  ///< moves along an axis but does not turn
 };
 
-/// The properties of a body. Centre, inertia, pivot and axis are in the model's frame.
+/// The properties of a body. Centre, inertia, pivot and axis are in the model frame.
 struct RigidBodyLaw {
   double mass = 1;                                               ///< [kg]
-  Eigen::Vector3d center{0, 0, 0};                               ///< of mass [m]
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity() * 1e-3;  ///< about the centre [kg m^2]
+  Eigen::Vector3d center{0, 0, 0};                               ///< centre of mass [m]
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity() * 1e-3;  ///< inertia about the centre of mass [kg m^2]
   double damping = 0;                                            ///< [N s/m] drag against translation
-  double angular_damping = 0;                                    ///< [N m s/rad]
-  double tether = 0;                                             ///< [N/m] spring from the centre to where it started
+  double angular_damping = 0;                                    ///< [N m s/rad] drag against rotation
+  /// [N/m] spring from the centre of mass to its initial position
+  double tether = 0;
   Joint joint = Joint::kFree;
-  Eigen::Vector3d pivot{0, 0, 0};  ///< hinge [m]
-  Eigen::Vector3d axis{0, 1, 0};   ///< hinge, slider
+  Eigen::Vector3d pivot{0, 0, 0};  ///< pivot of a hinge [m]
+  Eigen::Vector3d axis{0, 1, 0};   ///< direction of the axis of a hinge or slider
 };
 
-/// Translation is exact under a force that is constant in the step (parabola, decay, or the oscillator's exponential).
-/// Rotation keeps the angular momentum in the world, which no integrator then can change, and turns the body by a
-/// splitting of fourth order whose energy error stays bounded (top.hpp); torque and angular drag act around it, of
-/// second order (tests FreeTop.*, RigidBody.DampedTopConvergesWithSecondOrder). A hinge is a pendulum (pendulum.hpp).
+/// The motion of a body. Translation is exact if the force is constant in the step (a parabola, a decay, or the
+/// oscillator's exponential). For the rotation, the angular momentum is stored in the world frame, so integration
+/// errors cannot change it. The body is turned by a splitting of fourth order whose energy error stays bounded
+/// (top.hpp). Torque and angular drag act before and after this turn, to second order (tests FreeTop.*,
+/// RigidBody.DampedTopConvergesWithSecondOrder). A hinge is a pendulum (pendulum.hpp).
 class RigidBody {
  public:
-  /// [main] @param position, orientation of the model's frame in the world  @param gravity world [m/s^2]
-  /// @throws std::invalid_argument: mass or inertia no body has, axis of no length.
+  /// [main] Places a body at rest.
+  /// @param position, orientation of the model frame in the world
+  /// @param gravity in the world frame [m/s^2]
+  /// @throws std::invalid_argument if the mass or inertia is impossible, or if the axis has no length.
   RigidBody(const RigidBodyLaw& law, const Eigen::Vector3d& position, const Eigen::Quaterniond& orientation,
             const Eigen::Vector3d& gravity);
 
-  /// [rt] One step of dt [s] under a force [N] and a torque about the centre of mass [N m], world frame, both constant
-  /// in the step. NaN counts as zero.
+  /// [rt] Advances by one step of dt [s] under a force [N] and a torque about the centre of mass [N m]. Both are in the
+  /// world frame and constant in the step. NaN counts as zero.
   void step(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double dt) noexcept;
 
-  /// [rt] One step of dt [s] under contacts, by backward Euler: all forces are those of its end. Bounded for every mass
-  /// and stiffness, at the price of w dt/2 of critical damping, w^2 = k/m. Held forces would need damping B > k dt/2
-  /// and a mass above B dt/2 (test Coupling.HeldForcesAreStableOnlyAboveTheirBounds).
+  /// [rt] Advances by one step of dt [s] under contacts, by backward Euler: it uses the forces at the end of the step.
+  /// The motion stays bounded for every mass and stiffness; the price is an additional damping ratio of w dt/2, with
+  /// w^2 = k/m. Forces held constant in the step would need a damping B > k dt/2 and a mass above B dt/2 (test
+  /// Coupling.HeldForcesAreStableOnlyAboveTheirBounds).
   void step(std::span<const Press> presses, double dt) noexcept;
 
-  /// [rt] Velocity [m/s] of the point of the body that is at `point` [m], world.
+  /// [rt] Returns the velocity [m/s] of the point of the body that is at `point` [m], in the world frame.
   Eigen::Vector3d velocityAt(const Eigen::Vector3d& point) const noexcept;
 
-  Eigen::Vector3d position() const noexcept;                       ///< [rt] of the model's frame, world [m]
-  Eigen::Quaterniond orientation() const noexcept;                 ///< [rt]
-  Eigen::Vector3d linear() const noexcept;                         ///< [rt] velocity of the frame's origin, world [m/s]
-  Eigen::Vector3d angular() const noexcept;                        ///< [rt] world [rad/s]
-  const Eigen::Vector3d& center() const noexcept { return x_; }    ///< [rt] of mass, world [m]
-  const Eigen::Vector3d& momentum() const noexcept { return l_; }  ///< [rt] angular, about the centre, world
-  Eigen::Vector3d bodyRate() const noexcept;  ///< [rt] angular velocity in the model's frame [rad/s]
-  double energy() const noexcept;             ///< [rt] kinetic, tether, and gravity from the start [J]
-  /// [any] How fast a hinge swings about its lowest point [rad/s], 0 for other joints: a step of more than
-  /// kLargestSwing rad of it is not stable (pendulum.hpp).
+  Eigen::Vector3d position() const noexcept;        ///< [rt] of the model frame, in the world [m]
+  Eigen::Quaterniond orientation() const noexcept;  ///< [rt] of the model frame, in the world
+  /// [rt] velocity of the model frame's origin, in the world [m/s]
+  Eigen::Vector3d linear() const noexcept;
+  Eigen::Vector3d angular() const noexcept;                      ///< [rt] angular velocity, in the world [rad/s]
+  const Eigen::Vector3d& center() const noexcept { return x_; }  ///< [rt] centre of mass, in the world [m]
+  /// [rt] angular momentum about the centre of mass, in the world [kg m^2/s]
+  const Eigen::Vector3d& momentum() const noexcept { return l_; }
+  Eigen::Vector3d bodyRate() const noexcept;  ///< [rt] angular velocity in the model frame [rad/s]
+  /// [rt] energy [J]: kinetic, of the tether, and of gravity (0 at the start)
+  double energy() const noexcept;
+  /// [any] Returns the angular frequency [rad/s] of small swings of a hinge about its lowest point; 0 for other joints.
+  /// A step of more than kLargestSwing rad of this swing is not stable (pendulum.hpp).
   double swingRate() const noexcept { return std::sqrt(law_.joint == Joint::kHinge ? hinge_.frequencySquared() : 0); }
 
-  /// [rt] Velocity of the centre (world) and angular velocity (model's frame); a joint keeps only what it allows.
+  /// [rt] Sets the velocity of the centre of mass (world frame, m/s) and the angular velocity (model frame, rad/s).
+  /// Parts that the joint does not allow are dropped.
   void setVelocity(const Eigen::Vector3d& center_velocity, const Eigen::Vector3d& body_rate) noexcept;
 
  private:
@@ -87,13 +96,13 @@ class RigidBody {
 
   RigidBodyLaw law_;
   Eigen::Vector3d gravity_, start_, pivot_world_, axis_world_;
-  Eigen::Vector3d principal_;     // moments of inertia
-  Eigen::Quaterniond from_axes_;  // principal axes to the model's frame
+  Eigen::Vector3d principal_;     // principal moments of inertia [kg m^2]
+  Eigen::Quaterniond from_axes_;  // rotation from the principal axes to the model frame
   Top top_;
-  Rotation turn_;  // principal axes to the world
+  Rotation turn_;  // rotation from the principal axes to the world
   Eigen::Vector3d x_{0, 0, 0}, v_{0, 0, 0}, l_{0, 0, 0};
-  PendulumLaw hinge_;  ///< about the axis, from its lowest point, which is at hinge_rest_
-  double hinge_angle_ = 0, hinge_rate_ = 0, hinge_rest_ = 0;  // from the start [rad]
+  PendulumLaw hinge_;  ///< the hinge as a pendulum; its lowest point is at the angle hinge_rest_
+  double hinge_angle_ = 0, hinge_rate_ = 0, hinge_rest_ = 0;  // angles from the initial pose [rad] and rate [rad/s]
   Eigen::Quaterniond start_turn_{1, 0, 0, 0};
 };
 

@@ -10,13 +10,14 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-/// A turn as a quaternion (1 + cosine_less_one, turn/2 - turn * shortfall): sin(a/2)/a = 1/2 - shortfall. Half of the
-/// turn is exact; what is small beside it is kept apart, so that a turn repeated 1e8 times is as long as it should be.
+/// A turn by the angle a as the quaternion (1 + cosine_less_one, turn/2 - turn * shortfall), with sin(a/2)/a = 1/2 -
+/// shortfall. turn/2 is exact, and the small corrections are stored separately. So a turn that is repeated 1e8 times
+/// still has the right length.
 struct HalfTurn {
   double shortfall, cosine_less_one;
 };
 
-/// a^2 of a vector as a sum of two numbers, exact to 1e-31 of it.
+/// The squared length of a vector as a sum of two numbers, with a relative error of 1e-31.
 struct Square {
   double high, low;
 };
@@ -39,13 +40,13 @@ HalfTurn halfTurn(const Vector3d& turn) noexcept {
     const double angle = std::sqrt(s), quarter = std::sin(angle / 4);
     return {0.5 - std::sin(angle / 2) / angle, -2 * quarter * quarter};
   }
-  // 1/2 - sin(a/2)/a = s/48 (1 - s/80 (1 - s/168 (1 - ...))) with s = a^2: the next factor is (2k)(2k+1) 4
+  // 1/2 - sin(a/2)/a = s/48 (1 - s/80 (1 - s/168 (1 - ...))) with s = a^2; the numbers continue as 4 (2k) (2k+1)
   const double tail = 1 - s / 80 * (1 - s / 168 * (1 - s / 288 * (1 - s / 440 * (1 - s / 624 * (1 - s / 840)))));
   const double cosine = 1 - s / 48 * (1 - s / 120 * (1 - s / 224 * (1 - s / 360 * (1 - s / 528 * (1 - s / 728)))));
   return {(s * tail + square.low) / 48, -s / 8 * cosine};
 }
 
-/// a1 b1 + a2 b2 + a3 b3 and, added to `rest`, what rounding took from it.
+/// Returns a1 b1 + a2 b2 + a3 b3, and adds the rounding error of this sum to `rest`.
 double exactDot(const Vector3d& a, const Vector3d& b, double& rest) noexcept {
   double sum = 0;
   for (int i = 0; i < 3; ++i) {
@@ -58,7 +59,7 @@ double exactDot(const Vector3d& a, const Vector3d& b, double& rest) noexcept {
   return sum;
 }
 
-/// |q|^2 - 1 of the exact sum q + carry.
+/// Returns |q + carry|^2 - 1, with the sum taken exactly.
 double excessLength(const Vector4d& q, const Vector4d& carry) noexcept {
   double excess = -1, low = 0;
   for (int i = 0; i < 4; ++i) {
@@ -85,13 +86,14 @@ void Rotation::set(const Quaterniond& q) noexcept {
   carry_.setZero();
 }
 
-/// q (or its product with the turn from the other side) changes by (cos - 1) q + the part of the vector: a small
-/// change, which is added with its rounding kept (Knuth's TwoSum), and then the length is put right to first order. The
-/// vector is given as v + rest. The products with v are kept exact: their roundings repeat with q and would add up.
+/// Multiplies q by a turn, from the left (`world`) or from the right. The change is (cos - 1) q plus the part of the
+/// turn's vector. It is small, and is added with its rounding error kept (Knuth's TwoSum); then the length is corrected
+/// to first order. The vector is v + rest. The products with v are exact, because their rounding errors would repeat
+/// and add up.
 void Rotation::apply(const Vector3d& v, const Vector3d& rest, double cosine_less_one, bool world) noexcept {
   const Vector4d q = q_.coeffs();
   const Vector3d vec = q.head<3>(), carried = carry_.head<3>(), turned = world ? v : Vector3d(-v);
-  Vector4d change, small;  // small: all that is far below change
+  Vector4d change, small;  // small: the terms that are far smaller than `change`
   small.head<3>() = cosine_less_one * vec + q.w() * rest + (world ? rest : Vector3d(-rest)).cross(vec) +
                     carry_.w() * v + turned.cross(carried);
   small.w() = cosine_less_one * q.w() - rest.dot(vec) - v.dot(carried);

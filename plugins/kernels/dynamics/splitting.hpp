@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-/// Coefficients of a splitting of fourth order: motions that are exact for a part of the energy each, in turn, add up
-/// to one whose energy error stays bounded for ever.
+/// Coefficients of a splitting method of fourth order. Two motions alternate, each exact for one part of the energy.
+/// Together they give a motion whose energy error stays bounded for ever.
 #pragma once
 #include <array>
 #include <cstddef>
 
 namespace hapticd::dynamics {
 
-/// S6 of Blanes and Moan (2002), J. Comput. Appl. Math. 142: parts A and B of a step alternate, A first and last.
+/// Method S6 of Blanes and Moan (2002), J. Comput. Appl. Math. 142. Parts A and B of a step alternate; A comes first
+/// and last.
 struct Splitting {
   static constexpr std::size_t kStages = 6;
   static constexpr double kA1 = 0.0792036964311957, kA2 = 0.353172906049774, kA3 = -0.0420650803577195;
@@ -16,7 +17,7 @@ struct Splitting {
   static constexpr std::array<double, kStages + 1> kA = {kA1, kA2, kA3, kA4, kA3, kA2, kA1};
   static constexpr std::array<double, kStages> kB = {kB1, kB2, kB3, kB3, kB2, kB1};
 
-  /// [rt] One step of h: part_a(share of h) and part_b(share of h) in turn.
+  /// [rt] Makes one step of h: calls part_a and part_b in turn, each with its share of h.
   template <class A, class B>
   static void step(double h, const A& part_a, const B& part_b) noexcept {
     for (std::size_t i = 0; i < kStages; ++i) {

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// sin and 1 - cos of half an angle; a step's angles are small, where the series are exact to rounding and quick.
+/// sin and 1 - cos of half an angle. The angles of a step are small, so the series are fast and exact to rounding.
 struct HalfAngle {
   double sine, versine;
 };
@@ -25,7 +25,7 @@ HalfAngle half(double angle) noexcept {
           s / 2 * (1 - s / 12 * (1 - s / 30 * (1 - s / 56 * (1 - s / 90 * (1 - s / 132)))))};
 }
 
-/// turn, then a turn by `angle` about a body axis; and the momentum as the body then sees it.
+/// Continues `turn` by a turn of `angle` about a body axis, and changes `momentum` to how the body then sees it.
 void about(int axis, double angle, SmallTurn& turn, Vector3d& momentum) noexcept {
   const HalfAngle h = half(angle);
   const int j = (axis + 1) % 3, k = (axis + 2) % 3;
@@ -35,7 +35,8 @@ void about(int axis, double angle, SmallTurn& turn, Vector3d& momentum) noexcept
   turn.vector[j] = v[j] + (h.sine * v[k] - h.versine * v[j]);
   turn.vector[k] = v[k] - (h.sine * v[j] + h.versine * v[k]);
   turn.less -= h.versine * w + h.sine * v[axis];
-  const double sine = 2 * h.sine * (1 - h.versine), versine = 2 * h.sine * h.sine;  // of the whole angle
+  // sin and 1 - cos of the whole angle
+  const double sine = 2 * h.sine * (1 - h.versine), versine = 2 * h.sine * h.sine;
   const double mj = momentum[j], mk = momentum[k];
   momentum[j] = mj + (sine * mk - versine * mj);
   momentum[k] = mk - (sine * mj + versine * mk);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// How a free rigid body turns in its own frame.
+/// The rotation of a rigid body without torque (Euler's top).
 #pragma once
 #include <Eigen/Core>
 
@@ -7,28 +7,30 @@
 
 namespace hapticd::dynamics {
 
-/// Euler's top, split. With the angular momentum m in the principal axes the energy is
+/// Euler's top, as a splitting of its energy. With the angular momentum m in the principal axes the energy is
 ///   |m|^2/(2 I_r) + (1/I_a - 1/I_r) m_a^2/2 + (1/I_b - 1/I_r) m_b^2/2.
-/// The first part turns the body about its momentum, which is fixed in the world, and commutes with the others; each of
-/// those turns it about one of its axes. Reference r is chosen so that the two disturb each other least: a body with
-/// two equal moments is turned exactly, whatever the step. (Touma & Wisdom 1994; Dullweber, Leimkuhler & McLachlan
-/// 1997.)
+/// The first part turns the body about its angular momentum, which is fixed in the world; this turn commutes with the
+/// others. Each of the other two parts turns the body about one of its principal axes. The reference axis r is chosen
+/// so that these two turns disturb each other least; a body with two equal moments is turned exactly for every step.
+/// (Touma & Wisdom 1994; Dullweber, Leimkuhler & McLachlan 1997.)
 class Top {
  public:
   Top() = default;
-  /// [main] @param principal moments of inertia, all above 0 [kg m^2]
+  /// [main] @param principal principal moments of inertia, all above 0 [kg m^2]
   explicit Top(const Eigen::Vector3d& principal) noexcept;
 
-  /// [rt] Turn of h [s] about the body's axes, beside that about the momentum; `momentum` in the principal axes.
+  /// [rt] Returns the turn in h [s] about the body's axes, without the turn about the momentum. `momentum` is in the
+  /// principal axes.
   SmallTurn bodyTurn(Eigen::Vector3d momentum, double h) const noexcept;
-  /// [rt] The same to second order (Strang), for a fifth of the time: where something else is no better than first.
+  /// [rt] The same to second order (Strang) in a fifth of the computing time, for steps in which another part is only
+  /// of first order.
   SmallTurn roughBodyTurn(Eigen::Vector3d momentum, double h) const noexcept;
   double worldRate() const noexcept {
     return world_rate_;
-  }  ///< [rt] True if bodyTurn() is exact for every step.
+  }  ///< [rt] [1/(kg m^2)] factor from the momentum to the rate of the turn about the momentum
   /// [rt] True if bodyTurn() is exact for every step.
   bool symmetric() const noexcept { return rate_a_ == 0 || rate_b_ == 0; }
-  double bodyRate() const noexcept { return fastest_; }  ///< [rt] bound of |bodyTurn|/h over |momentum|
+  double bodyRate() const noexcept { return fastest_; }  ///< [rt] upper bound of |bodyTurn| / (h |momentum|)
 
  private:
   int a_ = 0, b_ = 1;

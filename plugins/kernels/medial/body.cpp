@@ -12,13 +12,14 @@ using Eigen::Vector3d;
 
 constexpr int kChecksPerInterval = 2;  ///< samples of the monotonicity check in each direction
 constexpr double kSameValue = 1e-300;
-constexpr double kSideways = 2;  ///< over this is the cosine to a sheet's normal from which a direction is on its side
+/// a direction lies fully on one side of a sheet if its cosine to the sheet's normal is above 1 / this
+constexpr double kSideways = 2;
 
-/// The samples of a curve are used for both rows of its surface.
+/// Makes a field from the samples of the grid. The samples of a curve are used for both rows of its surface.
 ScalarField fieldOf(const Skeleton& skeleton, std::vector<double> samples, const SkeletonGrid& grid, const char* what) {
   if (samples.size() != grid.points.size())
     throw std::invalid_argument(std::string(what) + ": " + std::to_string(samples.size()) + " values, expected " +
-                                std::to_string(grid.points.size()) + ", one per point");
+                                std::to_string(grid.points.size()) + ", one for each point");
   if (skeleton.curve()) {
     const std::vector<double> row = samples;
     samples.insert(samples.end(), row.begin(), row.end());
@@ -69,7 +70,7 @@ void Body::placeOf(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& 
   place.turn = motion.turn;
 }
 
-/// The material of a control point is the body's material where the point acts most.
+/// Returns the material of each control point: the body's material at the place where the point acts most.
 std::vector<Oscillator> Body::materialOf(const BodyData& data) const {
   const ScalarField mass = fieldOf(skeleton_, orZeros(data.mass, data.grid.points.size()), data.grid, "mass");
   if (mass.constant() && damping_.constant() && stiffness_.constant())
@@ -91,20 +92,20 @@ std::array<double, 2> Body::offsetsAt(const SkeletonFoot& foot) const noexcept {
     const double whole = range.back() - range.front();
     offsets[axis] = options_.shear_offset * whole;
     if (!turns()) continue;
-    const double metres = (axis == 0 ? s.Su : s.Sv).norm();  // one unit of a parameter; none at a pole
+    const double metres = (axis == 0 ? s.Su : s.Sv).norm();  // [m] length of one unit of the parameter; 0 at a pole
     offsets[axis] = metres * whole > options_.shear_distance ? options_.shear_distance / metres : whole;
   }
   return offsets;
 }
 
-/// Four points of the contour at rest, beside the contact. Their normal turns from the contact's as the skeleton's
-/// does. The springs fade out toward the rim, so that the force does not jump there.
+/// Finds four points of the contour at rest beside the contact. From the contact to each point, the normal turns as the
+/// skeleton's normal does. The springs fade out toward the rim, so that the force does not jump there.
 Body::Neighbours Body::neighboursOf(const SkeletonFoot& foot, const Vector3d& normal) const noexcept {
   Neighbours neighbours;
   const std::array<double, 2> offsets = offsetsAt(foot);
   const double part = !turns() ? 1 : skeleton_.curve() ? 0.5 : 0.25;
   const double here = stiffness_.evaluate(foot.u, foot.v).f;
-  const double side = std::clamp(kSideways * normal.dot(foot.across), -1.0, 1.0);  // no jump round the rim
+  const double side = std::clamp(kSideways * normal.dot(foot.across), -1.0, 1.0);  // changes continuously round the rim
   spline::SurfacePoint s;
   for (std::size_t axis = skeleton_.curve() ? 1 : 0; axis < 2; ++axis) {
     const auto& range = skeleton_.parameters()[axis];
@@ -143,7 +144,7 @@ BodyForce Body::press(const Vector3d& p, const SkeletonFoot& foot, const Vector3
   result.energy = 0.5 * result.stiffness * depth * depth;
   if (turns()) result.force += (result.stiffness * depth - result.force.dot(normal)) * normal;
   for (const ShearSpring& spring : springs) {
-    if (turns()) break;  // they do no work along the normal
+    if (turns()) break;  // then the springs do no work along the normal
     const double stretch = (spring.anchor - p).norm() - (spring.anchor - surface).norm();
     result.energy += 0.5 * spring.stiffness * stretch * stretch;
   }
@@ -156,8 +157,9 @@ BodyForce Body::press(const Vector3d& p, const SkeletonFoot& foot, const Vector3
   return result;
 }
 
-/// A spring whose far end lies below the surface gets shorter while the contact comes down to its height, and pushes
-/// inward: at worst with its stiffness times (rest length / least length - 1) per metre, against the normal spring.
+/// If the far end of a spring lies below the contact, the spring gets shorter while the contact comes down to that
+/// level, and it pushes the probe inward. At worst it reduces the slope of the normal spring by its stiffness times
+/// (rest length / least length - 1).
 void Body::judgeMonotonicity(const SkeletonFoot& at, const Vector3d& normal, MonotonicityReport& report) const {
   const double k = stiffness_.evaluate(at.u, at.v).f;
   const Neighbours neighbours = neighboursOf(at, normal);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A soft body from a grid of skeleton points: where its surface is, how hard it pushes back, how it gives way.
+/// A soft body from a grid of skeleton points: where its surface is, how hard it pushes back, and how it gives way to a
+/// probe.
 #pragma once
 #include <memory>
 #include <optional>
@@ -13,19 +14,21 @@
 
 namespace hapticd::medial {
 
-/// What a model file says about a body; index = i * count[1] + j.
+/// The contents of a model file about a body from a grid. The index of a point is i * count[1] + j.
 struct BodyData {
   SkeletonGrid grid;
-  std::vector<double> stiffness;  ///< [N/m] one a point
-  std::vector<double> damping;    ///< [N s/m] one per point; empty: none
-  std::vector<double> mass;       ///< [kg] one per point; empty: none, so that control points creep
-  double shear_reach = 0;         ///< [m] along the skeleton; makes the dent of a felt body wider than its points alone
+  std::vector<double> stiffness;  ///< [N/m] one per point
+  std::vector<double> damping;    ///< [N s/m] one per point; empty if the body has no damping
+  /// [kg] one per point; empty if the body has no mass: its control points then creep back without swinging
+  std::vector<double> mass;
+  /// [m] distance along the skeleton by which the dent of a felt body is wider than its control points alone make it
+  double shear_reach = 0;
 };
 
-/// How a surface with its own dynamics is felt.
+/// Options of a surface whose own dynamics is felt.
 struct FeltOptions {
   bool on = false;
-  double contact_ratio = 3;                          ///< contact spring over the stiffness of a fast press
+  double contact_ratio = 3;                          ///< contact spring divided by the stiffness of a fast press
   double relaxation_share = 0, relaxation_time = 0;  ///< see Tissue
   double tick = 1e-3;                                ///< [s] length of most steps
 };
@@ -33,26 +36,30 @@ struct FeltOptions {
 struct BodyOptions {
   int degree = 3;
   spline::Form form = spline::Form::kTable;
-  double shear_offset = 0.05;   ///< distance of the four neighbours, as a share of the parameter range; 0: no shear
-  double shear_distance = 0;    ///< [m] their distance along the skeleton, in place of shear_offset; see press()
-  double damping_scale = 5e-3;  ///< [m] depth at which damping of the contact is whole; it grows from 0 at the surface
+  /// distance of the four shear springs' ends, as a share of the parameter range; 0: no shear springs
+  double shear_offset = 0.05;
+  /// [m] the same distance along the skeleton; if above 0, it replaces shear_offset (see press())
+  double shear_distance = 0;
+  /// [m] depth at which the contact's damping reaches its full value; it is 0 at the surface
+  double damping_scale = 5e-3;
   DeformationOptions deformation;
   FeltOptions felt;
 };
 
 /// The force of a pressed body.
 struct BodyForce {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N] on the probe
-  double normal = 0;                                ///< [N] its outward part
-  double stiffness = 0;                             ///< [N/m] of the normal spring here
-  double energy = 0;                                ///< [J] in the springs
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N] force on the probe
+  double normal = 0;                                ///< [N] outward part of `force`
+  double stiffness = 0;                             ///< [N/m] stiffness of the normal spring at this place
+  double energy = 0;                                ///< [J] energy stored in the springs
 };
 
-/// Whether the force grows with depth at every place that was examined.
+/// The result of the test that the force grows with depth at every examined place.
 struct MonotonicityReport {
-  double slope = 1;  ///< least slope of the force over the stiffness of the normal spring, both at the same place
-  double ratio = 1, limit = 1;  ///< there: rest length over least length of the worst spring; what it may be
-  double u = 0, v = 0;          ///< there
+  double slope = 1;  ///< least slope of the force, divided by the stiffness of the normal spring at the same place
+  /// at that place: rest length over least length of the worst spring; the greatest allowed value of `ratio`
+  double ratio = 1, limit = 1;
+  double u = 0, v = 0;  ///< parameters of that place
   bool holds() const noexcept { return slope > 0; }
 };
 
@@ -60,7 +67,7 @@ class Body {
  public:
   /// [main] @throws std::invalid_argument that says what is wrong with the data.
   Body(const BodyData& data, const BodyOptions& options);
-  Body(const Body&) = delete;  // the deformation uses the skeleton beside it
+  Body(const Body&) = delete;  // deformation_ points to skeleton_
   Body& operator=(const Body&) = delete;
 
   const Skeleton& skeleton() const noexcept { return skeleton_; }
@@ -68,20 +75,24 @@ class Body {
   const Deformation& deformation() const noexcept { return *deformation_; }
   const ScalarField& stiffness() const noexcept { return stiffness_; }
 
-  /// [rt] The force on a probe at `p` whose foot is `foot`, with outward unit direction `normal` and depth `depth`
-  /// along it: normal spring, four springs along the surface, damping against `closing_speed`. It never pulls inward
-  /// along the normal. With `shear_distance` the four springs together are as stiff as the normal spring and only turn
-  /// the force: its part along the normal is stiffness * depth, as the file says.
+  /// [rt] Returns the force on a probe at `p` with the foot `foot`, at the depth `depth` [m] along the outward unit
+  /// direction `normal`. The force comes from a normal spring, from four springs along the surface, and from damping
+  /// against `closing_speed` [m/s]. It never pulls inward along the normal. With `shear_distance` the four springs
+  /// together are as stiff as the normal spring and only turn the force: its part along the normal is then stiffness *
+  /// depth, with the stiffness of the file.
   BodyForce press(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;
-  /// [rt] The place of the contour at which a probe at `p` is, with its foot, as a felt surface needs it.
-  /// @param direct 1: `normal` is the direction from the foot to the probe; 0: it is not; between, in part
+  /// [rt] Describes to a felt surface the place where a probe at `p` touches the contour.
+  /// @param direct 1 if `normal` points from the foot to the probe, 0 if it does not; values between blend the two
+  /// cases
   void placeOf(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, Envelope envelope,
                double direct, FeltPlace& place) const noexcept;
-  FeltSurface* feltSurface() noexcept { return felt_ ? &*felt_ : nullptr; }  ///< [any] nullptr: it is only seen
-  /// [main] Checks the force law all over the skeleton, on both sides.
+  /// [any] nullptr if the deformation is only seen
+  FeltSurface* feltSurface() noexcept { return felt_ ? &*felt_ : nullptr; }
+  /// [main] Checks at samples all over the skeleton, on both sides, that the force grows with depth.
   MonotonicityReport checkMonotonicity() const;
-  /// [any] No force grows faster with depth [N/m]: it has the normal spring and four others in line with it.
+  /// [any] Upper bound of the slope of the force over depth [N/m]: that of the normal spring with the four others in
+  /// line with it.
   double greatestStiffness() const noexcept {
     return (options_.shear_offset > 0 && !turns() ? 5 : 1) * stiffness_.greatest();
   }
@@ -92,12 +103,15 @@ class Body {
     std::array<ShearSpring, 4> springs;
     std::size_t count = 0;
   };
-  /// [any] The springs along the surface only turn the force; otherwise they add to the normal spring, as in the paper.
+  /// [any] True if the springs along the surface only turn the force. If false, they add to the normal spring, as in
+  /// the paper.
   bool turns() const noexcept { return options_.shear_distance > 0; }
-  /// Parameters to a neighbour along u (0) and v (1); 0: none.
+  /// Returns the differences of the parameter to a neighbour along u (index 0) and v (index 1); 0 if there is no
+  /// neighbour.
   std::array<double, 2> offsetsAt(const SkeletonFoot& foot) const noexcept;
   Neighbours neighboursOf(const SkeletonFoot& foot, const Eigen::Vector3d& normal) const noexcept;
-  /// Lowers `report` if the springs along `normal` lose more slope here than before.
+  /// Updates `report` if the springs reduce the slope of the force along `normal` more here than at the places examined
+  /// before.
   void judgeMonotonicity(const SkeletonFoot& at, const Eigen::Vector3d& normal, MonotonicityReport& report) const;
   std::vector<Oscillator> materialOf(const BodyData& data) const;
   std::vector<Tissue> tissueOf(const std::vector<Oscillator>& material) const;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// Bounds that several files of this room hold to.
+/// Limits that several files of this folder share.
 #pragma once
 
 namespace hapticd::medial {
 
-inline constexpr double kNearAxis = 1e-4;        ///< [m] nearer than this, the direction to the probe means little
-inline constexpr double kSteepestRadius = 0.99;  ///< slope of the radius above which spheres are nested
+/// [m] if the probe is nearer to the skeleton than this, its direction from the skeleton is not reliable
+inline constexpr double kNearAxis = 1e-4;
+/// slopes of the radius above this count as this; from 1 on, spheres lie inside their neighbours
+inline constexpr double kSteepestRadius = 0.99;
 
 }  // namespace hapticd::medial

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The search for the foot on a skeleton with no start known: Newton from the best samples.
+/// The search for the foot on a skeleton without a known start: Newton iterations from the best samples.
 #include <algorithm>
 #include <cmath>
 
@@ -10,12 +10,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kSamplesPerInterval = 3;  ///< samples of a cold search in each direction
-constexpr int kFiner = 4;               ///< factor for more samples where spheres are inside others
-constexpr int kColdStarts = 8;          ///< samples from which Newton's method starts in a cold search
+constexpr int kSamplesPerInterval = 3;  ///< samples per interval between points of the grid, along each direction
+constexpr int kFiner = 4;               ///< factor by which samples are finer if spheres lie inside others
+constexpr int kColdStarts = 8;          ///< most samples from which Newton's method starts
 constexpr int kColdEvaluations = 60;
 
-/// A sample of the skeleton from which a cold search may start.
+/// A sample of the skeleton from which the search may start.
 struct Start {
   double value = HUGE_VAL, u = 0, v = 0;
   int row = -2, column = -2;
@@ -26,8 +26,8 @@ struct Start {
 };
 using Starts = std::array<Start, kColdStarts>;
 
-/// Keeps the best samples, best first, and of neighbours only the better one: a wide valley must not take all places
-/// when a narrow one is deepest.
+/// Keeps the best samples, best first. Of two neighbouring samples it keeps only the better one. Otherwise a wide
+/// valley of the distance could take all places, although a narrow valley is the deepest.
 void offer(Start start, Starts& starts) noexcept {
   std::size_t place = 0;
   while (place < starts.size() && starts[place].value <= start.value) {
@@ -37,7 +37,7 @@ void offer(Start start, Starts& starts) noexcept {
   const Start better = start;
   for (; place < starts.size(); ++place) {
     std::swap(start, starts[place]);
-    if (start.besides(better)) return;  // a worse neighbour makes room for it
+    if (start.besides(better)) return;  // the worse neighbour is removed
   }
 }
 
@@ -47,7 +47,8 @@ double sampleAt(const std::vector<double>& t, int i, int per_interval) noexcept 
   return t[cell] + (t[cell + 1] - t[cell]) * (i % per_interval) / per_interval;
 }
 
-/// Samples of a whole skeleton for one query, `per_interval` to an interval of its parameters each way.
+/// Samples of a whole skeleton for one query: `per_interval` samples in each interval of the parameters, along each
+/// direction.
 class Samples {
  public:
   Samples(const Skeleton& skeleton, const Vector3d& p, Envelope envelope, int per_interval)
@@ -79,7 +80,8 @@ class Samples {
   std::array<int, 2> last_{0, 0};
 };
 
-/// Where spheres are inside others, several valleys may lie between two samples: finer ones about each start.
+/// Returns the starts of a search. If spheres lie inside others, the distance may have several valleys between two
+/// samples, so finer samples are taken about each start.
 Starts coldStarts(const Skeleton& skeleton, const Vector3d& p, Envelope envelope) noexcept {
   const Starts starts = Samples(skeleton, p, envelope, kSamplesPerInterval).best();
   if (!skeleton.nested()) return starts;

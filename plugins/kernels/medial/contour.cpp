@@ -13,16 +13,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kLeastSegments = 2;  ///< between two points of the grid, because a dent is as wide as their distance
+/// least segments between two points of the grid, because a dent is as wide as the distance of these points
+constexpr int kLeastSegments = 2;
 constexpr int kMostSegments = 64;
-constexpr int kLeastArc = 2;  ///< segments from the top to the bottom round the rim
+constexpr int kLeastArc = 2;  ///< least segments from the top to the bottom round the rim
 
 Vector3d unit(const Vector3d& v, const Vector3d& fallback) {
   const double length = v.norm();
   return length > 0 ? Vector3d(v / length) : fallback;
 }
 
-/// From `a` over `middle` to `b` on the unit sphere, t from 0 to 1.
+/// Returns a point on the path from `a` over `middle` to `b` on the unit sphere, for t from 0 to 1.
 Vector3d bend(const Vector3d& a, const Vector3d& middle, const Vector3d& b, double t) {
   const Vector3d& from = t < .5 ? a : middle;
   const Vector3d& to = t < .5 ? middle : b;
@@ -48,7 +49,7 @@ struct Rim {
   }
 };
 
-/// The direction in which the surface ends at a place of the rim's side 0 to 3.
+/// Returns the direction that points out of the surface at a place on side 0 to 3 of the rim.
 Vector3d outwardOf(const Vector3d& tangent_u, const Vector3d& tangent_v, const Vector3d& across, std::size_t side) {
   const Vector3d along = side % 2 == 0 ? tangent_u : tangent_v;
   return unit((side < 2 ? along : Vector3d(-along)).cross(across), across.unitOrthogonal());
@@ -68,7 +69,8 @@ Contour::Contour(const Skeleton& skeleton, double chord_error) : columns_(skelet
   lines_ = {};
 }
 
-/// Segments of one interval between points of the grid: its sagitta, sampled on both sides, falls with their square.
+/// Returns the number of segments for one interval of the grid. The sagitta is sampled on both sides; it falls with the
+/// square of the number of segments.
 int Contour::segments(const Skeleton& skeleton, std::size_t axis, std::size_t interval, double chord_error) const {
   const std::vector<double>&along = skeleton.parameters()[axis], &over = skeleton.parameters()[1 - axis];
   double sagitta = 0;
@@ -154,7 +156,8 @@ uint32_t Contour::addAt(const Place& place, const Vector3d& normal) {
   return add(place.center, normal, place.radius, {shares.data(), count});
 }
 
-/// Triangles between two rows of equal length; the outside is on the left if you go along `low` with `high` ahead.
+/// Adds triangles between two rows of equal length. They face outward if the outside is on the left when you go along
+/// `low` with `high` ahead.
 void Contour::strip(const std::vector<uint32_t>& low, const std::vector<uint32_t>& high) {
   for (std::size_t k = 0; k + 1 < low.size(); ++k) {
     triangle(low[k], low[k + 1], high[k + 1]);
@@ -184,11 +187,12 @@ void Contour::buildSheet(const Skeleton& skeleton, double chord_error) {
   closeRim(skeleton, faces, arcSegments(chord_error));
 }
 
-/// Half a tube along each side and a piece of a sphere at each corner, from the top face to the bottom one.
+/// Closes the rim from the top face to the bottom face: half a tube along each side, and a piece of a sphere at each
+/// corner.
 void Contour::closeRim(const Skeleton& skeleton, const std::array<std::vector<uint32_t>, 2>& faces, int steps) {
   const auto rows = static_cast<uint32_t>(at_[0].size()), columns = static_cast<uint32_t>(at_[1].size());
   const Rim rim(rows, columns);
-  std::vector<std::vector<uint32_t>> arcs;  // one per place of the loop, several at a corner
+  std::vector<std::vector<uint32_t>> arcs;  // one for each place of the rim, several at a corner
   const auto addArc = [&](const Rim::Step& at, const Place& p, const Vector3d& outward) {
     const std::size_t face = at.i * columns + at.j;
     const Vector3d top = normal(faces[0][face]);
@@ -220,7 +224,8 @@ void Contour::buildTube(const Skeleton& skeleton, double chord_error) {
   const int steps = arcSegments(chord_error), around = 2 * steps;
   std::vector<std::vector<uint32_t>> rings;
   Vector3d side = Vector3d::Zero();
-  const auto addRing = [&](const Place& p, const Vector3d& axis, double lean) {  // lean: share of the normal along axis
+  // lean: component of the normal along the axis
+  const auto addRing = [&](const Place& p, const Vector3d& axis, double lean) {
     const Vector3d other = axis.cross(side);
     if (std::fabs(lean) == 1) {  // a pole
       rings.emplace_back(static_cast<std::size_t>(around) + 1, addAt(p, lean * axis));
@@ -239,7 +244,7 @@ void Contour::buildTube(const Skeleton& skeleton, double chord_error) {
   for (uint32_t j = 0; j < count; ++j) {
     const Place p = place(skeleton, 0, j);
     const Vector3d axis = unit(p.tangent_v, Vector3d::UnitX());
-    side = unit(side - side.dot(axis) * axis, axis.unitOrthogonal());  // carried along without twist
+    side = unit(side - side.dot(axis) * axis, axis.unitOrthogonal());  // moved along the curve without twist
     const double lean = -p.slope.dot(axis);
     const auto cap = [&](double pole, int k) {  // from the pole (k = 0) to the ring (k = steps)
       const double start = pole * M_PI_2, end = std::asin(lean);

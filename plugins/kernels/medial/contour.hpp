@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The contour of a body as triangles, for drawing: top and bottom of a skeleton surface closed round its rim, or the
-/// tube about a skeleton curve closed by caps. Vertices lie on the envelope of the spheres itself, and move with the
-/// body.
+/// The contour of a body as triangles, for drawing. About a skeleton surface it has a top and a bottom that are joined
+/// round the rim; about a skeleton curve it is a tube with caps. The vertices lie exactly on the envelope of the
+/// spheres, and move with the body.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -16,16 +16,16 @@ namespace hapticd::medial {
 
 class Contour : public MovingMesh {
  public:
-  /// [main] Triangles within about `chord_error` [m] of the contour at rest.
+  /// [main] Makes triangles that are within about `chord_error` [m] of the contour at rest.
   Contour(const Skeleton& skeleton, double chord_error);
 
  private:
-  /// A place of the skeleton with everything that a vertex there needs.
+  /// A place of the skeleton with the values that a vertex of the contour needs there.
   struct Place {
     std::array<uint32_t, 2> line;
     Eigen::Vector3d center, tangent_u, tangent_v, across;
     double radius = 0;
-    Eigen::Vector3d slope;  ///< gradient of the radius along the skeleton, at most 1 long
+    Eigen::Vector3d slope;  ///< gradient of the radius along the skeleton, of length 1 at most
   };
 
   void chooseLines(const Skeleton& skeleton, double chord_error);
@@ -38,8 +38,9 @@ class Contour : public MovingMesh {
   void closeRim(const Skeleton& skeleton, const std::array<std::vector<uint32_t>, 2>& faces, int steps);
   void buildTube(const Skeleton& skeleton, double chord_error);
 
-  std::array<std::vector<double>, 2> at_;        ///< parameters of the lines; used only while building
-  std::array<std::vector<Influence>, 2> lines_;  ///< likewise
+  std::array<std::vector<double>, 2> at_;  ///< parameters of the lines; used only while building
+  /// influence of the control points at these parameters; used only while building
+  std::array<std::vector<Influence>, 2> lines_;
   int columns_ = 1;
   double greatest_radius_ = 0;
 };

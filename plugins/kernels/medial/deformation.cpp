@@ -22,7 +22,7 @@ std::size_t total(const ControlGrid& grid) {
   return static_cast<std::size_t>(grid.count[0]) * static_cast<std::size_t>(grid.count[1]);
 }
 
-/// The control points of an influence each way, with the products of their weights.
+/// Lists the control points of an influence along u and v, with the products of their weights.
 template <class Weights>
 void list(const std::array<Influence, 2>& influence, int columns, Weights weights, auto& out) noexcept {
   out.count = 0;
@@ -33,12 +33,12 @@ void list(const std::array<Influence, 2>& influence, int columns, Weights weight
           (influence[0].*weights)[static_cast<std::size_t>(i)] * (influence[1].*weights)[static_cast<std::size_t>(j)]};
 }
 
-/// Basis functions of one direction and their derivatives at a parameter.
+/// The basis functions of one direction at a parameter, with their derivatives.
 struct Basis {
   std::array<double, spline::kMaxDegree + 1> value{}, slope{};
   int first = 0, count = 0;
 
-  /// Both from the functions of one degree less (Piegl & Tiller, Eqs. 2.5 and 2.7).
+  /// Computes both from the functions of the next lower degree (Piegl & Tiller, Eqs. 2.5 and 2.7).
   Basis(const ControlGrid& grid, std::size_t axis, double t) noexcept {
     const std::vector<double>& knots = grid.knots[axis];
     const int degree = grid.degree[axis], span = spline::findSpan(knots, degree, t);
@@ -62,15 +62,16 @@ struct Basis {
   }
 };
 
-constexpr std::size_t kWidest = 11;  ///< most control points of one direction in a place: 11 x 11 fit a FeltPlace
+/// most control points of one place along one direction; 11 x 11 fit into a FeltPlace
+constexpr std::size_t kWidest = 11;
 static_assert(kWidest * kWidest <= FeltPlace::kMost);
 
-/// Shares of control points in a place and their derivatives.
+/// The shares of control points in a place, with their derivatives.
 struct Shares {
   std::array<double, kWidest> value{}, slope{};
   int first = 0, count = 0;
 
-  /// @param rate with which the place of `basis` follows
+  /// @param rate derivative of the place of `basis` over the foot's parameter
   void add(const Basis& basis, double part, double rate) noexcept {
     const int from = basis.first - first;
     for (int i = 0; i < basis.count && static_cast<std::size_t>(from + i) < kWidest; ++i) {
@@ -82,13 +83,14 @@ struct Shares {
   }
 };
 
-/// A place near a rim that stands for the one at t, and the rate with which it follows t.
+/// A place that is used instead of the parameter t near a rim, and its derivative over t.
 struct Place {
   double at = 0, rate = 1;
 };
 
-/// Within `width` of the rim a place follows ever less and comes no nearer than half of it. A foot that is held at the
-/// rim does not move: without this, the slope of the dent would end there in one step.
+/// Returns the place that is used instead of t. Within `width` of the rim it follows t less and less, and comes no
+/// nearer to the rim than half of `width`. A foot that stops at the rim does not move any more; without this rule the
+/// slope of the dent would jump there.
 Place nearRim(const std::vector<double>& knots, double t, double width) noexcept {
   const double low = knots.front(), high = knots.back();
   if (!(width > 0)) return {std::clamp(t, low, high), t > low && t < high ? 1.0 : 0.0};
@@ -98,7 +100,8 @@ Place nearRim(const std::vector<double>& knots, double t, double width) noexcept
   return {t, 1};
 }
 
-/// Shares in a place at t, which also takes the places `reach` before and after it.
+/// Returns the shares of control points in the place at t. The places at the distance `reach` before and after it
+/// contribute too.
 Shares sharesOf(const ControlGrid& grid, std::size_t axis, double t, double reach, double rim) noexcept {
   Shares shares;
   const std::vector<double>& knots = grid.knots[axis];
@@ -118,7 +121,8 @@ Shares sharesOf(const ControlGrid& grid, std::size_t axis, double t, double reac
   return shares;
 }
 
-/// The width of a rim as a difference of parameters: that of a control point, if the rim is one.
+/// Returns the width of the rim as a difference of parameters: the mean distance of control points, or 0 if there is no
+/// rim.
 double rimWidth(const Skeleton& skeleton, std::size_t axis) {
   const ControlGrid& grid = skeleton.control();
   if (grid.count[axis] < 2 || (axis == 0 && skeleton.curve())) return 0;
@@ -126,12 +130,12 @@ double rimWidth(const Skeleton& skeleton, std::size_t axis) {
   return range / std::max(2, grid.count[axis] - 1);
 }
 
-/// The reach [m] as a difference of parameters, the same all over the body so that derivatives are those of the shares;
-/// at most so far that no place has more than kWidest control points.
+/// Converts the reach [m] into a difference of parameters. It is the same all over the body, so that only the shares
+/// have derivatives. It is limited so that no place has more than kWidest control points.
 double parameterReach(const Skeleton& skeleton, std::size_t axis, double reach) {
   if (!(reach > 0) || (axis == 0 && skeleton.curve())) return 0;
   const auto& [us, vs] = skeleton.parameters();
-  double metres = 0;  // a unit of the parameter, on average
+  double metres = 0;  // mean length of one unit of the parameter
   spline::SurfacePoint s;
   for (const double u : us) {
     for (const double v : vs) {
@@ -154,10 +158,10 @@ double parameterReach(const Skeleton& skeleton, std::size_t axis, double reach) 
   return r;
 }
 
-/// Of one direction: the least change from equal ones that makes the sum 1 at places all along it, by multiplying each
-/// by the mean of what is missing where it acts.
+/// Computes the compliances along one direction: the least change from equal values with which the sum is 1 at places
+/// all along it. Each round multiplies a value by the mean factor that is missing where its control point acts.
 std::vector<double> complianceAlong(const ControlGrid& grid, std::size_t axis) {
-  constexpr int kLooks = 16, kRounds = 60;  // one knot interval; then the changes are below 1e-3
+  constexpr int kLooks = 16, kRounds = 60;  // places per knot interval; after so many rounds the changes are below 1e-3
   const std::vector<double>& knots = grid.knots[axis];
   std::vector<Basis> looks;
   for (std::size_t k = 0; k + 1 < knots.size(); ++k)

@@ -14,11 +14,13 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-constexpr double kSteepestDent = 1;     ///< slope of a dent: on the inside of a bend the foot runs as fast as it likes
-constexpr uint32_t kLooksForSleep = 8;  ///< ticks between two searches for nodes that have come to rest
-constexpr double kNearby = 1e-6;        ///< [m] a probe this near to a surface touches it
-constexpr int kMostSweeps = 64;         ///< sweeps over several contacts
-constexpr double kSettled = 1e-15;      ///< [N] change of a force at which the sweeps end, besides a share of the force
+/// greatest slope of a dent; on the inside of a bend the foot may run without limit, and the slope with it
+constexpr double kSteepestDent = 1;
+constexpr uint32_t kLooksForSleep = 8;  ///< number of ticks between two searches for nodes that have come to rest
+constexpr double kNearby = 1e-6;        ///< [m] a probe that is nearer to the surface than this touches it
+constexpr int kMostSweeps = 64;         ///< most passes over several contacts
+/// [N] the passes end if no force changes by more than this, plus kSameForce of the force
+constexpr double kSettled = 1e-15;
 constexpr double kSameForce = 1e-13;
 
 bool sameTissue(const Tissue& a, const Tissue& b) {
@@ -40,7 +42,8 @@ FeltSurface::FeltSurface(Nodes& nodes, const std::vector<Tissue>& tissue, std::v
   if (tissue.size() != 1 && tissue.size() != nodes.count())
     throw std::invalid_argument("felt surface: " + std::to_string(tissue.size()) + " materials, expected 1 or " +
                                 std::to_string(nodes.count()));
-  if (compliance_.size() != nodes.count()) throw std::invalid_argument("felt surface: expected a compliance per node");
+  if (compliance_.size() != nodes.count())
+    throw std::invalid_argument("felt surface: there must be one compliance per node");
   const double g = nodes.options().split;
   shares_ << g, g, g, 1 - g;
   for (const Tissue& t : tissue) share_ = std::max(share_, t.relaxation_share);
@@ -79,7 +82,8 @@ void FeltSurface::prepare(Material& material, double dt) noexcept {
   material.step = s;
 }
 
-/// Held compliance h = sum of weight^2 * compliance / stiffness of the nodes; scale^2 * h is that of the material here.
+/// The compliance of a held press is h = sum of weight^2 * compliance / stiffness of the nodes. The scale is chosen so
+/// that scale^2 * h is the compliance of the material at this place.
 void FeltSurface::fit(FeltPlace& place) const noexcept {
   double h = 0, hu = 0, hv = 0, yields = 0;
   const bool uniform = this->uniform();
@@ -107,14 +111,14 @@ void FeltSurface::fit(FeltPlace& place) const noexcept {
   place.ripple = {-hu / whole, -hv / whole};
 }
 
-/// [m] by which the contour has given way at a place.
+/// Returns the displacement [m] of the contour at a place.
 double FeltSurface::shift(const FeltPlace& place) const noexcept {
   Vector4d sum = Vector4d::Zero();
   for (std::size_t i = 0; i < place.count; ++i) sum += place.nodes[i].weight * nodes_->nodes_[place.nodes[i].node].x;
   return place.scale * inwardOf(place.normal).dot(sum);
 }
 
-/// [m/N] by how much the contour at `a` gives way within a tick if a force of 1 N acts at `b`.
+/// Returns the displacement [m/N] of the contour at `a` within a tick, per force at `b`.
 double FeltSurface::give(const FeltPlace& a, const FeltPlace& b, double dt) noexcept {
   const double along = inwardOf(a.normal).cwiseProduct(shares_).dot(inwardOf(b.normal));
   if (&a == &b && uniform()) {
@@ -142,8 +146,8 @@ void FeltSurface::wake(uint32_t node) noexcept {
   touched_[node] = tick_;
 }
 
-/// Moves the surface inward to a displacement [m], if it is less, as a long press does. Moving toward rest takes energy
-/// away.
+/// Moves the surface inward to a displacement [m], if the present one is less, as a long press does. Moving toward the
+/// rest position removes energy.
 void FeltSurface::bring(const FeltPlace& place, double displacement) noexcept {
   const double ratio = contactRatio();
   const double lag = displacement - shift(place);
@@ -195,8 +199,9 @@ void FeltSurface::swingAlike(const ViscoelasticStep& step) noexcept {
   }
 }
 
-/// The forces of all contacts together: each reacts to the surface as the others leave it, until none changes. The
-/// surface yields symmetrically, and less to another contact than to its own, so this ends.
+/// Computes the forces of all contacts together. In each pass every contact reacts to the surface that the others have
+/// left, until no force changes. This converges because the surface yields symmetrically, and at each contact more to
+/// its own force than to another one.
 void FeltSurface::solve(double dt, std::span<FeltContact> contacts) noexcept {
   Give gives;
   std::array<double, kMaxContacts> ahead;
@@ -248,14 +253,16 @@ void FeltSurface::push(const FeltContact& contact) noexcept {
   }
 }
 
-/// Nodes at a place that a probe touches, or nearly does, move on however little: none is set down under a probe.
+/// Keeps nodes awake at a place that a probe touches, or nearly touches, however little they move: no node is put to
+/// rest under a probe.
 void FeltSurface::keepAwake(std::span<const FeltContact> contacts) noexcept {
   for (const FeltContact& contact : contacts)
     if (contact.inside > -kNearby)
       for (std::size_t i = 0; i < contact.place.count; ++i) touched_[contact.place.nodes[i].node] = tick_;
 }
 
-/// Finds nodes that no contact holds and whose motion nobody feels. @returns whether one was put to rest
+/// Puts nodes to rest that no contact holds and whose motion nobody feels.
+/// @return true if a node was put to rest
 bool FeltSurface::letSleep() noexcept {
   bool some = false;
   std::vector<uint32_t>& awake = nodes_->awake_;
@@ -268,7 +275,7 @@ bool FeltSurface::letSleep() noexcept {
       ++k;
       continue;
     }
-    node = Nodes::Node{};  // also if it is not a number
+    node = Nodes::Node{};  // also if its displacement is NaN
     if (!branch_.empty()) branch_[i].setZero();
     nodes_->is_awake_[i] = 0;
     awake[k] = awake.back();
@@ -278,7 +285,7 @@ bool FeltSurface::letSleep() noexcept {
   return some;
 }
 
-/// The displacement is s(u, v, normal): it changes with the foot and with the direction in which the probe is.
+/// The displacement s(u, v, normal) changes with the foot and with the direction from the foot to the probe.
 Vector3d FeltSurface::slopeAt(const FeltPlace& place) const noexcept {
   Vector4d here = Vector4d::Zero(), along_u = Vector4d::Zero(), along_v = Vector4d::Zero();
   for (std::size_t i = 0; i < place.count; ++i) {
@@ -295,7 +302,7 @@ Vector3d FeltSurface::slopeAt(const FeltPlace& place) const noexcept {
   su += place.ripple[0] * s;
   sv += place.ripple[1] * s;
   const Vector3d aside = place.turn * (moved - moved.dot(place.normal) * place.normal);
-  su += aside.dot(place.tangent_u);  // the foot follows only part of the way, and the normal turns by the rest
+  su += aside.dot(place.tangent_u);  // the foot follows only a part of the probe's motion; the rest turns the normal
   sv += aside.dot(place.tangent_v);
   const Vector3d slope = place.scale * (su * place.toward_u + sv * place.toward_v - aside);
   const double steepness = slope.norm();
@@ -344,7 +351,7 @@ double FeltSurface::energy(std::span<const FeltContact> contacts) const noexcept
   return sum;
 }
 
-/// Twice the energy of the nodes for each direction of a displacement, before its share in that.
+/// Returns twice the energy of the nodes for each component of the displacement, not yet divided by the shares_.
 Vector4d FeltSurface::twiceEnergy() const noexcept {
   Vector4d twice = Vector4d::Zero();
   for (const uint32_t i : nodes_->awake_) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// A surface that is felt: nodes that move by their own dynamics, pressed through contact springs that never pull.
+/// A deforming surface that the hand feels: nodes move by their own dynamics, and probes press them through contact
+/// springs that never pull.
 ///
 /// The displacement of the contour at one place, inward, is a weighted sum of the nodes' displacements:
 /// s = scale * sum of weight_i * (-normal, -1) . x_i. A contact force acts on the nodes through the same weights, so
-/// that its work on the nodes is its work on the surface: nothing is made from nothing, wherever the probe slides.
-/// `scale` makes the held stiffness of each place that of the material there, whatever nodes are near; a place then
-/// yields most to a force on itself, and the force of a held press has no part along the surface.
+/// that its work on the nodes equals its work on the surface: no energy is created, wherever the probe slides. `scale`
+/// is chosen so that a held press feels the stiffness of the material at its place, whatever nodes are near. A place
+/// then yields most to a force on itself, and the force of a held press has no part along the surface.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -29,52 +30,60 @@ struct FeltPlace {
   static constexpr std::size_t kMost = 128;
   std::array<PlaceNode, kMost> nodes;
   std::size_t count = 0;
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();       ///< outward, unit
-  double stiffness = 0;                                    ///< [N/m] for a held press here
-  Eigen::Vector3d toward_u{0, 0, 0}, toward_v{0, 0, 0};    ///< [1/m] gradients of u and v as the probe moves
-  Eigen::Vector3d tangent_u{0, 0, 0}, tangent_v{0, 0, 0};  ///< [m] of the skeleton
-  double turn = 0;  ///< [1/m] by which the normal turns for a probe that moves aside while its foot stays
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< outward, unit
+  double stiffness = 0;                               ///< [N/m] for a held press here
+  /// [1/m] gradients of the foot's u and v over the probe's position
+  Eigen::Vector3d toward_u{0, 0, 0}, toward_v{0, 0, 0};
+  Eigen::Vector3d tangent_u{0, 0, 0}, tangent_v{0, 0, 0};  ///< [m] tangents of the skeleton along u and v
+  double turn = 0;  ///< [1/m] rotation of the normal per metre by which the probe moves aside while its foot stays
 
-  // What FeltSurface::fit() finds.
-  double contact = 0;                  ///< [N/m] of the contact spring
-  double scale = 0;                    ///< of the displacement
-  double yields = 0;                   ///< sum of weight^2 * compliance of the nodes
-  std::array<double, 2> ripple{0, 0};  ///< relative change of `scale` along u and v that only the nodes' places cause
+  // FeltSurface::fit() computes the following.
+  double contact = 0;  ///< [N/m] stiffness of the contact spring
+  double scale = 0;    ///< factor of the displacement (see the top of this file)
+  double yields = 0;   ///< sum of weight^2 * compliance of the nodes
+  /// relative change of `scale` along u and v that comes only from the positions of the nodes
+  std::array<double, 2> ripple{0, 0};
 };
 
 /// One probe at a surface during one tick.
 struct FeltContact {
   FeltPlace place;
-  double depth = 0;     ///< [m] of the probe below the contour at rest; negative outside
-  double before = 0;    ///< [m] by how much it was inside the present surface at the last tick
-  bool known = false;   ///< `before` is known
-  bool placed = false;  ///< the probe did not move here: the surface counts as held by it already
-  bool fresh = false;   ///< the probe comes from far away: a surface that has swung out beyond it counts as beside it
+  double depth = 0;    ///< [m] depth of the probe below the contour at rest; negative outside
+  double before = 0;   ///< [m] depth of the probe below the displaced surface at the last tick
+  bool known = false;  ///< true if `before` is known
+  /// the probe did not move to this place (it was put there): the surface counts as already held by it
+  bool placed = false;
+  /// the probe comes from far away: if the surface has swung out beyond the probe, the probe counts as just touching it
+  bool fresh = false;
 
-  double inside = 0;               ///< out: [m] inside the present surface
-  double force = 0;                ///< out: [N] of the contact spring now
-  double mean = 0;                 ///< out: [N] mean over the tick
-  Eigen::Vector3d slope{0, 0, 0};  ///< out: gradient of the surface's displacement where the probe is
+  double inside = 0;               ///< out: [m] depth of the probe below the displaced surface
+  double force = 0;                ///< out: [N] force of the contact spring at the end of the tick
+  double mean = 0;                 ///< out: [N] mean force over the tick
+  Eigen::Vector3d slope{0, 0, 0};  ///< out: gradient of the surface's displacement at the place of the probe
 };
 
 class FeltSurface {
  public:
-  /// [main] `tissue`: one per node, or one for all. `compliance`: one per node, with which the displacement of most
-  /// places is nearly right without `scale`. `ratio`: see elementOf(). `dt`: the tick that most steps will have.
+  /// [main] Takes the materials.
+  /// @param tissue one per node, or one for all
+  /// @param compliance one per node; with it the displacement of most places is nearly right even without `scale`
+  /// @param ratio see elementOf()
+  /// @param dt [s] length of most ticks
   FeltSurface(Nodes& nodes, const std::vector<Tissue>& tissue, std::vector<double> compliance, double ratio, double dt);
 
-  /// [rt] Finds the contact spring and the scale of a place whose nodes and stiffness are known.
+  /// [rt] Computes the contact spring and the scale of a place whose nodes and stiffness are already set.
   void fit(FeltPlace& place) const noexcept;
-  /// [rt] One tick of all moving nodes under all contacts. dt = 0 computes only the present forces.
+  /// [rt] Advances all moving nodes by one tick of dt [s] under all contacts. dt = 0 computes only the present forces.
   void advance(double dt, std::span<FeltContact> contacts) noexcept;
-  void reset() noexcept;  ///< [rt] back to rest
+  void reset() noexcept;  ///< [rt] puts all nodes back to rest
   /// [rt] Kinetic and elastic energy [J] of nodes and contact springs.
   double energy(std::span<const FeltContact> contacts) const noexcept;
-  /// [any] Contact spring over the stiffness of a held press.
+  /// [any] Returns the stiffness of the contact spring divided by that of a held press.
   double contactRatio() const noexcept { return ratio_ * (1 + share_); }
-  double settleTime() const noexcept { return settle_; }  ///< [s] after which a free surface is at rest
+  double settleTime() const noexcept { return settle_; }  ///< [s] time after which a free surface is at rest
   bool branches() const noexcept { return !branch_.empty(); }
-  const Eigen::Vector4d& relaxed(std::size_t i) const noexcept { return branch_[i]; }  ///< [m] of node i's branch
+  /// [m] displacement to which the branch of node i has relaxed
+  const Eigen::Vector4d& relaxed(std::size_t i) const noexcept { return branch_[i]; }
   void setRelaxed(std::size_t i, const Eigen::Vector4d& y) noexcept { branch_[i] = y; }
   std::size_t bytes() const noexcept;
 
@@ -82,8 +91,8 @@ class FeltSurface {
   struct Material {
     SurfaceElement element, damped;
     ViscoelasticStep step;
-    double prepared = -1;    ///< [s] the time that `step` is for
-    double time_scale2 = 0;  ///< [s^2] a speed squared times this is an amplitude squared
+    double prepared = -1;    ///< [s] time for which `step` was computed
+    double time_scale2 = 0;  ///< [s^2] factor from a squared speed to a squared amplitude
   };
   using Give = std::array<std::array<double, kMaxContacts>, kMaxContacts>;
 
@@ -104,16 +113,17 @@ class FeltSurface {
   Eigen::Vector4d twiceEnergy() const noexcept;
   Eigen::Vector4d twiceEnergyAlike() const noexcept;
   void wake(uint32_t node) noexcept;
-  /// If all nodes have one material, what depends on it is the same for each, and is computed once.
+  /// True if all nodes have the same material: then the values that depend on it are computed only once.
   bool uniform() const noexcept { return which_.empty(); }
 
   Nodes* nodes_;
-  std::vector<Material> materials_;  ///< the distinct ones
-  std::vector<uint16_t> which_;      ///< material of each node; empty: all have the first
+  std::vector<Material> materials_;  ///< the different materials
+  std::vector<uint16_t> which_;      ///< material of each node; empty if all have the first one
   std::vector<double> compliance_;
-  std::vector<Eigen::Vector4d> branch_;  ///< y of each node; empty: no relaxation
-  std::vector<uint32_t> touched_;        ///< the last tick in which a contact moved a node
-  Eigen::Vector4d shares_;               ///< weights of skeleton (three times) and radius in a displacement
+  std::vector<Eigen::Vector4d> branch_;  ///< y of each node (see ViscoelasticStep); empty if there is no relaxation
+  std::vector<uint32_t> touched_;        ///< for each node: the last tick in which a contact moved it
+  /// shares of the skeleton (three equal values) and of the radius in a displacement
+  Eigen::Vector4d shares_;
   double ratio_ = 0, share_ = 0, settle_ = 0;
   uint32_t tick_ = 0;
 };

@@ -13,9 +13,9 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kFlat = 1e-9;  ///< of the trace: a curvature that is none
+constexpr double kFlat = 1e-9;  ///< share of the trace; a smaller curvature counts as zero
 
-/// Solves h x = g for the parameters that are free.
+/// Solves h x = g for the parameters that are not held.
 std::array<Vector3d, 2> solve(const Matrix2d& h, const std::array<Vector3d, 2>& g, const std::array<bool, 2>& held) {
   std::array<Vector3d, 2> x{Vector3d::Zero(), Vector3d::Zero()};
   const double least = kFlat * (std::fabs(h(0, 0)) + std::fabs(h(1, 1)));
@@ -53,7 +53,8 @@ FootMotion footMotion(const Skeleton& skeleton, const Vector3d& p, const Skeleto
     const auto& range = skeleton.parameters()[a];
     const double pull = tangent[a].dot(normal) + slope[a];
     held[a] = held[a] || (at[a] <= range.front() && pull <= 0) || (at[a] >= range.back() && pull >= 0);
-    // A direction that is not that of the foot says nothing of how the foot follows: as on a flat skeleton, then.
+    // If `normal` is not the direction from the foot, it does not tell how the foot moves; the foot then moves as on a
+    // flat skeleton.
     aside[a] = tangent[a] - direct * tangent[a].dot(normal) * normal;
   }
   Matrix2d h;

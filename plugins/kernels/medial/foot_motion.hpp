@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: MIT
-/// How the foot of a probe moves with the probe.
+/// The motion of a foot as its probe moves.
 #pragma once
 #include "kernels/medial/skeleton.hpp"
 
 namespace hapticd::medial {
 
-/// Derivatives of a foot. The foot is stationary along the direction to the probe, so only motion aside moves it.
+/// Derivatives of a foot over the position of its probe. A motion of the probe along the direction from the foot does
+/// not move the foot; only motion across this direction does.
 struct FootMotion {
-  Eigen::Vector3d toward_u{0, 0, 0}, toward_v{0, 0, 0};    ///< [1/m] gradients of its parameters
-  Eigen::Vector3d tangent_u{0, 0, 0}, tangent_v{0, 0, 0};  ///< [m] of the skeleton there
-  double turn = 0;  ///< [1/m] by which the direction to the probe turns while the foot stays
+  Eigen::Vector3d toward_u{0, 0, 0}, toward_v{0, 0, 0};    ///< [1/m] gradients of the foot's parameters u and v
+  Eigen::Vector3d tangent_u{0, 0, 0}, tangent_v{0, 0, 0};  ///< [m] tangents of the skeleton at the foot
+  /// [1/m] rotation of the direction to the probe per metre of motion across it, while the foot stays
+  double turn = 0;
 };
 
-/// [rt] From the condition of the foot, d|p - S|/du = dr/du, differentiated.
-/// @param direct 1: `normal` is the direction from the foot to the probe. Where the probe was pushed through the
-/// skeleton it is no more, 0: the foot then follows as on a flat skeleton, and the direction stays; between, in part
+/// [rt] Returns the motion of a foot, from the derivative of the condition that makes it a foot, d|p - S|/du = dr/du.
+/// @param direct 1 if `normal` is the direction from the foot to the probe. 0 if it is not, because the probe was
+/// pushed through the skeleton: the foot then moves as on a flat skeleton, and the direction stays. Values between
+/// blend the two cases
 FootMotion footMotion(const Skeleton& skeleton, const Eigen::Vector3d& p, const SkeletonFoot& foot,
                       const Eigen::Vector3d& normal, Envelope envelope, double direct) noexcept;
 

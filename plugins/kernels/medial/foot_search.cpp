@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Two searches for the foot on a skeleton: warm Newton, and nested bisection.
+/// Two searches for the foot on a skeleton: Newton's method from a known start, and nested bisection.
 #include <algorithm>
 #include <cmath>
 
@@ -13,24 +13,28 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kLeastCurvature = 0.05;  ///< of a Hessian over that of the metric: below it a step would go too far
-constexpr double kOnSkeleton = 1e-9;      ///< [m] a query nearer to the rim is on it, so that d has no direction
-constexpr double kNearSkeleton = 1e-6;    ///< [m] a query nearer than this sees the rest error of the search in d
-constexpr double kRemainders = 10;        ///< likewise, in Newton steps that were left
-constexpr double kSingular = 1e-14;       ///< share of the trace that keeps a collapsed direction solvable
+/// least curvature of a Hessian relative to the metric; with less, a step would go too far
+constexpr double kLeastCurvature = 0.05;
+/// [m] a query that is nearer to the skeleton than this lies on it, and d has no direction
+constexpr double kOnSkeleton = 1e-9;
+/// [m] if a query is nearer than this, the remaining error of the search shows in the direction of d
+constexpr double kNearSkeleton = 1e-6;
+constexpr double kRemainders = 10;  ///< the same limit as a multiple of the remaining Newton step
+/// share of the trace that is added so that a collapsed direction stays solvable
+constexpr double kSingular = 1e-14;
 
 using Box = std::array<std::array<double, 2>, 2>;
 
-/// Everything that one evaluation gives.
+/// The results of one evaluation.
 struct State {
   spline::SurfacePoint s;
   ScalarField::Value r;
-  Vector3d d;           ///< from the skeleton to the query
-  double distance = 0;  ///< |d|
-  double value = 0;     ///< the quantity that is least at the foot
+  Vector3d d;           ///< vector from the skeleton to the query
+  double distance = 0;  ///< [m] length of d
+  double value = 0;     ///< the quantity that is minimised at the foot
 };
 
-/// One search: what it minimises, and where.
+/// One search: the function that it minimises, and the box of parameters.
 class Search {
  public:
   Search(const Skeleton& skeleton, const Vector3d& p, Envelope envelope)
@@ -51,7 +55,7 @@ class Search {
     return {std::clamp(x[0], box_[0][0], box_[0][1]), std::clamp(x[1], box_[1][0], box_[1][1])};
   }
 
-  /// x, or the boundary where that is within `share` of the range.
+  /// Returns x, moved to the boundary if that is nearer than `share` of the range.
   Vector2d toRim(Vector2d x, double share) const noexcept {
     for (std::size_t a = skeleton_.curve() ? 1 : 0; a < 2; ++a) {
       double& at = x[static_cast<Eigen::Index>(a)];
@@ -62,14 +66,14 @@ class Search {
     return x;
   }
 
-  /// The step from x to the foot, to second order, that ends in the box.
+  /// Returns the step from x to the foot, to second order, limited to the box.
   Vector2d step(const State& q, const Vector2d& x) const noexcept;
-  /// Downhill direction times |d| along one parameter, with |d| taken as `height`.
+  /// Returns minus the derivative of the value along one parameter, times |d|; `height` is used for |d|.
   double slope(const State& q, std::size_t axis, double height) const noexcept {
     const Vector3d& tangent = axis == 0 ? q.s.Su : q.s.Sv;
     return q.d.dot(tangent) + (exact_ ? height * (axis == 0 ? q.r.fu : q.r.fv) : 0);
   }
-  /// Takes a last, short step to first order, without an evaluation; the remaining error is its square.
+  /// Makes a last, short step to first order without an evaluation. The remaining error is of the order of its square.
   void follow(const Vector2d& move, Vector2d& x, State& q) const noexcept {
     x += move;
     q.s.S += q.s.Su * move[0] + q.s.Sv * move[1];
@@ -92,7 +96,9 @@ class Search {
 
   const Skeleton& skeleton_;
   const Vector3d& p_;
-  bool exact_;  ///< the radius counts: equal ones leave the least |d|, which is smooth on the skeleton itself
+  /// true if the radius counts. If all radii are equal it is false, because |d| alone has the same foot, and its square
+  /// is smooth on the skeleton
+  bool exact_;
   Box box_;
   int evaluations_ = 0;
 };
@@ -103,8 +109,8 @@ Matrix2d metricOf(const State& q) noexcept {
   return metric;
 }
 
-/// Shifts a Hessian so that it curves upward in every direction that is not held: the least curvature relative to the
-/// metric changes its sign.
+/// Shifts a Hessian so that it is positive in every direction that is not held: its least curvature relative to the
+/// metric, if negative, changes its sign.
 void makeConvex(Matrix2d& h, const Matrix2d& metric, const std::array<bool, 2>& held) noexcept {
   double least = 0;
   if (held[0] || held[1]) {
@@ -122,8 +128,8 @@ void makeConvex(Matrix2d& h, const Matrix2d& metric, const std::array<bool, 2>& 
   if (!(least > kLeastCurvature)) h += (std::max(-least, kLeastCurvature) - least) * metric;
 }
 
-/// |d| times the Hessian of |d| - r, made convex where it is not. `flat`: |d| is taken from the tangent
-/// plane and does not vary to first order.
+/// Returns |d| times the Hessian of |d| - r, made convex if it is not.
+/// @param flat true if |d| comes from the tangent plane and does not vary to first order
 Matrix2d Search::hessian(const State& q, double height, bool flat, const std::array<bool, 2>& held) const noexcept {
   const Matrix2d metric = metricOf(q);
   Matrix2d h = metric;
@@ -146,7 +152,8 @@ Matrix2d Search::hessian(const State& q, double height, bool flat, const std::ar
   return h;
 }
 
-/// What |d| will be at the foot if the skeleton is its tangent plane: finite where the query lies on the skeleton.
+/// Returns |d| at the foot if the skeleton is replaced by its tangent plane; it is valid also if the query lies on the
+/// skeleton.
 double Search::planeHeight(const State& q, const Matrix2d& metric) const noexcept {
   const Vector3d cross = q.s.Su.cross(q.s.Sv);
   const double area2 = cross.squaredNorm();
@@ -164,7 +171,8 @@ double Search::planeHeight(const State& q, const Matrix2d& metric) const noexcep
   return std::fabs(q.d.dot(cross)) / std::sqrt(area2 * (1 - std::min(steep2, kSteepestRadius * kSteepestRadius)));
 }
 
-/// Solves for the parameters that are not held, and where that leaves the box, again with those at the boundary.
+/// Solves for the parameters that are not held. If the solution leaves the box, it solves again with these parameters
+/// held at the boundary.
 Vector2d Search::solve(const Matrix2d& h, const Vector2d& g, const std::array<bool, 2>& held,
                        const Vector2d& x) const noexcept {
   const double small = kSingular * (h(0, 0) + h(1, 1)) + 1e-300;
@@ -195,10 +203,10 @@ Vector2d Search::step(const State& q, const Vector2d& x) const noexcept {
   const Vector2d move = moveFor(q.distance, false);
   const double length = (q.s.Su * move[0] + q.s.Sv * move[1]).norm();
   if (!exact_ || rim || 2 * length < q.distance) return move;
-  return moveFor(planeHeight(q, metricOf(q)), true);  // |d| has its kink within reach of the step
+  return moveFor(planeHeight(q, metricOf(q)), true);  // the kink of |d| at the skeleton is within reach of the step
 }
 
-/// The slope of the radius along the skeleton, at most kSteepestRadius long.
+/// Returns the gradient of the radius along the skeleton, at most kSteepestRadius long.
 Vector3d Search::radiusGradient(const State& q) const noexcept {
   if (!exact_) return Vector3d::Zero();
   Vector3d gradient = Vector3d::Zero();
@@ -214,7 +222,8 @@ Vector3d Search::radiusGradient(const State& q) const noexcept {
   return steep > kSteepestRadius ? Vector3d(kSteepestRadius / steep * gradient) : gradient;
 }
 
-/// The direction of d at a foot within the skeleton, on the side of d, from the condition of the foot alone.
+/// Returns the direction of d at a foot in the interior of the skeleton. It comes from the condition of the foot; d
+/// itself only gives the side.
 Vector3d Search::ownNormal(const State& q, const Vector3d& across, const Vector3d& gradient) const noexcept {
   Vector3d side = Vector3d::Zero();
   if (!skeleton_.curve() && !across.isZero(0)) {
@@ -256,7 +265,7 @@ SkeletonFoot Skeleton::nearest(const Vector3d& p, double u, double v, const Newt
   if (!p.allFinite() || !std::isfinite(u) || !std::isfinite(v)) return foot;
   Search search(*this, p, options.envelope);
   Vector2d x = search.inside({u, v});
-  std::array<State, 2> states;  // the current one and the one being tried, in turn
+  std::array<State, 2> states;  // the current state, and the one that is being tried; they change places
   std::size_t now = 0;
   search.evaluate(x, states[now]);
   Vector2d move = search.step(states[now], x);
@@ -306,7 +315,8 @@ SkeletonFoot Skeleton::bisect(const Vector3d& p, Envelope envelope, int halvings
   foot.residual = (q.s.Su.norm() * (search.box()[0][1] - search.box()[0][0]) +
                    q.s.Sv.norm() * (search.box()[1][1] - search.box()[1][0])) *
                   std::ldexp(1.0, -halvings);
-  search.follow(search.toRim(x, std::ldexp(1.0, -halvings)) - x, x, q);  // halving never ends on it exactly
+  // bisection alone never ends exactly on the rim
+  search.follow(search.toRim(x, std::ldexp(1.0, -halvings)) - x, x, q);
   search.finish(q, x, foot);
   foot.converged = true;
   return foot;

@@ -10,26 +10,28 @@
 namespace hapticd::medial {
 namespace {
 
-constexpr int kPoints = 24;          ///< steps along the radius of the tip
-constexpr double kDeepest = 20;      ///< wave number times thickness above which a layer behaves as infinitely thick
-constexpr int kWavesAUnit = 16;      ///< steps of the integral over wave numbers
-constexpr double kLeastWave = 1e-3;  ///< below it sinh(2x) - 2x loses all digits if nu is 1/2
+constexpr int kPoints = 24;  ///< steps along the radius of the tip
+/// a layer behaves as infinitely thick if the wave number times its thickness is above this
+constexpr double kDeepest = 20;
+constexpr int kWavesAUnit = 16;      ///< steps per unit of the integral over wave numbers
+constexpr double kLeastWave = 1e-3;  ///< for a smaller x, sinh(2x) - 2x loses all digits if nu is 1/2
 
-/// What the compliance of the layer to a wave of pressure, divided by that of a half-space, lacks to 1; x: wave number
-/// times thickness.
+/// Returns 1 minus the ratio of two compliances to a wave of pressure: of the layer, and of a half-space.
+/// @param x wave number times thickness
 double missing(double x, double nu) {
   if (x < kLeastWave) {  // the first term of the series
     const double kept = 1 - nu;
     return 1 - (1 - 2 * nu) * x / (2 * kept * kept);
   }
   const double k = 3 - 4 * nu;
-  const double grows = std::exp(2 * x), shrinks = 1 / grows;  // our own sinh and cosh, with the same bits everywhere
+  // sinh and cosh from exp, which gives the same bits everywhere
+  const double grows = std::exp(2 * x), shrinks = 1 / grows;
   const double above = k * (grows - shrinks) / 2 - 2 * x;
   const double below = k * (grows + shrinks) / 2 + 2 * x * x + 5 - 12 * nu + 8 * nu * nu;
   return 1 - above / below;
 }
 
-/// Abscissas and weights of Gauss and Legendre on 0 to 1.
+/// Abscissas and weights of Gauss-Legendre quadrature on 0 to 1.
 struct Gauss {
   std::array<double, kPoints> at{}, weight{};
   Gauss() {
@@ -53,11 +55,12 @@ struct Gauss {
   }
 };
 
-/// kappa for a tip of `ratio` thicknesses: phi(t) - 2/pi int_0^1 K(t, s) phi(s) ds = 1, and kappa = int phi. K is the
-/// cosine transform of the lack.
+/// Returns kappa for a tip with a radius of `ratio` thicknesses. It solves phi(t) - 2/pi int_0^1 K(t, s) phi(s) ds = 1,
+/// and kappa = int phi. K is the cosine transform of missing().
 double kappa(double ratio, double nu) {
   const Gauss gauss;
-  const int waves = 2 * static_cast<int>(0.5 * kDeepest * kWavesAUnit * std::max(1.0, ratio));  // even
+  // an even number, for Simpson's rule
+  const int waves = 2 * static_cast<int>(0.5 * kDeepest * kWavesAUnit * std::max(1.0, ratio));
   const double step = kDeepest / waves;
   std::vector<double> cosine(kPoints);
   Eigen::MatrixXd system = Eigen::MatrixXd::Identity(kPoints, kPoints);

@@ -14,9 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kStack = 64;  ///< the tree is halved at every level: deeper than 64 it would hold 2^63 elements
+/// most levels of the tree; every level halves the elements, so 64 levels suffice for 2^63 of them
+constexpr std::size_t kStack = 64;
 
-/// The same corners in the same order, whatever order the file has.
+/// Sorts the corners, so that the order in the file does not matter.
 template <std::size_t kCount>
 std::array<int, kCount> sorted(std::array<int, kCount> corners) {
   std::sort(corners.begin(), corners.end());
@@ -31,19 +32,19 @@ void requireCorners(const std::array<int, kCount>& corners, std::size_t vertices
                                   std::to_string(corners[k]) + ", expected 0 to " + std::to_string(vertices - 1));
     if (corners[k] == corners[(k + 1) % kCount])
       throw std::invalid_argument(std::string(what) + " " + std::to_string(i) + ": vertex " +
-                                  std::to_string(corners[k]) + " twice, expected different ones");
+                                  std::to_string(corners[k]) + " is named twice; its vertices must be different");
   }
 }
 
 }  // namespace
 
 MedialMesh::MedialMesh(const MeshData& data) : vertices_(data.vertices) {
-  if (vertices_.empty()) throw std::invalid_argument("there are no vertices, expected at least one");
+  if (vertices_.empty()) throw std::invalid_argument("there are no vertices; at least one is needed");
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     const Sphere& s = vertices_[i];
     if (!s.center.allFinite() || !std::isfinite(s.radius) || s.radius < 0)
       throw std::invalid_argument("vertex " + std::to_string(i) + ": radius " + std::to_string(s.radius) +
-                                  ", expected finite numbers and a radius of at least 0");
+                                  "; all numbers must be finite, and the radius at least 0");
   }
   gather(data);
   least_radius_ = std::numeric_limits<double>::infinity();
@@ -105,7 +106,7 @@ MedialMesh::Node MedialMesh::boxOf(uint32_t element) const {
   return node;
 }
 
-/// Halves the elements along the longest side of their middles' box, until one is left. Children stand together.
+/// Returns the node that contains all members.
 MedialMesh::Node MedialMesh::boundsOf(const std::vector<Node>& boxes, std::span<const uint32_t> members) {
   Node node = boxes[members.front()];
   for (const uint32_t i : members) {
@@ -163,7 +164,8 @@ HullFoot MedialMesh::footOn(uint32_t element, const Vector3d& p) const noexcept 
   return element < cones_.size() ? cones_[element].foot(p) : slabs_[element - cones_.size()].foot(p);
 }
 
-/// No sphere of the node is nearer, because its centre is in the box and its radius is at most the greatest.
+/// Returns a distance that no sphere of the node goes below: each centre lies in the box, and no radius is greater than
+/// node.radius.
 double MedialMesh::lowerBound(const Node& node, const Vector3d& p) noexcept {
   return (node.low - p).cwiseMax(p - node.high).cwiseMax(0.0).norm() - node.radius;
 }
@@ -172,7 +174,7 @@ void MedialMesh::enter(const HullFoot& foot, uint32_t element, double band, Mesh
   ++out.evaluations;
   const double best = out.count > 0 ? out.feet[0].distance : std::numeric_limits<double>::infinity();
   if (!(foot.distance < best + band) && out.count > 0) return;
-  std::size_t place = std::min(out.count, MeshFeet::kMost - 1);  // the farthest gives way
+  std::size_t place = std::min(out.count, MeshFeet::kMost - 1);  // if the list is full, the farthest foot is replaced
   if (out.count == MeshFeet::kMost && !(foot.distance < out.feet[place].distance)) return;
   for (; place > 0 && foot.distance < out.feet[place - 1].distance; --place) out.feet[place] = out.feet[place - 1];
   static_cast<HullFoot&>(out.feet[place]) = foot;
@@ -210,7 +212,7 @@ void MedialMesh::nearest(const Vector3d& p, uint32_t start, double band, MeshFee
     }
     const Entry a{node.child, lowerBound(nodes_[node.child], p)};
     const Entry b{node.child + 1, lowerBound(nodes_[node.child + 1], p)};
-    stack[depth++] = a.bound < b.bound ? b : a;  // the nearer one comes first
+    stack[depth++] = a.bound < b.bound ? b : a;  // the nearer child is examined first
     stack[depth++] = a.bound < b.bound ? a : b;
   }
 }

@@ -16,23 +16,27 @@ using Eigen::Vector3d;
 using Eigen::Vector4d;
 
 constexpr int kMostRings = 8;
-constexpr double kOwnShare = 0.5;  ///< of its weight that a vertex keeps when it is spread; the rest goes to neighbours
-constexpr double kAside = 1e-6;    ///< [m] by which a probe is moved to see how its foot follows
-constexpr double kApart = 0.1;     ///< of the radius: feet on joined parts are two from so far on
-constexpr double kOneTube = 0.5;   ///< [rad] joined parts that turn by less are one tube or sheet
-constexpr double kRoundingOfFeet = 1e-6;  ///< of the radius: feet this near to each other are one
-constexpr double kOpposite = 4;           ///< normals farther apart than acos(1 / this - 1) count less and less
+/// share of its weight that a vertex keeps when the weight is spread; the rest goes to its neighbours
+constexpr double kOwnShare = 0.5;
+constexpr double kAside = 1e-6;  ///< [m] the probe is moved by this much to measure how its foot follows
+/// share of the radius; feet on joined parts that are farther apart count as two feet
+constexpr double kApart = 0.1;
+constexpr double kOneTube = 0.5;  ///< [rad] joined parts that turn by less than this are one tube or sheet
+/// share of the radius; feet that are nearer to each other than this count as one
+constexpr double kRoundingOfFeet = 1e-6;
+/// a rival foot whose normal is farther away than acos(1 / this - 1) counts less and less
+constexpr double kOpposite = 4;
 
-/// One value for all vertices stays one value.
+/// Checks the values of a material. If all vertices have the same value, returns only this one.
 std::vector<double> oneOrAll(const std::vector<double>& values, std::size_t vertices, const char* what) {
   if (values.empty()) return {0};
   if (values.size() != 1 && values.size() != vertices)
     throw std::invalid_argument(std::string(what) + ": " + std::to_string(values.size()) + " values, expected " +
-                                std::to_string(vertices) + ", one per vertex");
+                                std::to_string(vertices) + ", one for each vertex");
   for (const double value : values)
     if (!(value >= 0) || !std::isfinite(value))
       throw std::invalid_argument(std::string(what) + ": " + std::to_string(value) +
-                                  ", expected finite numbers of at least 0");
+                                  ", but it must be a finite number of at least 0");
   if (std::all_of(values.begin(), values.end(), [&](double x) { return x == values[0]; })) return {values[0]};
   return values;
 }
@@ -60,7 +64,7 @@ void MeshDeformation::join(const MedialMesh& mesh) {
   first_.assign(mesh.vertices().size() + 1, 0);
   for (const auto& [a, b] : pairs) {
     ++first_[a + 1];
-    neighbour_.push_back(b);  // pairs come in the order of a
+    neighbour_.push_back(b);  // the pairs are sorted by a
   }
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
 }
@@ -74,7 +78,8 @@ void MeshDeformation::add(Reach& reach, uint32_t node, double weight) noexcept {
   reach.moved[place_[node]].weight += weight;
 }
 
-/// Every vertex keeps a share of its weight and gives the rest to its neighbours in equal parts.
+/// Spreads the weights: every vertex keeps kOwnShare of its weight, and gives the rest to its neighbours in equal
+/// parts.
 void MeshDeformation::spread(Reach& reach) noexcept {
   const std::size_t count = reach.moved_count;
   std::array<double, kMostMoved> before;
@@ -112,7 +117,8 @@ PlaceNode& MeshDeformation::nodeOf(FeltPlace& place, uint32_t node) noexcept {
     place_[node] = static_cast<uint32_t>(place.count);
     place.nodes[place.count++] = {node, 0, 0, 0};
   }
-  return place.nodes[place_[node] == UINT32_MAX ? 0 : place_[node]];  // a weight without room goes to the first corner
+  // if the list is full, the weight is added to that of the first corner
+  return place.nodes[place_[node] == UINT32_MAX ? 0 : place_[node]];
 }
 
 void MeshDeformation::spread(FeltPlace& place) noexcept {
@@ -188,7 +194,7 @@ MeshBody::MeshBody(const MeshBodyData& data, const BodyOptions& options) : optio
   felt_.emplace(*deformation_, tissue, std::vector<double>(count, 1.0), options.felt.contact_ratio, options.felt.tick);
 }
 
-/// How parameters follow the probe is measured on the foot's cone or slab, whose closed form is cheap.
+/// The gradients of the parameters are computed by differences on the foot's cone or slab, whose closed form is cheap.
 void MeshBody::placeOf(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& normal, double direct,
                        FeltPlace& place) noexcept {
   deformation_->nodesAt(foot.element, {foot.u, foot.v}, place);
@@ -210,8 +216,8 @@ void MeshBody::placeOf(const Vector3d& p, const SkeletonFoot& foot, const Vector
   place.turn = distance > kNearAxis ? direct * std::min(1.0, distance / kNearAxis - 1) / distance : 0;
 }
 
-/// The foot on a cone or slab may lie on its end, where the next one begins: that is not a part of its own, and a flat
-/// sheet of many slabs is flat.
+/// The foot on a cone or slab may lie at its end, where the next one begins. Such a foot does not count as another part
+/// of the body, so that a flat sheet of many slabs stays flat.
 double MeshBody::apart(const MeshFoot& a, const MeshFoot& b) const noexcept {
   const MedialMesh::Element &one = mesh_.elements()[a.element], &other = mesh_.elements()[b.element];
   const auto begin = one.vertex.begin(), end = begin + one.count;
@@ -235,22 +241,22 @@ double MeshBody::bend(const MedialMesh::Element& one, const MedialMesh::Element&
   }
   const Sphere& joint = mesh_.vertices()[*shared];
   std::array<Vector3d, 2> away;
-  std::array<double, 2> flare{};  // angle of the cone's side against its axis, seen from the joint
+  std::array<double, 2> flare{};  // [rad] angle between the cone's side and its axis, seen from the joint
   const std::array<const MedialMesh::Element*, 2> both = {&one, &other};
   for (std::size_t i = 0; i < 2; ++i) {
     const Sphere& far = mesh_.vertices()[both[i]->vertex[both[i]->vertex[0] == *shared ? 1 : 0]];
     away[i] = far.center - joint.center;
     const double length = away[i].norm();
-    if (!(length > std::abs(far.radius - joint.radius))) return -1;  // one sphere holds the other
+    if (!(length > std::abs(far.radius - joint.radius))) return -1;  // one sphere contains the other
     away[i] /= length;
     flare[i] = std::asin((far.radius - joint.radius) / length);
   }
   return std::acos(std::clamp(-away[0].dot(away[1]), -1.0, 1.0)) + std::abs(flare[0] + flare[1]);
 }
 
-/// Along a tube of many cones, or a sheet of many slabs, the neighbour's nearest sphere is the one that they share: its
-/// normal leans, and is that of no other part. Only in the bend between two feet of their own, each off the joint by as
-/// much as half the bend lets it be, there is a crease.
+/// Along a tube of many cones, or a sheet of many slabs, the nearest sphere of the neighbouring element is the shared
+/// one. Its normal is tilted, but it does not belong to another part. There is a crease only in a bend between two
+/// separate feet, and each of them can be off the joint only by an amount that grows with the bend.
 double MeshBody::besideStraight(const MeshFoot& a, const MeshFoot& b) const noexcept {
   const double turn = bend(mesh_.elements()[a.element], mesh_.elements()[b.element], a.element, b.element);
   if (turn < 0 || turn > kOneTube) return 1;
@@ -298,7 +304,7 @@ SkeletonFoot MeshBody::foot(const Vector3d& p, uint32_t start, double crease, in
   int evaluations = feet.evaluations;
   const double doubt = feet.doubt;
   const bool inside = feet.feet[0].distance < 0;
-  if (inside && crease > 0 && !(doubt > 0)) {  // in the middle of a body there is no crease
+  if (inside && crease > 0 && !(doubt > 0)) {  // a search with doubt ended in the middle of a body, which has no crease
     mesh_.nearest(p, feet.feet[0].element, crease, feet, most_visits);
     evaluations += feet.evaluations;
   }
@@ -308,7 +314,7 @@ SkeletonFoot MeshBody::foot(const Vector3d& p, uint32_t start, double crease, in
   foot.residual = doubt;
   foot.converged = std::isfinite(best.distance) && !(doubt > 0);
   if (feet.count < 2) return foot;
-  // In the middle of a sheet or tube the opposite side is equally near: that is no crease.
+  // In the middle of a sheet or tube the opposite side is equally near, but this is not a crease.
   Vector3d sum = best.normal;
   for (std::size_t i = 1; i < feet.count; ++i) {
     const double cosine = feet.feet[i].normal.dot(best.normal);

@@ -12,9 +12,9 @@ using Eigen::Vector3d;
 
 constexpr int kMostCells = 256;           ///< most cells along a side; a power of two
 constexpr double kMargin = 0.01;          ///< share of the body's size, as a margin around it
-constexpr double kClear = 1e-9;           ///< share of a cell by which every corner is off the surface
+constexpr double kClear = 1e-9;           ///< least distance of a corner from the surface, as a share of a cell
 constexpr int kSettle = 2;                ///< steps that move a vertex onto the surface
-constexpr uint64_t kStride = 1ULL << 20;  ///< more than any coordinate of a corner, doubled
+constexpr uint64_t kStride = 1ULL << 20;  ///< more than twice any coordinate of a corner
 
 uint64_t keyOf(const Eigen::Vector3i& c) {
   return (static_cast<uint64_t>(c.x()) * kStride + static_cast<uint64_t>(c.y())) * kStride +
@@ -37,8 +37,8 @@ MeshContour::MeshContour(const MedialMesh& mesh, double chord_error) : mesh_(&me
   crossings_ = {};
 }
 
-/// The distance changes by at most the length of the way: a cube whose middle is farther from the surface than its
-/// corners are from the middle holds none of it.
+/// The distance to the surface changes at most by the length of the path. So if the middle of a cube is farther from
+/// the surface than from its own corners, the surface does not pass through this cube.
 void MeshContour::visit(const Cell& low, int size) {
   const Vector3d middle = place(low) + Vector3d::Constant(0.5 * size * cell_);
   MeshFeet feet;
@@ -55,11 +55,13 @@ double MeshContour::distanceAt(const Cell& corner) {
   MeshFeet feet;
   mesh_->nearest(place(corner), start_, 0, feet);
   double distance = feet.feet[0].distance;
-  if (std::fabs(distance) < kClear * cell_) distance = kClear * cell_;  // a vertex belongs to one edge
+  // no corner lies on the surface, so that each vertex belongs to one edge
+  if (std::fabs(distance) < kClear * cell_) distance = kClear * cell_;
   return known->second = distance;
 }
 
-/// Six tetrahedra about a diagonal of the cell, so that neighbours share the triangles of their common side.
+/// Divides the cell into six tetrahedra about a diagonal. Neighbouring cells then share the triangles of their common
+/// side.
 void MeshContour::cut(const Cell& cell) {
   constexpr std::array<std::array<int, 3>, 6> kOrders{
       {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
@@ -68,14 +70,15 @@ void MeshContour::cut(const Cell& cell) {
     corners[1][kOrders[k][0]] += 1;
     corners[2] = corners[1];
     corners[2][kOrders[k][1]] += 1;
-    if (k >= 3) std::swap(corners[1], corners[2]);  // odd orders: the tetrahedron would be inside out
+    if (k >= 3) std::swap(corners[1], corners[2]);  // for odd orders the tetrahedron would be inside out
     std::array<double, 4> distances;
     for (std::size_t i = 0; i < 4; ++i) distances[i] = distanceAt(corners[i]);
     tetrahedron(corners, distances);
   }
 }
 
-/// Corners of positive volume: the crossings of 0-1, 0-2 and 0-3 turn counter-clockwise seen from beyond them.
+/// Expects corners that span a positive volume: the crossings on 0-1, 0-2 and 0-3 are then counter-clockwise if seen
+/// from beyond them.
 void MeshContour::tetrahedron(const std::array<Cell, 4>& corners, const std::array<double, 4>& distances) {
   std::array<std::size_t, 4> inside{}, outside{};
   std::size_t in = 0, out = 0;
@@ -84,7 +87,7 @@ void MeshContour::tetrahedron(const std::array<Cell, 4>& corners, const std::arr
   const auto crossing = [&](std::size_t a, std::size_t b) {
     return vertexOn(corners[a], distances[a], corners[b], distances[b]);
   };
-  // True if the order of four corners is an even one.
+  // True if the order of the four corners is an even permutation.
   const auto even = [](std::array<std::size_t, 4> order) {
     int swaps = 0;
     for (std::size_t i = 0; i < 4; ++i)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The surface of a medial mesh as triangles: closed, whatever branches it has, with every vertex on a cone or slab.
+/// The surface of a medial mesh as triangles. It is closed even if the mesh has branches, and every vertex lies on a
+/// cone or slab.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -13,9 +14,9 @@ namespace hapticd::medial {
 
 class MeshContour : public MovingMesh {
  public:
-  /// [main] Triangles within about `chord_error` [m] of the body at rest, but for creases, which they round; made by
-  /// marching tetrahedra over the cells of a cube that the surface crosses. Where that would take more than 256 cells
-  /// a side, or the cells would be finer than 1/1000 of the body, the error is larger.
+  /// [main] Makes triangles that are within about `chord_error` [m] of the body at rest, except at creases, which are
+  /// rounded. The method is marching tetrahedra, over the cells of a cube through which the surface passes. The error
+  /// is larger if it would need more than 256 cells per side, or cells smaller than 1/1000 of the body.
   MeshContour(const MedialMesh& mesh, double chord_error);
 
  private:
@@ -30,10 +31,11 @@ class MeshContour : public MovingMesh {
 
   const MedialMesh* mesh_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
-  double cell_ = 0;                                   ///< [m] side of a cell
-  uint32_t start_ = MedialMesh::kNoStart;             ///< where the last search ended
-  std::unordered_map<uint64_t, double> distances_;    ///< at corners; only while building
-  std::unordered_map<uint64_t, uint32_t> crossings_;  ///< vertices on edges of tetrahedra, by the middle of the edge
+  double cell_ = 0;                                 ///< [m] side of a cell
+  uint32_t start_ = MedialMesh::kNoStart;           ///< where the last search ended
+  std::unordered_map<uint64_t, double> distances_;  ///< [m] signed distances at corners; only while building
+  /// vertices on the edges of tetrahedra; the key is the middle of the edge
+  std::unordered_map<uint64_t, uint32_t> crossings_;
 };
 
 }  // namespace hapticd::medial

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Where a medial mesh ends.
+/// Finds the vertices where a medial mesh ends.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -12,9 +12,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStraight = 0.9397;  ///< cosine of 20 degrees: what bends by less is smooth, as `import` takes it
+constexpr double kStraight = 0.9397;  ///< cosine of 20 degrees; a smaller bend is smooth, as in `hapticd import`
 
-/// What lies at an edge or a vertex: the directions into it, in the plane of a slab or along a cone.
+/// The elements that meet at an edge or a vertex, by their directions toward it: in the plane of a slab, or along a
+/// cone.
 struct Join {
   std::size_t count = 0;
   std::array<Vector3d, 2> into{Vector3d::Zero(), Vector3d::Zero()};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Springs from a pressed place of a medial mesh to the contour beside it, whichever cones and slabs that is on.
+/// Springs from a pressed place of a medial mesh to points of the contour beside it, which may lie on other cones and
+/// slabs.
 #include <algorithm>
 
 #include "kernels/medial/mesh_body.hpp"
@@ -10,15 +11,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostVisits = 400;  ///< nodes of the tree for one neighbour: some tens suffice at the surface
-constexpr double kLeastAside =
-    1e-6;  ///< sine below which an axis of the model's frame has no direction along a surface
+/// most nodes of the tree that are visited for one neighbour; near the surface some tens suffice
+constexpr int kMostVisits = 400;
+/// least sine of the angle between an axis of the model frame and the normal for which the axis has a direction along
+/// the surface
+constexpr double kLeastAside = 1e-6;
 
 }  // namespace
 
-/// A mesh has no rows. The neighbours are in the directions of the model's axes along the surface, forward and back;
-/// each counts by how far its axis lies in the surface, squared. So the six together are the same for every direction
-/// of the surface, and nothing jumps where cones and slabs meet.
+/// A mesh has no rows, so the neighbours lie along the axes of the model frame, projected on the surface, forward and
+/// back. The weight of each neighbour is the squared length of its projected axis. So the six together have the same
+/// effect for every orientation of the surface, and the force does not jump where cones and slabs meet.
 std::size_t MeshBody::neighboursOf(const Vector3d& surface, const SkeletonFoot& foot, const Vector3d& normal,
                                    std::array<ShearSpring, 6>& springs) const noexcept {
   const double here = material(stiffness_, foot), distance = options_.shear_distance;
@@ -33,7 +36,8 @@ std::size_t MeshBody::neighboursOf(const Vector3d& surface, const SkeletonFoot& 
       if (!there.converged) continue;
       ShearSpring& spring = springs[count];
       spring.anchor = there.center + there.radius * there.normal;
-      const double reached = std::clamp((spring.anchor - surface).dot(aside) / distance, 0.0, 1.0);  // less at a rim
+      // less than 1 at a rim
+      const double reached = std::clamp((spring.anchor - surface).dot(aside) / distance, 0.0, 1.0);
       spring.stiffness = 0.25 * share * reached * 0.5 * (here + material(stiffness_, there));
       count += spring.stiffness > 0 ? 1 : 0;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Closed triangles whose vertices move with the nodes of a soft body, for drawing and for its volume.
+/// A closed mesh of triangles that moves with the nodes of a soft body, for drawing and for the body's volume.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -8,19 +8,21 @@
 
 namespace hapticd::medial {
 
-/// Displacement of each node: skeleton (x, y, z) and radius [m].
+/// Displacement [m] of each node: x, y, z of its position, then its radius.
 using Displacements = std::vector<Eigen::Vector4f>;
 
 class MovingMesh {
  public:
-  virtual ~MovingMesh() = default;  ///< its owners do not know which mesh it is
+  virtual ~MovingMesh() = default;  ///< its owners do not know the derived class
 
   std::size_t vertexCount() const noexcept { return vertices_.size(); }
-  /// Three vertices per triangle, counter-clockwise seen from outside.
+  /// Three vertices per triangle, counter-clockwise if seen from outside.
   const std::vector<uint32_t>& indices() const noexcept { return indices_; }
 
-  /// [any] Writes at most `capacity` vertices from `first` on, 3 floats each, of the body displaced as
-  /// `displacement(i)` says of node i (an Eigen vector of 4), all radii grown by `bulge` [m]. Allocates nothing.
+  /// [any] Writes the vertices of the displaced body, 3 floats each: at most `capacity` vertices, from `first` on.
+  /// `displacement(i)` returns the displacement of node i (an Eigen vector of 4); all radii grow by `bulge` [m].
+  /// Allocates nothing.
+  /// @return the number of vertices written
   template <class Displacement>
   std::size_t write(const Displacement& displacement, float* xyz, std::size_t capacity, float bulge = 0,
                     std::size_t first = 0) const noexcept {
@@ -37,14 +39,15 @@ class MovingMesh {
     }
     return count;
   }
-  /// [main] The body at rest.
+  /// [main] Returns the vertices of the body at rest, 3 floats each.
   std::vector<float> atRest() const;
-  /// [main] Unit normals of a displaced mesh: the mean of the triangles around each vertex.
+  /// [main] Returns the unit normals of a displaced mesh: at each vertex the mean of the triangles around it.
   std::vector<float> normalsOf(const std::vector<float>& xyz) const;
-  /// [any] Six times the volume [m^3] under triangles first to last: summed over all of them, it is that of the body.
+  /// [any] Returns six times the volume [m^3] between the origin and the triangles `first` to `last` - 1. Summed over
+  /// all triangles it is six times the volume of the body.
   double sixVolumes(const float* xyz, std::size_t first, std::size_t last) const noexcept;
-  double volume(const std::vector<float>& xyz) const noexcept;  ///< [any] [m^3]
-  double area(const std::vector<float>& xyz) const noexcept;    ///< [any] [m^2]
+  double volume(const std::vector<float>& xyz) const noexcept;  ///< [any] [m^3] of the displaced mesh
+  double area(const std::vector<float>& xyz) const noexcept;    ///< [any] [m^2] of the displaced mesh
   std::size_t bytes() const noexcept;
 
  protected:
@@ -52,7 +55,8 @@ class MovingMesh {
     uint32_t node;
     float weight;
   };
-  /// A vertex stands on the sphere about `center`; shares of 0 are left out.
+  /// Adds a vertex on the sphere of `radius` about `center`, in the direction `normal`; shares of 0 are left out.
+  /// @return its index
   uint32_t add(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, double radius,
                std::span<const Share> shares);
   void triangle(uint32_t a, uint32_t b, uint32_t c);
@@ -62,7 +66,7 @@ class MovingMesh {
   struct Vertex {
     Eigen::Vector3f center, normal;
     float radius;
-    uint32_t first, count;  ///< of its shares
+    uint32_t first, count;  ///< range of its shares in shares_
   };
 
   std::vector<Vertex> vertices_;

@@ -13,17 +13,18 @@ namespace {
 
 using Eigen::Vector4d;
 
-constexpr double kLargest = 1.0;  ///< [m] amplitude from which settle times count
+constexpr double kLargest = 1.0;  ///< [m] amplitude at which settle times begin
 
 void requireMaterial(const Oscillator& o, std::size_t i) {
   const auto bad = [](double x) { return !(x >= 0) || !std::isfinite(x); };
   if (bad(o.mass) || bad(o.damping) || bad(o.stiffness))
     throw std::invalid_argument("material of node " + std::to_string(i) + ": mass " + std::to_string(o.mass) +
                                 ", damping " + std::to_string(o.damping) + ", stiffness " +
-                                std::to_string(o.stiffness) + ", expected finite numbers of at least 0");
+                                std::to_string(o.stiffness) + "; all must be finite numbers of at least 0");
 }
 
-/// A node without mass creeps; one without mass and damping, or without a spring, returns at once.
+/// Returns the step of a node. Without mass the node creeps; without mass and damping, or without a spring, it returns
+/// to rest at once.
 OscillatorStep stepOf(const Oscillator& o, double dt) noexcept {
   if (!(o.stiffness > 0) || (!(o.mass > 0) && !(o.damping > 0))) return {0, 0, 0, 0};
   if (!(o.mass > 0)) return {std::exp(-o.stiffness / o.damping * dt), 0, 0, 0};
@@ -35,7 +36,7 @@ OscillatorStep stepOf(const Oscillator& o, double dt) noexcept {
   return step;
 }
 
-/// Time for the slowest part of a motion of kLargest to fall below kAsleep.
+/// Returns the time [s] in which the slowest part of a motion decays from kLargest to kAsleep.
 double settleTimeOf(const Oscillator& o) noexcept {
   if (!(o.stiffness > 0)) return 0;
   const double half = 0.5 * o.damping, discriminant = half * half - o.mass * o.stiffness;
@@ -101,7 +102,7 @@ void Nodes::advance(double dt) noexcept {
       ++k;
       continue;
     }
-    node = Node{};  // also if it is not a number
+    node = Node{};  // also if its displacement is NaN
     is_awake_[i] = 0;
     awake_[k] = awake_.back();
     awake_.pop_back();
@@ -135,7 +136,7 @@ void Nodes::place(std::size_t i, const Vector4d& displacement, const Vector4d& r
 
 void Nodes::yield(const Hold& contact, std::span<const NodeWeight> felt, std::span<const NodeWeight> moved) noexcept {
   Vector4d inward;
-  inward << -contact.normal, -1;  // contour shift = inward . (skeleton, radius)
+  inward << -contact.normal, -1;  // displacement of the contour = inward . (skeleton, radius)
   Vector4d share;
   const Split unit = splitDepth(1, options_.split);
   share << -unit.skeleton * contact.normal, -unit.radius;
@@ -145,7 +146,7 @@ void Nodes::yield(const Hold& contact, std::span<const NodeWeight> felt, std::sp
     v += part.weight * nodes_[part.node].v;
   }
   const double push = contact.depth + bulge_ - inward.dot(x);
-  if (!(push > -kAsleep)) return;  // the contour lags behind a probe that leaves
+  if (!(push > -kAsleep)) return;  // the probe moves away, and the contour follows it later
   const double kick = options_.dynamics ? std::max(0.0, contact.speed - inward.dot(v)) : 0;
   if (!(std::max(push, 0.0) + kick > 0) || !std::isfinite(push + kick)) return;
   const Vector4d dx = std::max(push, 0.0) * share, dv = kick * share;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// What moves in a soft body: nodes (control points of a skeleton, vertices of a medial mesh), each a place and a
-/// radius on a spring and a damper about where it is at rest (Corso et al. 2002, sections 3.2 and 3.3).
+/// The moving parts of a soft body: nodes, which are control points of a skeleton or vertices of a medial mesh. The
+/// position and the radius of each node move on a spring and a damper about their values at rest (Corso et al. 2002,
+/// sections 3.2 and 3.3).
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -12,21 +13,24 @@
 
 namespace hapticd::medial {
 
-inline constexpr double kAsleep = 1e-7;  ///< [m] amplitude below which no one sees or feels a node move
-/// The step of an undamped node is a rotation: rounding may turn it into a growing spiral, by at most a few units in
-/// the last place a tick. This much is subtracted.
+/// [m] a node with a smaller amplitude counts as at rest: nobody sees or feels its motion
+inline constexpr double kAsleep = 1e-7;
+/// Share of the motion that every tick takes away. The exact step of an undamped node is a rotation, but rounding could
+/// make a growing spiral of it, by a few units in the last place per tick.
 inline constexpr double kRoundingLoss = 4e-15;
-inline constexpr double kSameStep = 1e-9;  ///< two dt with a smaller relative difference share one prepared step
+/// two step lengths dt with a smaller relative difference use the same prepared step
+inline constexpr double kSameStep = 1e-9;
 
 struct DeformationOptions {
-  double split = 0.5;                  ///< share of the depth that the skeleton moves; the radius shrinks by the rest
-  std::array<int, 2> influence{4, 4};  ///< for a grid: control points that a contact moves, p' x q'
+  /// share of the depth by which the skeleton moves; the radius shrinks by the rest
+  double split = 0.5;
+  std::array<int, 2> influence{4, 4};  ///< for a grid: p' x q', the number of control points that a contact moves
   int rings = 2;                       ///< for a mesh: how many rings of neighbours a contact moves
-  bool dynamics = true;                ///< false: nodes return at once
-  double shear_reach = 0;              ///< [m] for a felt grid: places this far beside a contact sink with it
+  bool dynamics = true;                ///< if false, nodes return to rest at once
+  double shear_reach = 0;              ///< [m] for a felt grid: places up to this distance from a contact sink with it
 };
 
-/// A node and its share in a point of the skeleton.
+/// A node and its weight in a point of the skeleton.
 struct NodeWeight {
   uint32_t node;
   double weight;
@@ -34,41 +38,46 @@ struct NodeWeight {
 
 class Nodes {
  public:
-  /// [main] `material`: one per node, or one for all. It allocates for every awake node.
+  /// [main] Allocates all memory.
+  /// @param material one per node, or one for all
   /// @throws std::invalid_argument for a negative or non-finite number.
   Nodes(std::size_t count, const std::vector<Oscillator>& material, const DeformationOptions& options);
 
-  /// [rt] Lets every node that is awake swing for dt [s]: the exact solution, whatever dt.
+  /// [rt] Advances every awake node by dt [s] with the exact solution, for every length of dt.
   void advance(double dt) noexcept;
-  /// [rt] Back to rest.
+  /// [rt] Puts all nodes back to rest and removes the bulge.
   void reset() noexcept;
 
-  /// [rt] Kinetic and elastic energy of the nodes [J].
+  /// [rt] Returns the kinetic plus elastic energy of the nodes [J].
   double energy() const noexcept;
-  std::size_t awake() const noexcept { return awake_.size(); }  ///< [rt] nodes in motion
+  std::size_t awake() const noexcept { return awake_.size(); }  ///< [rt] number of nodes in motion
   std::size_t count() const noexcept { return nodes_.size(); }
-  /// [any] Displacement of node i: skeleton (x, y, z) and radius [m].
+  /// [any] Displacement [m] of node i: x, y, z of its position, then its radius.
   const Eigen::Vector4d& displacement(std::size_t i) const noexcept { return nodes_[i].x; }
-  const Eigen::Vector4d& rate(std::size_t i) const noexcept { return nodes_[i].v; }  ///< [any] its speed [m/s]
-  /// [any] Puts node i where it is said to be, such as where it was when a scene was saved.
+  /// [any] rate of change of displacement(i) [m/s]
+  const Eigen::Vector4d& rate(std::size_t i) const noexcept { return nodes_[i].v; }
+  /// [any] Sets displacement and rate of node i, such as the values of a saved scene.
   void place(std::size_t i, const Eigen::Vector4d& displacement, const Eigen::Vector4d& rate) noexcept;
-  double settleTime() const noexcept { return settle_; }  ///< [s] after which a free body is at rest, however it moved
-  double bulge() const noexcept { return bulge_; }        ///< [m] by which all radii have grown to keep the volume
+  /// [s] time after which a free body is at rest, whatever its motion was
+  double settleTime() const noexcept { return settle_; }
+  double bulge() const noexcept { return bulge_; }  ///< [m] growth of all radii that keeps the volume
   void setBulge(double bulge) noexcept { bulge_ = bulge; }
   std::size_t bytes() const noexcept;
 
  protected:
   friend class FeltSurface;  // moves the nodes itself if the surface is felt
 
-  /// A contact that holds the contour where the probe is.
+  /// A contact at which the probe holds the contour.
   struct Hold {
-    Eigen::Vector3d normal;  ///< outward, unit
-    double depth, speed;     ///< [m] below the contour at rest; [m/s] at which the probe goes deeper
+    Eigen::Vector3d normal;  ///< outward unit normal
+    double depth, speed;     ///< [m] of the probe below the contour at rest; [m/s] at which it goes deeper
   };
-  void clear() noexcept;  ///< [rt] all nodes to rest; the bulge stays
+  void clear() noexcept;  ///< [rt] puts all nodes to rest; the bulge stays
   const DeformationOptions& options() const noexcept { return options_; }
-  /// [rt] Pushes the contour in to the probe if it is outside, and takes it along if it is slower. `felt` are the nodes
-  /// that shape the contour there, `moved` those that give way: the sum of their products is 1.
+  /// [rt] Moves nodes until the contour is not outside the probe, and until it is at least as fast as a probe that goes
+  /// deeper.
+  /// @param felt the nodes that shape the contour at the contact
+  /// @param moved the nodes that give way; the sum of the products of both weights is 1
   void yield(const Hold& contact, std::span<const NodeWeight> felt, std::span<const NodeWeight> moved) noexcept;
 
  private:
@@ -78,7 +87,7 @@ class Nodes {
   struct Material {
     Oscillator oscillator;
     OscillatorStep step;
-    double time_scale2 = 0;  ///< [s^2] a speed squared times this is an amplitude squared
+    double time_scale2 = 0;  ///< [s^2] factor from a squared speed to a squared amplitude
   };
 
   void prepare(double dt) noexcept;
@@ -87,14 +96,15 @@ class Nodes {
 
   DeformationOptions options_;
   std::vector<Node> nodes_;
-  std::vector<Material> materials_;  ///< the distinct ones
-  std::vector<uint16_t> which_;      ///< material of each node; empty: all have the first
-  std::vector<uint32_t> awake_;      ///< indices, reserved for all
+  std::vector<Material> materials_;  ///< the different materials
+  std::vector<uint16_t> which_;      ///< material of each node; empty if all have the first one
+  std::vector<uint32_t> awake_;      ///< indices of the awake nodes; has room for all nodes
   std::vector<uint8_t> is_awake_;
   double prepared_dt_ = -1, settle_ = 0, bulge_ = 0;
 };
 
-inline constexpr int kMaxContacts = 16;  ///< that one body answers at once
-inline constexpr int kSweeps = 8;        ///< sweeps over several contacts; each brings the next one nearer to its probe
+inline constexpr int kMaxContacts = 16;  ///< most contacts of one body in one tick
+/// number of passes over several contacts; after each pass the contour is nearer to the probes
+inline constexpr int kSweeps = 8;
 
 }  // namespace hapticd::medial

@@ -6,7 +6,7 @@
 namespace hapticd::medial {
 namespace {
 
-/// C(t) = cosh(q t) and S(t) = sinh(q t) / q times exp(-a t), for q^2 of either sign.
+/// C(t) = cosh(q t) exp(-a t) and S(t) = sinh(q t) / q exp(-a t), for positive or negative q^2.
 struct Pair {
   long double c, s;
 };
@@ -16,8 +16,8 @@ Pair underdamped(long double a, long double w2, long double t) {
   return {decay * std::cos(w * t), w > 0 ? decay * std::sin(w * t) / w : decay * t};
 }
 
-/// Both exponentials fall: they are never formed as a growing hyperbolic function times a falling one. The slow root is
-/// stiffness / (mass * fast root), because a - q cancels where the damping is large.
+/// Uses two falling exponentials instead of a growing hyperbolic function times a falling exponential. The slow root is
+/// stiffness / (mass * fast root), because a - q would lose precision if the damping is large.
 Pair overdamped(long double a, long double q, long double w0_squared, long double t) {
   const long double fast = a + q, slow = w0_squared / fast;
   const long double e_fast = std::exp(-fast * t), e_slow = std::exp(-slow * t);

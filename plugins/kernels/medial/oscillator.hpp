@@ -4,7 +4,8 @@
 
 namespace hapticd::medial {
 
-inline constexpr double kLongestSettle = 3600;  ///< [s] an undamped body swings for ever, which this stands for
+/// [s] longest settling time that is reported; an undamped body would swing for ever
+inline constexpr double kLongestSettle = 3600;
 
 /// Material of one degree of freedom.
 struct Oscillator {
@@ -13,14 +14,14 @@ struct Oscillator {
   double stiffness = 0;  ///< k [N/m], >= 0
 };
 
-/// The exact solution of m x'' + b x' + k x = 0 over a fixed time as a 2x2 matrix on (x, v): stable for every mass,
-/// stiffness, damping and time, unlike the Euler steps, and it takes four multiplications. A constant force moves the
-/// point about which x is measured to f / k.
+/// The exact solution of m x'' + b x' + k x = 0 over a fixed time as a 2x2 matrix on (x, v). It is stable for every
+/// mass, stiffness, damping and time, unlike Euler's methods, and takes four multiplications. With a constant force f,
+/// x is measured from the equilibrium at f / k.
 struct OscillatorStep {
   double xx = 1, xv = 0, vx = 0, vv = 1;
-  double xf = 0, vf = 0;  ///< what a constant force of 1 N adds over the time [m], [m/s]
+  double xf = 0, vf = 0;  ///< [m], [m/s] change of x and v by a constant force of 1 N over this time
 
-  /// [any] Advances displacement x [m] and speed v [m/s].
+  /// [any] Advances the displacement x [m] and the speed v [m/s] by one step.
   void advance(double& x, double& v) const noexcept {
     const double moved = xx * x + xv * v;
     v = vx * x + vv * v;
@@ -28,13 +29,15 @@ struct OscillatorStep {
   }
 };
 
-/// [any] The step of `dt` seconds. Computed in extended precision, so that 1e5 steps keep 1e-11 of the amplitude.
+/// [any] Returns the step of `dt` seconds. It is computed in extended precision, so that after 1e5 steps the error is
+/// below 1e-11 of the amplitude.
 OscillatorStep oscillatorStep(const Oscillator& oscillator, double dt) noexcept;
 
-/// [any] True if explicit Euler with this step decays: w^2 h < c and 4 - 2 c h + w^2 h^2 > 0 with c = b / m.
+/// [any] True if an explicit Euler step of `dt` decays, with w^2 = k / m: w^2 h < c and 4 - 2 c h + w^2 h^2 > 0 with c
+/// = b / m.
 bool explicitEulerStable(const Oscillator& oscillator, double dt) noexcept;
 
-/// [any] True if symplectic Euler with this step stays bounded: w^2 h^2 + 2 c h < 4.
+/// [any] True if a symplectic Euler step of `dt` stays bounded: w^2 h^2 + 2 c h < 4.
 bool symplecticEulerStable(const Oscillator& oscillator, double dt) noexcept;
 
 }  // namespace hapticd::medial

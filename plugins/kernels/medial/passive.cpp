@@ -12,13 +12,14 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int kAngles = 100;   ///< angles of half a turn that are tried
-constexpr int kNarrow = 30;    ///< halvings of the distance to a resonance, on each side
-constexpr int kSections = 40;  ///< share of the interval about the greatest
+constexpr int kAngles = 100;  ///< number of angles in half a turn that are tried
+/// additional angles on each side of the resonance, each at half the distance of the one before
+constexpr int kNarrow = 30;
+constexpr int kSections = 40;  ///< golden-section steps about the greatest value
 constexpr double kGolden = 0.381966;
-constexpr double kNoDamping = 100;  ///< times K T / 2: above this there is no meaningful figure
+constexpr double kNoDamping = 100;  ///< multiple of K T / 2; a greater result means that the mass has no damping
 
-/// A surface in contact, at one angle w T.
+/// The loop of a sampled surface in contact, at an angle w T.
 class Loop {
  public:
   Loop(const SurfaceElement& element, double dt) : contact_(element.contact), dt_(dt) {
@@ -27,7 +28,7 @@ class Loop {
     forced_ << s.xf, s.vf, s.yf;
   }
 
-  /// [N s/m] damping that the arm must have at this frequency.
+  /// Returns the damping [N s/m] that the arm must have at this frequency.
   double need(double angle) const {
     const Complex back = std::polar(1.0, -angle);
     const Eigen::Matrix3cd left = Eigen::Matrix3cd::Identity() - back * free_.cast<Complex>();
@@ -42,7 +43,7 @@ class Loop {
   Eigen::Vector3d forced_;
 };
 
-/// Angles spread evenly, and ever nearer to where the mass swings between the springs.
+/// Returns angles that are evenly spread, and others that approach the resonance of the mass between its springs.
 std::vector<double> anglesOf(const SurfaceElement& e, double dt) {
   std::vector<double> all;
   for (int i = 1; i <= kAngles; ++i) all.push_back(M_PI * i / kAngles);
@@ -60,7 +61,7 @@ double passiveDamping(const SurfaceElement& element, double dt) {
   if (!(element.contact > 0)) return 0;
   const Loop loop(element, dt);
   double most = -HUGE_VAL, low = 0, high = 0, before = 0;
-  bool last = false;  // the greatest so far is the previous one
+  bool last = false;  // true if the previous angle had the greatest value so far
   for (const double angle : anglesOf(element, dt)) {
     if (last) high = angle;
     const double need = loop.need(angle);

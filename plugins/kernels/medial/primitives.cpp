@@ -11,7 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Sine of the smallest angle of a triangle that still has a meaningful plane; thinner ones are treated as their edges.
+/// Least sine of the smallest angle of a triangle for which its plane is meaningful. Thinner triangles are treated as
+/// their three edges.
 constexpr double kThinTriangle = 1e-9;
 
 void requireSphere(const Sphere& sphere, const char* what) {
@@ -19,10 +20,10 @@ void requireSphere(const Sphere& sphere, const char* what) {
     throw std::invalid_argument(std::string(what) + ": sphere with centre (" + std::to_string(sphere.center.x()) +
                                 ", " + std::to_string(sphere.center.y()) + ", " + std::to_string(sphere.center.z()) +
                                 ") and radius " + std::to_string(sphere.radius) +
-                                ", expected finite numbers and a radius of at least 0");
+                                "; all numbers must be finite, and the radius at least 0");
 }
 
-/// Some unit vector at right angles to unit vector n.
+/// Returns some unit vector perpendicular to the unit vector n.
 Vector3d perpendicular(const Vector3d& n) {
   Eigen::Index smallest = 0;
   n.cwiseAbs().minCoeff(&smallest);
@@ -71,7 +72,7 @@ HullFoot Cone::foot(const Vector3d& p) const noexcept {
   const double along = d.dot(axis_);
   const Vector3d off = d - along * axis_;
   const double height = off.norm();
-  const double z = along + tangent_ * height;  // where |p - c(z)| - r(z) is stationary
+  const double z = along + tangent_ * height;  // the place where |p - c(z)| - r(z) is stationary
   HullFoot foot;
   if (z > 0 && z < length_) {
     foot.center = a_.center + z * axis_;
@@ -137,7 +138,8 @@ HullFoot Slab::foot(const Vector3d& p) const noexcept {
   if (plane_) {
     const Vector3d d = p - origin_.center;
     const double height = d.dot(normal_);
-    const Vector3d base = d + gradient_ * (std::fabs(height) * tangent_scale_);  // stationary, up to its height
+    // the stationary point, apart from its height over the plane
+    const Vector3d base = d + gradient_ * (std::fabs(height) * tangent_scale_);
     const double w1 = dual1_.dot(base), w2 = dual2_.dot(base);
     candidate = {w2 < 0, 1 - w1 - w2 < 0, w1 < 0};
     if (!candidate[0] && !candidate[1] && !candidate[2]) {
@@ -151,8 +153,8 @@ HullFoot Slab::foot(const Vector3d& p) const noexcept {
       return foot;
     }
   }
-  // The distance is convex over the triangle: from a stationary point beyond an edge, the least value lies on an edge
-  // that it is beyond. NaN is beyond none, and falls through to the first edge.
+  // The distance is convex over the triangle. If the stationary point lies beyond some edges, the least value lies on
+  // one of these edges. NaN is beyond no edge, and the first edge is used.
   HullFoot best;
   bool found = false;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// Primitives of a medial mesh: the hulls of one, two and three spheres, with their distance in closed form.
+/// Primitives of a medial mesh: the convex hulls of one, two and three spheres, with their distance in closed form.
 ///
-/// All are unions of the spheres whose centre and radius run linearly over a point, a segment or a triangle. The signed
-/// distance of such a union is the least |Q - c| - r over its spheres: exact outside and inside, because those hulls
-/// are convex.
+/// Each hull is the union of spheres whose centre c and radius r change linearly over a point, a segment or a triangle.
+/// The signed distance from a point Q to this union is the least |Q - c| - r of all its spheres. It is exact outside
+/// and inside, because the hulls are convex.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -12,60 +12,64 @@ namespace hapticd::medial {
 
 struct Sphere {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< [m]
-  double radius = 0;                                 ///< [m], not negative
+  double radius = 0;                                 ///< [m] not negative
 };
 
-/// Where a point stands relative to a hull.
+/// The foot of a point on a hull.
 struct HullFoot {
-  double distance = 0;                                ///< [m] signed: negative inside
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< centre of the sphere that has the foot
-  double radius = 0;                                  ///< of that sphere
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< outward unit normal at the foot, also for a point on the axis
+  double distance = 0;                               ///< [m] signed: negative inside
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< [m] centre of the sphere on which the foot lies
+  double radius = 0;                                 ///< [m] radius of this sphere
+  /// outward unit normal at the foot; defined also for a point on the axis
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
   Eigen::Array2d parameter = Eigen::Array2d::Zero();  ///< cone: (t, 0); slab: barycentric weights of spheres 1 and 2
 
-  /// The nearest point of the hull's surface.
+  /// Returns the nearest point of the hull's surface [m].
   Eigen::Vector3d point() const noexcept { return center + radius * normal; }
 };
 
-/// [any] The nearest point of a sphere; a point at its centre gets the normal `fallback`.
+/// [any] Returns the foot of p on a sphere. If p is the centre, the normal is `fallback`.
 HullFoot footOnSphere(const Sphere& sphere, const Eigen::Vector3d& p,
                       const Eigen::Vector3d& fallback = Eigen::Vector3d::UnitX()) noexcept;
 
-/// The hull of two spheres, a cone with round ends. If one sphere holds the other, the hull is that sphere.
+/// The hull of two spheres, a cone with round ends. If one sphere contains the other, the hull is the larger sphere.
 class Cone {
  public:
   Cone() = default;
   /// [main] @throws std::invalid_argument for a number that is not finite or a negative radius.
   Cone(const Sphere& a, const Sphere& b);
 
-  /// [any] The foot of p.
+  /// [any] Returns the foot of p.
   HullFoot foot(const Eigen::Vector3d& p) const noexcept;
-  /// [any] Parameter 0..1 of the point of the axis nearest to p, the paper's foot (Corso et al. 2002, section 3.1).
+  /// [any] Returns the parameter (0 to 1) of the point of the axis that is nearest to p. This is the foot of the paper
+  /// (Corso et al. 2002, section 3.1).
   double axisFoot(const Eigen::Vector3d& p) const noexcept;
-  /// [any] Depth by the paper's test: radius at axisFoot() less the distance to it. Exact for equal radii only.
+  /// [any] Returns the depth [m] by the paper's test: the radius at axisFoot() minus the distance from p to that point.
+  /// It is exact only for equal radii.
   double axisDepth(const Eigen::Vector3d& p) const noexcept;
 
  private:
   Sphere a_;
   Eigen::Vector3d axis_ = Eigen::Vector3d::UnitX(), side_ = Eigen::Vector3d::UnitY();
   double length_ = 0;
-  double slope_ = 0;  ///< dr/dz along the axis
-  double tangent_ =
-      0;  ///< slope / sqrt(1 - slope^2): how far the foot's sphere moves along the axis for each metre off it
+  double slope_ = 0;  ///< change of the radius per metre along the axis
+  /// slope / sqrt(1 - slope^2): how far the sphere of the foot moves along the axis per metre of the probe's distance
+  /// from the axis
+  double tangent_ = 0;
   double cosine_ = 1;  ///< sqrt(1 - slope^2)
-  int whole_ = -1;     ///< the end (0 or 1) whose sphere holds the other; -1: none
+  int whole_ = -1;     ///< the end (0 or 1) whose sphere contains the other sphere; -1 if neither does
 };
 
-/// The hull of three spheres, a triangular slab with round rims.
+/// The convex hull of three spheres: a triangular slab with round rims.
 class Slab {
  public:
   Slab() = default;
   /// [main] @throws std::invalid_argument for a number that is not finite or a negative radius.
   explicit Slab(const std::array<Sphere, 3>& spheres);
 
-  /// [any] The foot of p.
+  /// [any] Returns the foot of p.
   HullFoot foot(const Eigen::Vector3d& p) const noexcept;
-  /// [any] Unit normal of the triangle of centres; zero where it has no plane.
+  /// [any] Returns the unit normal of the triangle of centres; zero if plane_ is false.
   Eigen::Vector3d across() const noexcept { return plane_ ? normal_ : Eigen::Vector3d(Eigen::Vector3d::Zero()); }
 
  private:
@@ -75,11 +79,12 @@ class Slab {
   Sphere origin_;
   std::array<Cone, 3> edges_;  ///< edge i runs from sphere i to sphere i + 1
   Eigen::Vector3d normal_ = Eigen::Vector3d::UnitZ();
-  Eigen::Vector3d dual1_ = Eigen::Vector3d::Zero(), dual2_ = Eigen::Vector3d::Zero();  ///< dual_i . (x - c0) = weight i
+  /// dual_i . (x - c0) is the barycentric weight of sphere i
+  Eigen::Vector3d dual1_ = Eigen::Vector3d::Zero(), dual2_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d edge1_ = Eigen::Vector3d::Zero(), edge2_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d gradient_ = Eigen::Vector3d::Zero();  ///< of the radius, in the plane of the centres
+  Eigen::Vector3d gradient_ = Eigen::Vector3d::Zero();  ///< gradient of the radius, in the plane of the centres
   double cosine_ = 1, tangent_scale_ = 1;
-  bool plane_ = false;  ///< false: no sphere touches only the hull's flat sides (thin triangle, nested spheres)
+  bool plane_ = false;  ///< false if the hull has no flat sides (the triangle is thin, or spheres lie inside others)
 };
 
 }  // namespace hapticd::medial

@@ -9,15 +9,16 @@
 namespace hapticd::medial {
 namespace {
 
-/// Slope of a monotone cubic at a sample: the weighted harmonic mean of its neighbours' slopes, 0 at an extremum.
+/// Returns the slope of a monotone cubic at a sample: the weighted harmonic mean of the slopes on both sides, or 0 at
+/// an extremum.
 double innerSlope(double h0, double h1, double d0, double d1) {
   if (!(d0 * d1 > 0)) return 0;
   const double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
   return (w0 + w1) / (w0 / d0 + w1 / d1);
 }
 
-/// Weights of (left value, left slope, right value, right slope) of a cubic: row 0 for the value, the others for its
-/// derivatives.
+/// Returns the weights of (left value, left slope, right value, right slope) in a cubic: row 0 for the value, the other
+/// rows for its derivatives.
 template <int kOrder>
 std::array<std::array<double, 4>, kOrder + 1> hermite(double t, double h) noexcept {
   const double s = 1 - t;
@@ -40,7 +41,7 @@ ScalarField::ScalarField(const std::array<std::vector<double>, 2>& parameters, c
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!(samples[i] >= 0) || !std::isfinite(samples[i]))
       throw std::invalid_argument("sample " + std::to_string(i) + " is " + std::to_string(samples[i]) +
-                                  ", expected a finite number of at least 0");
+                                  ", but it must be a finite number of at least 0");
   }
   if (samples.empty()) return;
   const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
@@ -65,7 +66,8 @@ void ScalarField::limitSlopes() {
       };
       double d = i == 0 ? slope(0) : slope(i - 1);
       if (i > 0 && i < last) d = innerSlope(t[i] - t[i - 1], t[i + 1] - t[i], slope(i - 1), slope(i));
-      // Half of what keeps a curve's Bernstein coefficients positive, so that both directions together keep a patch's.
+      // The limit is half of the slope that keeps the Bernstein coefficients of a curve positive, so that both
+      // directions together keep those of a patch positive.
       const double width = std::max(i > 0 ? t[i] - t[i - 1] : 0, i < last ? t[i + 1] - t[i] : 0);
       const double most = 1.5 * nodes_[n].f / width;
       (axis == 0 ? nodes_[n].fu : nodes_[n].fv) = static_cast<float>(std::clamp(d, -most, most));
@@ -95,7 +97,7 @@ ScalarField::Value ScalarField::blend(double u, double v) const noexcept {
       add(sum.fvv, 0, 2);
     }
   }
-  sum.f = std::max(0.0, sum.f);  // rounding only
+  sum.f = std::max(0.0, sum.f);  // only rounding can make it negative
   return sum;
 }
 

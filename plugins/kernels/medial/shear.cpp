@@ -11,7 +11,8 @@ Eigen::Vector3d pressForce(const Eigen::Vector3d& probe, const Eigen::Vector3d& 
   for (const ShearSpring& spring : springs) {
     const Eigen::Vector3d chord = spring.anchor - probe;
     const double length = chord.norm(), rest = (spring.anchor - surface).norm();
-    if (length > 0) force += spring.stiffness * (1 - rest / length) * chord;  // pulls when stretched, pushes when short
+    // pulls if it is stretched, pushes if it is shortened
+    if (length > 0) force += spring.stiffness * (1 - rest / length) * chord;
   }
   return force;
 }

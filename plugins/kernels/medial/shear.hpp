@@ -7,27 +7,30 @@
 
 namespace hapticd::medial {
 
-/// A spring from the contact point to a point of the contour beside it. Its length at rest is the chord before the
-/// press.
+/// A spring from the contact point to a point of the contour beside it. Its rest length is the distance of both points
+/// before the press.
 struct ShearSpring {
-  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  ///< [m] the neighbour on the contour
-  double stiffness = 0;                              ///< [N/m] mean of the two ends
+  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  ///< [m] the neighbouring point of the contour
+  double stiffness = 0;                              ///< [N/m] mean of the stiffness at the two ends
 };
 
-/// [rt] Force [N] on a probe at `probe` that pressed the contour at `surface` with outward unit normal `normal`:
-/// stiffness * depth outward plus every shear spring as a vector (the paper's sum of magnitudes has no direction).
+/// [rt] Returns the force [N] on a probe at `probe` that presses the contour at the point `surface`, which has the
+/// outward unit normal `normal`. It is stiffness * depth outward, plus the force vector of every shear spring (the
+/// paper adds magnitudes, which have no direction).
 Eigen::Vector3d pressForce(const Eigen::Vector3d& probe, const Eigen::Vector3d& surface, const Eigen::Vector3d& normal,
                            double stiffness, double depth, std::span<const ShearSpring> springs) noexcept;
 
-/// Whether the outward force of four neighbours on a round cap grows with every depth.
+/// The condition under which the outward force of four shear springs on a round cap grows with the depth everywhere.
 struct Monotonicity {
-  double ratio = 1;  ///< rest length of a spring over its least length while pressed along the normal
-  double limit = 1;  ///< 1 + k / (4 keq): the ratio must stay below
+  double ratio = 1;  ///< rest length of a spring divided by its least length during a press along the normal
+  /// 1 + k / (4 keq), with the normal stiffness k and the shear stiffness keq; `ratio` must be below this
+  double limit = 1;
   bool holds() const noexcept { return ratio < limit; }
 };
 
-/// [any] For neighbours at arc angle `angle` [rad] from the contact on a cap: the springs are shortest when the contact
-/// has come down to their plane, at 1 / cos(angle / 2) of the chord.
+/// [any] Returns the condition for neighbours at the arc angle `angle` [rad] from the contact on a cap. The springs are
+/// shortest when the contact has come down to the plane of their ends; then their rest length is 1 / cos(angle / 2)
+/// times their length.
 Monotonicity monotonicity(double angle, double stiffness, double shear_stiffness) noexcept;
 
 }  // namespace hapticd::medial

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 void requireGrid(const SkeletonGrid& grid) {
   const std::string size = std::to_string(grid.count[0]) + " x " + std::to_string(grid.count[1]);
   if (grid.count[0] < 1 || grid.count[1] < 1 || grid.count[0] * grid.count[1] < 2)
-    throw std::invalid_argument("skeleton: " + size + " points, expected a grid of at least two");
+    throw std::invalid_argument("skeleton: " + size + " points; the grid must have at least two");
   const auto total = static_cast<std::size_t>(grid.count[0]) * static_cast<std::size_t>(grid.count[1]);
   if (grid.points.size() != total || grid.radius.size() != total)
     throw std::invalid_argument("skeleton: " + std::to_string(grid.points.size()) + " points and " +
@@ -29,7 +29,7 @@ Eigen::MatrixXd rowsOf(const std::vector<Vector3d>& points) {
   return rows;
 }
 
-/// Means of `degree` successive knots, where a control point acts most.
+/// Returns for each control point the mean of `degree` successive knots: the parameter at which it acts most.
 std::vector<double> grevilleOf(const std::vector<double>& knots, int degree, int count) {
   std::vector<double> all(static_cast<std::size_t>(count), 0);
   for (int i = 0; i < count && degree > 0; ++i) {
@@ -67,7 +67,7 @@ void Skeleton::build(const SkeletonGrid& grid, int degree, spline::Form form) {
   radius_ = ScalarField(parameters_, grid.radius);
 }
 
-/// A curve is stored as the surface between two copies of itself: Su is zero, and no search ever moves u.
+/// Stores a curve as the surface between two copies of the curve. Su is zero, so no search moves u.
 void Skeleton::buildCurve(const SkeletonGrid& grid, int degree, spline::Form form) {
   const int count = static_cast<int>(grid.points.size());
   const spline::CurveFit fit = spline::interpolateCurve(rowsOf(grid.points), std::min(degree, count - 1));
@@ -85,7 +85,8 @@ void Skeleton::buildCurve(const SkeletonGrid& grid, int degree, spline::Form for
   radius_ = ScalarField(parameters_, radius);
 }
 
-/// Bounds: a spline stays in the box of its control points, and a radius is at most its greatest sample.
+/// Computes the bounds. A spline stays in the box of its control points, and no radius is greater than the greatest
+/// sample.
 void Skeleton::measure() {
   for (const Vector3d& point : control_.points) bounds_.extend(point);
   const Vector3d reach = Vector3d::Constant(radius_.greatest());
@@ -105,8 +106,9 @@ void Skeleton::measure() {
 }
 
 Steepness Skeleton::steepest() const {
-  constexpr int kLooks = 4;            // a cell, each way
-  constexpr double kCollapsed = 1e-9;  // share of the squared trace: a pole, without a direction across
+  constexpr int kLooks = 4;  // samples per cell, along each direction
+  // share of the squared trace; a smaller determinant is a pole, which has only one direction
+  constexpr double kCollapsed = 1e-9;
   Steepness most;
   const auto look = [&](double u, double v) {
     spline::SurfacePoint s;

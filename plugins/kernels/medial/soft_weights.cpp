@@ -10,21 +10,21 @@ namespace {
 using Eigen::Array3d;
 using Eigen::Vector3d;
 
-constexpr double kAtCorner = 1e-60;  ///< product of weights below which a foot counts as on a corner
+constexpr double kAtCorner = 1e-60;  ///< a foot counts as on a corner if a product of its weights is below this
 
-/// A number on a slab, and its gradient with respect to the three barycentric weights.
+/// A value on a slab, and its gradient over the three barycentric weights.
 struct Field {
   double value = 0;
   Array3d gradient = Array3d::Zero();
 };
 
-/// From 0 to 1 with no slope at either end.
+/// Rises from 0 to 1, with zero slope at both ends.
 double smooth(double t) noexcept {
   return t * t * (3 - 2 * t);
 }
 
-/// The share of the second corner of an edge at the place of the edge nearest to a foot with weights b. It has no slope
-/// across the edge.
+/// Returns the share of an edge's second corner at the point of the edge that is nearest to a foot with the weights b.
+/// This share has no slope across the edge.
 Field shareAlong(const std::array<Vector3d, 3>& centers, std::size_t edge, const Array3d& b) noexcept {
   const std::size_t first = edge, second = (edge + 1) % 3, opposite = (edge + 2) % 3;
   const Vector3d along = centers[second] - centers[first];
@@ -40,8 +40,8 @@ Field shareAlong(const std::array<Vector3d, 3>& centers, std::size_t edge, const
   return share;
 }
 
-/// How much an edge counts before all are scaled to a sum of 1: alone on the edge itself, and near the others less than
-/// their distance squared, so that it gives them no slope.
+/// Returns the weight of an edge before the weights are scaled to a sum of 1. On the edge itself only this edge counts.
+/// Near another edge its weight falls at least with the square of the distance, so that it adds no slope there.
 Field countOf(std::size_t edge, const Array3d& b) noexcept {
   const auto first = static_cast<Eigen::Index>(edge), second = static_cast<Eigen::Index>((edge + 1) % 3);
   const double product = b[first] * b[second];
@@ -51,7 +51,7 @@ Field countOf(std::size_t edge, const Array3d& b) noexcept {
   return count;
 }
 
-/// Adds `count` times `share` to a corner.
+/// Adds `count` times `share` to the weight of a corner.
 void add(const Field& count, const Field& share, Field& corner) noexcept {
   corner.value += count.value * share.value;
   corner.gradient += count.value * share.gradient + share.value * count.gradient;
@@ -73,7 +73,7 @@ CornerWeights softOnCone(double t) noexcept {
   return {{smooth(1 - t), smooth(t), 0}, {-slope, slope, 0}, {}};
 }
 
-/// The result of each edge alone, blended by how much it counts.
+/// Blends the results of the single edges by their weights.
 CornerWeights softOnSlab(const std::array<Vector3d, 3>& centers, double u, double v) noexcept {
   const Array3d b = Array3d(1 - u - v, u, v).cwiseMax(0.0);
   std::array<Field, 3> corners;
@@ -109,7 +109,8 @@ CornerWeights weightsTowardEnds(const MedialMesh& mesh, const std::vector<uint8_
   const CornerWeights soft = corners.count < 3
                                  ? softOnCone(parameter[0])
                                  : softOnSlab({center(0), center(1), center(2)}, parameter[0], parameter[1]);
-  double share = 0, share_u = 0, share_v = 0;  // of the soft ones: theirs of the ends, so that it has no slope there
+  // share of the soft weights: the sum of soft weights of the ends, which has no slope there
+  double share = 0, share_u = 0, share_v = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!isEnd(i)) continue;
     share += soft.value[i];

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// Weights of the corners of a cone or slab, by which a felt surface yields. Where the mesh ends they lose their slope.
+/// Weights with which the corners of a cone or slab shape a felt surface. Where the mesh ends, their slope is zero.
 ///
-/// A foot is held where a mesh ends: it then moves along the edge alone, or not at all. Weights with a slope across the
-/// edge would end that slope of the dent in one step. Those here have none there; a slab farther inside they are the
-/// barycentric ones. On an edge between two slabs they are a matter of its own two corners, so that they do not jump.
+/// Where a mesh ends, a foot stops: it then moves only along the edge, or not at all. If the weights had a slope across
+/// this edge, the slope of the dent would jump there. So these weights have no slope at the end of the mesh; one slab
+/// farther inside they are the barycentric weights. On an edge between two slabs they depend only on the two corners of
+/// the edge, so that they do not jump.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -16,18 +17,21 @@ namespace hapticd::medial {
 
 struct CornerWeights {
   std::array<double, 3> value{};               ///< one per corner, from 0 to 1; their sum is 1
-  std::array<double, 3> along_u{}, along_v{};  ///< derivatives with respect to the foot's parameters
+  std::array<double, 3> along_u{}, along_v{};  ///< derivatives of `value` over the foot's parameters
 };
 
-/// [rt] Weights with no slope across any edge, on a cone at t, 0 to 1. Its third corner has no weight.
+/// [rt] Returns weights with no slope at both ends of a cone, at its parameter t (0 to 1). The third corner has no
+/// weight.
 CornerWeights softOnCone(double t) noexcept;
-/// [rt] The same on a slab of these centres [m] where corners 1 and 2 have the barycentric weights u and v.
+/// [rt] Returns weights with no slope across any edge of a slab with these centres [m], at the place where corners 1
+/// and 2 have the barycentric weights u and v.
 CornerWeights softOnSlab(const std::array<Eigen::Vector3d, 3>& centers, double u, double v) noexcept;
 
-/// [main] For each vertex, whether the mesh ends there: at a rim, at the tip of a branch, where parts join, and at
-/// bends of more than 20 degrees. A foot may be held there.
+/// [main] Returns for each vertex 1 if the mesh ends there: at a rim, at the tip of a branch, at a join of parts, and
+/// at a bend of more than 20 degrees. A foot may stop at such a vertex.
 std::vector<uint8_t> endsOf(const MedialMesh& mesh);
-/// [rt] The weights at a foot: soft at corners where the mesh ends, barycentric at the others, blended between.
+/// [rt] Returns the weights at a foot: without slope near corners where the mesh ends, barycentric near the others, and
+/// blended between them.
 CornerWeights weightsTowardEnds(const MedialMesh& mesh, const std::vector<uint8_t>& ends, uint32_t element,
                                 const Eigen::Array2d& parameter) noexcept;
 

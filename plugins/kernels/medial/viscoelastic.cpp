@@ -10,8 +10,8 @@
 namespace hapticd::medial {
 namespace {
 
-constexpr int kSize = 4;    ///< x, v, y and the force
-constexpr int kTerms = 20;  ///< of the exponential series of a matrix of norm 1/2: the rest is below 1e-24
+constexpr int kSize = 4;    ///< size of the matrix: x, v, y and the force
+constexpr int kTerms = 20;  ///< terms of the exponential series of a matrix of norm 1/2; the error is below 1e-24
 
 using Matrix = std::array<std::array<long double, kSize>, kSize>;
 
@@ -29,7 +29,8 @@ Matrix identity() noexcept {
   return one;
 }
 
-/// exp(a) by its series after halving, then squared (Golub & Van Loan, Matrix Computations, 9.3.1).
+/// Returns exp(a) by scaling and squaring: halves `a` repeatedly, sums the series, and squares the result (Golub & Van
+/// Loan, Matrix Computations, 9.3.1).
 Matrix exponential(Matrix a) noexcept {
   long double norm = 0;
   for (const auto& row : a) {
@@ -52,7 +53,7 @@ Matrix exponential(Matrix a) noexcept {
   return sum;
 }
 
-/// An element without mass creeps. Its rate is not a state.
+/// The step of an element without mass, which creeps: its rate is not a state.
 ViscoelasticStep creep(const SurfaceElement& e, double dt) noexcept {
   ViscoelasticStep step{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
   if (!(e.stiffness > 0)) return step;
@@ -67,7 +68,8 @@ ViscoelasticStep swing(const SurfaceElement& e, double dt) noexcept {
   return {o.xx, o.xv, 0, o.xf, o.vx, o.vv, 0, o.vf, 0, 0, 0, 0};
 }
 
-/// With a branch: the exponential of the whole system. Without mass, the rate follows from the other states.
+/// The step of an element with a branch: the exponential of the whole system. Without mass, the rate follows from the
+/// other states.
 ViscoelasticStep relax(const SurfaceElement& e, double dt) noexcept {
   Matrix a{};
   const long double k = static_cast<long double>(e.stiffness) + e.branch, k1 = e.branch, b = e.damping, m = e.mass;
@@ -96,15 +98,17 @@ SurfaceElement elementOf(const Tissue& t, double ratio) noexcept {
   if (!(t.stiffness > 0)) return e;
   const double fast = t.stiffness * (1 + std::max(0.0, t.relaxation_share));
   e.contact = ratio * fast;
-  const auto behind = [&e](double felt) { return felt * e.contact / (e.contact - felt); };  // 1/felt = 1/contact + 1/x
+  // solves 1/felt = 1/contact + 1/x for x
+  const auto behind = [&e](double felt) { return felt * e.contact / (e.contact - felt); };
   e.stiffness = behind(t.stiffness);
-  const double share = (1 - 1 / ratio) * (1 - 1 / ratio);  // share of a small change of the element that comes through
+  // share of a small change of the element that the probe feels
+  const double share = (1 - 1 / ratio) * (1 - 1 / ratio);
   e.damping = t.damping / share;
   e.mass = t.mass / share;
   if (t.relaxation_share > 0 && t.relaxation_time > 0) {
     e.branch = behind(fast) - e.stiffness;
     const double held = e.contact + e.stiffness;
-    e.branch_time = t.relaxation_time * held / (held + e.branch);  // the other springs make it forget more slowly
+    e.branch_time = t.relaxation_time * held / (held + e.branch);  // the other springs slow down the relaxation
   }
   return e;
 }

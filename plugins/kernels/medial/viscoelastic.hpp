@@ -1,51 +1,55 @@
 // SPDX-License-Identifier: MIT
-/// The material of a felt surface: a mass on a spring, a damper and, if asked for, a relaxing branch (standard linear
-/// solid), with the spring of the contact in series between it and the probe.
+/// The material of a felt surface: a mass on a spring, a damper and, as an option, a relaxing branch (standard linear
+/// solid). The spring of the contact lies in series between the mass and the probe.
 #pragma once
 
 namespace hapticd::medial {
 
-/// What a hand feels of one place of a body while it presses slowly: stiffness + i w damping - w^2 mass. With a
-/// relaxation, a step of the depth is met by stiffness * (1 + share * exp(-t / time)).
+/// The material of one place of a body as a hand feels it in a slow press: at the frequency w it has the dynamic
+/// stiffness `stiffness + i w damping - w^2 mass`. With relaxation, the response to a step of the depth is stiffness *
+/// (1 + share * exp(-t / time)).
 struct Tissue {
-  double stiffness = 0;         ///< [N/m] of a held press
-  double damping = 0;           ///< [N s/m]
-  double mass = 0;              ///< [kg]
-  double relaxation_share = 0;  ///< share of the stiffness that a fast press feels in addition
-  double relaxation_time = 0;   ///< [s]
+  double stiffness = 0;         ///< [N/m] stiffness that a held press feels
+  double damping = 0;           ///< [N s/m] damping that the hand feels
+  double mass = 0;              ///< [kg] mass that the hand feels
+  double relaxation_share = 0;  ///< additional stiffness of a fast press, as a share of `stiffness`
+  double relaxation_time = 0;   ///< [s] time constant of the relaxation
 };
 
-/// The same place as it is integrated. The spring of the contact stands between the probe and the surface: no change of
-/// contact kicks, because the mass is behind it. In series with the other spring it gives Tissue::stiffness.
+/// The same material in the form that is integrated. The spring of the contact lies between the probe and the surface.
+/// So the force does not jump when a contact begins or ends, because the mass is behind this spring. Both springs in
+/// series have the stiffness Tissue::stiffness.
 struct SurfaceElement {
-  double contact = 0;      ///< [N/m] between the probe and the surface; no fast motion feels more than this
-  double stiffness = 0;    ///< [N/m] between the surface and its place at rest
-  double damping = 0;      ///< [N s/m]
-  double mass = 0;         ///< [kg]
-  double branch = 0;       ///< [N/m] of the relaxing branch; 0: there is none
-  double branch_time = 0;  ///< [s] in which the branch alone forgets
+  /// [N/m] spring between the probe and the surface; no motion, however fast, feels a greater stiffness
+  double contact = 0;
+  double stiffness = 0;    ///< [N/m] spring between the surface and its position at rest
+  double damping = 0;      ///< [N s/m] damper parallel to `stiffness`
+  double mass = 0;         ///< [kg] mass of the surface
+  double branch = 0;       ///< [N/m] stiffness of the relaxing branch; 0 if there is none
+  double branch_time = 0;  ///< [s] time constant with which the branch alone relaxes
 };
 
-/// [any] The element that feels like `tissue`. `ratio`: contact spring over the stiffness of a fast press, > 1.
+/// [any] Returns the element that feels like `tissue`.
+/// @param ratio stiffness of the contact spring divided by that of a fast press, > 1
 SurfaceElement elementOf(const Tissue& tissue, double ratio) noexcept;
 
-/// [any] The element with as much damping as keeps its contact from ringing from tick to tick: the contact is solved by
-/// the midpoint rule, which answers with alternating signs what is over in less than half a tick.
+/// [any] Returns the element with enough damping that its contact does not oscillate from tick to tick. The contact is
+/// solved by the midpoint rule, whose result alternates in sign if a motion decays in less than half a tick.
 SurfaceElement dampedForTick(const SurfaceElement& element, double dt) noexcept;
 
-/// The exact solution of an element over a fixed time under a constant force f [N]: displacement x [m], its rate v, and
-/// y [m], the displacement that the branch has relaxed to.
+/// The exact solution of an element over a fixed time under a constant force f [N], as a linear map of the displacement
+/// x [m], its rate v [m/s] and y [m], the displacement to which the branch has relaxed.
 struct ViscoelasticStep {
   double xx = 1, xv = 0, xy = 0, xf = 0;
   double vx = 0, vv = 1, vy = 0, vf = 0;
   double yx = 0, yv = 0, yy = 1, yf = 0;
 };
 
-/// [any] The step of `dt` seconds: m x'' + b x' + k x + k1 (x - y) = f, y' = (x - y) / time. Exact for every material
-/// with mass or damping; one with neither follows the force at once.
+/// [any] Returns the step of `dt` seconds for m x'' + b x' + k x + k1 (x - y) = f and y' = (x - y) / time. It is exact
+/// for every material with mass or damping; a material with neither follows the force at once.
 ViscoelasticStep viscoelasticStep(const SurfaceElement& element, double dt) noexcept;
 
-/// [any] Time [s] after which no motion of a free element is left: from 1 m down to `least` [m]; at most an hour.
+/// [any] Returns the time [s] in which the motion of a free element decays from 1 m to `least` [m]; at most an hour.
 double settleTime(const SurfaceElement& element, double least) noexcept;
 
 }  // namespace hapticd::medial

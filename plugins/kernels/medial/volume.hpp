@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Keeps the volume of a pressed body: what a contact pushes in comes out all round.
+/// Keeps the volume of a pressed body: if a contact pushes a part in, the rest of the surface moves out.
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -9,20 +9,21 @@
 
 namespace hapticd::medial {
 
-/// Grows all radii by one length, the bulge, until the volume under the displaced contour is that of the body at rest.
-/// The volume is the exact integral over the triangles of a contour, summed a bounded part at a time; each whole sum is
-/// one Newton step of the bulge. The bulge is a function of the displacements alone and does no work on them: the
-/// energy of the nodes falls with it as it does without.
+/// Grows all radii by the same length, the bulge, until the body has its volume at rest again. The volume is the exact
+/// integral over the triangles of the displaced contour. Each tick adds a bounded number of triangles; each complete
+/// sum gives one Newton step of the bulge. The bulge depends on the displacements alone and does no work on them, so
+/// the energy of the nodes falls as it does without a bulge.
 class VolumeKeeper {
  public:
-  /// [main] It allocates its memory here.
+  /// [main] Allocates all memory.
   VolumeKeeper(const MovingMesh& contour, double greatest_radius)
       : contour_(&contour), xyz_(contour.atRest()), limit_(kMostBulge * greatest_radius) {
     rest_ = contour.volume(xyz_);
     area_ = contour.area(xyz_);
   }
 
-  /// [rt] Continues the sum; sets the bulge of `nodes` when it is complete. Costs nothing while the body is at rest.
+  /// [rt] Continues the sum, and sets the bulge of `nodes` when the sum is complete. Costs nothing while the body is at
+  /// rest.
   void step(Nodes& nodes) noexcept {
     if (nodes.awake() == 0 && nodes.bulge() == 0 && next_vertex_ == 0) return;
     for (std::size_t work = 0; work < kWork;) {
@@ -43,18 +44,18 @@ class VolumeKeeper {
       }
     }
   }
-  /// [rt] The body was put to rest.
+  /// [rt] Starts the sum again. Call it after the body was put to rest.
   void reset() noexcept {
     next_vertex_ = next_triangle_ = 0;
     sum_ = 0;
   }
-  double restVolume() const noexcept { return rest_; }  ///< [m^3]
+  double restVolume() const noexcept { return rest_; }  ///< [m^3] volume of the body at rest
   std::size_t bytes() const noexcept { return sizeof *this + xyz_.capacity() * sizeof(float); }
 
  private:
-  static constexpr std::size_t kWork = 1024;  ///< vertices and triangles per tick
-  static constexpr double kMostBulge = 0.5;   ///< of the greatest radius
-  static constexpr double kStill = 1e-7;      ///< [m] a bulge that nobody sees, once the body is at rest
+  static constexpr std::size_t kWork = 1024;  ///< most vertices and triangles per tick
+  static constexpr double kMostBulge = 0.5;   ///< greatest bulge, as a share of the greatest radius
+  static constexpr double kStill = 1e-7;      ///< [m] once the body is at rest, a smaller bulge is set to 0
 
   void correct(Nodes& nodes) noexcept {
     const double step = area_ > 0 ? (rest_ - sum_ / 6) / area_ : 0;

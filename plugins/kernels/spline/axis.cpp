@@ -17,7 +17,7 @@ Axis::Axis(int degree, const std::vector<double>& knots) : degree_(degree), knot
     }
   }
   breaks_.push_back(knots[static_cast<std::size_t>(count())]);
-  cells_.back().end = std::nextafter(breaks_.back(), INFINITY);  // the last cell holds the end of the domain
+  cells_.back().end = std::nextafter(breaks_.back(), INFINITY);  // the last cell includes the end of the domain
 }
 
 void Axis::anchor(bool low, bool high) {

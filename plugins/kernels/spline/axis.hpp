@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// One parameter direction of a spline: its knots, its spans, and which span holds a parameter.
+/// One parameter direction of a spline: its knots and spans, and the look-up of the span that contains a parameter.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -11,22 +11,22 @@
 
 namespace hapticd::spline {
 
-/// A parameter interval with one polynomial: a knot span, or a part of one.
+/// A parameter interval on which the spline is one polynomial: a knot span, or a part of one.
 struct Cell {
   double lo = 0, end = 0;  ///< lo <= t < end
-  double origin = 0;       ///< where table coefficients are expanded
+  double origin = 0;       ///< parameter about which the table's coefficients are expanded
   std::int32_t knot = 0;   ///< index of the knot at the low end of the span
-  std::int32_t span = 0;   ///< which span of the domain this is, or is a part of
+  std::int32_t span = 0;   ///< index of the cell's span in the domain
 };
 
 class Axis {
  public:
   Axis() = default;
-  /// [main] For valid knots.
+  /// [main] The knots must have passed validateKnots().
   Axis(int degree, const std::vector<double>& knots);
 
-  /// [any] Puts into `hint` the index of the cell that holds t, looked for first where it says (any value), and
-  /// returns t moved into the domain; not-a-number goes to its low end.
+  /// [any] Finds the cell that contains t. @param hint in: the cell to try first (any value is allowed); out: the index
+  /// of the cell. Returns t moved into the domain; NaN becomes the low end.
   double locate(double t, std::int32_t& hint) const noexcept {
     const auto h = static_cast<std::size_t>(static_cast<std::uint32_t>(hint));
     if (h < cells_.size() && cells_[h].lo <= t && t < cells_[h].end) [[likely]] {
@@ -46,8 +46,8 @@ class Axis {
   const std::vector<double>& knots() const noexcept { return knots_; }
   std::size_t bytes() const noexcept;
 
-  /// [main] Expands the table coefficients of the first or last cell at that end of the domain rather than in its
-  /// middle; a single cell with both ends asked for is halved.
+  /// [main] Expands the table's coefficients of the first (`low`) or last (`high`) cell about that end of the domain
+  /// instead of about the middle of the cell. If both are true and there is a single cell, the cell is halved.
   void anchor(bool low, bool high);
 
  private:

@@ -9,7 +9,7 @@ int findSpan(std::span<const double> knots, int degree, double t) noexcept {
   const auto first = knots.begin() + degree;
   const auto last = knots.end() - degree - 1;  // the knot that ends the domain
   auto above = std::upper_bound(first, last, t);
-  if (above == last) above = std::lower_bound(first, last, *last);  // steps over empty spans at the end
+  if (above == last) above = std::lower_bound(first, last, *last);  // skips empty spans at the end
   if (above == first) above = std::upper_bound(first, last, *first);
   return static_cast<int>(above - knots.begin()) - 1;
 }

@@ -27,7 +27,7 @@ Curve::Curve(const CurveData& data, Instructions instructions) : name_(data.name
 void Curve::evaluate(int order, double u, std::int32_t& span, double* out) const noexcept {
   u = axis_.locate(u, span);
   const Cell& cell = axis_.cell(span);
-  const KnotWindow across{0, nullptr, nullptr};  // a surface that does not depend on v
+  const KnotWindow across{0, nullptr, nullptr};  // the kernel evaluates surfaces; this one does not depend on v
   const NetWindow net{axis_.window(cell), across, net_.data() + (cell.knot - axis_.degree()), 1};
   kernel_[static_cast<std::size_t>(order) - 1](net, u, 0, out);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Evaluation of spline curves of any degree to 15, polynomial or rational, with first and second derivatives.
+/// Evaluation of spline curves of degree 1 to 15, polynomial or rational, with first and second derivatives.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -18,31 +18,32 @@ namespace hapticd::spline {
 /// A point of a curve and its derivatives [m, m per unit of the parameter].
 struct CurvePoint {
   Eigen::Vector3d C, C1, C2;
-  std::int32_t span = 0;  ///< in: where to look first; out: the span that holds the parameter. Any value is allowed.
+  /// In: the span to try first (any value is allowed); out: the span that contains the parameter.
+  std::int32_t span = 0;
 };
 
-/// A curve ready for evaluation; constant after construction, so that all threads may share it.
-/// Parameters outside the domain, and those that are not a number, are moved to its ends.
+/// A curve that is ready for evaluation. Constant after construction, so all threads may share it. Parameters outside
+/// the domain are moved to its ends, and NaN to its low end.
 class Curve {
  public:
   /// [main] Checks and stores a curve.
   /// @throws std::invalid_argument as validate() does.
   explicit Curve(const CurveData& data, Instructions instructions = Instructions::kFastest);
 
-  /// [any] C and C1 at u; C2 is left as it is.
+  /// [any] Computes C and C1 at u; C2 stays unchanged.
   void evaluate1(double u, CurvePoint& out) const noexcept;
-  /// [any] C, C1 and C2 at u. At a knot: those of the span to its right.
-  /// Source: Piegl & Tiller A3.2 and A4.2, about a local origin.
+  /// [any] Computes C, C1 and C2 at u. At a knot, the derivatives are those of the span to its right. Source: Piegl &
+  /// Tiller A3.2 and A4.2, about a local origin.
   void evaluate2(double u, CurvePoint& out) const noexcept;
 
-  /// [any] Parameter range [lo, hi].
+  /// [any] Returns the parameter range [lo, hi].
   std::array<double, 2> domain() const noexcept { return {axis_.breaks().front(), axis_.breaks().back()}; }
-  /// [any] The distinct knots of the domain, ascending.
+  /// [any] Returns the distinct knots of the domain, ascending.
   std::span<const double> breaks() const noexcept { return axis_.breaks(); }
   int degree() const noexcept { return axis_.degree(); }
   bool rational() const noexcept { return rational_; }
   const std::string& name() const noexcept { return name_; }
-  /// [any] Memory behind this curve, in bytes.
+  /// [any] Returns the memory that this curve has allocated, in bytes.
   std::size_t bytes() const noexcept { return net_.capacity() * sizeof(Quad) + axis_.bytes(); }
 
  private:

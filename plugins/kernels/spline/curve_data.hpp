@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A spline curve as data.
+/// A spline curve as plain data: degree, knots, points and weights.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -11,18 +11,18 @@ namespace hapticd::spline {
 /// A spline curve in space, rational if it has weights.
 struct CurveData {
   int degree = 1;
-  std::vector<double> knots;            ///< points + degree + 1, non-decreasing
+  std::vector<double> knots;            ///< number of points + degree + 1 values, non-decreasing
   std::vector<Eigen::Vector3d> points;  ///< [m]
-  std::vector<double> weights;          ///< one per point; empty: polynomial
+  std::vector<double> weights;          ///< one per point; empty for a polynomial curve
   std::string name;                     ///< for messages
 
-  /// [any] The parameter range [lo, hi]. Only for valid data.
+  /// [any] Returns the parameter range [lo, hi]. The data must have passed validate().
   std::array<double, 2> domain() const noexcept {
     return {knots[static_cast<std::size_t>(degree)], knots[points.size()]};
   }
 };
 
-/// [main] Checks a curve as validate(SurfaceData) checks a surface.
+/// [main] Checks a curve by the same rules as validate(SurfaceData).
 /// @throws std::invalid_argument with a message for the user.
 void validate(const CurveData& data);
 

@@ -20,7 +20,7 @@ int chordColumns(const Eigen::MatrixXd& data, int chord_dimensions) {
   return chord_dimensions <= 0 ? columns : std::min(chord_dimensions, columns);
 }
 
-/// Distances of neighbours along a line of data; empty if the line has no length.
+/// Returns the distances between neighbours along a line of data; empty if the line has no length.
 std::vector<double> chords(const Eigen::MatrixXd& line, int columns) {
   std::vector<double> lengths;
   double total = 0;
@@ -39,7 +39,7 @@ void checkData(const Eigen::MatrixXd& data) {
   }
 }
 
-/// Adds the share of each chord in the line's length to `shares`; false if the line has no length.
+/// Adds the share of each chord in the line's length to `shares`. Returns false if the line has no length.
 bool addShares(const Eigen::MatrixXd& line, int columns, std::vector<double>& shares) {
   const std::vector<double> lengths = chords(line, columns);
   if (lengths.empty()) return false;
@@ -49,7 +49,7 @@ bool addShares(const Eigen::MatrixXd& line, int columns, std::vector<double>& sh
   return true;
 }
 
-/// Partial sums, scaled so that the last is exactly 1.
+/// Returns the partial sums of `lengths`, scaled so that the last one is exactly 1.
 std::vector<double> accumulate(const std::vector<double>& lengths, const char* what) {
   std::vector<double> parameters{0};
   for (double length : lengths) parameters.push_back(parameters.back() + length);
@@ -65,7 +65,7 @@ std::vector<double> accumulate(const std::vector<double>& lengths, const char* w
   return parameters;
 }
 
-/// Row i (axis 1) or column j (axis 0) of a grid, as consecutive rows of a matrix.
+/// Returns row `index` (axis 1) or column `index` (axis 0) of a grid, as consecutive rows of a matrix.
 Eigen::MatrixXd gridLine(const Eigen::MatrixXd& grid, const std::array<int, 2>& count, int axis, int index) {
   const int first = axis == 0 ? index : index * count[1];
   const int step = axis == 0 ? count[1] : 1;
@@ -81,7 +81,7 @@ void setGridLine(Eigen::MatrixXd& grid, const std::array<int, 2>& count, int axi
   for (Eigen::Index k = 0; k < line.rows(); ++k) grid.row(first + k * step) = line.row(k);
 }
 
-/// Piegl & Tiller A9.3, over chord shares.
+/// Averages the chord shares over all lines of the grid along an axis (Piegl & Tiller A9.3).
 std::vector<double> gridParameters(const Eigen::MatrixXd& data, const std::array<int, 2>& count, int axis,
                                    int columns) {
   const auto a = static_cast<std::size_t>(axis);
@@ -107,7 +107,7 @@ std::vector<double> averagedKnots(const std::vector<double>& parameters, int deg
   }
   const auto stalls = [](double a, double b) { return !(a < b); };
   if (std::adjacent_find(parameters.begin(), parameters.end(), stalls) != parameters.end()) {
-    fail("parameters do not increase");
+    fail("the parameters do not increase; expected each to be greater than the one before");
   }
   std::vector<double> knots(static_cast<std::size_t>(degree) + 1, parameters.front());
   for (int j = 1; j < count - degree; ++j) {
@@ -135,7 +135,8 @@ Collocation::Collocation(const std::vector<double>& parameters, const std::vecto
       if (std::abs(column - row) <= degree) {
         at(row, column) = value;
       } else if (value != 0) {
-        fail("parameter " + std::to_string(row) + " lies outside its control point's knots");
+        fail("parameter " + std::to_string(row) +
+             " lies outside the knot range of its control point; expected knots that fit the parameters");
       }
     }
   }

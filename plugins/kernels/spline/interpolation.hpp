@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Splines through given points, in any number of dimensions: positions alone, or with radii and material as well.
+/// Splines through given points, in any number of dimensions: only positions, or also radii and material.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -10,8 +10,8 @@ namespace hapticd::spline {
 /// A spline curve in any dimension: the control points are the rows of `control`.
 struct CurveFit {
   int degree = 1;
-  std::vector<double> parameters;  ///< of the data points, 0 to 1
-  std::vector<double> knots;       ///< count + degree + 1
+  std::vector<double> parameters;  ///< parameters of the data points, from 0 to 1
+  std::vector<double> knots;       ///< number of control points + degree + 1 values
   Eigen::MatrixXd control;
 };
 
@@ -23,24 +23,26 @@ struct GridFit {
   Eigen::MatrixXd control;
 };
 
-/// [main] Chord-length parameters (Piegl & Tiller 9.5), 0 to 1. Distances are those of the first `chord_dimensions`
-/// columns, so that radii or stiffnesses beside positions do not stretch the parameters; 0: all columns.
+/// [main] Chord-length parameters (Piegl & Tiller 9.5), 0 to 1. @param chord_dimensions number of first columns that
+/// are positions; distances are measured in these columns, so that radii or stiffnesses in later columns do not stretch
+/// the parameters. 0 means all columns.
 /// @throws std::invalid_argument if two neighbours coincide or a number is not finite.
 std::vector<double> chordParameters(const Eigen::MatrixXd& data, int chord_dimensions = 3);
 
-/// [main] Knots from averaged parameters (Piegl & Tiller 9.8), clamped: with them interpolation has one solution.
+/// [main] Returns clamped knots from averaged parameters (Piegl & Tiller 9.8). With these knots the interpolation has
+/// exactly one solution.
 /// @throws std::invalid_argument if there are fewer than degree + 1 parameters or they do not increase.
 std::vector<double> averagedKnots(const std::vector<double>& parameters, int degree);
 
-/// The collocation matrix of a clamped spline, factored once. It is banded and totally positive, so elimination needs
-/// no pivots and stays in the band (de Boor & Pinkus 1977): n * degree^2 steps, n * degree memory.
+/// The collocation matrix of a clamped spline, factored once. The matrix is banded and totally positive, so elimination
+/// needs no pivots and stays in the band (de Boor & Pinkus 1977). It takes n * degree^2 steps and n * degree memory.
 class Collocation {
  public:
-  /// [main] @throws std::invalid_argument if parameters and knots leave a control point undetermined
+  /// [main] @throws std::invalid_argument if the parameters and knots do not determine every control point
   /// (Schoenberg-Whitney condition).
   Collocation(const std::vector<double>& parameters, const std::vector<double>& knots, int degree);
 
-  /// [any] Replaces data (one row per point) by control points. Allocates nothing.
+  /// [any] Replaces the data points (one per row) by the control points. Allocates nothing.
   void solve(Eigen::Ref<Eigen::MatrixXd> data) const noexcept;
   int size() const noexcept { return static_cast<int>(band_.rows()); }
 
@@ -50,17 +52,17 @@ class Collocation {
   void factor();
 
   int degree_;
-  Eigen::MatrixXd band_;  ///< row i holds columns i - degree .. i + degree
+  Eigen::MatrixXd band_;  ///< row i holds columns i - degree to i + degree of the matrix
 };
 
-/// [main] The spline of `degree` through all rows of `data`.
-/// @throws std::invalid_argument: too few points for the degree, coinciding neighbours, numbers that are not finite.
+/// [main] Returns the spline of `degree` through all rows of `data`. @throws std::invalid_argument if there are too few
+/// points for the degree, two neighbours coincide or a number is not finite.
 CurveFit interpolateCurve(const Eigen::MatrixXd& data, int degree, int chord_dimensions = 3);
 
-/// [main] The tensor-product spline through a grid of data, row i * count[1] + j (Piegl & Tiller A9.4). Parameters are
-/// chord lengths averaged over all rows and columns of the grid; those without length (collapsed to a point) are left
-/// out of the average.
-/// @throws std::invalid_argument as interpolateCurve() does.
+/// [main] Returns the tensor-product spline through a grid of data, where point (i, j) is row i * count[1] + j (Piegl &
+/// Tiller A9.4). Parameters are chord lengths averaged over all rows and columns of the grid. Rows and columns without
+/// length (collapsed to a point) are left out of the average.
+/// @throws std::invalid_argument under the same conditions as interpolateCurve().
 GridFit interpolateGrid(const Eigen::MatrixXd& data, const std::array<int, 2>& count, const std::array<int, 2>& degree,
                         int chord_dimensions = 3);
 

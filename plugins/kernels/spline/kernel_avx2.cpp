@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiled with -mavx2 -mfma; nothing here runs before kernel_choice.cpp has asked the processor.
+// Compiled with -mavx2 -mfma. kernel_choice.cpp uses this code only if the processor supports both.
 #include "kernels/spline/kernel.hpp"
 
 namespace hapticd::spline {
@@ -7,7 +7,7 @@ namespace hapticd::spline {
 #include "kernels/spline/kernel_common.inl"
 #include "kernels/spline/kernel_net.inl"
 #include "kernels/spline/kernel_table.inl"
-// After what it collects.
+// After the others, because it lists their functions.
 #include "kernels/spline/kernel_set.inl"
 
 const KernelSet& avx2Kernels() noexcept {

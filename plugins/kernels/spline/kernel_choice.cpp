@@ -12,7 +12,7 @@ const KernelSet& portableKernels() noexcept;  // kernel_portable.cpp
 const KernelSet& avx2Kernels() noexcept;  // kernel_avx2.cpp
 
 const KernelSet& kernels(Instructions instructions) noexcept {
-  // The host's choice for the whole process: portable results are the same bits on every machine.
+  // The host can choose portable code for the whole process, whose results are the same bit for bit on every machine.
   static const char* const wanted = std::getenv("HAPTICD_INSTRUCTIONS");
   static const bool may_avx2 = (wanted == nullptr || std::strcmp(wanted, "portable") != 0) &&
                                __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");

@@ -1,5 +1,5 @@
-// Included, inside a namespace, by one translation unit an instruction set. Must stay free of library headers: an
-// inline function of a library, compiled here with AVX2, could be the copy that the linker keeps for everybody.
+// Included inside a namespace by one translation unit per instruction set. It must not include library headers: the
+// linker might keep an inline library function that was compiled here with AVX2, and use it on processors without AVX2.
 namespace {
 
 typedef double V4 __attribute__((vector_size(32)));
@@ -10,19 +10,20 @@ inline V4 load(const Quad* q) {
 inline V4 splat(double a) {
   return V4{a, a, a, a};
 }
-/// No alignment asked for.
+/// Stores to an address of any alignment of doubles.
 inline void store(double* out, V4 a) {
   typedef double Anywhere __attribute__((vector_size(32), aligned(8), may_alias));
   *reinterpret_cast<Anywhere*>(out) = a;
 }
 
-/// S and derivatives of the numerator (x, y, z) and of the weight (lane 3), about a local origin.
+/// S and its derivatives before the division by the weight: numerator (x, y, z) and weight (lane 3), relative to a
+/// local origin.
 struct Sums {
   V4 S, Su, Sv, Suu, Suv, Svv;
 };
 
-/// Piegl & Tiller A4.4 written out: derivatives of the quotient of numerator and weight. Everything is divided by the
-/// weight first, so that the one division is the only long step.
+/// Computes the derivatives of the quotient of numerator and weight (Piegl & Tiller A4.4, written out). One division
+/// gives the reciprocal of the weight; all other steps are multiplications.
 template <int kOrder>
 inline void divideByWeight(Sums& a) {
   const V4 reciprocal = splat(1 / a.S[3]);

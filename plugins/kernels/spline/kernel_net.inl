@@ -8,21 +8,23 @@ struct Basis {
   double N[3][kOrders];
 };
 
-/// Row r of derivatives from those of one degree less, divided by their knot differences (Piegl & Tiller 2.7).
+/// Computes derivatives of the basis functions of degree p. @param parts functions of degree p - 1, divided by their
+/// knot differences (Piegl & Tiller 2.7)
 inline void difference(int p, const double* parts, double* result) {
   result[0] = -p * parts[0];
   for (int r = 1; r < p; ++r) result[r] = p * (parts[r - 1] - parts[r]);
   result[p] = p * parts[p - 1];
 }
 
-/// Piegl & Tiller A2.3 for up to two derivatives. kDegree 0: known at run time only.
+/// Computes the basis functions and up to two derivatives (Piegl & Tiller A2.3). kDegree is 0 if the degree is known
+/// only at run time.
 template <int kDegree, int kOrder>
 inline void evaluateBasis(const KnotWindow& window, double t, Basis& basis) {
   const int p = kDegree > 0 ? kDegree : window.degree;
   const double* knots = window.knots;
   const double* reciprocal = window.reciprocals;
   double* N = basis.N[0];
-  double last[kOrders], lower[kOrders];  // N_{r,p-1} and N_{r,p-2} over their knot differences
+  double last[kOrders], lower[kOrders];  // N_{r,p-1} and N_{r,p-2}, divided by their knot differences
   N[0] = 1;
   if (p == 0) {
     basis.N[1][0] = basis.N[2][0] = 0;
@@ -47,7 +49,7 @@ inline void evaluateBasis(const KnotWindow& window, double t, Basis& basis) {
       basis.N[2][0] = basis.N[2][1] = 0;
       return;
     }
-    double slope[kOrders];  // derivatives of N_{r,p-1} over their knot differences
+    double slope[kOrders];  // derivatives of N_{r,p-1}, divided by their knot differences
     difference(p - 1, lower, slope);
     const double* top = window.reciprocals + p * (p - 1) / 2;
     for (int r = 0; r < p; ++r) slope[r] *= top[r];
@@ -55,17 +57,18 @@ inline void evaluateBasis(const KnotWindow& window, double t, Basis& basis) {
   }
 }
 
-/// Control points enter as differences from a local origin: then far from the model's origin, and next to a collapsed
-/// side, no digits are lost. A collapsed side is the first or the last row, so the corner on this side of the span's
-/// middle will do; it is known before the basis functions are.
+/// Returns the corner of the control net that is used as local origin. Control points enter the sums as differences
+/// from this origin, so that no digits are lost far from the model's origin and next to a collapsed side. A collapsed
+/// side is the first or the last row, so the nearest corner is on it. The corner is known before the basis functions
+/// are computed.
 inline const Quad* nearestCorner(const NetWindow& net, int p, int q, double u, double v) {
   const int i = p > 0 && u - net.u.knots[0] > net.u.knots[1] - u ? p : 0;
   const int j = q > 0 && v - net.v.knots[0] > net.v.knots[1] - v ? q : 0;
   return net.points + i * net.stride + j;
 }
 
-/// The control point with the largest share of the surface point: the origin where one weight may outweigh all others,
-/// which then leaves the sums to the others.
+/// Returns the control point with the largest share in the surface point. It is the local origin for Weights::kSevere:
+/// if one weight is larger than all others together, the sums then contain only the other points.
 inline const Quad* dominantPoint(const NetWindow& net, int p, int q, const Basis& bu, const Basis& bv) {
   const Quad* best = net.points;
   double most = -1;
@@ -80,7 +83,7 @@ inline const Quad* dominantPoint(const NetWindow& net, int p, int q, const Basis
   return best;
 }
 
-/// The sum of all control points' shares, and of the derivatives of these shares.
+/// Sums the control points times their basis functions, and the derivatives.
 template <int kDegreeU, int kDegreeV, bool kRational, int kOrder>
 inline Sums contract(const NetWindow& net, int p, int q, const Basis& bu, const Basis& bv, V4 origin) {
   const V4 zero = splat(0);
@@ -127,7 +130,7 @@ inline void evaluateNetOf(const NetWindow& net, double u, double v, double* out)
   storeSums<kOrder>(sums, origin, out);
 }
 
-/// The pairs of degrees that most models are made of are unrolled.
+/// Evaluates a net. The pairs of degrees that most models use are unrolled.
 template <Weights kWeights, int kOrder>
 void evaluateNet(const NetWindow& net, double u, double v, double* out) noexcept {
   if (net.u.degree == 3 && net.v.degree == 3) {

@@ -3,18 +3,19 @@ namespace {
 
 inline constexpr int kMaxTableSize = 16;  // kMaxDegree + 1
 
-/// A polynomial and its derivatives (f'' halved).
+/// A polynomial f and its derivatives g = f' and h = f'' / 2.
 struct Row {
   V4 f, g, h;
 };
 
-/// What the powers of a parameter contribute to a cubic and its derivatives.
+/// The powers of a parameter that a cubic and its derivatives need.
 struct Powers {
   V4 x, xx, twice_x, thrice_x, thrice_xx;
   explicit Powers(double t) : x(splat(t)), xx(x * x), twice_x(x + x), thrice_x(twice_x + x), thrice_xx(thrice_x * x) {}
 };
 
-/// Horner's rule for `count` coefficients from coefficient(0) on. The derivatives ride along one step behind.
+/// Horner's rule for `count` coefficients from coefficient(0) on. The derivatives are computed in the same loop, one
+/// step behind.
 template <int kOrder, class Coefficient>
 inline Row horner(int count, V4 x, Coefficient coefficient) {
   Row row{coefficient(count - 1), splat(0), splat(0)};
@@ -31,8 +32,9 @@ inline Row horner(int count, V4 x, Coefficient coefficient) {
   return row;
 }
 
-/// As many multiplications as Horner's rule in two thirds of its depth: for the last step, which has nothing beside it
-/// to fill the processor with. (For the rows before, four at once, it only costs registers.)
+/// Evaluates a cubic with as many multiplications as Horner's rule, but a dependency chain of only two thirds of the
+/// length. It is used for the last step, which the processor cannot overlap with other work. (The rows before are
+/// evaluated four at once; there it would only cost registers.)
 template <int kOrder, class Coefficient>
 inline Row cubic(const Powers& t, Coefficient coefficient) {
   const V4 a = coefficient(0), b = coefficient(1), c = coefficient(2), d = coefficient(3);
@@ -42,7 +44,7 @@ inline Row cubic(const Powers& t, Coefficient coefficient) {
   return row;
 }
 
-/// kSize 0, here and below: known at run time only.
+/// Evaluates a polynomial. Here and below, kSize is 0 if the size is known only at run time.
 template <int kSize, int kOrder, class Coefficient>
 inline Row polynomial(int size, const Powers& t, Coefficient coefficient) {
   if constexpr (kSize == 4) return cubic<kOrder>(t, coefficient);

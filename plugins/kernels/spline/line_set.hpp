@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Knot insertion along one axis, for all the lines of control points that run along it at once.
+/// Knot insertion along one axis, done at once for all lines of control points along this axis.
 #pragma once
 #include <vector>
 
@@ -8,9 +8,9 @@
 
 namespace hapticd::spline {
 
-/// The control points of a curve (one line) or of a surface (as many as it has points across the axis). Points are
-/// never multiplied by their weights: a step of knot insertion is a weighted mean of two points, and a mean of equal
-/// points is that point, so collapsed sides stay collapsed to the last bit.
+/// The control points of a curve (one line) or of a surface (one line for each control point across the axis). Points
+/// are not multiplied by their weights: a step of knot insertion is a weighted mean of two points, and the mean of
+/// equal points is exactly that point. So collapsed sides stay collapsed bit for bit.
 class LineSet {
  public:
   explicit LineSet(const CurveData& curve);
@@ -20,18 +20,18 @@ class LineSet {
   void insert(double t);
   /// Raises the multiplicity of t to at least `multiplicity`.
   void raise(double t, int multiplicity);
-  /// The part from lo to hi, clamped at both ends, with the same parameters.
+  /// Returns the part from lo to hi, clamped at both ends, with unchanged parameters.
   LineSet part(double lo, double hi) const;
 
   int degree() const noexcept { return degree_; }
   std::array<double, 2> domain() const noexcept;
-  /// How often t stands in the knots.
+  /// Returns how often t occurs in the knots.
   int multiplicity(double t) const noexcept;
-  /// Distinct knots of the domain.
+  /// Returns the distinct knots of the domain.
   std::vector<double> breaks() const;
 
   CurveData curve(std::string name) const;
-  /// `like` gives all that does not change: the other axis, name, side.
+  /// Returns the lines as a surface. The other axis, the name and the outward side are copied from `like`.
   SurfaceData surface(const SurfaceData& like, int axis) const;
 
  private:

@@ -7,12 +7,13 @@
 namespace hapticd::spline {
 namespace {
 
-/// Coordinates whose largest lies beyond these binary exponents are scaled to 1, so that no sum overflows and no
-/// product becomes subnormal. In between nothing is done and nothing costs time.
+/// If the binary exponent of the largest coordinate is outside these limits, all coordinates are scaled so that the
+/// largest is about 1. Then no sum overflows and no product becomes subnormal. Other coordinates are not scaled, which
+/// costs no time.
 constexpr int kLargestExponent = 200;
 constexpr int kSmallestExponent = -200;
 
-/// A weight that outweighs others by more costs their part of the surface more than two digits.
+/// Largest ratio of two weights of kMild. Beyond it the points with smaller weights would lose more than two digits.
 constexpr double kMildRatio = 100;
 
 Weights kindOf(const std::vector<double>& weights) {
@@ -30,7 +31,7 @@ double scaleOf(const std::vector<Eigen::Vector3d>& points) {
   return exponent > kLargestExponent || exponent < kSmallestExponent ? std::ldexp(1.0, exponent) : 1;
 }
 
-/// The exponent half-way between those of the lightest and the heaviest weight.
+/// Returns the binary exponent half-way between those of the smallest and the largest weight.
 int middleExponent(const std::vector<double>& weights) {
   const auto [least, most] = std::minmax_element(weights.begin(), weights.end());
   return (std::ilogb(*least) + std::ilogb(*most)) / 2;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Control points as the kernels read them: scaled where coordinates are extreme, weights about 1.
+/// Control points as the kernels read them: weights are scaled to about 1, and coordinates are scaled if they are
+/// extreme.
 #pragma once
 #include <Eigen/Core>
 #include <vector>
@@ -10,12 +11,12 @@ namespace hapticd::spline {
 
 struct Net {
   std::vector<Quad> points;
-  double scale = 1;  ///< a power of two: coordinates = scale * stored ones; 1 for all but extreme coordinates
+  double scale = 1;  ///< a power of two: coordinates = scale * stored coordinates; 1 unless coordinates are extreme
   Weights weights = Weights::kNone;  ///< kNone also if all weights are equal
   bool rational() const noexcept { return weights != Weights::kNone; }
 };
 
-/// [main] For valid points and weights.
+/// [main] The points and weights must have passed validatePoints().
 Net makeNet(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& weights);
 
 }  // namespace hapticd::spline

@@ -12,14 +12,15 @@
 namespace hapticd::spline {
 namespace {
 
-/// Samples a span along a knot line when looking for a crease; a crease is a polynomial of the angle and hides from
-/// none of them.
+/// Samples per span along a knot line in the search for a crease. The difference of the normals is a polynomial along
+/// the span, so a crease does not vanish at all samples.
 constexpr int kCreaseSamples = 5;
 
 void checkRange(const std::string& name, const std::array<double, 2>& domain, double lo, double hi) {
   if (lo >= domain[0] && hi <= domain[1]) return;
-  throw std::invalid_argument("'" + name + "': parameters " + std::to_string(lo) + " to " + std::to_string(hi) +
-                              " leave the domain " + std::to_string(domain[0]) + " to " + std::to_string(domain[1]));
+  throw std::invalid_argument("'" + name + "': the range from " + std::to_string(lo) + " to " + std::to_string(hi) +
+                              " is not inside the domain from " + std::to_string(domain[0]) + " to " +
+                              std::to_string(domain[1]));
 }
 
 void checkCut(const std::string& name, const std::array<double, 2>& domain, double lo, double hi) {
@@ -37,7 +38,7 @@ void insertAll(LineSet& lines, const std::string& name, std::span<const double> 
   }
 }
 
-/// All spans of a set of lines as clamped pieces.
+/// Returns all spans of a set of lines as clamped pieces.
 std::vector<LineSet> pieces(LineSet lines) {
   const std::vector<double> breaks = lines.breaks();
   for (double t : breaks) lines.raise(t, lines.degree());
@@ -46,7 +47,7 @@ std::vector<LineSet> pieces(LineSet lines) {
   return result;
 }
 
-/// True if the tangent planes of two surfaces that share (u, v) differ, or the surface folds back on itself there.
+/// True if the tangent planes of two neighbouring parts differ at (u, v), or the surface folds back on itself there.
 bool creased(const Surface& left, const Surface& right, int axis, double u, double v, double smooth_angle) {
   SurfacePoint a, b;
   left.evaluate1(u, v, a);
@@ -70,7 +71,7 @@ bool creasedAlong(const Surface& left, const Surface& right, int axis, double kn
   return false;
 }
 
-/// Knots at which a surface must be parted, with both ends of the domain.
+/// Returns the knots at which a surface must be split, with both ends of the domain.
 std::vector<double> partingKnots(const SurfaceData& data, int axis, double smooth_angle) {
   const LineSet lines(data, axis);
   const std::vector<double> breaks = lines.breaks();

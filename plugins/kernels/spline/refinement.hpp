@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The same curve or surface with more knots, as Bezier pieces, or in smooth parts. Parameters never change.
+/// Rewrites a curve or surface with more knots, as Bezier pieces, or as smooth parts. Shape and parameters never
+/// change.
 #pragma once
 #include <span>
 #include <vector>
@@ -9,27 +10,30 @@
 
 namespace hapticd::spline {
 
-/// [rad] Surface normals that differ by less across a knot of full multiplicity are one smooth surface. The spans of an
-/// exact circle or sphere join so; their normals agree to rounding, 1e-15.
+/// [rad] A surface counts as smooth across a knot of multiplicity `degree` if its normals on both sides differ by less
+/// than this. The spans of an exact circle or sphere join in this way; their normals agree to rounding, 1e-15.
 inline constexpr double kSmoothAngle = 1e-6;
 
-/// [main] Inserts knots inside the domain, each as often as it stands in `added`, at most to multiplicity `degree`.
-/// The shape stays the same. @throws std::invalid_argument if the data are invalid or a knot lies outside the domain.
+/// [main] Inserts knots inside the domain, each as often as it occurs in `added`, but at most up to multiplicity
+/// `degree`. The shape stays the same. @throws std::invalid_argument if the data are invalid or a knot lies outside the
+/// domain.
 CurveData refine(const CurveData& curve, std::span<const double> added);
 SurfaceData refine(const SurfaceData& surface, int axis, std::span<const double> added);
 
-/// [main] The piece of a curve or surface between lo and hi, clamped, with the parameters of the whole.
+/// [main] Returns the piece of a curve or surface between lo and hi, clamped, with unchanged parameters.
 /// @throws std::invalid_argument if the data are invalid or the range is empty or leaves the domain.
 CurveData cut(const CurveData& curve, double lo, double hi);
 SurfaceData cut(const SurfaceData& surface, int axis, double lo, double hi);
 
-/// [main] One Bezier piece a span, in the order of the parameters (u-major for surfaces), each on its own range.
+/// [main] Returns one Bezier piece per span, in the order of the parameters (u-major for surfaces). Each piece keeps
+/// its parameter range.
 std::vector<CurveData> bezierPieces(const CurveData& curve);
 std::vector<SurfaceData> bezierPieces(const SurfaceData& surface);
 
-/// [main] Parts a surface at its gaps (knots of multiplicity degree + 1) and creases (multiplicity degree, where the
-/// normals of both sides differ by more than `smooth_angle` [rad] somewhere or the surface turns back). Each part
-/// keeps the parameters of the whole: its range is its domain(). u-major order.
+/// [main] Splits a surface at its gaps (knots of multiplicity degree + 1) and at its creases. A crease is a knot of
+/// multiplicity `degree` where somewhere the normals of both sides differ by more than `smooth_angle` [rad] or the
+/// surface folds back. Each part keeps its parameters, so its domain() is its range in the whole surface. The parts are
+/// in u-major order.
 std::vector<SurfaceData> splitAtCreases(const SurfaceData& surface, double smooth_angle = kSmoothAngle);
 
 }  // namespace hapticd::spline

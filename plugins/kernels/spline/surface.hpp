@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Evaluation of spline surfaces of any degree to 15, polynomial or rational, with first and second derivatives.
+/// Evaluation of spline surfaces of degree 1 to 15, polynomial or rational, with first and second derivatives.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -24,49 +24,50 @@ struct SurfacePoint {
   alignas(32) Eigen::Vector3d Suu;
   alignas(32) Eigen::Vector3d Suv;
   alignas(32) Eigen::Vector3d Svv;
-  /// In: where to look first for (u, v); out: the cells that hold them. Hand the last point in again and the look-up
-  /// costs nothing while the parameters stay in their spans. Any value is allowed.
+  /// In: the cells to try first for u and v (any value is allowed). Out: the cells that contain them. If the last point
+  /// is passed in again, the look-up costs almost nothing while the parameters stay in their spans.
   alignas(32) std::array<std::int32_t, 2> span{0, 0};
 };
 
 /// How a surface is stored.
 enum class Form : std::uint8_t {
-  kTable,  ///< power-basis coefficients for each knot span: fastest
-  kNet     ///< control points alone (Cox-de Boor): smallest, and exact to rounding for any weights
+  kTable,  ///< power-basis coefficients for each knot span; the fastest form
+  kNet     ///< only control points (Cox-de Boor evaluation); the smallest form, exact to rounding for any weights
 };
 
-/// A surface ready for evaluation; constant after construction, so that all threads may share it.
-/// Parameters outside the domain, and those that are not a number, are moved to its boundary.
+/// A surface that is ready for evaluation. Constant after construction, so all threads may share it. Parameters outside
+/// the domain are moved to its boundary, and NaN to its low end.
 class Surface {
  public:
-  /// [main] A surface of no extent at the origin; assign a real one before evaluation.
+  /// [main] Makes an empty object. Assign a surface to it before evaluation.
   Surface() = default;
-  /// [main] Checks and stores a surface. `kTable` is a wish: where the power basis would lose digits (weights that
-  /// differ much within a span, some high degrees) the surface keeps the net form; form() tells.
+  /// [main] Checks and stores a surface. `kTable` is a request: if the power basis would lose digits (weights that
+  /// differ much within a span, some high degrees), the surface uses kNet instead. form() returns the form in use.
   /// @throws std::invalid_argument as validate() does.
   explicit Surface(const SurfaceData& data, Form form = Form::kTable,
                    Instructions instructions = Instructions::kFastest);
 
-  /// [any] S, Su, Sv at (u, v); Suu, Suv, Svv are left as they are.
+  /// [any] Computes S, Su, Sv at (u, v); Suu, Suv, Svv stay unchanged.
   void evaluate1(double u, double v, SurfacePoint& out) const noexcept { evaluate<1>(u, v, out); }
-  /// [any] S and all first and second derivatives at (u, v). At a knot: those of the span to its right.
-  /// Source: Piegl & Tiller, The NURBS Book, A2.3 and A4.4 (with the mixed derivative), about a local origin.
+  /// [any] Computes S and all first and second derivatives at (u, v). At a knot, the derivatives are those of the span
+  /// to its right. Source: Piegl & Tiller, The NURBS Book, A2.3 and A4.4 (with the mixed derivative), about a local
+  /// origin.
   void evaluate2(double u, double v, SurfacePoint& out) const noexcept { evaluate<2>(u, v, out); }
 
-  /// [any] The cell that holds an evaluated point.
+  /// [any] Returns the cell that contains an evaluated point.
   TableCell cellOf(const SurfacePoint& at) const noexcept;
 
-  /// [any] Parameter range [lo, hi] along axis 0 (u) or 1 (v).
+  /// [any] Returns the parameter range [lo, hi] along axis 0 (u) or 1 (v).
   std::array<double, 2> domain(int axis) const noexcept { return {breaks(axis).front(), breaks(axis).back()}; }
-  /// [any] The distinct knots of the domain, ascending: boundaries of the spans, smooth in between.
+  /// [any] Returns the distinct knots of the domain, ascending. The surface is smooth between them.
   std::span<const double> breaks(int axis) const noexcept { return axes_[static_cast<std::size_t>(axis)].breaks(); }
   int degree(int axis) const noexcept { return axes_[static_cast<std::size_t>(axis)].degree(); }
   bool rational() const noexcept { return rational_; }
   bool reversed() const noexcept { return reversed_; }
   const std::string& name() const noexcept { return name_; }
-  /// [any] The form in use.
+  /// [any] Returns the form in use.
   Form form() const noexcept { return table_.cells.empty() ? Form::kNet : Form::kTable; }
-  /// [any] Memory behind this surface, in bytes.
+  /// [any] Returns the memory that this surface has allocated, in bytes.
   std::size_t bytes() const noexcept;
 
  private:
@@ -96,7 +97,7 @@ class Surface {
   std::array<Axis, 2> axes_;
   Table table_;
   std::vector<Quad> net_;  ///< empty in table form
-  double scale_ = 1;       ///< a power of two: coordinates = scale_ * stored ones
+  double scale_ = 1;       ///< a power of two: coordinates = scale_ * stored coordinates
   bool rational_ = false, reversed_ = false;
   std::string name_;
 };

@@ -37,7 +37,8 @@ void checkEachKnot(const std::vector<double>& knots, const std::string& what) {
   }
 }
 
-/// Multiplicity p + 1 parts a spline (C-1); one more leaves control points that nothing depends on.
+/// Checks that no inner knot has a multiplicity above degree + 1. At that multiplicity the spline has a gap; at a
+/// higher one some control points would have no effect.
 void checkMultiplicity(const std::vector<double>& knots, int degree, const std::string& what) {
   const auto order = static_cast<std::size_t>(degree) + 1;
   for (std::size_t i = order; i + order + 1 < knots.size(); ++i) {

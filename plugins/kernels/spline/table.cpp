@@ -9,14 +9,15 @@
 namespace hapticd::spline {
 namespace {
 
-/// Coefficients are divided by powers of a span's width; within these bounds of width^degree none overflows.
+/// Coefficients are divided by powers of a span's width. No coefficient overflows if width^degree is within these
+/// bounds.
 constexpr double kLeastPower = 1e-60, kMostPower = 1e60;
 
-using Real = long double;  // the table is made once; its coefficients shall be right to the last bit
+using Real = long double;  // the table is made only once, and its coefficients should be right to the last bit
 using Taylor = std::array<std::array<Real, kMaxDegree + 1>, kMaxDegree + 1>;
 
-/// Row k: the k-th Taylor coefficients, at the cell's origin, of the basis functions of its span. Each comes from the
-/// basis functions of degree p - k by k differences (Piegl & Tiller 2.9), which works at both ends of a span as well.
+/// Returns in row k the k-th Taylor coefficients of the span's basis functions at the cell's origin. They come from the
+/// basis functions of degree p - k by k differences (Piegl & Tiller 2.9), which also works at both ends of a span.
 Taylor taylorCoefficients(const Axis& axis, const Cell& cell) {
   const int p = axis.degree();
   const double* knots = axis.knots().data() + cell.knot;
@@ -53,11 +54,12 @@ struct Term {
 struct Window {
   std::array<std::array<Term, kMaxDegree + 1>, kMaxDegree + 1> terms;
   Quad origin;
-  double extent = 0;        ///< largest coordinate about the origin
+  double extent = 0;        ///< largest absolute coordinate, relative to the origin
   double least_weight = 1;  ///< a lower bound of the cell's weight function
 };
 
-/// A control point near the cell's expansion point; on a collapsed side the point it collapses to.
+/// Returns a control point near the cell's expansion point. If the expansion point is on a collapsed side, this is the
+/// point to which the side collapses.
 Quad originOf(const Net& net, const Axis& u, const Axis& v, const Cell& cu, const Cell& cv) {
   const auto index = [](const Axis& axis, const Cell& cell) {
     if (cell.origin == axis.breaks().front()) return cell.knot - axis.degree();
@@ -89,7 +91,7 @@ Window windowOf(const Net& net, const Axis& u, const Axis& v, const Cell& cu, co
   return window;
 }
 
-/// Sums of magnitudes at the far corner of a cell.
+/// Sums of the magnitudes of a cell's terms at its far corner.
 struct Growth {
   Real position = 0, weight = 0;
   void add(const Term& term, Real power) {
@@ -114,7 +116,7 @@ bool powersFit(const Axis& axis) {
   return true;
 }
 
-/// Appends one cell; false if it would lose digits.
+/// Appends one cell to the table. Returns false if the cell would lose digits.
 bool appendCell(const Window& window, const Taylor& tu, const Taylor& tv, std::array<Real, 2> reach,
                 std::array<int, 2> degree, Table& table) {
   Growth growth;
@@ -141,7 +143,7 @@ bool appendCell(const Window& window, const Taylor& tu, const Taylor& tv, std::a
   return growth.acceptable(window);
 }
 
-/// The smallest unrolled kernel that holds the degrees, else the one that loops.
+/// Chooses the smallest unrolled kernel that fits the degrees, or else the kernel with loops.
 void chooseShape(std::array<int, 2> degree, Table& table) {
   table.shape = kTableShapes;
   table.size_u = degree[0] + 1;
@@ -155,7 +157,7 @@ void chooseShape(std::array<int, 2> degree, Table& table) {
   }
 }
 
-/// True if all control points of the first or last row across an axis are one point on the surface.
+/// True if all control points of one row along an axis are the same point.
 bool collapsed(const Net& net, const Axis& along, int index, int step_along, int step_across) {
   const auto point = [&](int j) { return net.points[static_cast<std::size_t>(index * step_across + j * step_along)]; };
   for (int j = 1; j < along.count(); ++j) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Power-basis coefficients of a surface, a cell a span: the fast form of evaluation.
+/// Power-basis coefficients of a surface, for its fast form of evaluation: one cell per knot span.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -10,22 +10,25 @@
 
 namespace hapticd::spline {
 
-/// Sum of the magnitudes of a cell's terms over the size of what they add up to: how many times a rounding error grows.
-/// A cell above this keeps the control net, whose terms are all positive. 100 roundings are 2e-14 of a span.
+/// Largest allowed growth of rounding errors in a cell: the sum of the magnitudes of its terms over the size of their
+/// sum. If a cell exceeds this, the surface keeps the control net, whose terms are all positive. A growth of 100 is an
+/// error of 2e-14 of a span.
 inline constexpr double kMaxTableGrowth = 100;
 
 struct Table {
-  std::vector<Quad> cells;  ///< u-major; each: local origin, then coefficients
+  std::vector<Quad> cells;  ///< u-major; each cell is its local origin, then its coefficients
   int size_u = 0, size_v = 0;
   int shape = 0;                  ///< index into KernelSet::table
-  std::ptrdiff_t stride = 0;      ///< from a cell to the next along v, in quads
-  std::ptrdiff_t row_stride = 0;  ///< and along u
+  std::ptrdiff_t stride = 0;      ///< from a cell to the next along v, in Quads
+  std::ptrdiff_t row_stride = 0;  ///< from a cell to the next along u, in Quads
 };
 
-/// [main] Moves expansion points to collapsed sides, so that tangents next to a pole keep their relative precision.
+/// [main] Moves the expansion points of cells at collapsed sides onto these sides, so that tangents next to a pole keep
+/// their relative precision.
 void anchorAtCollapsedSides(const Net& net, Axis& u, Axis& v);
 
-/// [main] Taylor coefficients of all cells about their origins; nothing if the power basis would lose digits.
+/// [main] Computes the Taylor coefficients of all cells about their origins. Returns nothing if the power basis would
+/// lose digits.
 std::optional<Table> makeTable(const Net& net, const Axis& u, const Axis& v);
 
 }  // namespace hapticd::spline

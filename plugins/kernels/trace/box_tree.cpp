@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-/// Rows of the control net of one Bezier piece, homogeneous, with its parameter range.
+/// The control net of one Bezier piece in homogeneous coordinates, with its parameter range.
 struct Piece {
   int count_u = 0, count_v = 0;
   std::vector<Vector4d> points;  ///< (w x, w y, w z, w), u-major
@@ -23,21 +23,21 @@ struct Piece {
     const Vector4d& h = points[static_cast<std::size_t>(i * count_v + j)];
     return h.head<3>() / h[3];
   }
-  /// Edges of the control polygons along an axis.
+  /// Calls `use` for each edge of the control polygons along an axis.
   template <class F>
   void forEachEdge(int axis, F&& use) const {
     const int du = axis == 0 ? 1 : 0, dv = 1 - du;
     for (int i = 0; i + du < count_u; ++i)
       for (int j = 0; j + dv < count_v; ++j) use(Vector3d(point(i + du, j + dv) - point(i, j)));
   }
-  /// Mean direction of those edges, unit; 0 if they have no length.
+  /// Returns the unit mean direction of the edges along an axis, or 0 if they have no length.
   Vector3d mean(int axis) const {
     Vector3d sum = Vector3d::Zero();
     forEachEdge(axis, [&sum](const Vector3d& edge) { sum += edge; });
     const double length = sum.norm();
     return length > 0 ? Vector3d(sum / length) : sum;
   }
-  /// The surface point at the middle of the parameters.
+  /// Returns the surface point at the middle of the parameters.
   Vector3d middle() const;
 };
 
@@ -57,7 +57,7 @@ Piece pieceOf(const spline::SurfaceData& data) {
   return piece;
 }
 
-/// Halves a piece along an axis (de Casteljau).
+/// Halves a piece along an axis by de Casteljau's algorithm.
 std::array<Piece, 2> halves(const Piece& piece, int axis) {
   std::array<Piece, 2> half{piece, piece};
   const int n = axis == 0 ? piece.count_u : piece.count_v, lines = axis == 0 ? piece.count_v : piece.count_u;
@@ -81,7 +81,7 @@ Vector3d Piece::middle() const {
   return quarter[0].point(count_u - 1, count_v - 1);
 }
 
-/// Widest turn of the control polygons along an axis, as 1 - cos of the angle to their mean direction.
+/// Returns the largest turn of the control polygons along an axis, as 1 - cos of the angle to their mean direction.
 double turn(const Piece& piece, int axis) {
   const Vector3d mean = piece.mean(axis);
   double widest = 0;
@@ -92,8 +92,8 @@ double turn(const Piece& piece, int axis) {
   return std::min(widest, 2.0);
 }
 
-/// [rad] About how far the normal turns from `normal` on a piece that is nearly flat: that of each mesh of its control
-/// net, and a quarter more. Pi where a mesh has none.
+/// Returns an estimate [rad] of the largest angle between `normal` and the normals of a nearly flat piece: the largest
+/// angle over the meshes of its control net, plus a quarter. Returns pi if a mesh has no normal.
 double turnOfNormal(const Piece& piece, const Vector3d& normal) {
   constexpr double kMore = 1.25, kLeast = 0.02;
   double widest = 0;
@@ -109,7 +109,7 @@ double turnOfNormal(const Piece& piece, const Vector3d& normal) {
   return kMore * widest + kLeast;
 }
 
-constexpr int kMaxHalvings = 7;  // of one Bezier piece: at most 128 leaves
+constexpr int kMaxHalvings = 7;  // per Bezier piece, which gives at most 128 leaves
 
 void addLeaves(const Piece& piece, int patch, double flat, int halvings, std::vector<Leaf>& leaves) {
   const double turn_u = turn(piece, 0), turn_v = turn(piece, 1);
@@ -130,7 +130,8 @@ void addLeaves(const Piece& piece, int patch, double flat, int halvings, std::ve
       leaf.radius = std::max(leaf.radius, (piece.point(i, j) - leaf.center).norm());
   const Vector3d normal = piece.mean(0).cross(piece.mean(1));
   const double sine = normal.norm();
-  // The tangents stay in cones about their means; the closer the means are to parallel, the more the normal turns.
+  // The tangents stay in cones about their means. The nearer the two means are to parallel, the more the normal can
+  // turn.
   if (sine > 0) leaf.normal = normal / sine;
   leaf.cone = sine > 0 ? (std::acos(1 - turn_u) + std::acos(1 - turn_v)) / sine : std::numbers::pi;
   if (sine > 0) leaf.cone = std::min(leaf.cone, turnOfNormal(piece, leaf.normal));
@@ -153,7 +154,7 @@ void BoxTree::add(const spline::SurfaceData& patch, int index, double flat) {
     addLeaves(pieceOf(bezier), index, flat, 0, leaves_);
 }
 
-/// Leaves come patch by patch.
+/// Builds one tree per patch. The leaves are already in the order of the patches.
 void BoxTree::build() {
   nodes_.clear();
   nodes_.reserve(2 * leaves_.size());
@@ -198,18 +199,18 @@ struct BoxTree::Query {
   const Vector3d& p;
   double radius, margin;
   std::span<const int> parts;
-  std::vector<double> upper;  ///< [m] by part: it has a point as near as this
+  std::vector<double> upper;  ///< [m] for each part, an upper bound of the distance to it
   std::vector<LeafHit>& hits;
-  std::vector<std::pair<double, int>> open;  ///< squared distance and node
+  std::vector<std::pair<double, int>> open;  ///< squared distance of a node's box, and the node
 
-  /// Squared: what is farther from p than this needs no look.
+  /// Returns the squared distance [m^2] beyond which boxes of a part are left out.
   double limit2(int part) const {
     const double limit = std::min(radius, upper[static_cast<std::size_t>(part)] + margin);
     return limit * limit;
   }
 };
 
-/// Collects leaves of a patch, nearer boxes first: so the limit falls early.
+/// Collects the leaves of a patch. Nearer boxes are examined first, so that the limit falls early.
 void BoxTree::lookAt(int root, Query& query) const {
   const int part = query.parts[static_cast<std::size_t>(leaf(nodes_[static_cast<std::size_t>(root)].leaf).patch)];
   double limit2 = query.limit2(part);
@@ -234,7 +235,7 @@ void BoxTree::lookAt(int root, Query& query) const {
       if (!(leaf2 <= limit2)) continue;
       query.hits.push_back({leaf2, i});
       double& upper = query.upper[static_cast<std::size_t>(part)];
-      const double center = (query.p - leaf(i).center).norm();  // of a point of the surface
+      const double center = (query.p - leaf(i).center).norm();  // distance of a point of the surface
       if (center >= upper) continue;
       upper = center;
       limit2 = query.limit2(part);
@@ -254,7 +255,8 @@ void BoxTree::near(const Vector3d& p, double radius, double margin, std::span<co
   std::sort(patches.begin(), patches.end());
   for (const auto& [distance2, root] : patches) lookAt(root, query);
   std::vector<char> seen(parts.size(), 0);
-  std::erase_if(hits, [&](const LeafHit& hit) {  // some were collected before the limit fell
+  // remove leaves that were collected before the limit fell below their distance
+  std::erase_if(hits, [&](const LeafHit& hit) {
     const auto patch = static_cast<std::size_t>(leaf(hit.leaf).patch);
     const bool far = hit.distance2 > query.limit2(parts[patch]);
     if (!far) seen[patch] = 1;
@@ -264,7 +266,8 @@ void BoxTree::near(const Vector3d& p, double radius, double margin, std::span<co
     const int first = nodes_[static_cast<std::size_t>(root)].leaf;
     const auto patch = static_cast<std::size_t>(leaf(first).patch);
     if (seen[patch] == 0)
-      hits.push_back({std::max(distance2, query.limit2(parts[patch])), first});  // no leaf is within
+      // no leaf of this patch is within the limit
+      hits.push_back({std::max(distance2, query.limit2(parts[patch])), first});
   }
   std::sort(hits.begin(), hits.end(), [](const LeafHit& a, const LeafHit& b) {
     return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : a.leaf < b.leaf;

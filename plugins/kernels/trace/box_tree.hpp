@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Bounding boxes of small, nearly flat pieces of patches, a binary tree for each patch: where a global search may stop
-/// looking.
+/// Bounding boxes of small, nearly flat pieces of patches, as a binary tree for each patch. They tell a global search
+/// which pieces it can leave out.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -11,38 +11,41 @@
 
 namespace hapticd::trace {
 
-/// A piece of a patch so flat that Newton from its middle finds the foot that lies on it.
+/// A piece of a patch that is so flat that Newton's method finds a foot on it from its middle.
 struct Leaf {
-  Eigen::AlignedBox3d box;          ///< of the control points of the piece, which enclose it
-  Eigen::Array2d middle;            ///< (u, v) to start from
-  Eigen::Array2d half;              ///< widths of the piece in (u, v), halved
+  Eigen::AlignedBox3d box;          ///< box of the control points of the piece, which encloses it
+  Eigen::Array2d middle;            ///< (u, v) at which Newton's method starts
+  Eigen::Array2d half;              ///< half widths of the piece in (u, v)
   Eigen::Vector3d center{0, 0, 0};  ///< S(middle)
-  Eigen::Vector3d normal{0, 0, 0};  ///< of the surface there, unit; 0: it has none
-  double radius = 0;                ///< [m] of a ball about the center that holds the piece
-  double cone = 0;                  ///< [rad] the normal turns by at most about this on the piece
+  Eigen::Vector3d normal{0, 0, 0};  ///< unit normal of the surface at the middle; 0 if there is none
+  double radius = 0;                ///< [m] radius of a ball about the center that contains the piece
+  double cone = 0;                  ///< [rad] estimate of the largest turn of the normal on the piece
   int patch = 0;
 
-  /// [any] False if no normal of the piece points to p (or straight away): then no foot lies inside it.
+  /// [any] Returns false if no normal of the piece points to p or straight away from p. Then no foot lies inside the
+  /// piece.
   bool mayFace(const Eigen::Vector3d& p) const noexcept;
 };
 
-/// A leaf that a query met.
+/// A leaf that near() found.
 struct LeafHit {
-  double distance2 = 0;  ///< [m^2] squared distance to its box, or to that of its patch: the piece is no nearer
+  /// [m^2] squared distance to the box of the leaf or of its patch: a lower bound of the distance to the piece.
+  double distance2 = 0;
   int leaf = 0;
 };
 
 class BoxTree {
  public:
-  static constexpr double kFlat = 0.03;  ///< 1 - cos 14 deg: Newton goes straight from the middle to the foot
-  /// [main] Cuts a patch into leaves and keeps them. @param flat 1 - cos of the angle by which the tangents of a leaf
-  /// may lean from their mean
+  /// 1 - cos of 14 degrees, for which Newton's method goes directly from the middle to the foot.
+  static constexpr double kFlat = 0.03;
+  /// [main] Cuts a patch into leaves and stores them. @param flat 1 - cos of the largest angle between the tangents of
+  /// a leaf and their mean
   void add(const spline::SurfaceData& patch, int index, double flat = kFlat);
-  /// [main] Arranges the leaves; call once, after the last add().
+  /// [main] Builds the trees; call it once, after the last add().
   void build();
-  /// [sim] What a search has to look at, nearest box first: the leaves that may be at most `margin` [m] farther from p
-  /// than the nearest point of their part, and one leaf, with a lower bound, for each other patch
-  /// within `radius` [m]. @param parts by patch, from 0 to part_count - 1
+  /// [sim] Lists what a search has to examine, nearest box first. These are the leaves that may be at most `margin` [m]
+  /// farther from p than the nearest point of their part. For each other patch within `radius` [m] there is one leaf,
+  /// with a lower bound. @param parts part of each patch, from 0 to part_count - 1
   void near(const Eigen::Vector3d& p, double radius, double margin, std::span<const int> parts, int part_count,
             std::vector<LeafHit>& hits) const;
 
@@ -54,17 +57,17 @@ class BoxTree {
  private:
   struct Node {
     Eigen::AlignedBox3d box;
-    int first = 0, count = 0;  ///< leaves; count 0: the children are the next node and node `first`
-    int leaf = 0;              ///< the first below it
+    int first = 0, count = 0;  ///< range of leaves; if count is 0, the children are the next node and node `first`
+    int leaf = 0;              ///< the first leaf below this node
   };
-  /// One query under way.
+  /// The state of one call of near().
   struct Query;
   int buildNode(int first, int count);
   void lookAt(int root, Query& query) const;
 
   std::vector<Leaf> leaves_;
   std::vector<Node> nodes_;
-  std::vector<int> roots_;  ///< by patch: its node
+  std::vector<int> roots_;  ///< root node of each patch
 };
 
 }  // namespace hapticd::trace

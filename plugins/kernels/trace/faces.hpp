@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-/// What contact::ContactState sees of a model, or of one of its parts, at the probe of this tick.
+/// Lets contact::ContactState query a model, or one of its parts, at the probe of this tick.
 #pragma once
 #include "kernels/trace/tracer.hpp"
 
 namespace hapticd::trace {
 
-inline constexpr int kMaxCrossings = 4;  ///< of sides in one tick
+inline constexpr int kMaxCrossings = 4;  ///< most sides that a foot crosses in one tick
 
 class Tracer::Faces {
  public:
-  /// @param part -1: of all parts together
+  /// @param part index of a part, or -1 for all parts together
   Faces(Tracer& tracer, int part, const Eigen::Vector3d& p, const TraceOptions& options) noexcept
       : tracer_(tracer), part_(part), p_(p), options_(options) {}
 
@@ -37,7 +37,7 @@ class Tracer::Faces {
   const int part_;
   const Eigen::Vector3d& p_;
   const TraceOptions& options_;
-  Foot nearest_;  ///< of this tick
+  Foot nearest_;  ///< nearest foot of this tick, if known_
   bool known_ = false;
 };
 

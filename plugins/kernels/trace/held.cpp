@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The foot of a held contact: where the probe's way meets a surface, and how the foot goes on over edges.
+/// The foot of a held contact: finds where the path of the probe meets a surface, and moves the foot on over edges.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -15,19 +15,21 @@ using contact::Followed;
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
-constexpr double kMet = 1e-8;       ///< [m] a point so near to a surface is on it
-constexpr int kMostCandidates = 8;  ///< surfaces that may be in the way
-constexpr double kBeyond = 1e-9;    ///< of the way: a crossing so little before or after it counts
+constexpr double kMet = 1e-8;       ///< [m] a point that is nearer to a surface than this counts as on it
+constexpr int kMostCandidates = 8;  ///< most surfaces that are tested for a crossing
+/// Relative to the path: a crossing that is before or after it by less than this still counts.
+constexpr double kBeyond = 1e-9;
 
-/// A point where a straight way meets a patch.
+/// A point where a straight path meets a patch.
 struct Meeting {
   Array2d uv{0, 0};
-  double share = 0;          ///< of the way
+  double share = 0;          ///< position on the path, 0 at its start and 1 at its end
   Vector3d normal{0, 0, 1};  ///< outward, unit
   bool found = false;
 };
 
-/// Newton on S(u, v) = from + share * way, from a point near by. Takes at most `budget` evaluations off it.
+/// Solves S(u, v) = from + share * way by Newton's method, starting from a point near by. Each evaluation reduces
+/// `budget` by 1.
 Meeting meet(const Patch& patch, const Vector3d& from, const Vector3d& way, Meeting at, int& budget) noexcept {
   constexpr int kMostSteps = 6;
   const double enough = std::max(kMet, kRounding * (from.lpNorm<1>() + way.lpNorm<1>()));
@@ -93,7 +95,7 @@ Followed Tracer::follow(int part, double side, const Vector3d& p, const TraceOpt
   return Followed::kOn;
 }
 
-/// Whether the probe has gone over a convex edge that the held foot is on, and is in front of the next face.
+/// True if the held foot is on a convex edge that the probe has crossed, and the probe is in front of the next face.
 bool Tracer::isReleased(int track, int side, double felt, const Vector3d& p) const noexcept {
   const Track& t = tracks_[track];
   const Patch& patch = model_.patch(t.patch);
@@ -114,8 +116,8 @@ bool Tracer::isReleased(int track, int side, double felt, const Vector3d& p) con
   return contact::atEdge(kind, there, r) == contact::AtEdge::kRelease;
 }
 
-/// Where a held foot goes on beyond a side: the track that it is on then, -1: it stays. Unlike crossSide() it begins at
-/// the common side, whatever other foot of the next patch is nearer.
+/// Moves a held foot on beyond a side. Returns its new track, or -1 if the foot stays. Unlike crossSide(), the search
+/// begins at the common side, even if another foot of the next patch is nearer.
 int Tracer::slideOver(int track, int side, const Vector3d& p, const TraceOptions& options) noexcept {
   const int patch = tracks_[track].patch;
   const Patch& piece = model_.patch(patch);
@@ -134,8 +136,8 @@ int Tracer::slideOver(int track, int side, const Vector3d& p, const TraceOptions
   return track;
 }
 
-/// The first surface that the straight way from `from` to p enters through a side that is felt. @param touching where
-/// `from` lies on a surface, the side on which it counts as being
+/// Finds the first surface that the straight path from `from` to p enters through a side that is felt. @param touching
+/// if `from` lies on a surface, the side of the surface to which it counts
 Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vector3d& p, double touching,
                                        const TraceOptions& options) noexcept {
   const double length = (p - from).norm();
@@ -156,7 +158,7 @@ Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vec
     int track = near[static_cast<std::size_t>(i)];
     if (tracks_[track].slot < 0) continue;
     if (budget_ > 0) track = refine(track, p, options);
-    if (first.track >= 0 && tracks_[first.track].slot < 0) first.track = track;  // they have become one
+    if (first.track >= 0 && tracks_[first.track].slot < 0) first.track = track;  // the two tracks were merged
     if (tracks_[track].tick != tracks_.tick() || !(tracks_[track].foot.distance <= length + kMet)) continue;
     Crossing crossing;
     crossing.side = touching;
@@ -168,7 +170,7 @@ Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vec
   return first;
 }
 
-/// Whether the way from `from` to p crosses the surface under a foot of this tick, and where.
+/// Tests whether the path from `from` to p crosses the surface near a foot of this tick, and where.
 bool Tracer::crosses(int track, const Vector3d& from, const Vector3d& p, Crossing& crossing) noexcept {
   const LocalFoot foot = tracks_[track].foot;
   const Patch& patch = model_.patch(tracks_[track].patch);
@@ -180,7 +182,7 @@ bool Tracer::crosses(int track, const Vector3d& from, const Vector3d& p, Crossin
   start.uv = foot.uv;
   start.share = std::clamp(before / (before - after), 0.0, 1.0);
   const Meeting met = meet(patch, from, way, start, budget_);
-  if (!met.found) {  // the tangent plane stands for the surface, unless the way passes beside the patch
+  if (!met.found) {  // use the tangent plane instead of the surface, unless the path passes beside the patch
     crossing.share = start.share;
     return foot.sides == 0 && patch.sidesAt(met.uv) == 0;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Which side of the model the probe is on, decided where the nearest foot lies: on a face, an edge or a corner.
+/// Decides on which side of the model the probe is, from the place of the nearest foot: on a face, an edge or a corner.
 #include <Eigen/Geometry>
 #include <cmath>
 
@@ -11,7 +11,8 @@ namespace {
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
-/// [m] Nearer to an edge than this, the direction from the foot to the probe is rounding; the force there is nothing.
+/// [m] If the probe is nearer to an edge than this, the direction from the foot to the probe is mostly rounding error;
+/// the force is nearly zero there.
 constexpr double kTouching = 1e-7;
 
 }  // namespace
@@ -21,7 +22,8 @@ Vector3d Tracer::surfaceNormal(int track) const noexcept {
   return foot.regular ? foot.normal : model_.patch(tracks_[track].patch).normalAt(foot.uv);
 }
 
-/// Pseudonormal of the edge or corner that holds the foot: a probe in its direction is outside (Baerentzen & Aanaes).
+/// Returns the pseudonormal of the edge or corner on which the foot lies. A probe in its direction is outside
+/// (Baerentzen & Aanaes 2005).
 Vector3d Tracer::edgeNormal(int track) const noexcept {
   const Patch& piece = model_.patch(tracks_[track].patch);
   const LocalFoot& foot = tracks_[track].foot;
@@ -66,7 +68,7 @@ Foot Tracer::describe(int track, const Vector3d& p, int evaluations) const noexc
   return foot;
 }
 
-/// The normal and the depth of a foot where the tangents do not tell them.
+/// Sets the normal and the depth of a foot on an edge or corner, where the tangents do not give them.
 void Tracer::decideSide(int track, const Vector3d& p, Foot& foot) const noexcept {
   const Patch& piece = model_.patch(tracks_[track].patch);
   const LocalFoot& local = tracks_[track].foot;
@@ -82,7 +84,8 @@ void Tracer::decideSide(int track, const Vector3d& p, Foot& foot) const noexcept
   foot.normal = open ? surfaceNormal(track) : edgeNormal(track);
   foot.behind = -r.dot(foot.normal);
   if (open) {
-    // The solid behind an open surface ends in a bevel of 45 degrees: the force fades out as the probe slides off.
+    // The solid behind an open surface ends in a bevel of 45 degrees, so that the force fades out when the probe slides
+    // off.
     foot.aside = (r + foot.behind * foot.normal).norm();
     foot.depth = foot.behind > foot.aside ? foot.behind - foot.aside : -foot.distance;
     return;

@@ -15,16 +15,15 @@ Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOption
   split(surfaces, options.form);
   tree_.build();
   bounds_ = tree_.bounds();
-  constexpr double kMostCoordinate = 1e60;  // [m] beyond it, products of four lengths overflow
+  constexpr double kMostCoordinate = 1e60;  // [m] products of four larger lengths overflow
   if (!(bounds_.min().cwiseAbs().maxCoeff() <= kMostCoordinate &&
         bounds_.max().cwiseAbs().maxCoeff() <= kMostCoordinate))
-    throw std::invalid_argument("model: a coordinate beyond 1e60 m, expected smaller ones");
+    throw std::invalid_argument("model: a coordinate is beyond 1e60 m, expected smaller coordinates");
   Sewing(*this, options).run();
   bool complete = true;
   part_ = groupShells(*this, complete);
   if (!complete)
-    warnings_.push_back(
-        "model: too many shells that run into each other; some are felt where they are buried in others");
+    warnings_.push_back("model: too many shells overlap, so the probe may feel surfaces that lie inside other shells");
   for (const Patch& piece : patches_) patch_part_.push_back(part_[static_cast<std::size_t>(piece.shell)]);
   part_count_ = 1 + *std::max_element(part_.begin(), part_.end());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A model of many spline surfaces, ready for tracing: smooth patches, what adjoins what, and a tree for global search.
+/// A model of many spline surfaces, ready for tracing: smooth patches, their neighbours, and a tree for global search.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -12,19 +12,20 @@
 
 namespace hapticd::trace {
 
-/// One end of an adjacency that a model file states: surface and side (see patch.hpp).
+/// One of the two sides that a model file joins: index of the surface, and number of its side (see patch.hpp).
 struct EdgeEnd {
   int surface = 0, side = 0;
 };
 struct EdgeLink {
   EdgeEnd a, b;
-  bool flipped = false;  ///< the parameters along the edge run against each other
+  bool flipped = false;  ///< true if the parameters of the two sides run in opposite directions
 };
 
 struct ModelOptions {
-  /// [m] Sides closer than this are one edge. 0: 1e-5 of the model's diagonal, the usual tolerance of CAD files.
+  /// [m] Sides that are closer than this are joined. 0 means 1e-5 of the model's diagonal, the usual tolerance of CAD
+  /// files.
   double sew_tolerance = 0;
-  std::vector<EdgeLink> edges;               ///< known adjacency; the rest is found by geometry
+  std::vector<EdgeLink> edges;               ///< sides that are known to be joined; other joints are found by geometry
   spline::Form form = spline::Form::kTable;  ///< how the patches are stored
 };
 
@@ -32,20 +33,22 @@ struct ModelOptions {
 struct Near {
   int surface = 0;
   double u = 0, v = 0;
-  double distance = 0;  ///< [m]
+  double distance = 0;  ///< [m] distance from the probe, or a lower bound
 };
 
-/// What a global search finds.
+/// The result of a global search.
 struct Found {
-  std::vector<Near> nearest;  ///< one a surface, nearest first
-  std::vector<Near> rivals;   ///< other local feet that could become the nearest before the next search
+  std::vector<Near> nearest;  ///< one entry per surface, nearest first
+  /// Other local minima of the distance that could become the nearest foot before the next search.
+  std::vector<Near> rivals;
 };
 
-/// Built once, then constant: every const function may run in any thread while a Tracer steps.
+/// A model that is ready for tracing. It is built once and is then constant, so every const function may run in any
+/// thread while a Tracer steps.
 class Model {
  public:
-  /// [m] How much nearer than another a surface can come before the next search: 10 ms at 2 m/s, toward one and away
-  /// from the other.
+  /// [m] By how much the difference of two distances can change before the next search: 10 ms at 2 m/s, toward one
+  /// surface and away from the other.
   static constexpr double kSoon = 0.02;
   static constexpr int kMaxParts = 8;
 
@@ -53,39 +56,41 @@ class Model {
   /// @throws std::invalid_argument that names the surface and says what was expected.
   explicit Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOptions& options = {});
 
-  /// [sim] Global search: every surface within `radius` [m] of `p` (model frame), nearest first. The nearest of each
-  /// part, and those at most kSoon farther, come with their global foot; the others with a lower bound of the distance
-  /// and a parameter to start from. Rivals are feet in other valleys of the same surfaces, at most kSoon farther than
-  /// the part's nearest.
+  /// [sim] Global search: finds every surface within `radius` [m] of `p` (model frame), nearest first. The nearest
+  /// surface of each part, and surfaces at most kSoon farther, come with their global foot. The others come with a
+  /// lower bound of the distance and parameters to start from. Rivals are other local minima of the distance on the
+  /// same surfaces, at most kSoon farther than the nearest foot of the part.
   void search(const Eigen::Vector3d& p, double radius, Found& found) const;
-  /// [sim] The same without rivals. Writes at most `cap` records and returns how many surfaces there are, even beyond.
+  /// [sim] The same as search(), but without rivals. Writes at most `cap` records. Returns the number of surfaces
+  /// within the radius, which may be larger than `cap`.
   std::int64_t nearby(const Eigen::Vector3d& p, double radius, Near* out, std::size_t cap) const;
 
-  /// [any] Number of surfaces in the model file; a surface with creases holds several patches.
+  /// [any] Number of surfaces in the model file. A surface with creases has several patches.
   int surfaceCount() const noexcept { return static_cast<int>(first_patch_.size()) - 1; }
   int patchCount() const noexcept { return static_cast<int>(patches_.size()); }
   const Patch& patch(int index) const noexcept { return patches_[static_cast<std::size_t>(index)]; }
-  /// [any] Patches [first, last) of a surface.
+  /// [any] The patches of a surface are those from firstPatch() to lastPatch() - 1.
   int firstPatch(int surface) const noexcept { return first_patch_[static_cast<std::size_t>(surface)]; }
   int lastPatch(int surface) const noexcept { return first_patch_[static_cast<std::size_t>(surface) + 1]; }
 
   int shellCount() const noexcept { return static_cast<int>(shell_closed_.size()); }
-  /// [any] True if the shell has no free side: it bounds a solid.
+  /// [any] True if the shell has no free side, so that it bounds a solid.
   bool closed(int shell) const noexcept { return shell_closed_[static_cast<std::size_t>(shell)] != 0; }
-  /// [any] Angle-weighted mean of the outward normals around a corner (Baerentzen & Aanaes 2005): its side decides
-  /// inside and outside when the nearest point is that corner.
+  /// [any] Angle-weighted mean of the outward normals around a corner (Baerentzen & Aanaes 2005): if the nearest point
+  /// is that corner, this normal decides whether the probe is outside.
   const Eigen::Vector3d& vertexNormal(int vertex) const noexcept {
     return vertex_normal_[static_cast<std::size_t>(vertex)];
   }
-  /// [any] Shells that run into each other (one ends or passes inside the other) belong to different parts: each part
-  /// is a solid of its own, and the probe is outside if it is outside all of them. Other shells bound one solid
-  /// together.
+  /// [any] Returns the part to which a shell belongs. Shells that overlap (one ends or passes inside the other) belong
+  /// to different parts. Each part is a separate solid, and the probe is outside if it is outside all parts. Other
+  /// shells together bound one solid.
   int part(int shell) const noexcept { return part_[static_cast<std::size_t>(shell)]; }
   int partCount() const noexcept { return part_count_; }
   const PoleFan& pole(int index) const noexcept { return poles_[static_cast<std::size_t>(index)]; }
 
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }
-  /// [main] What a person should know of this model: T-junctions, edges of three surfaces, sides that disagree.
+  /// [main] Warnings for the user about this model: T-junctions, edges of three surfaces, neighbours with opposite
+  /// normals.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
   std::size_t bytes() const noexcept;
 
@@ -98,8 +103,8 @@ class Model {
   std::vector<PoleFan> poles_;
   std::vector<Eigen::Vector3d> vertex_normal_;
   std::vector<char> shell_closed_;
-  std::vector<int> part_;        ///< by shell
-  std::vector<int> patch_part_;  ///< by patch
+  std::vector<int> part_;        ///< part of each shell
+  std::vector<int> patch_part_;  ///< part of each patch
   int part_count_ = 1;
   std::vector<std::string> warnings_;
   std::vector<std::string> names_;

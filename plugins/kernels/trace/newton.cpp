@@ -15,23 +15,25 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// 1 + depth * curvature of the distance function must exceed this for a pure Newton step: below it the probe is near
-/// a centre of curvature and the step would be noise.
+/// Least value of 1 + depth * curvature, the curvature of the distance function, for a pure Newton step. Below it the
+/// probe is near a centre of curvature and the step would be noise.
 constexpr double kMinCurvature = 1e-3;
-/// Tangents shorter than this share of the longer one (or this close to parallel) span no plane: a pole or a cusp.
+/// If one tangent is shorter than this share of the other, or they are this close to parallel, they do not span a
+/// plane: the point is a pole or a cusp.
 constexpr double kFlatTangent = 1e-12;
 
 /// Quadratic model of f = |S - p|^2 / 2 about an evaluated point.
 struct QuadraticModel {
-  Vector2d g;             ///< gradient
-  Matrix2d H;             ///< positive definite
-  Vector2d sided{0, 0};   ///< true curvature along a side v = const, u = const; 0: none to rely on
-  bool saddle = false;    ///< the true Hessian is not: this point is no foot, whatever the gradient says
+  Vector2d g;            ///< gradient
+  Matrix2d H;            ///< positive definite
+  Vector2d sided{0, 0};  ///< true curvature along a side v = const, and u = const; 0 if it is not reliable
+  /// True if the true Hessian has a negative eigenvalue, so that this point is not a foot even if the gradient is 0.
+  bool saddle = false;
   Vector2d escape{0, 0};  ///< direction of negative curvature, unit length in space
 };
 
-/// Orthonormal frame of the tangent plane: (Su Sv) = Q L^T with L lower triangular (Gram-Schmidt), so that curvatures
-/// come out per metre and an ill-scaled or sheared parameterisation does not matter.
+/// Orthonormal frame of the tangent plane: (Su Sv) = Q L^T with L lower triangular (Gram-Schmidt). So curvatures are
+/// per metre, and an ill-scaled or sheared parameterisation does no harm.
 struct TangentFrame {
   double l11, l21, l22;
 };
@@ -56,7 +58,8 @@ Matrix2d damped(const spline::SurfacePoint& E) noexcept {
   return G;
 }
 
-/// Curvature along a side of the distance function; it may be good where that of the whole surface is not.
+/// Returns the curvature of the distance function along a side, or 0 if it is not reliable. It may be reliable even if
+/// the Hessian of the surface is not.
 double sidedCurvature(const Vector3d& S1, double bend) noexcept {
   const double first_order = S1.squaredNorm();
   return first_order + bend > kMinCurvature * first_order ? first_order + bend : 0;
@@ -74,7 +77,7 @@ QuadraticModel modelOf(const spline::SurfacePoint& E, const Vector3d& r) noexcep
   }
   Matrix2d B;
   B << r.dot(E.Suu), r.dot(E.Suv), 0, r.dot(E.Svv);
-  // A = I + L^-1 B L^-T: the Hessian per metre of surface; its eigenvalues are 1 + depth * principal curvature.
+  // A = I + L^-1 B L^-T is the Hessian per metre of surface. Its eigenvalues are 1 + depth * principal curvature.
   const double i11 = 1 / L.l11, i22 = 1 / L.l22, i21 = -L.l21 * i11 * i22;
   const double b11 = B(0, 0), b12 = B(0, 1), b22 = B(1, 1);
   const double a11 = 1 + i11 * i11 * b11;
@@ -86,7 +89,8 @@ QuadraticModel modelOf(const spline::SurfacePoint& E, const Vector3d& r) noexcep
     m.H(1, 0) = m.H(0, 1);
     return m;
   }
-  // |A|: same axes, positive curvatures, so that the step descends and leaves a saddle or a maximum.
+  // Replace A by |A|, with the same axes and positive curvatures, so that the step descends and leaves a saddle or a
+  // maximum.
   constexpr double kFloor = 0.05;
   const double angle = 0.5 * std::atan2(2 * a12, a11 - a22);
   const Vector2d major(std::cos(angle), std::sin(angle)), minor(-major.y(), major.x());
@@ -102,7 +106,7 @@ QuadraticModel modelOf(const spline::SurfacePoint& E, const Vector3d& r) noexcep
 
 struct Step {
   Vector2d d{0, 0};
-  SideMask sides = 0;       ///< bounds that the step ends on
+  SideMask sides = 0;       ///< sides of the patch on which the step ends
   Vector2d straight{0, 0};  ///< d before it was bent
 };
 
@@ -110,7 +114,8 @@ double modelValue(const QuadraticModel& m, const Vector2d& d) noexcept {
   return m.g.dot(d) + 0.5 * d.dot(m.H * d);
 }
 
-/// Minimum of the quadratic model inside the box lo <= d <= hi: inside, on one of the four sides, or in a corner.
+/// Returns the minimum of the quadratic model in the box lo <= d <= hi. It may be inside, on one of the four sides, or
+/// in a corner.
 Step boxMinimum(const QuadraticModel& m, const Vector2d& lo, const Vector2d& hi) noexcept {
   const double det = m.H(0, 0) * m.H(1, 1) - m.H(0, 1) * m.H(0, 1);
   Step best;
@@ -133,7 +138,7 @@ Step boxMinimum(const QuadraticModel& m, const Vector2d& lo, const Vector2d& hi)
     if (d[along] == lo[along]) best.sides |= bit(2 * along);
     if (d[along] == hi[along]) best.sides |= bit(2 * along + 1);
   }
-  for (int axis = 0; axis < 2; ++axis) {  // a foot that stays on its side: Newton along it
+  for (int axis = 0; axis < 2; ++axis) {  // if the foot stays on its side, make the Newton step along this side
     const int along = 1 - axis;
     if ((best.sides & (bit(2 * axis) | bit(2 * axis + 1))) == 0 || best.d[axis] != 0 || !(m.sided[along] > 0)) continue;
     const double d = -m.g[along] / m.sided[along];
@@ -142,12 +147,12 @@ Step boxMinimum(const QuadraticModel& m, const Vector2d& lo, const Vector2d& hi)
   return best;
 }
 
-/// Bends a long step along the parameterisation, which is far from linear around a heavy weight: to second order the
-/// bent step reaches the point of the surface that the straight one aims at (geodesic acceleration, Transtrum & Sethna
-/// 2012). Near convergence the bend vanishes and the step is Newton's.
+/// Bends a long step, because the parameterisation is far from linear near a control point of large weight. To second
+/// order the bent step reaches the point of the surface at which the straight step aims (geodesic acceleration,
+/// Transtrum & Sethna 2012). Near convergence the bend vanishes and the step is a Newton step.
 Vector2d bent(const spline::SurfacePoint& E, const Vector2d& d, const Vector2d& lo, const Vector2d& hi) noexcept {
   constexpr double kStraight = 0.1, kTooBent = 0.75;
-  constexpr double kPole = 0.01;  // near a collapsed side the second-order model of the map is worth nothing
+  constexpr double kPole = 0.01;  // near a collapsed side the second-order model of the parameterisation is useless
   const Vector3d along_u = (hi[0] - lo[0]) * E.Su, along_v = (hi[1] - lo[1]) * E.Sv;
   if (along_u.cross(along_v).norm() < kPole * std::max(along_u.squaredNorm(), along_v.squaredNorm())) return d;
   const Vector3d acceleration = d[0] * d[0] * E.Suu + 2 * d[0] * d[1] * E.Suv + d[1] * d[1] * E.Svv;
@@ -163,8 +168,9 @@ Vector2d bent(const spline::SurfacePoint& E, const Vector2d& d, const Vector2d& 
   return inside ? curved : d;
 }
 
-/// The step from an evaluated point: the box minimum, no longer than twice the distance (the new foot is no farther
-/// from the probe than this one, so it lies within that), and out of a saddle where the gradient vanishes.
+/// Returns the step from an evaluated point to the minimum in the box. The step is at most twice the distance to the
+/// probe, because the new foot is not farther from the probe than this point. At a saddle with vanishing gradient, the
+/// step leads out of the saddle.
 Step stepFrom(const Patch& patch, const Array2d& uv, const spline::SurfacePoint& E, const Vector3d& r) noexcept {
   constexpr double kVanishingGradient = 1e-6;
   const QuadraticModel m = modelOf(E, r);
@@ -186,9 +192,10 @@ Step stepFrom(const Patch& patch, const Array2d& uv, const spline::SurfacePoint&
   return step;
 }
 
-/// What the probe sees of a foot with these tangents.
+/// Computes normal, height and distance of a foot from its tangents.
 void look(LocalFoot& foot, const Patch& patch, const Vector3d& p, const Vector3d& Su, const Vector3d& Sv) noexcept {
-  constexpr double kVanishing = 1e-9;  // sine of the angle of the tangents, or their ratio: a pole or a cusp
+  // sine of the angle between the tangents, or ratio of their lengths; below it the point is a pole or a cusp
+  constexpr double kVanishing = 1e-9;
   const Vector3d n = Su.cross(Sv), r = p - foot.S;
   const double length = n.norm();
   foot.regular = length > kVanishing * (Su.squaredNorm() + Sv.squaredNorm());
@@ -197,7 +204,8 @@ void look(LocalFoot& foot, const Patch& patch, const Vector3d& p, const Vector3d
   foot.distance = r.norm();
 }
 
-/// The foot at uv + d by Taylor expansion about the evaluated point, for a step too small to be worth evaluating.
+/// Computes the foot at uv + d by Taylor expansion about the evaluated point, if the step is too small to be worth an
+/// evaluation.
 void moveTo(LocalFoot& foot, const Patch& patch, const Vector3d& p, const Iterate& at, const Step& step) noexcept {
   const spline::SurfacePoint& E = at.E;
   const double du = step.d[0], dv = step.d[1];
@@ -244,7 +252,7 @@ void prepare(const Patch& patch, Iterate& at) noexcept {
   at.known = Iterate::Known::kAll;
 }
 
-/// From the probe to the point of an iterate, and half its square, which Newton makes least.
+/// The vector r from the probe to the point of an iterate, and f = |r|^2 / 2, which Newton's method minimizes.
 struct Gap {
   Vector3d r;
   double f;
@@ -255,7 +263,7 @@ Gap gapOf(const Iterate& at, const Vector3d& p) noexcept {
   return {r, 0.5 * r.squaredNorm()};
 }
 
-/// Where this share of a step leads. A whole step ends exactly on the bounds that it names.
+/// Returns (u, v) after a share of a step. A whole step ends exactly on the sides in step.sides.
 Array2d targetOf(const Patch& patch, const Iterate& at, const Step& step, double share) noexcept {
   Array2d target = at.uv + share * step.d.array();
   if (share == 1)
@@ -266,8 +274,8 @@ Array2d targetOf(const Patch& patch, const Iterate& at, const Step& step, double
   return target;
 }
 
-/// Goes along a step as far as the point comes nearer to the probe, within `rounding` [m] of its place.
-/// @return the share of the step that was taken; 0: none, after max_evaluations
+/// Goes along a step, and shortens it until the point is not farther from the probe than before, except for `rounding`
+/// [m]. @return the share of the step that was made; 0 if max_evaluations was reached before
 double advance(const Patch& patch, const Vector3d& p, Step& step, int max_evaluations, double rounding, Iterate& at,
                Gap& gap, LocalFoot& foot) noexcept {
   double share = 1;
@@ -305,7 +313,7 @@ void startNewton(const Patch& patch, Iterate& at, LocalFoot& foot) noexcept {
 bool mayStepAgain(const Patch& patch, QuickResult result, Iterate& at, LocalFoot& foot) noexcept {
   if (result == QuickResult::kNearer) ++foot.evaluations;
   if (result == QuickResult::kFarther) {
-    evaluate(patch, at.uv, at);  // as it was: cheaper than a copy in every tick
+    evaluate(patch, at.uv, at);  // restores the point before the step, which costs less than a copy in every tick
     foot.evaluations += 2;
   }
   return result == QuickResult::kNearer;
@@ -317,13 +325,13 @@ void descend(const Patch& patch, const Vector3d& p, Iterate& at, double toleranc
   Gap gap = gapOf(at, p);
   const double rounding = kRounding * (p.norm() + at.E.S.norm());
   const double enough = std::max(tolerance, rounding);
-  double last_length = 0;  // of the step that led to this point, 0: none
+  double last_length = 0;  // length of the step that led to this point, or 0
   Step step;
   double length = 0;
   for (;;) {
     step = stepFrom(patch, at.uv, at.E, gap.r);
     length = (at.E.Su * step.d[0] + at.E.Sv * step.d[1]).norm();
-    // Newton squares the error: the next step would be about length * (length / last_length)^2.
+    // Newton's method squares the error, so the next step would be about length * (length / last_length)^2.
     const double ratio = length / last_length;
     if (length <= enough || (ratio < 0.1 && 10 * length * ratio * ratio <= enough)) {
       foot.converged = true;
@@ -349,7 +357,7 @@ void directFoot(const Patch& patch, const Vector3d& p, Iterate& at, int steps, i
     ++foot.evaluations;
   }
   Vector2d d{0, 0};
-  foot.residual = (at.E.S - p).norm();  // without a step nothing is known
+  foot.residual = (at.E.S - p).norm();  // the only bound if no step is made
   for (int i = 0; i < steps && foot.evaluations < max_evaluations; ++i) {
     const Vector3d psi = p - at.E.S;
     const Matrix2d G = damped(at.E);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Local closest point on one patch: the safeguarded Newton iteration, and the paper's one-step method as reference.
+/// The closest point on one patch near a given point: the safeguarded Newton iteration, and direct parametric tracing
+/// (Thompson et al. 1999) as reference.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -9,13 +10,13 @@
 
 namespace hapticd::trace {
 
-/// What a track keeps from tick to tick: the last evaluated point of the patch. The first step of the next tick starts
-/// from it for free, so the evaluation of a tick happens where that step lands.
+/// The last evaluated point of a patch, which a track keeps from tick to tick. The first step of the next tick starts
+/// from this point without a new evaluation; the evaluation of that tick is done at the end of the step.
 struct Iterate {
   enum class Known : std::uint8_t {
-    kParameters,  ///< uv
-    kPoint,       ///< and E, the point there
-    kAll          ///< and the state, which belongs to E
+    kParameters,  ///< only uv
+    kPoint,       ///< uv, and E, the point there
+    kAll          ///< uv, E, and the state, which belongs to E
   };
   Eigen::Array2d uv{0, 0};
   spline::SurfacePoint E{};
@@ -23,36 +24,37 @@ struct Iterate {
   QuickState state{};
 };
 
-/// A foot on one patch. QuickKernels::foot fills it as far as `height`.
+/// A foot on one patch. QuickState::step writes the members up to `height`, in this order.
 struct LocalFoot {
   alignas(32) Eigen::Array2d uv{0, 0};
   alignas(32) Eigen::Vector3d S;
   alignas(32) Eigen::Vector3d normal;  ///< outward, unit
   alignas(32) double distance = 0;     ///< [m] |p - S|
   double residual = 0;                 ///< [m] estimated distance from S to the true foot
-  double height = 0;                   ///< [m] of the probe over the tangent plane
-  SideMask sides = 0;                  ///< sides that hold the foot and keep it from going on
+  double height = 0;                   ///< [m] height of the probe over the tangent plane
+  SideMask sides = 0;                  ///< sides at which the foot is held, because the distance would fall beyond them
   int evaluations = 0;
   bool converged = false;
-  bool regular = false;  ///< the tangents span a plane; if not, normal and height mean nothing
+  bool regular = false;  ///< true if the tangents span a plane; otherwise normal and height have no meaning
 };
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Rounding of coordinates, relative to their size, in the difference of two points.
+/// Rounding error of the difference of two points, relative to the size of the coordinates.
 inline constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 
-/// [rt] Parts of newtonFoot that the common tick does without. The first makes ready for quick steps, the second counts
-/// one that found no foot and says whether another makes sense, the third finds the foot from any point.
+/// [rt] The parts of newtonFoot() that most ticks do not need. startNewton() prepares quick steps. mayStepAgain()
+/// counts a quick step that found no foot, and returns true if another one makes sense. descend() finds the foot from
+/// any point.
 void startNewton(const Patch& patch, Iterate& at, LocalFoot& foot) noexcept;
 bool mayStepAgain(const Patch& patch, QuickResult result, Iterate& at, LocalFoot& foot) noexcept;
 void descend(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
              LocalFoot& foot) noexcept;
 
-/// [rt] Nearest point of the patch near `at`: Newton on |S(u,v) - p|^2 over the parameter rectangle. The step solves
-/// the quadratic model exactly inside the rectangle, so a foot that meets a side slides along it and stops in corners;
-/// a step that does not decrease the distance is shortened. Stops when the estimated error is below `tolerance` [m] or
-/// after `max_evaluations`. `at` keeps the last evaluated point.
+/// [rt] Finds the point of the patch near `at` that is nearest to p, by Newton's method on |S(u,v) - p|^2 over the
+/// parameter rectangle. Each step solves the quadratic model exactly inside the rectangle, so a foot that meets a side
+/// slides along it and stops in corners. A step that does not decrease the distance is shortened. The search stops when
+/// the estimated error is below `tolerance` [m] or after `max_evaluations`. `at` becomes the last evaluated point.
 inline void newtonFoot(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
                        LocalFoot& foot) noexcept {
   constexpr int kQuickSteps = 3;
@@ -80,9 +82,9 @@ inline LocalFoot newtonFoot(const Patch& patch, const Eigen::Vector3d& p, Iterat
   return foot;
 }
 
-/// [rt] Direct parametric tracing (Thompson et al. 1999, Eq. 1-3, with the exact rational derivative instead of the
-/// refined polygon's): `steps` first-order steps (tangent-plane projection), each clamped to the rectangle; fewer if
-/// `max_evaluations` do not suffice. The residual is the length of the last step.
+/// [rt] Direct parametric tracing (Thompson et al. 1999, Eq. 1-3, with the exact rational derivative instead of that of
+/// the refined polygon). It makes `steps` first-order steps (projection onto the tangent plane), each clamped to the
+/// rectangle, or fewer if `max_evaluations` is reached. The residual is the length of the last step.
 void directFoot(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, int steps, int max_evaluations,
                 LocalFoot& foot) noexcept;
 

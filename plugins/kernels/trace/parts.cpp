@@ -12,17 +12,17 @@ namespace {
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
-constexpr int kFine = 8, kCoarse = 4;  // cells a side of the grid that stands for a patch
-constexpr double kInside = 0.75;       // winding numbers: a probe on a surface sees 0.5
+constexpr int kFine = 8, kCoarse = 4;  // cells along each side of the grid by which a patch is approximated
+constexpr double kInside = 0.75;       // winding numbers; on a surface the winding number is 0.5
 constexpr double kOutside = 0.25;
-constexpr std::size_t kMostWork = 20'000'000;  // solid angles: about a second
-constexpr std::size_t kFinePatches = 64;       // more of them are sketched coarsely
+constexpr std::size_t kMostWork = 20'000'000;  // solid angles that are computed, which takes about a second
+constexpr std::size_t kFinePatches = 64;       // if there are more patches, the coarse grid is used
 
 struct Triangle {
   Vector3d a, b, c;
 };
 
-/// A shell, coarsely.
+/// A coarse approximation of a shell by triangles.
 struct Sketch {
   std::vector<Triangle> triangles;
   std::vector<Vector3d> points;
@@ -60,7 +60,8 @@ struct Sketch {
   Vector3d middle() const { return box.center(); }
 };
 
-/// Solid angle of a triangle over 4 pi, positive if its outward side is away from p (Van Oosterom & Strackee 1983).
+/// Returns the solid angle of a triangle divided by 4 pi, positive if its outward side faces away from p (Van Oosterom
+/// & Strackee 1983).
 double winding(const Triangle& t, const Vector3d& p) {
   const Vector3d a = t.a - p, b = t.b - p, c = t.c - p;
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
@@ -68,12 +69,12 @@ double winding(const Triangle& t, const Vector3d& p) {
   return up == 0 ? 0 : std::atan2(up, down) / (2 * std::numbers::pi);
 }
 
-/// The parts found so far, and what may still be spent on finding out.
+/// The parts found so far, and the work spent on them.
 class Grouping {
  public:
   Grouping(const std::vector<Sketch>& shells) : shells_(shells) {}
 
-  /// The part that a shell belongs to: the first that it does not run into.
+  /// Returns the part of a shell: the first part that the shell does not overlap.
   int place(std::size_t shell) {
     std::size_t to = 0;
     while (to < parts_.size() && runInto(shell, parts_[to])) ++to;
@@ -89,7 +90,7 @@ class Grouping {
   bool complete() const { return complete_; }
 
  private:
-  using Part = std::vector<std::size_t>;  ///< shells
+  using Part = std::vector<std::size_t>;  ///< indices of shells
 
   bool runInto(std::size_t shell, const Part& part) {
     if (intoOne(shell, part)) return true;
@@ -98,7 +99,7 @@ class Grouping {
     return false;
   }
 
-  /// Whether a point of a shell is well inside a part while another is well outside.
+  /// True if one point of a shell is well inside a part and another point is well outside.
   bool intoOne(std::size_t shell, const Part& part) {
     bool in = false, out = false;
     for (std::size_t i = 0; i < shells_[shell].points.size() && !(in && out); ++i) {
@@ -131,8 +132,8 @@ class Grouping {
     return number;
   }
 
-  static constexpr double kFar = 2;            // diagonals
-  static constexpr std::size_t kDipoles = 16;  // or boxes looked at, in the time of a solid angle
+  static constexpr double kFar = 2;  // in diagonals of the shell's box; beyond it a shell is treated as a dipole
+  static constexpr std::size_t kDipoles = 16;  // dipoles or boxes that take as long as one solid angle
   const std::vector<Sketch>& shells_;
   std::vector<Part> parts_;
   std::size_t work_ = 0;

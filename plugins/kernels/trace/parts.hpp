@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Which shells of a model bound one solid together, and which run into each other.
+/// Finds out which shells of a model together bound one solid, and which shells overlap.
 #pragma once
 #include <vector>
 
@@ -7,9 +7,9 @@
 
 namespace hapticd::trace {
 
-/// [main] The part of each shell, see Model::part(). By generalized winding numbers (Jacobson et al. 2013), which tell
-/// inside from outside for shells with openings too. Not `complete`: there are so many shells that some were put into
-/// the first part unseen.
+/// [main] Returns the part of each shell, see Model::part(). Uses generalized winding numbers (Jacobson et al. 2013),
+/// which distinguish inside from outside even for shells with openings. `complete` becomes false if there are so many
+/// shells or triangles that some shells were not tested against all others.
 std::vector<int> groupShells(const Model& model, bool& complete);
 
 }  // namespace hapticd::trace

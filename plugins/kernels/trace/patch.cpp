@@ -6,7 +6,8 @@
 namespace hapticd::trace {
 
 Eigen::Vector3d Patch::normalAt(const Eigen::Array2d& uv) const noexcept {
-  constexpr double kVanishing = 1e-9;  // |Su x Sv| against |Su||Sv|max of the patch: below it the direction is noise
+  // least |Su x Sv| relative to the largest |Su| |Sv| of the patch; below it the direction is noise
+  constexpr double kVanishing = 1e-9;
   constexpr int kNudges = 4;
   const Eigen::Array2d middle = 0.5 * (lo + hi);
   double nudge = 1e-4;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The common tick, written for speed: the last foot is near, the next one is inside the patch, and the surface between
-/// them is smooth. Plain arrays, so that one source (quick.inl) serves every instruction set; newton.hpp is the
-/// interface.
+/// A fast version of the tick that is most common: the last foot is near, the next foot is inside the patch, and the
+/// surface between them is smooth. It uses plain arrays, so that the same source (quick.inl) can be compiled for every
+/// instruction set. Other files use it through newton.hpp.
 #pragma once
 #include <cstdint>
 
@@ -12,47 +12,49 @@ namespace hapticd::trace {
 struct QuickState;
 enum class QuickResult : std::uint8_t;
 
-/// Evaluates S, Su, Sv, Suu, Suv, Svv at (u, v) into `E`, spline::kOutStride apart, and notes the cell there. False,
-/// and nothing done: not inside the patch.
+/// Evaluates S, Su, Sv, Suu, Suv, Svv at (u, v) into `E`, spline::kOutStride apart, and stores the cell there in
+/// `state`. Returns false, and changes nothing, if (u, v) is not inside the patch.
 using QuickEvaluate = bool (*)(QuickState& state, double u, double v, double* E) noexcept;
 
 /// @param p [m] the probe
-/// @param tolerance2 [m^2] of the foot's error
-/// @param uv, E, state the last evaluated point; in and out
-/// @param foot uv; S; outward unit normal; distance, residual and height of the probe over the tangent plane [m]:
-/// each spline::kOutStride after the last
+/// @param tolerance2 [m^2] square of the allowed error of the foot
+/// @param uv, E, state in: the last evaluated point; out: the new one
+/// @param foot becomes uv; S; the outward unit normal; then distance, residual and height of the probe over the tangent
+/// plane [m]. Each of the four groups begins spline::kOutStride after the one before
 using QuickStep = QuickResult (*)(const double* p, double tolerance2, double* uv, double* E, QuickState& state,
                                   double* foot) noexcept;
 
-/// What a step from an evaluated point needs and no probe changes, kept from one tick to the next.
+/// What a step from an evaluated point needs and what does not depend on the probe. It is kept from one tick to the
+/// next.
 struct alignas(32) QuickState {
   double tangents[3][4];  ///< x, y, z of Su, Sv, Suu, Suv
   double G[3];            ///< first fundamental form G11, G12, G22 [m^2]
   double shrink;          ///< 1 / |Su x Sv|
-  double bend[3][2];      ///< gradient of second order along u and v, for du^2, du dv, dv^2 [m^2]
+  double bend[3][2];      ///< second-order part of the gradient along u and v: coefficients of du^2, du dv, dv^2 [m^2]
   spline::TableCell cell;
-  double calm2;            ///< [m^2] a step up to this length (squared) needs no bend
-  double sign;             ///< of the outward normal, on Su x Sv
-  QuickEvaluate evaluate;  ///< beyond the cell
+  double calm2;            ///< [m^2] square of a length; a shorter step is not bent
+  double sign;             ///< outward normal = sign * (Su x Sv), normalized
+  QuickEvaluate evaluate;  ///< used outside the cell
   const void* patch;
   QuickStep step;
 };
 
 enum class QuickResult : std::uint8_t {
-  kFoot,      ///< found, after one evaluation
-  kSameFoot,  ///< found, without an evaluation: the probe has hardly moved
-  kNoStep,    ///< not tried: the point is not regular, or the step leaves the patch or is too long to be trusted
-  kNearer,    ///< evaluated, and nearer than before, but no foot yet
-  kFarther    ///< evaluated, but farther: E and state no longer belong to uv
+  kFoot,      ///< the foot was found, after one evaluation
+  kSameFoot,  ///< the foot was found without an evaluation, because the probe has hardly moved
+  /// No step was made: the point is not regular, or the step would leave the patch or is too long to be trusted.
+  kNoStep,
+  kNearer,  ///< the new point is nearer than before, but is not the foot yet
+  kFarther  ///< the new point is farther; E and state no longer belong to uv
 };
 
 struct QuickKernels {
-  /// Fills what the state says of E.
+  /// Sets the members of `state` that depend on the evaluated point E.
   void (*forms)(const double* E, QuickState& state) noexcept;
   QuickStep step;
 };
 
-/// [any] The kernels asked for.
+/// [any] Returns the kernels for an instruction set.
 const QuickKernels& quickKernels(spline::Instructions instructions) noexcept;
 
 }  // namespace hapticd::trace

@@ -1,7 +1,7 @@
-// Included after spline/kernel_common.inl, and under its rules, by one translation unit an instruction set.
-// No root and one division stand between a probe and the parameters to evaluate at, and no branch that the processor
-// does not foresee; all tests of safety run beside that chain, on squares. Dot products with Su, Sv, Suu, Suv come four
-// at once.
+// Included after spline/kernel_common.inl, under the same rules, by one translation unit per instruction set. Between
+// the probe and the parameters of the next evaluation there is only one division, no square root, and no branch that
+// the processor mispredicts. All safety tests run in parallel to that chain, on squares. Dot products with Su, Sv, Suu,
+// Suv are computed four at once.
 namespace {
 
 typedef double V2 __attribute__((vector_size(16)));
@@ -34,14 +34,14 @@ inline V2 swapped(V2 a) {
 }
 
 struct Forms {
-  V4 x, y, z;     // of Su, Sv, Suu, Suv
+  V4 x, y, z;     // coordinates of Su, Sv, Suu, Suv
   V2 G1;          // G11, G12
-  double G22;     // not-a-number where the tangents span no plane: then no test passes
+  double G22;     // NaN if the tangents do not span a plane, so that no test passes
   double shrink;  // 1 / |Su x Sv|
   V2 bend[3];
 };
 
-/// The inner product of a with b, and of a with c.
+/// Returns the inner products of a with b and of a with c.
 inline V2 dots(V4 a, V4 b, V4 c) {
   const V4 ab = a * b, ac = a * c;
   const V4 even = __builtin_shufflevector(ab, ac, 0, 4, 2, 6), odd = __builtin_shufflevector(ab, ac, 1, 5, 3, 7);
@@ -52,9 +52,9 @@ inline V4 cross(V4 a, V4 b) {
   return __builtin_shufflevector(zxy, zxy, 1, 2, 0, 3);
 }
 
-/// First and second fundamental quantities of an evaluated point.
+/// Computes the first and second fundamental quantities of an evaluated point.
 inline Forms makeForms(const double* E) {
-  constexpr double kShear2 = 1e-8;  // least squared sine of the angle of the tangents
+  constexpr double kShear2 = 1e-8;  // least squared sine of the angle between the tangents
   const V4 Su = get(E + kSu), Sv = get(E + kSv), Suu = get(E + kSuu), Suv = get(E + kSuv);
   const V4 xz = __builtin_shufflevector(Su, Sv, 0, 4, 2, 6), y = __builtin_shufflevector(Su, Sv, 1, 5, 3, 7);
   const V4 xz2 = __builtin_shufflevector(Suu, Suv, 0, 4, 2, 6), y2 = __builtin_shufflevector(Suu, Suv, 1, 5, 3, 7);
@@ -68,7 +68,7 @@ inline Forms makeForms(const double* E) {
   F.G1 = low(along_u);
   F.G22 = along_v[1];
   const double area2 = F.G1[0] * F.G22 - F.G1[1] * F.G1[1];
-  F.shrink = 1 / __builtin_sqrt(area2);  // takes long, and is needed last
+  F.shrink = 1 / __builtin_sqrt(area2);  // started early, because it takes long; it is needed last
   const bool regular = area2 > kShear2 * F.G1[0] * F.G22;
   if (!regular) [[unlikely]]
     F.G22 = __builtin_nan("");
@@ -102,16 +102,16 @@ inline Forms kept(const QuickState& in) {
 }
 
 struct Step {
-  V2 d;   // in the parameters
-  V2 H1;  // Hessian H11, H12
+  V2 d;   // step in the parameters
+  V2 H1;  // H11, H12 of the Hessian
   double H22;
-  double inverse;    // 1 / its determinant
-  double distance2;  // from the point to the probe
-  double length2;    // of the step in space
-  bool good;         // the quadratic model is convex and to be trusted so far; if not, the rest may be anything
+  double inverse;    // 1 / determinant of the Hessian
+  double distance2;  // squared distance from the point to the probe
+  double length2;    // squared length of the step in space
+  bool good;         // the quadratic model is convex and can be trusted; if false, other members have no meaning
 };
 
-/// H^-1 g, of a Hessian and 1 / its determinant.
+/// Returns H^-1 g. @param inverse 1 / determinant of H
 inline V2 solve(V2 H1, double H22, double inverse, V2 g) {
   return (g * V2{H22, H1[0]} - swapped(g) * both(H1[1])) * both(inverse);
 }
@@ -121,9 +121,9 @@ inline double lengthSquared(const Forms& F, V2 d) {
   return F.G1[0] * dd[0] + F.G22 * dd[1] + 2 * F.G1[1] * (d[0] * d[1]);
 }
 
-/// Newton's step on |S - p|^2.
+/// Computes Newton's step for |S - p|^2.
 inline Step stepFrom(const double* E, const Forms& F, const double* p) {
-  constexpr double kCurvature = 0.05;  // least 1 + depth * curvature: nearer to a centre of curvature, others decide
+  constexpr double kCurvature = 0.05;  // least 1 + depth * curvature; below it, descend() takes over
   const V4 x = splat(E[0]) - splat(p[0]), y = splat(E[1]) - splat(p[1]), z = splat(E[2]) - splat(p[2]);
   const V4 along = x * F.x + y * F.y + z * F.z;
   Step step;
@@ -139,10 +139,10 @@ inline Step stepFrom(const double* E, const Forms& F, const double* p) {
   return step;
 }
 
-/// Bends a step by what the second derivatives say of the gradient at its end: then it converges with third order
-/// where the probe is near. Returns the square of the bend's length.
+/// Corrects (bends) a step by the second-order part of the gradient at its end. Then the method converges with third
+/// order if the probe is near. Returns the squared length of the correction.
 inline double bendStep(const Forms& F, Step& step) {
-  constexpr double kBend2 = 0.0625;  // greatest share of the bend in the step, squared
+  constexpr double kBend2 = 0.0625;  // largest squared ratio of the correction to the step
   const V2 dd = step.d * step.d;
   const V2 k = F.bend[0] * both(dd[0]) + F.bend[2] * both(dd[1]) + F.bend[1] * both(step.d[0] * step.d[1]);
   const V2 bend = -solve(step.H1, step.H22, step.inverse, k);
@@ -152,7 +152,7 @@ inline double bendStep(const Forms& F, Step& step) {
   return bend2;
 }
 
-/// Whether both components are true.
+/// True if both components are true.
 inline bool all(decltype(V2{} < V2{}) mask) {
   return (mask[0] & mask[1]) != 0;
 }
@@ -161,16 +161,16 @@ inline bool inside(V2 uv, const spline::TableCell& cell) {
   return all((uv > get2(cell.lo)) & (uv < get2(cell.end)));
 }
 
-/// 1 / |n|, from 1 / |n| a little away.
+/// Returns 1 / |n|. @param near 1 / |n| at a point close by
 inline double shrinkTo(V4 n, double near) {
-  constexpr double kLittle = 1e-4;  // the series below leaves less than the cube
+  constexpr double kLittle = 1e-4;  // the error of the series below is less than the cube of this
   const double n2 = dots(n, n, n)[0], e = 1 - n2 * (near * near);
   if (!(e * e < kLittle * kLittle)) [[unlikely]]
     return 1 / __builtin_sqrt(n2);
   return near + near * e * (0.5 + 0.375 * e);
 }
 
-/// The foot at uv + d by Taylor expansion about the point.
+/// Writes the foot at uv + d, by Taylor expansion about the point.
 inline void finish(const double* E, const double* p, const QuickState& state, double shrink, V2 d, V2 uv,
                    double residual2, double* foot) {
   const V4 du = splat(d[0]), dv = splat(d[1]), half = splat(0.5);
@@ -193,10 +193,11 @@ QuickResult quickStep(const double* p, double tolerance2, double* uv, double* E,
                       double* foot) noexcept {
   const Forms before = kept(state);
   Step step = stepFrom(E, before, p);
-  // To bend takes as long as the step itself, so a branch leaves it out while the last ticks did without.
+  // The correction takes as long as the step itself, so it is left out if the last ticks did not need it.
   const bool bent = !(step.length2 <= state.calm2);
   const double bend2 = bent ? bendStep(before, step) : 0;
-  // The next foot is no farther from the probe than this one, so it is at most twice the distance away.
+  // The next foot is not farther from the probe than this point, so it is at most twice the distance away from this
+  // point.
   step.good &= step.length2 <= 4 * step.distance2;
   const V2 target = get2(uv) + step.d;
   if (!step.good) [[unlikely]]
@@ -220,8 +221,9 @@ QuickResult quickStep(const double* p, double tolerance2, double* uv, double* E,
   keep(F, state);
   store2(uv, target);
   const V2 there = target + next.d;
-  // Newton squares the error. After this step, about length * (length / last length)^2 is left of what grows with the
-  // distance, and last bend * (length / last length)^2 of the rest. A tenth of the tolerance may be.
+  // Newton's method squares the error. After this step, about length * (length / last length)^2 remains of the error
+  // that grows with the distance, and last correction * (length / last length)^2 of the rest. A tenth of the tolerance
+  // is allowed.
   const double now = next.length2, last = step.length2, enough = tolerance2;
   const double missed = bent ? bend2 : now;
   state.calm2 = 100 * missed * missed * missed <= enough * last * last ? 4 * last : 0;

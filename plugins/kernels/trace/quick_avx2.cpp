@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiled with -mavx2 -mfma; nothing here runs before quick_choice.cpp has asked the processor.
+// Compiled with -mavx2 -mfma. quick_choice.cpp uses this code only if the processor supports both.
 #include "kernels/trace/quick.hpp"
 
 namespace hapticd::trace {
@@ -8,7 +8,7 @@ using spline::kOutStride;
 using spline::Quad;
 
 #include "kernels/spline/kernel_common.inl"
-// After what it uses.
+// After kernel_common.inl, because it uses the functions there.
 #include "kernels/trace/quick.inl"
 
 const QuickKernels& avx2Quick() noexcept {

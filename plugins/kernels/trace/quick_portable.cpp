@@ -7,7 +7,7 @@ using spline::kOutStride;
 using spline::Quad;
 
 #include "kernels/spline/kernel_common.inl"
-// After what it uses.
+// After kernel_common.inl, because it uses the functions there.
 #include "kernels/trace/quick.inl"
 
 const QuickKernels& portableQuick() noexcept {

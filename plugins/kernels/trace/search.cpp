@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Global search over a model: leaves of the box tree that may matter soon, nearest first, and Newton from the middle
-/// of each.
+/// Global search over a model. It takes the leaves of the box tree that could soon have the nearest foot, nearest
+/// first, and starts Newton's method from the middle of each.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// One search under way.
+/// The state of one search.
 class Search {
  public:
   Search(const Model& model, const BoxTree& tree, std::span<const int> parts, const Vector3d& p, Found& found)
@@ -45,7 +45,8 @@ class Search {
     return a.distance != b.distance ? a.distance < b.distance : a.surface < b.surface;
   }
 
-  /// Looks at a leaf that is `bound` or more away: for the nearest foot of its surface, or else for another valley.
+  /// Examines a leaf: looks for the nearest foot of its surface, or else for another local minimum of the distance.
+  /// @param bound [m] lower bound of the leaf's distance
   void look(const Leaf& leaf, double bound) {
     const int source = model_.patch(leaf.patch).source;
     double& nearest = nearestOf(leaf.patch);
@@ -60,7 +61,8 @@ class Search {
       found_.nearest.push_back({source, leaf.middle[0], leaf.middle[1], kInfinity});
     }
     Near& near = found_.nearest[static_cast<std::size_t>(at)];
-    if (bound > nearest + Model::kSoon) {  // cannot become the nearest soon: a bound will do, and most work falls away
+    // this surface cannot become the nearest soon, so a bound is enough; this saves most of the work
+    if (bound > nearest + Model::kSoon) {
       near.distance = bound;
       return;
     }
@@ -71,7 +73,8 @@ class Search {
     nearest = std::min(nearest, near.distance);
   }
 
-  /// Distance of what was found of a patch's part: a tracer has to tell of each part whether the probe is inside.
+  /// Returns the nearest distance found so far for the part of a patch. Each part counts separately, because a tracer
+  /// must know for each part whether the probe is inside.
   double& nearestOf(int patch) { return nearest_[static_cast<std::size_t>(model_.part(model_.patch(patch).shell))]; }
 
   LocalFoot footFrom(const Leaf& leaf, int evaluations) const {
@@ -81,12 +84,13 @@ class Search {
     return newtonFoot(model_.patch(leaf.patch), p_, iterate, kTolerance, evaluations);
   }
 
-  /// A valley has its bottom in some leaf, and Newton from the middle of that leaf stays near: others are given up
-  /// after the first step.
+  /// Looks for a local minimum of the distance (a valley) in a leaf. Newton's method starts at the middle of the leaf.
+  /// If there is a minimum in this leaf, the steps stay near it; so the search is given up if the first step leads
+  /// away.
   void lookForValley(const Leaf& leaf) {
     if (!leaf.mayFace(p_) && !atFreeSide(leaf)) return;
     constexpr int kFirst = 2, kEvaluations = 20;
-    const double kNear = 2;  // half-widths of the leaf
+    const double kNear = 2;  // in half widths of the leaf
     const auto strays = [&leaf, kNear](const LocalFoot& foot) {
       return ((foot.uv - leaf.middle).abs() > kNear * leaf.half).any();
     };
@@ -109,7 +113,8 @@ class Search {
 
   void keepValley(int patch, const LocalFoot& foot) {
     const Patch& piece = model_.patch(patch);
-    if (!foot.converged || piece.goesOn(foot.sides)) return;  // beyond a common side it goes on down
+    // not a minimum if the distance still falls beyond a common side
+    if (!foot.converged || piece.goesOn(foot.sides)) return;
     for (const Valley& valley : valleys_)
       if (valley.near.surface == piece.source && (valley.point - foot.S).norm() < same_) return;
     valleys_.push_back({{piece.source, foot.uv[0], foot.uv[1], foot.distance}, foot.S, patch});
@@ -131,13 +136,13 @@ class Search {
 
   const Model& model_;
   const BoxTree& tree_;
-  std::span<const int> parts_;  ///< by patch
+  std::span<const int> parts_;  ///< part of each patch
   const Vector3d p_;
   Found& found_;
-  std::vector<int> slot_;  ///< by surface: index in found_.nearest before it is sorted
+  std::vector<int> slot_;  ///< for each surface, its index in found_.nearest before sorting
   std::vector<Valley> valleys_;
-  double same_;                  ///< [m] feet closer than this are one
-  std::vector<double> nearest_;  ///< [m] by part
+  double same_;                  ///< [m] feet that are closer than this are the same
+  std::vector<double> nearest_;  ///< [m] nearest distance found so far, for each part
 };
 
 }  // namespace

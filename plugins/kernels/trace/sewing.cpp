@@ -16,14 +16,15 @@ namespace {
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
-constexpr double kSewShare = 1e-5;  // of the model's diagonal
+constexpr double kSewShare = 1e-5;  // relative to the model's diagonal
 constexpr int kMaxWarnings = 100;
 
 Array2d cornerUv(const Patch& patch, int corner) {
   return {corner % 2 == 0 ? patch.lo[0] : patch.hi[0], corner / 2 == 0 ? patch.lo[1] : patch.hi[1]};
 }
 
-/// Points closer than a tolerance share an index. Cells of a hash grid keep it linear.
+/// Gives points that are closer than a tolerance the same index. A hash grid keeps the time linear in the number of
+/// points.
 class PointMerger {
  public:
   explicit PointMerger(double tolerance) : tolerance_(tolerance) {}
@@ -45,7 +46,8 @@ class PointMerger {
 
  private:
   std::array<long, 3> cellOf(const Vector3d& p) {
-    if (points_.empty()) origin_ = p;  // relative, so that far coordinates do not overflow a cell number
+    // cells are counted from this point, so that large coordinates do not overflow a cell number
+    if (points_.empty()) origin_ = p;
     const Vector3d q = (p - origin_) / (2 * tolerance_);
     return {std::lround(q.x()), std::lround(q.y()), std::lround(q.z())};
   }
@@ -60,7 +62,7 @@ class PointMerger {
 Sewing::Sewing(Model& model, const ModelOptions& options) : model_(model), options_(options) {
   const double diagonal = model.bounds_.diagonal().norm();
   tolerance_ = options.sew_tolerance > 0 ? options.sew_tolerance : kSewShare * diagonal;
-  // Coordinates far from the origin are no finer than their last bit.
+  // The tolerance must not be smaller than the rounding of the coordinates.
   tolerance_ = std::max({tolerance_, 1e-14 * model.bounds_.max().cwiseAbs().maxCoeff(), 1e-100});
 }
 
@@ -90,7 +92,7 @@ void Sewing::findVertices() {
 
 void Sewing::findPoles() {
   constexpr int kPoints = 9;
-  std::map<int, int> fan_at;  // by vertex
+  std::map<int, int> fan_at;  // index of a fan for each vertex
   for (int index = 0; index < model_.patchCount(); ++index) {
     Patch& patch = model_.patches_[static_cast<std::size_t>(index)];
     for (int side = 0; side < kSides; ++side) {
@@ -130,10 +132,11 @@ void Sewing::collectCurves() {
 void Sewing::joinStated() {
   const auto find = [this](const EdgeEnd& end) -> SideCurve* {
     if (end.surface < 0 || end.surface >= model_.surfaceCount())
-      throw std::invalid_argument("edges: surface " + std::to_string(end.surface) + ", expected 0 to " +
+      throw std::invalid_argument("edges: there is no surface " + std::to_string(end.surface) + ", expected 0 to " +
                                   std::to_string(model_.surfaceCount() - 1));
     const int first = model_.firstPatch(end.surface);
-    if (model_.lastPatch(end.surface) != first + 1) return nullptr;  // creased: its outer sides are found by geometry
+    // the surface has creases, so its outer sides are joined by geometry
+    if (model_.lastPatch(end.surface) != first + 1) return nullptr;
     for (SideCurve& curve : curves_)
       if (curve.patch == first && curve.side == end.side) return &curve;
     return nullptr;
@@ -165,12 +168,14 @@ void Sewing::joinByGeometry() {
       for (const SideCurve* other : group)
         if (!curve->used && other->used && (runsAlong(*curve, *other, false) || runsAlong(*curve, *other, true)))
           model_.warnings_.push_back(describe(curve->patch, curve->side) + " lies on an edge that already joins " +
-                                     describe(other->patch, other->side) + " and another; it is left open");
+                                     describe(other->patch, other->side) +
+                                     " and another surface; this side is left open");
   }
 }
 
-/// Whether the parameters of one edge on two surfaces run against each other: where their samples lie closer together.
-/// The nearest points do not tell, as along a straight side they are found from anywhere.
+/// True if the parameters of an edge run in opposite directions on its two surfaces. The samples of both sides are
+/// compared in both directions, and the direction with the smaller distances is right. The nearest points cannot decide
+/// this, because along a straight side they are found from any start.
 bool Sewing::runsBack(const SideCurve& a, const SideCurve& b) {
   double along = 0, back = 0;
   for (std::size_t i = 0; i < kSamples; ++i) {
@@ -185,7 +190,7 @@ bool Sewing::runsAlong(const SideCurve& a, const SideCurve& b, bool flipped) con
   for (int i = 0; i < kSamples; ++i) {
     const double fraction = i / (kSamples - 1.0);
     const Vector3d& p = a.points[static_cast<std::size_t>(i)];
-    // The same edge may be parameterised differently on its two surfaces: compare with the nearest point.
+    // The edge may have different parameterisations on its two surfaces, so compare with the nearest point.
     const double there = nearestFraction(other, b.side, p, flipped ? 1 - fraction : fraction);
     if (!((pointOnSide(other, b.side, there) - p).norm() <= tolerance_)) return false;
   }
@@ -224,14 +229,16 @@ void Sewing::reportTJunctions() {
       const double there = nearestFraction(other, open[j]->side, middle, 0.5);
       if ((pointOnSide(other, open[j]->side, there) - middle).norm() <= tolerance_)
         model_.warnings_.push_back("T-junction: " + describe(open[i]->patch, open[i]->side) + " covers a part of " +
-                                   describe(open[j]->patch, open[j]->side) + "; both are left open");
+                                   describe(open[j]->patch, open[j]->side) + "; both sides are left open");
     }
 }
 
-/// Warns of neighbours whose normals disagree. Seen from outside, a surface lies to the left of its boundary: two
-/// surfaces that agree run along their common edge in opposite directions.
+/// Warns of neighbours whose outward normals are on opposite sides. Seen from outside, a surface lies to the left of
+/// its boundary. So the boundaries of two surfaces with consistent normals run along their common edge in opposite
+/// directions.
 void Sewing::reportDisagreement() {
-  constexpr std::array<int, kSides> kCounterClockwise{-1, 1, 1, -1};  // along the parameter of the side, or against it
+  // 1 if the boundary runs along the parameter of the side, -1 if it runs against it
+  constexpr std::array<int, kSides> kCounterClockwise{-1, 1, 1, -1};
   for (int i = 0; i < model_.patchCount(); ++i)
     for (int s = 0; s < kSides && model_.warnings_.size() < kMaxWarnings; ++s) {
       const Patch& patch = model_.patch(i);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Finds what adjoins what in a model: vertices, seams, common edges, poles, shells.
+/// Finds how the patches of a model are joined: vertices, seams, common edges, poles, shells.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,17 +8,17 @@
 
 namespace hapticd::trace {
 
-/// Fills the topology of a Model under construction. Used once, by Model.
+/// Fills the topology of a Model under construction. Only the constructor of Model uses it.
 class Sewing {
  public:
   Sewing(Model& model, const ModelOptions& options);
-  /// [main] Adjacency that the options state, then the rest by geometry: sides that run within the tolerance of each
-  /// other, in either direction. What cannot be joined (T-junctions, a third surface at an edge) becomes a warning,
-  /// as do joined surfaces of which one is inside out.
+  /// [main] Joins the sides that the options name, then other sides by geometry: those that run within the tolerance of
+  /// each other, in either direction. Sides that cannot be joined (T-junctions, a third surface at an edge) cause a
+  /// warning, and so do joined surfaces whose outward normals are on opposite sides.
   void run();
 
  private:
-  static constexpr int kSamples = 5;  ///< points compared along a side
+  static constexpr int kSamples = 5;  ///< number of points that are compared along a side
   struct SideCurve {
     int patch, side;
     std::array<Eigen::Vector3d, kSamples> points;

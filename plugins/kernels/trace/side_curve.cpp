@@ -29,7 +29,7 @@ double nearestFraction(const Patch& patch, int side, const Vector3d& p, double s
     patch.surface.evaluate2(uv[0], uv[1], E);
     const Vector3d r = E.S - p;
     if (best_distance2 >= 0 && r.squaredNorm() > best_distance2) {
-      t = 0.5 * (t + best);  // came out farther: halve the step
+      t = 0.5 * (t + best);  // the new point is farther: halve the step
       continue;
     }
     best = t;
@@ -47,7 +47,8 @@ double nearestFraction(const Patch& patch, int side, const Vector3d& p, double s
 }
 
 PoleFan fanOf(const Patch& patch, int side) noexcept {
-  constexpr double kInward = 1e-3;  // of the parameter range: the direction to there is finite even if Sv vanishes
+  // relative to the parameter range; the direction to a point there is defined even if Sv vanishes
+  constexpr double kInward = 1e-3;
   PoleFan fan;
   const int axis = Patch::axisOf(side);
   const double inward = (side % 2 == 0 ? 1 : -1) * kInward * (patch.hi[axis] - patch.lo[axis]);
@@ -76,7 +77,7 @@ Vector3d fanNormal(const Patch& patch, int side, const PoleFan& fan) noexcept {
 }
 
 double cornerAngle(const Patch& patch, int corner) noexcept {
-  constexpr double kAside = 1e-3;  // of the range: chords stand for tangents, which may vanish
+  constexpr double kAside = 1e-3;  // relative to the range; chords are used instead of tangents, which may vanish
   const Array2d range = patch.hi - patch.lo;
   const Array2d at{corner % 2 == 0 ? patch.lo[0] : patch.hi[0], corner / 2 == 0 ? patch.lo[1] : patch.hi[1]};
   const Array2d inward{(corner % 2 == 0 ? kAside : -kAside) * range[0],

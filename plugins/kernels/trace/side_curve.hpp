@@ -5,15 +5,17 @@
 
 namespace hapticd::trace {
 
-/// [any] Point at `fraction` (0..1) of a side.
+/// [any] Returns the point at `fraction` (0 to 1) along a side.
 Eigen::Vector3d pointOnSide(const Patch& patch, int side, double fraction) noexcept;
-/// [any] Fraction (0..1) of the point of a side nearest to p, by safeguarded Newton from `start`; bounded work.
+/// [any] Returns the fraction (0 to 1) along a side of its point nearest to p, by a safeguarded Newton's method from
+/// `start` with a bounded number of steps.
 double nearestFraction(const Patch& patch, int side, const Eigen::Vector3d& p, double start) noexcept;
-/// [main] The directions in which a patch leaves the pole that its side has shrunk to.
+/// [main] Returns the directions in which a patch leaves its pole. @param side the side that has shrunk to a point
 PoleFan fanOf(const Patch& patch, int side) noexcept;
-/// [main] Sum over the fan of normal times angle [rad]: the pole's share of its vertex normal.
+/// [main] Returns the sum over the fan of normal times angle [rad], which is the share of this patch in the normal of
+/// the vertex at the pole.
 Eigen::Vector3d fanNormal(const Patch& patch, int side, const PoleFan& fan) noexcept;
-/// [main] Interior angle [rad] of a patch at a corner between sides that are no poles.
+/// [main] Returns the interior angle [rad] of a patch at a corner. Neither side at the corner may be a pole.
 double cornerAngle(const Patch& patch, int corner) noexcept;
 
 }  // namespace hapticd::trace

@@ -10,10 +10,11 @@ namespace {
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
-constexpr double kFarthest = 1e150;       ///< [m] squares of coordinates beyond overflow
-constexpr double kNeighbourReach = 0.15;  ///< [m] a neighbour nobody asked for is dropped beyond
+constexpr double kFarthest = 1e150;  ///< [m] squares of larger coordinates overflow
+/// [m] a neighbour that the host did not activate is dropped beyond this distance.
+constexpr double kNeighbourReach = 0.15;
 
-/// Away from the common tick.
+/// Returns a foot without a place. Kept out of the code of the usual tick.
 [[gnu::cold, gnu::noinline]] Foot nothing(FootStatus status) noexcept {
   Foot foot;
   foot.status = status;
@@ -71,11 +72,12 @@ bool Tracer::active(int surface) const noexcept {
   return false;
 }
 
-/// Finds the foot of this tick.
+/// Computes the foot of a track for this tick.
 inline void Tracer::locate(int track, const Vector3d& p, const TraceOptions& options) noexcept {
   Track& t = tracks_[track];
   if (options.method == Method::kDirect) {
-    const int steps = track == nearest_ ? options.iterations : 1;  // the others only have to show how near they are
+    // for the other tracks one step shows how near they are
+    const int steps = track == nearest_ ? options.iterations : 1;
     directFoot(model_.patch(t.patch), p, t.at, steps, budget_, t.foot);
   } else {
     newtonFoot(model_.patch(t.patch), p, t.at, std::max(options.tolerance, 0.0), budget_, t.foot);
@@ -83,7 +85,7 @@ inline void Tracer::locate(int track, const Vector3d& p, const TraceOptions& opt
   budget_ -= t.foot.evaluations;
 }
 
-/// The foot near `at` on a patch.
+/// Computes the foot near `at` on a patch.
 LocalFoot Tracer::footFrom(int patch, Iterate& at, const Vector3d& p, const TraceOptions& options) noexcept {
   LocalFoot foot;
   if (options.method == Method::kDirect) {
@@ -95,7 +97,8 @@ LocalFoot Tracer::footFrom(int patch, Iterate& at, const Vector3d& p, const Trac
   return foot;
 }
 
-/// Notes a foot that was located. Returns the track that holds it then: a rival may join the patch's first foot.
+/// Records a foot that was computed by locate(). Returns its track, which may change because equal feet of a patch are
+/// merged.
 inline int Tracer::note(int track) noexcept {
   tracks_.refined(track);
   if (tracks_[tracks_[track].patch].rival < 0) [[likely]]
@@ -115,7 +118,7 @@ int Tracer::refine(int track, const Vector3d& p, const TraceOptions& options) no
   return note(track);
 }
 
-/// Whether the nearest foot is the answer, and nothing else has changed.
+/// True if the nearest foot is the foot of this tick, and the state of the contact does not change.
 inline bool Tracer::goesOn(const Vector3d& p, const Vector3d& last, const TraceOptions& options) noexcept {
   Contact& contact = contacts_[0];
   const LocalFoot& foot = tracks_[nearest_].foot;
@@ -128,14 +131,15 @@ inline bool Tracer::goesOn(const Vector3d& p, const Vector3d& last, const TraceO
 }
 
 Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
-  if (!(p.lpNorm<1>() <= kFarthest)) {  // also true for not-a-number
+  if (!(p.lpNorm<1>() <= kFarthest)) {  // also true for NaN
     forgetContact();
     return nothing(FootStatus::kInvalid);
   }
   const int budget = std::max(options.max_evaluations, 1);
   budget_ = budget;
   if (nearest_ >= 0) [[likely]]
-    locate(nearest_, p, options);  // takes long and waits for nothing: the processor does the rest meanwhile
+    // this takes longest and depends on nothing below, so the processor does the rest in parallel
+    locate(nearest_, p, options);
   const Vector3d last = has_last_ ? last_p_ : p;
   if (has_last_) tracks_.gone((p - last).norm());
   last_p_ = p;
@@ -154,7 +158,8 @@ Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
   return settle(p, last, options, budget);
 }
 
-/// The foot of a tick that is not common. On its own, so that the foot is made where the caller wants it.
+/// Computes the foot of a tick that needs more than step() does. It is a separate function, so that the compiler can
+/// build the foot in the caller's place.
 Foot Tracer::settle(const Vector3d& p, const Vector3d& last, const TraceOptions& options, int budget) noexcept {
   Foot foot;
   if (options.unite && model_.partCount() > 1) {
@@ -171,7 +176,7 @@ Foot Tracer::settle(const Vector3d& p, const Vector3d& last, const TraceOptions&
   return foot;
 }
 
-/// The nearest foot of a part (-1: of all), as its outward normal sees it.
+/// Returns the nearest foot of a part (-1 for all parts), with its outward normal.
 Foot Tracer::nearestFoot(int part, const Vector3d& p, const TraceOptions& options) noexcept {
   Foot foot;
   if (part >= 0) return nearestOfPart(part, p, options, foot) ? foot : nothing(FootStatus::kIdle);
@@ -181,26 +186,27 @@ Foot Tracer::nearestFoot(int part, const Vector3d& p, const TraceOptions& option
   return describe(nearest_, p, 0);
 }
 
-/// Nearest foot of a part (-1: of all), refined in this tick, looking at track `start` (-1: none) first.
+/// Returns the track with the nearest foot of a part (-1 for all parts), refined in this tick. Track `start` is
+/// examined first, unless it is -1.
 int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions& options) noexcept {
   double best = kInfinity;
   int nearest = -1;
-  for (int index : tracks_.active()) {  // what was refined in this tick already
+  for (int index : tracks_.active()) {  // tracks that were refined in this tick already
     const Track& t = tracks_[index];
     if ((part >= 0 && t.part != part) || t.tick != tracks_.tick() || !(t.foot.distance < best)) continue;
     best = t.foot.distance;
     nearest = index;
   }
-  int crossed = -1;  // where track `start` has gone on to
+  int crossed = -1;  // track to which the foot of `start` has moved
   for (int index = start >= 0 ? start : tracks_.mostPromising(best, part); index >= 0 && budget_ > 0;
        index = tracks_.mostPromising(best, part)) {
     const bool last = index == start;
     if (const double bound = last ? 0 : model_.patch(tracks_[index].patch).atLeast(p); bound >= best) {
-      tracks_.farther(index, bound);  // much cheaper than to refine it
+      tracks_.farther(index, bound);  // this costs much less than refining the foot
       continue;
     }
     index = refine(index, p, options);
-    if (last) {  // first things first: there may be no budget left for it
+    if (last) {  // done now, because later there may be no budget left
       index = crossed = tracks_[index].foot.sides == 0 ? index : cross(index, p, options);
     } else if (tracks_[index].foot.sides != 0) {
       crossSeams(index, p, options);
@@ -213,12 +219,13 @@ int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions
   return nearest == crossed ? nearest : cross(nearest, p, options);
 }
 
-/// Whether a rival cannot become the nearest before the next search, or left for another patch, which follows it.
+/// True if a rival cannot become the nearest before the next search, or has moved on to another patch, which follows
+/// it.
 bool Tracer::isHopeless(const Track& rival, double best) const noexcept {
   return rival.foot.distance > best + Model::kSoon || model_.patch(rival.patch).goesOn(rival.foot.sides);
 }
 
-/// Replaces a foot by the one found from (u, v) on its patch if that is nearer.
+/// Replaces a foot by the foot found from (u, v) on the same patch, if the new foot is nearer. Returns true if so.
 bool Tracer::tryFrom(int track, const Array2d& uv, const Vector3d& p, const TraceOptions& options) noexcept {
   if (budget_ <= 0) return false;
   Track& t = tracks_[track];
@@ -232,7 +239,7 @@ bool Tracer::tryFrom(int track, const Array2d& uv, const Vector3d& p, const Trac
   return true;
 }
 
-/// Follows a foot across the sides that it meets, while that brings it nearer. Returns the track that it ends on.
+/// Follows a foot across the sides that it meets, as long as it comes nearer. Returns its last track.
 int Tracer::cross(int track, const Vector3d& p, const TraceOptions& options) noexcept {
   for (int i = 0; i < kMaxCrossings && budget_ > 0; ++i) {
     const SideMask sides = tracks_[track].foot.sides;
@@ -245,8 +252,8 @@ int Tracer::cross(int track, const Vector3d& p, const TraceOptions& options) noe
   return track;
 }
 
-/// Follows a foot across the seams and poles that it meets. Beyond other sides another track goes on; here there is
-/// none, and a foot left on a seam would tell that the surface is farther than it is.
+/// Follows a foot across the seams and poles that it meets. Beyond other sides another track follows the foot. Beyond a
+/// seam or pole there is none, so a foot that stayed there would make the surface seem farther than it is.
 void Tracer::crossSeams(int track, const Vector3d& p, const TraceOptions& options) noexcept {
   const Track& t = tracks_[track];
   for (int side = 0; side < kSides; ++side) {
@@ -258,10 +265,11 @@ void Tracer::crossSeams(int track, const Vector3d& p, const TraceOptions& option
   }
 }
 
-/// Whether a patch that was not refined in this tick had better start from (u, v), where a neighbour's foot `there` has
-/// come to the common side, than from its own foot: that is farther from the probe, and not on the way.
+/// True if a patch should start from (u, v), where a neighbour's foot `there` has reached the common side, instead of
+/// from its own foot. This is so if its own foot is farther from the probe, far from `there`, and was not refined in
+/// this tick.
 bool Tracer::isFarther(int patch, const Array2d& uv, const LocalFoot& there, const Vector3d& p) const noexcept {
-  constexpr double kAway = 0.05;  // of the range of the parameters
+  constexpr double kAway = 0.05;  // relative to the range of the parameters
   const Track& t = tracks_[patch];
   if (t.tick == tracks_.tick() || t.held) return false;
   if (t.at.known == Iterate::Known::kParameters)
@@ -269,7 +277,7 @@ bool Tracer::isFarther(int patch, const Array2d& uv, const LocalFoot& there, con
   return (t.at.E.S - p).norm() > there.distance && (t.at.E.S - there.S).norm() > there.distance;
 }
 
-/// The track on which the foot goes on nearer to the probe beyond a side, -1: none.
+/// Follows a foot across a side. Returns the track on which the foot is nearer to the probe, or -1 if there is none.
 int Tracer::crossSide(int track, int side, const Vector3d& p, const TraceOptions& options) noexcept {
   const double tolerance = options.tolerance;
   const int patch = tracks_[track].patch;
@@ -286,7 +294,8 @@ int Tracer::crossSide(int track, int side, const Vector3d& p, const TraceOptions
   if (isFarther(next, there, tracks_[track].foot, p)) tracks_.restart(next, there);
   if (budget_ > 0) refine(next, p, options);
   if (tracks_[next].tick != tracks_.tick()) return -1;
-  // The common side belongs to the neighbour too: if its foot is farther away, it sits in another valley.
+  // The common side belongs to the neighbour too. If the neighbour's foot is farther than the point there, it is at
+  // another local minimum.
   if (tracks_[next].foot.distance > best + tolerance) {
     if (tracks_[next].held) return slideOver(track, side, p, options);
     const Iterate at = tracks_[next].at;
@@ -298,10 +307,11 @@ int Tracer::crossSide(int track, int side, const Vector3d& p, const TraceOptions
   return nearer ? next : -1;
 }
 
-/// Where a foot on a pole goes on: along the ray that leads nearest to the probe, in its own patch or (`around`) in any
-/// that ends in the same point. Returns the track on which it is nearer to the probe, -1: none.
+/// Moves a foot away from a pole, along the ray that leads nearest to the probe. The ray is in the same patch or, if
+/// `around` is true, in any patch that ends at this point. Returns the track on which the foot is nearer to the probe,
+/// or -1 if there is none.
 int Tracer::leavePole(int track, int side, const Vector3d& p, const TraceOptions& options, bool around) noexcept {
-  constexpr double kOutward = 1e-9;  // cosine: rays at right angles to the probe lead no nearer
+  constexpr double kOutward = 1e-9;  // cosine; rays at right angles to the direction of the probe do not come nearer
   constexpr int kMostFans = 16;
   const int patch = tracks_[track].patch;
   const double best_distance = tracks_[track].foot.distance;

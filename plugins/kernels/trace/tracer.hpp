@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Traces one probe over the active surfaces of a model: the nearest foot outside, the held one inside. One Tracer a
-/// probe; the Model is shared.
+/// Traces one probe over the active surfaces of a model: outside the model it gives the nearest foot, inside it gives
+/// the foot of the held contact. Each probe needs its own Tracer; all can share the Model.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,45 +12,47 @@
 namespace hapticd::trace {
 
 enum class Method : std::uint8_t {
-  kDirect,  ///< the paper's first-order step, a fixed number of them a tick
-  kNewton   ///< safeguarded Newton to a tolerance
+  kDirect,  ///< direct parametric tracing (Thompson et al. 1999): a fixed number of first-order steps per tick
+  kNewton   ///< safeguarded Newton's method to a tolerance
 };
 
 struct TraceOptions {
   Method method = Method::kNewton;
-  int iterations = 1;        ///< steps a tick of kDirect on a surface, 1..4
+  int iterations = 1;        ///< steps of kDirect per tick on a surface, 1 to 4
   double tolerance = 1e-9;   ///< [m] error of the foot at which kNewton stops
-  int max_evaluations = 12;  ///< bound of the work of one tick, over all surfaces
-  /// What is felt, and how long a contact is held. Here: the front of the nearest face, always.
+  int max_evaluations = 12;  ///< most evaluations in one tick, over all surfaces
+  /// Which sides are felt, and the contact hysteresis. By default always the front of the nearest face is felt, without
+  /// hysteresis.
   contact::ContactRule rule{contact::Sides::kFront, 0};
-  /// Whether parts that run into each other are felt as one solid. Otherwise the nearest foot of all decides alone.
+  /// True if overlapping parts are felt as one solid. If false, only the nearest foot of all parts decides.
   bool unite = true;
 };
 
-/// The foot as it is felt, in the model's frame. Inside two parts at once: what leads out of both.
+/// The foot that is felt, in the model's frame. If the probe is inside two parts at once, the foot leads out of both.
 using contact::Foot;
 using contact::FootStatus;
 
-/// Local feet of all active surfaces, advanced once a tick. A surface is evaluated only in ticks in which it could hold
-/// the nearest foot (see tracks.hpp).
+/// Follows the local feet of all active surfaces from tick to tick. A surface is evaluated only in ticks in which it
+/// could have the nearest foot (see tracks.hpp).
 class Tracer {
  public:
   /// [main] Allocates all that stepping needs.
   explicit Tracer(const Model& model);
 
-  /// [rt] Starts tracing a surface at (u, v); `distance` [m], where known, is a lower bound of its distance from the
-  /// probe. On an active surface (u, v) is followed beside the feet that are known, and taken when it is the nearest.
+  /// [rt] Starts tracing a surface at (u, v). If the surface is already active, its known feet are kept and the foot
+  /// near (u, v) is followed as well. @param distance [m] a lower bound of the distance from the probe, or 0 if it is
+  /// unknown
   void activate(int surface, double u, double v, double distance = 0) noexcept;
   /// [rt] Stops tracing a surface.
   void deactivate(int surface) noexcept;
-  /// [rt] Forgets everything: nothing is active.
+  /// [rt] Forgets everything; no surface is active then.
   void reset() noexcept;
-  /// [rt] Foot of probe `p` (model frame) as it is felt. A probe that is no finite position leaves all tracks
-  /// unchanged; after it a contact begins on the nearest face.
+  /// [rt] Returns the foot of probe `p` (model frame) that is felt. If `p` is not finite, the status is kInvalid and
+  /// all tracks stay unchanged; the next contact then begins on the nearest face.
   Foot step(const Eigen::Vector3d& p, const TraceOptions& options = {}) noexcept;
-  /// [rt] Forgets where the probe was: a contact begins on the nearest face.
+  /// [rt] Forgets where the probe was, so the next contact begins on the nearest face.
   void forgetContact() noexcept;
-  /// [rt] A shell gives way: from now on it is felt from its other side.
+  /// [rt] Lets the probe pop through a shell: from now on the other side of the shell is felt.
   void popThrough() noexcept;
 
   bool active(int surface) const noexcept;
@@ -60,23 +62,23 @@ class Tracer {
  private:
   class Faces;
 
-  /// The contact with a part of the model, or with all of it.
+  /// The contact with one part of the model, or with the whole model.
   struct Contact {
     contact::ContactState state;
-    int held = -1;  ///< track that the contact is held on, -1: none
+    int held = -1;  ///< track that holds the contact, or -1
   };
-  /// The first face in the probe's way.
+  /// The first face that the path of the probe meets.
   struct Crossing {
-    double share = 2;  ///< of the way
-    double side = 1;   ///< of the face from which it is entered
+    double share = 2;  ///< position of the crossing on the path, 0 to 1; 2 if there is none
+    double side = 1;   ///< side of the face from which it is entered: 1 front, -1 back
     int track = -1;
   };
 
-  /// What is known of a part of the model.
+  /// What the tracer knows about one part of the model.
   struct Part {
-    int nearest = -1;  ///< track
-    double depth = 0;  ///< [m] > 0 inside, when its nearest foot was last certain
-    double way = 0;    ///< [m] gone until then
+    int nearest = -1;  ///< track with the nearest foot of the part, or -1
+    double depth = 0;  ///< [m] depth of the probe (above 0 inside) when the part's nearest foot was last certain
+    double way = 0;    ///< [m] Tracks::way() at that time
     bool known = false;
   };
 
@@ -124,9 +126,9 @@ class Tracer {
   const Model& model_;
   Tracks tracks_;
   std::array<Part, Model::kMaxParts> parts_{};
-  std::array<Contact, Model::kMaxParts> contacts_{};  ///< by part; the first is also that with all parts together
+  std::array<Contact, Model::kMaxParts> contacts_{};  ///< one per part; the first is also used for all parts together
   Eigen::Vector3d last_p_{0, 0, 0};
-  int nearest_ = -1;  ///< track
+  int nearest_ = -1;  ///< track with the nearest foot of all, or -1
   int budget_ = 0;    ///< evaluations left in this tick
   bool has_last_ = false;
 };

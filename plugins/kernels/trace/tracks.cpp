@@ -9,12 +9,13 @@ namespace {
 
 using Eigen::Array2d;
 
-/// [m] A record tells the distance from where the probe was when the search began. The first one may be 10 ms old at
-/// 2 m/s; the others are younger than the results of the search before.
+/// [m] The distance in a record is measured from the place of the probe when the search began. The first record may be
+/// 10 ms old, which is this distance at 2 m/s. Later records are newer than the results of the search before.
 constexpr double kRecordAge = 0.02;
-/// A record whose (u, v) differ by less than this share of the range leads Newton to a foot that is followed already.
+/// If the (u, v) of a record and of a followed foot differ by less than this share of the range, Newton's method leads
+/// from the record to that foot.
 constexpr double kSameRecord = 0.02;
-/// Refined feet so close in (u, v), or in space [m], are the same.
+/// Two refined feet are the same if they are closer than this in (u, v), relative to the range, or in space [m].
 constexpr double kSameFoot = 1e-5, kSamePoint = 1e-8;
 
 }  // namespace
@@ -49,11 +50,12 @@ void Tracks::offer(int patch, const Array2d& uv, double distance, double best, b
     set(patch, inside, bound);
     return;
   }
-  if (distance > best + Model::kSoon || (inside != uv).any()) return;  // or the foot of another patch of the surface
+  // outside this patch, so the foot belongs to another patch of the surface
+  if (distance > best + Model::kSoon || (inside != uv).any()) return;
   if (follows(patch, inside, bound)) return;
   for (int i = patch; i >= 0; i = (*this)[i].rival)
     if ((*this)[i].touched < told_before_ && !(*this)[i].held) return set(i, inside, bound);
-  // Beyond a common side the foot goes on down: the neighbour's record tells of that valley.
+  // If the distance falls beyond a common side, the neighbour has its own record of that minimum.
   if (!(distance < best) && piece.goesOn(piece.sidesAt(inside))) return;
   if (const Track* rival = newRival(patch)) set(static_cast<int>(rival - tracks_.data()), inside, bound);
 }
@@ -76,8 +78,8 @@ void Tracks::restart(int patch, const Array2d& uv) noexcept {
   set(patch, uv, way_);
 }
 
-/// Notes that this tick brings results of a search. They may come in the middle of a tick and so in two: only what the
-/// search before the last one told is certainly older than where the newest search began.
+/// Records that this tick brings results of a search. They may be spread over two ticks. So only the results of the
+/// search before the last one are certainly older than the start of the newest search.
 void Tracks::noteSearch() noexcept {
   if (told_ == tick_) return;
   told_before_ = told_;
@@ -94,7 +96,8 @@ void Tracks::set(int index, const Array2d& uv, double bound) noexcept {
   key_[static_cast<std::size_t>(t.slot)] = bound;
 }
 
-/// Whether a record leads to a foot of the patch that is followed already, or to an older record, which it replaces.
+/// True if a record leads to a foot of the patch that is followed already, or to an older record, which it then
+/// replaces.
 bool Tracks::follows(int patch, const Array2d& uv, double bound) noexcept {
   const Array2d range = model_.patch(patch).hi - model_.patch(patch).lo;
   for (int i = patch; i >= 0; i = (*this)[i].rival) {
@@ -130,7 +133,8 @@ int Tracks::put(int patch, const Iterate& at, const LocalFoot& foot) noexcept {
   return index;
 }
 
-/// A rival that nobody uses, or else the one that has been out of interest for the longest time; none if all are new.
+/// Returns an unused rival, or else the rival that has not been used for the longest time, or null if all were used in
+/// this tick or hold contacts.
 Track* Tracks::newRival(int patch) noexcept {
   int index = patch_count_;
   for (int i = patch_count_; i < patch_count_ + kRivals && (*this)[index].slot >= 0; ++i)
@@ -173,7 +177,7 @@ void Tracks::drop(int index) noexcept {
   t.asked = t.held = false;
 }
 
-/// Whether two feet on one patch are the same.
+/// True if two feet on one patch are the same.
 bool Tracks::isSame(int patch, const LocalFoot& one, const LocalFoot& other) const noexcept {
   const Array2d range = model_.patch(patch).hi - model_.patch(patch).lo;
   return ((one.uv - other.uv).abs() < kSameFoot * range).all() || (one.S - other.S).norm() < kSamePoint;

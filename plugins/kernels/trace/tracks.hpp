@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The feet that a Tracer follows: one for each active patch, and rivals, feet in other valleys of the same patches.
+/// The feet that a Tracer follows: one for each active patch, and rivals. A rival is a foot at another local minimum of
+/// the distance on the same patch.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -9,75 +10,79 @@
 
 namespace hapticd::trace {
 
-/// One foot that is followed, or will be from a record of (u, v) as soon as it could be the nearest.
+/// One foot that is followed. A foot known only by a record of (u, v) is computed as soon as it could be the nearest.
 struct Track {
   Iterate at;
   LocalFoot foot;
-  std::uint64_t tick = 0;     ///< last tick that refined it
-  std::uint64_t touched = 0;  ///< last tick that refined it or in which a search offered it
+  std::uint64_t tick = 0;     ///< last tick in which the foot was refined
+  std::uint64_t touched = 0;  ///< last tick in which the foot was refined or a search offered it
   int patch = -1;
-  int part = 0;        ///< of the model, see Model::part()
-  int slot = -1;       ///< index among the active ones, -1: not active
-  int rival = -1;      ///< next foot on the same patch, -1: none
-  bool asked = false;  ///< activated by the host; otherwise by a neighbour's foot on a common side
-  bool held = false;   ///< a contact is on it: only the host may drop it
+  int part = 0;        ///< index of the patch's part, see Model::part()
+  int slot = -1;       ///< index in Tracks::active(), or -1 if not active
+  int rival = -1;      ///< next foot on the same patch, or -1
+  bool asked = false;  ///< true if activated by the host, false if activated by a neighbour's foot on a common side
+  bool held = false;   ///< true if this foot holds a contact; then only the host may drop it
 };
 
-/// Bookkeeping without geometry: which feet are followed, and how near the surface under each can be by now. The
-/// distance to a foot changes by at most the way the probe goes (it is 1-Lipschitz), so a bound is kept for free.
+/// Bookkeeping without geometry: which feet are followed, and a lower bound of the distance to each. A distance changes
+/// by at most the length of the probe's path (it is 1-Lipschitz), so the bounds stay valid without any evaluation.
 class Tracks {
  public:
-  /// [main] Allocates all there will ever be.
+  /// [main] Allocates all memory that will ever be needed.
   explicit Tracks(const Model& model);
 
   Track& operator[](int index) noexcept { return tracks_[static_cast<std::size_t>(index)]; }
   const Track& operator[](int index) const noexcept { return tracks_[static_cast<std::size_t>(index)]; }
-  /// [rt] Indices of the feet that are followed. Index of the first foot of a patch: the patch; rivals come after.
+  /// [rt] Returns the indices of the feet that are followed. The first foot of a patch has the index of the patch;
+  /// rivals have larger indices.
   const std::vector<int>& active() const noexcept { return active_; }
   bool isRival(int index) const noexcept { return index >= patch_count_; }
 
-  /// [rt] Follows a patch from (u, v), which a search found at `distance` [m] or more. On a patch that is followed this
-  /// starts a rival, or takes the place of a foot that has long been of no interest, unless it leads to a foot that is
-  /// followed already or is more than kSoon [m] farther than the nearest, at `best`.
+  /// [rt] Follows a patch from a record (u, v) of a search, with `distance` [m] as lower bound. If the patch is already
+  /// followed, the record becomes a rival, or replaces a foot that has long not been used. It is ignored if it leads to
+  /// a foot that is followed already, or is more than kSoon [m] farther than the nearest foot, whose distance is
+  /// `best`.
   void offer(int patch, const Eigen::Array2d& uv, double distance, double best, bool asked) noexcept;
-  /// [rt] Follows a patch that was not followed, from (u, v) where a neighbour's foot has come to the common side.
+  /// [rt] Starts following a patch at (u, v), where a neighbour's foot has reached the common side. Does nothing if the
+  /// patch is followed already.
   void follow(int patch, const Eigen::Array2d& uv) noexcept;
-  /// [rt] Goes on with a patch from (u, v), where a neighbour's foot has come to the common side. The foot that the
-  /// patch had becomes a rival if there is room.
+  /// [rt] Moves the first foot of a patch to (u, v), where a neighbour's foot has reached the common side. The old foot
+  /// becomes a rival if there is room.
   void restart(int patch, const Eigen::Array2d& uv) noexcept;
-  /// [rt] Keeps a foot that another has displaced, if there is room.
+  /// [rt] Keeps a foot as a rival after another foot has replaced it, if there is room.
   void keepAsRival(int patch, const Iterate& at, const LocalFoot& foot) noexcept;
-  /// [rt] Follows a foot of this tick that was found elsewhere. Returns its index: that of the same foot if it is
-  /// followed already.
+  /// [rt] Follows a foot that was computed in this tick. Returns its index. If the same foot is followed already,
+  /// returns the index of that foot.
   int put(int patch, const Iterate& at, const LocalFoot& foot) noexcept;
-  /// [rt] Stops following a foot; the first foot of a patch takes its rivals with it.
+  /// [rt] Stops following a foot. With the first foot of a patch its rivals are dropped too.
   void drop(int index) noexcept;
-  /// [rt] Rivals on the patch of `index` that have come to the same foot in this tick are one. Returns the index under
-  /// which that foot goes on.
+  /// [rt] Merges the foot `index` with another foot of its patch if both have reached the same point in this tick.
+  /// Returns the index of the foot that remains.
   int merge(int index) noexcept;
-  void clear() noexcept;  ///< [rt]
+  void clear() noexcept;  ///< [rt] stops following all feet
 
-  void nextTick() noexcept { ++tick_; }                  ///< [rt]
-  std::uint64_t tick() const noexcept { return tick_; }  ///< [rt]
-  /// [rt] The probe moved by `way` [m].
+  void nextTick() noexcept { ++tick_; }                  ///< [rt] begins a tick
+  std::uint64_t tick() const noexcept { return tick_; }  ///< [rt] number of this tick
+  /// [rt] Tells that the probe has moved by `way` [m].
   void gone(double way) noexcept {
     way_ += way;
     if (way_ > kLongestWay) [[unlikely]]
       countAnew();
   }
-  double way() const noexcept { return way_; }  ///< [rt] [m] gone since the last clear(), or so
-  /// [rt] Notes the distance of a foot that was refined in this tick; it may yet come nearer by what it is wrong.
+  double way() const noexcept { return way_; }  ///< [rt] [m] length of the probe's path; it is sometimes reset to 0
+  /// [rt] Records the distance of a foot that was refined in this tick, less its residual, because the true foot may be
+  /// nearer by that much.
   void refined(int index) noexcept {
     Track& t = (*this)[index];
     t.tick = t.touched = tick_;
     key_[static_cast<std::size_t>(t.slot)] = t.foot.distance - (t.foot.residual > 0 ? t.foot.residual : 0) + way_;
   }
-  /// [rt] Notes that a foot cannot be nearer than `distance` [m].
+  /// [rt] Records that a foot cannot be nearer than `distance` [m].
   void farther(int index, double distance) noexcept {
     key_[static_cast<std::size_t>((*this)[index].slot)] = distance + way_;
   }
-  /// [rt] The foot not refined in this tick that could be nearer than `best` and has the smallest bound; -1: none.
-  /// @param part only feet of this part; -1: all.
+  /// [rt] Returns the foot with the smallest bound among those that were not refined in this tick and could be nearer
+  /// than `best`, or -1 if there is none. @param part only feet of this part, or -1 for all parts
   int mostPromising(double best, int part) const noexcept {
     double lowest = best + way_;
     int found = -1;
@@ -91,10 +96,10 @@ class Tracks {
     return found;
   }
 
-  /// [rt] [m] No point of the surface under a foot is nearer than this.
+  /// [rt] Returns a lower bound of the distance [m] to the surface around a foot.
   double atLeast(int index) const noexcept { return key_[static_cast<std::size_t>((*this)[index].slot)] - way_; }
 
-  /// [rt] Whether the surfaces under all other feet are farther than `distance` [m].
+  /// [rt] True if the bounds of all other feet are greater than `distance` [m].
   bool isAlone(int index, double distance) const noexcept {
     if (key_.size() == 1) return true;
     const int own = (*this)[index].slot;
@@ -103,7 +108,7 @@ class Tracks {
     return true;
   }
 
-  /// [rt] Whether no other foot could be nearer than this one, refined in this tick.
+  /// [rt] True if no other foot can be nearer than this foot, which was refined in this tick.
   bool isNearest(int index) const noexcept {
     if (key_.size() == 1) return true;
     const Track& t = (*this)[index];
@@ -115,7 +120,8 @@ class Tracks {
 
  private:
   static constexpr int kRivals = 32;
-  static constexpr double kLongestWay = 1e4;  ///< [m] then keys are counted from zero again, to keep their digits
+  /// [m] at this length of the path, way_ is reset to 0 and the keys are reduced by it, to keep their digits.
+  static constexpr double kLongestWay = 1e4;
 
   void append(int index, double bound) noexcept;
   Track* newRival(int patch) noexcept;
@@ -128,11 +134,11 @@ class Tracks {
   const Model& model_;
   int patch_count_;
   std::vector<Track> tracks_;
-  std::vector<int> active_;  ///< dense
-  std::vector<double> key_;  ///< by slot: distance when last refined + way gone until then
+  std::vector<int> active_;  ///< indices of the active feet, by slot
+  std::vector<double> key_;  ///< by slot: bound of the distance + value of way_ when it was found
   double way_ = 0;           ///< [m] length of the probe's path
   std::uint64_t tick_ = 0;
-  /// Ticks in which the last two searches told their results, and the way gone by then.
+  /// The ticks in which the results of the last two searches came, and way_ in those ticks.
   std::uint64_t told_ = 0, told_before_ = 0;
   double way_told_ = 0, way_told_before_ = 0;
 };

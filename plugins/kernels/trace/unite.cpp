@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Models whose parts run into each other, as the handle of a pot ends inside its body: what is buried is not felt, and
-/// where parts meet they act together.
+/// Models with overlapping parts, such as a pot whose handle ends inside its body. Surfaces inside another part are not
+/// felt, and at the joint the parts act together.
 #include <algorithm>
 #include <array>
 
@@ -11,20 +11,20 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A part seen from the probe: the plane through its nearest foot.
+/// A part, approximated by the tangent plane at its nearest foot.
 struct Wall {
-  Vector3d normal;   ///< unit, outward
-  double depth = 0;  ///< [m] of the probe behind the plane
+  Vector3d normal;   ///< outward unit normal
+  double depth = 0;  ///< [m] depth of the probe behind the plane
 };
 
-/// Shortest way out of all walls at once: the projection onto the intersection of their half-spaces (Zilles & Salisbury
-/// 1995), by Hildreth's method. A fixed number of sweeps of continuous functions is continuous in the walls, so the
-/// force is continuous wherever the feet are. Walls that face each other lead nowhere, or to where their planes no
-/// longer stand for the surfaces: the way is no longer than kLongestWay times the deepest. `pushes`: what each wall
-/// contributes.
+/// Returns the shortest motion of the probe that leads out of all walls at once: the projection onto the intersection
+/// of their half-spaces (Zilles & Salisbury 1995), by Hildreth's method. The result is continuous in the walls, because
+/// it is a fixed number of sweeps of continuous functions. So the force is continuous if the feet are. For walls that
+/// face each other there may be no way out, or only one so long that the planes no longer approximate the surfaces. So
+/// the motion is at most kLongestWay times the greatest depth. @param pushes becomes the contribution of each wall
 Vector3d wayOut(const Wall* walls, int count, double deepest, double* pushes) noexcept {
-  constexpr double kLongestWay = 2;  // reached where walls meet at 60 degrees
-  constexpr int kSweeps = 32;        // 10 % of the depth is left between walls that meet at 20 degrees
+  constexpr double kLongestWay = 2;  // reached if walls meet at 60 degrees
+  constexpr int kSweeps = 32;        // between walls that meet at 20 degrees, 10 % of the depth remains
   Vector3d way = Vector3d::Zero();
   std::fill_n(pushes, count, 0.0);
   for (int sweep = 0; sweep < kSweeps; ++sweep)
@@ -38,15 +38,16 @@ Vector3d wayOut(const Wall* walls, int count, double deepest, double* pushes) no
   return way;
 }
 
-constexpr double kSteepest = 1.5;  ///< the depth behind a bevelled edge changes by up to sqrt 2 of the probe's way
+constexpr double kSteepest = 1.5;  ///< depth per motion of the probe; behind a bevelled edge it is at most sqrt(2)
 
 double behindPlane(const Foot& foot) noexcept {
-  return foot.behind - foot.aside;  // beside a free edge the plane falls away in a bevel of 45 degrees
+  return foot.behind - foot.aside;  // beside a free edge the plane ends in a bevel of 45 degrees
 }
 
 }  // namespace
 
-/// The foot by which a part is felt, if its plane could be less than `reach` [m] from the probe by now.
+/// Computes the foot by which a part is felt. Returns false if the part has no foot, or if its plane is certainly more
+/// than `reach` [m] from the probe.
 bool Tracer::refreshPart(int part, const Vector3d& p, const Vector3d& last, const TraceOptions& options, double reach,
                          Foot& foot) noexcept {
   const Part& known = parts_[static_cast<std::size_t>(part)];
@@ -62,7 +63,7 @@ bool Tracer::refreshPart(int part, const Vector3d& p, const Vector3d& last, cons
   return contact::found(foot);
 }
 
-/// Brings what is known of a part up to date.
+/// Computes the nearest foot of a part and updates parts_. Returns false if there is none in this tick.
 bool Tracer::nearestOfPart(int part, const Vector3d& p, const TraceOptions& options, Foot& foot) noexcept {
   Part& known = parts_[static_cast<std::size_t>(part)];
   const double most = known.depth + kSteepest * (tracks_.way() - known.way);
@@ -77,7 +78,8 @@ bool Tracer::nearestOfPart(int part, const Vector3d& p, const TraceOptions& opti
     known.way = tracks_.way();
     return true;
   }
-  // The evaluations ran out, and another foot may be nearer: seen from this one the probe may seem far inside.
+  // There was no budget left, and another foot may be nearer. By this foot alone the probe may seem much too deep, so
+  // the depth is limited.
   foot.status = FootStatus::kDegraded;
   const double too_deep = behindPlane(foot) - most;
   if (!known.known) return false;
@@ -95,7 +97,7 @@ void Tracer::uniteParts(const Vector3d& p, const Vector3d& last, const TraceOpti
   std::array<bool, Model::kMaxParts> seen{};
   int count = 0;
   double deepest = 0;
-  // The parts that the probe is in, then those so near that they could be in the way out.
+  // First the parts that contain the probe, then the parts so near that they could block the way out.
   for (int pass = 0; pass < 2 && (pass == 0 || deepest > 0); ++pass) {
     const double reach = deepest;
     for (int part = 0; part < model_.partCount(); ++part) {

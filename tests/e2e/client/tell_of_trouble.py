@@ -135,7 +135,7 @@ def refused(daemon):
               daemon.says(f"process {os.getpid()}", "refused so far: a number is not finite"), daemon.told())
         told = [e for e in h.ask(do="events")["events"] if e["event"] == "refused"]
         check("also by events", told and told[-1]["pid"] == os.getpid() and "not finite" in told[-1]["why"], told)
-    check("who ends in order is told so", daemon.says(f"process {os.getpid()}", "pushes on it no more"), daemon.told())
+    check("who ends in order is told so", daemon.says(f"process {os.getpid()}", "no longer pushes on it"), daemon.told())
 
 
 def raises(action, word="gone"):

@@ -98,7 +98,7 @@ SLIPS = {"prints": ("no-system-call-in-step", "it prints in"), "asks": ("no-syst
          "depth_mm": ("depth-falls-outward", "depth_m changes by 1000 m where the probe moves by 1 m along the normal"),
          "foot_mm": ("depth-falls-outward", "times as far from the probe as depth_m says"),
          "flat_outside": ("depth-falls-outward", "depth_m is 0 outside of the shape"),
-         "locks": ("no-lock-in-step", "who holds it may keep the servo waiting"),
+         "locks": ("no-lock-in-step", "another thread that holds the lock would make the servo wait"),
          "clicks": ("deep-press", "the force jumps by 2.05 N within 100 um at a depth of 3.1 mm"),
          "torque_at_once": ("force-from-zero", "the torque jumps by 0.3 N m where the surface is met"),
          "live_path": ("descriptor-complete", "file: HSP_P_LIVE on a path"),
@@ -126,7 +126,7 @@ check("a law that turns steep below the surface is warned of", "at a depth of 2.
 measured = [t["why"] for t in tests if (t["plugin"], t["name"], t["result"]) == ("right", "stiffness-vs-claim", "pass")]
 check("what was measured stands beside the claim", measured == ["it claims 500 N/m, and its force grows by 500 N/m at most"], measured)
 said = subprocess.run([HAPTICD, "plugin", "check", "slips.so", "--timeout", "15"], capture_output=True, text=True, timeout=280, cwd=BROKEN).stdout
-check("a bare name finds the same locks", "who holds it may keep the servo waiting" in said, said[-500:])
+check("a bare name finds the same locks", "another thread that holds the lock would make the servo wait" in said, said[-500:])
 jump = [t["why"] for t in tests if (t["plugin"], t["name"]) == ("millimetres", "force-continuous")][0]
 check("a jump has its place in m and its size in N", re.search(r"^at [-0-9.e, ]+ m: the force jumped by [0-9.e+]+ N while", jump), jump)
 for shape in ("throws", "no_invalid", "allocates"):
@@ -138,7 +138,7 @@ check("a number that is not one is told alone", "nan J" not in said and "-0 N at
 # A force, a foot or a normal that goes astray by a little, and what is honest though it rubs, damps, clicks or pulls.
 code, tests, failed, err = examined(os.path.join(BROKEN, "strays.so"), "--timeout", "60")
 STRAYS = {"swirls": ("force-along-normal", "lies 11.3099 degrees off its normal; expected force = normal times a size"),
-          "swirls_unsaid": ("loops-give-no-energy", "a hand that goes round and round is driven on"),
+          "swirls_unsaid": ("loops-give-no-energy", "a hand that moves in loops would be driven"),
           "swirls_round": ("loops-give-no-energy", "along below the surface, and out gave"),
           "swirls_a_little": ("loops-give-no-energy", "along below the surface, and out gave"),
           "foot_off": ("foot-and-normal", "point is not on the surface: a probe at the point that is named"),
@@ -147,8 +147,8 @@ STRAYS = {"swirls": ("force-along-normal", "lies 11.3099 degrees off its normal;
           "depth_short": ("foot-and-normal", "outside, depth_m is minus the distance to point"),
           "pulls_outside": ("force-outward", "reports to push only (HSP_R_PUSHES), and pulls with 0.2 N, "),
           "allocates_deep": ("no-allocation-in-step", "allocations in"),
-          "snaps_on": ("jump-flag", "expected what is kept for the probe to be forgotten at HSP_IN_JUMP"),
-          "told_wrong": ("stiffness-vs-claim", "contact.stiffness tells -500 N/m, and the force grows by 500 N/m there")}
+          "snaps_on": ("jump-flag", "expected that the shape forgets the state of a probe at HSP_IN_JUMP"),
+          "told_wrong": ("stiffness-vs-claim", "contact.stiffness is -500 N/m, but the force grows by 500 N/m there")}
 for shape, (test, words) in STRAYS.items():
     mine = [(t["name"], t["why"]) for t in tests if t["plugin"] == shape and t["result"] == "fail"]
     check(f"{shape} fails by {test} first", mine and mine[0][0] == test and words in mine[0][1], mine)

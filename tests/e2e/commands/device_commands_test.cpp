@@ -139,7 +139,7 @@ TEST_F(DeviceCommands, RunRefusesAnEnableButtonThatNoReportHas) {
     const Outcome outcome =
         run("run " HAPTICD_SOURCE_DIR "/config/scenes/sphere.yaml --for 0.1 --device " + arm, kShipped);
     EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
-    EXPECT_TRUE(has(outcome.text, "is no button of wire.input, so forces could never be enabled")) << outcome.text;
+    EXPECT_TRUE(has(outcome.text, "(counted from 0), so forces could never be enabled")) << outcome.text;
   }
 }
 

@@ -67,8 +67,8 @@ TEST_F(ImportCommands, CheckSaysWhatAPartCannotDo) {
   EXPECT_EQ(check("nurbs_rigid", "").exit_code, 0) << check("nurbs_rigid", "").text;
   EXPECT_TRUE(has(check("nurbs_rigid", ", method: dpt").text, "a part is searched as a whole in every tick"));
   EXPECT_TRUE(has(check("nurbs_rigid", ", instance: lid").text, "there is no 'lid', expected one of egg"));
-  EXPECT_TRUE(has(check("nurbs_rigid", ", sides: front").text, "bounds no volume"));
-  EXPECT_TRUE(has(check("push_button", "").text, "is a part; expected a model file here"));
+  EXPECT_TRUE(has(check("nurbs_rigid", ", sides: front").text, "is not closed"));
+  EXPECT_TRUE(has(check("push_button", "").text, "is a part, but this plugin needs a model file"));
 }
 
 TEST_F(ImportCommands, NamesInstanceAndFaceOfAFeature) {

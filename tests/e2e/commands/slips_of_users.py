@@ -153,7 +153,7 @@ models:
     for what in ("servo.rate", "limits belongs in the device file", "a mesh (STL), expected YAML", "stiffness: the text \"soft\"",
                  "friction", "50 m from the world's origin", "0.8 N/m cannot be felt"):
         check(f"in one check: {what}", what in out, out)
-    check("what kept checks from running is said", "some checks need these mended first" in err, err)
+    check("what kept checks from running is said", "some checks can run only after these are corrected" in err, err)
     check("a name of another group is not proposed", "arm.kind" not in out, out)
     code, out, err = ask("check", write(folder, "empty.yaml", ""))
     check("an empty file is told what to begin with", 'a scene begins with "hapticd: 1"' in out, out)
@@ -200,7 +200,7 @@ def at_the_number(folder, ask):
     check("a stiffness that cannot be stable is told at its number", "models[0].parameters.stiffness: warning: ball pushes" in out, out)
     button = f"  - {{name: b, plugin: push_button, parameters: {{geometry: {BOX}, axis: [0, 0, -1], stiffness: 2000, detent: [[0, 0], [4, 0.003], [2, 0.004]], end_stiffness: 3000}}}}\n"
     code, out, err = ask("check", write(folder, "doubt.yaml", "hapticd: 1\n" + one + "models:\n" + button))
-    check("rows of a detent turned round are told with the order", "row 3: a travel of 2 m" in out and "travel [m], then force [N]" in out, out)
+    check("rows of a detent turned round are told with the order", "row 3: a travel of 2 m" in out and "[travel in m, force in N]" in out, out)
 
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:

@@ -96,9 +96,9 @@ def secrets(daemon):
     """Files that the daemon may read and the other user may not."""
     secret = daemon.write("secret.yaml", SECRET + "\n", 0o600)
     names_secret = daemon.file("names_secret", "a", geometry=secret)
-    refused("by name alone nothing is opened", daemon.ask({"do": "add", "file": secret}), "passes the scene")
-    refused("also nothing that all may read", daemon.ask({"do": "add", "file": names_secret}), "passes the scene")
-    refused("nor by reload", daemon.ask({"do": "reload", "file": secret}), "passes the scene")
+    refused("by name alone nothing is opened", daemon.ask({"do": "add", "file": secret}), "does not open files for this program")
+    refused("also nothing that all may read", daemon.ask({"do": "add", "file": names_secret}), "does not open files for this program")
+    refused("nor by reload", daemon.ask({"do": "reload", "file": secret}), "does not open files for this program")
     refused("ctl cannot open it", daemon.ctl("add", secret), "Permission denied")
     refused("nor what a scene names", daemon.ctl("add", names_secret), "Permission denied")
     refused("a scene that is passed opens nothing by name",
@@ -142,7 +142,7 @@ def reloads(daemon):
     scene = daemon.file("next", "next", 0o600, NOBODY)
     code, said = daemon.ctl("reload", scene)
     check("another scene is passed along", code == 0, said)
-    refused("and is not opened by its name later", daemon.ask({"do": "reload"}), "must pass it again")
+    refused("and is not opened by its name later", daemon.ask({"do": "reload"}), "only a program can load it again")
     code, said = daemon.ctl("reload")
     check("ctl passes it again", code == 0, said)
     code, said = daemon.ctl("reload", daemon.file("roots", "root", 0o600), user=0)

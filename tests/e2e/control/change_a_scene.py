@@ -112,7 +112,7 @@ def permission(client, folder):
         push.end()
     except hapticd.HapticdError:
         pass
-    check("who asks anew is refused", refused(lambda: client.lead_force(ARM), "took the permission to push back"))
+    check("who asks anew is refused", refused(lambda: client.lead_force(ARM), "does not let programs push"))
     answer = client.ask(do="reload", file=on)
     check("a scene as at the start has nothing that is kept", "kept" not in answer, answer)
     with client.push(ARM, lambda state: (0.7, 0, 0)):

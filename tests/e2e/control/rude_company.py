@@ -87,7 +87,7 @@ def sameName(folder):
     first = Daemon(folder).ready()
     second = Daemon(folder)
     code, said = second.end(None)
-    check("a name that is taken is refused", code == 2 and "another daemon runs as x" in said, (code, said))
+    check("a name that is taken is refused", code == 2 and "another daemon has the name x" in said, (code, said))
     check("and the first one keeps its files", sorted(n for n in os.listdir(folder) if n.startswith("x.")) ==
           ["x.blackbox.h5", "x.lock", "x.sock", "x.status"], os.listdir(folder))
     check("and answers", first.ctl("status")[0] == 0)

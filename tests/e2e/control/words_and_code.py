@@ -54,11 +54,11 @@ def builtAnew(ask, library):
     shutil.copyfile(SHAPE, library + ".new")
     os.replace(library + ".new", library)
     code, out, err = ask("reload")
-    check("a library that was built anew is told by reload", code == 0 and "the code from before goes on" in "".join(json.loads(out).get("notes", [])) and
+    check("a library that was built anew is told by reload", code == 0 and "this run goes on with the old code" in "".join(json.loads(out).get("notes", [])) and
           "'wordy'" in out, (code, out, err))
     ask("remove", "donut")
     code, out, err = ask("add", scene(os.path.dirname(library), ""))
-    check("and by add, where nobody used it meanwhile", code == 0 and "the code from before goes on" in out, (code, out, err))
+    check("and by add, where nobody used it meanwhile", code == 0 and "this run goes on with the old code" in out, (code, out, err))
 
 
 def withADaemon(folder, environment, library):

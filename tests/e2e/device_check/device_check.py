@@ -55,7 +55,7 @@ REFUSED = {
     "jacobian_status": ("kinematics", "HSP_E_NUMERIC"),
     "orientation_0": ("kinematics", "length 0"),
     "forward_nan": ("kinematics", "not finite"),
-    "far": ("kinematics", "expected metres"),
+    "far": ("kinematics", "the position must be in m"),
     "weight_nan": ("kinematics", "gravity()"),
 }
 OPENED = {

@@ -240,7 +240,7 @@ def recoverCube(folder):
     scene = save(os.path.join(folder, "house.yaml"), "hapticd: 1\nmodels:\n  - {name: body, plugin: mat_deformable, "
                  "parameters: {geometry: cube.ma}}\n")
     code, text = hapticd("explain", scene)
-    check("and when it is loaded", code == 0 and "expected metres" in text, text)
+    check("and when it is loaded", code == 0 and "lengths must be in m" in text, text)
     code, text = hapticd("import", "--medial", mesh, "--angle", "180", out)
     check("too wide an angle is named", code == 1 and "a smaller --angle" in text, text)
 

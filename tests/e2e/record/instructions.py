@@ -51,7 +51,7 @@ with tempfile.TemporaryDirectory() as folder:
     if has_avx2:
         check("the two differ in their last bits, or this test tests nothing", bits != fast_bits)
         code, told = run({"HAPTICD_INSTRUCTIONS": "portable"}, "replay", fast)
-        check("where it cannot, it says so", code == 1 and "avx2+fma, which cannot be had here" in told, told)
+        check("where it cannot, it says so", code == 1 and "avx2+fma, which are not available here" in told, told)
     code, told = run({}, "check", os.path.join(folder, "auto.yaml"))
     check("check knows the key", code == 0, told)
 finish()

@@ -128,7 +128,7 @@ test('beside a model without triangles stands why it is not drawn, for as long a
       return words ? {hidden: words.hidden, text: words.textContent} : null;
     }, name);
     await until(async () => (await told('unseen'))?.hidden === false, kPatience, 'a word beside the model');
-    assert.match((await told('unseen')).text, /hsp\.geometry\/1.*felt all the same/);
+    assert.match((await told('unseen')).text, /hsp\.geometry\/1.*can still be felt/);
     await new Promise((resolve) => setTimeout(resolve, 7000)); // a notice is gone after 6 s
     await page.evaluate(() => document.querySelector('[data-model="seen"] header button').click()); // the list is made anew
     await until(() => page.evaluate(() => document.querySelector('[data-model="seen"] header button').textContent === 'Enable'), kPatience, 'a new list');

@@ -62,7 +62,7 @@ with tempfile.TemporaryDirectory() as folder:
 
     out = new("--kind", "chain", "--twists", f"{RIGHT},0,0", change=("# mount: {position: [0, 0, 0]", "mount: {position: [0, 0, 3]"))
     code, out, err = run("device", "twin", arm, "-o", twin)
-    check("a twin whose hand is out of reach is not recommended", code == 1 and "then:" not in out and "which the arm cannot reach" in err and "fix: mount of" in err, (out, err))
+    check("a twin whose hand is out of reach is not recommended", code == 1 and "then:" not in out and "which the arm cannot reach" in err and "fix: correct mount in" in err, (out, err))
     out = new("--kind", "delta")
     check("nor one of a delta, which has none", "device twin" not in out and "device calibrate" in out, out)
     check("that the tip rests in front of the origin is said of a phantom alone",

@@ -117,19 +117,19 @@ with tempfile.TemporaryDirectory() as folder:
     # A scale that is too small.
     small = {f"scale: {SCALE:.9g}": f"scale: {SCALE / 4:.9g}"}
     said = told(sent(swing()), small)
-    check("joints that all moved over a quarter of their way are told", "of the ways between their arm.limits" in said and "about 4.17 times too small" in said and "edges of an encoder" in said, said)
+    check("joints that all moved over a quarter of their way are told", "of the distance between their arm.limits" in said and "about 4.17 times too small" in said and "counts for each of its lines" in said, said)
     check("but not where one of them moved", told(sent(swing()), {SECOND: SECOND.replace(f"scale: {SCALE:.9g}", f"scale: {SCALE / 4:.9g}")}) == "", said)
     check("nor of an arm that stands still", told(sent(swing(0.0))) == "", told(sent(swing(0.0))))
     write(change=small)
     code, out, err = run("check", arm)
-    check("check tells that positions end before the stops do", code == 0 and out.count("its numbers end at ") == 3 and "expected a scale that is 1.53 times as large" in out, out)
+    check("check tells that positions end before the stops do", code == 0 and out.count("this field covers only ") == 3 and "expected a scale that is 1.53 times as large" in out, out)
     write(change={**small, ", limits: [[-1.2, 1.2], [-0.3, 0.9], [-1, 1]]": "", f"scale: {SCALE / 4:.9g}": f"scale: {SCALE / 16:.9g}"})
     code, out, err = run("check", arm)
-    check("and without stops by the workspace", code == 0 and "limits.workspace: warning: 0.3 m about the origin, but the positions that wire.input can say move the tip by" in out, out)
+    check("and without stops by the workspace", code == 0 and "limits.workspace: warning: 0.3 m is more than the tip can move: the positions in wire.input reach only " in out, out)
     for change in ({}, {", limits: [[-1.2, 1.2], [-0.3, 0.9], [-1, 1]]": ""}):
         write(change=change)
         code, out, err = run("check", arm)
-        check("nothing of a scale that is right", code == 0 and "its numbers end" not in out and "limits.workspace" not in out, out)
+        check("nothing of a scale that is right", code == 0 and "this field covers only" not in out and "limits.workspace" not in out, out)
 
     # A stream whose reports begin with a byte of their own, cut anywhere.
     def stream(cut, header=b"\xa5"):
@@ -180,7 +180,7 @@ with tempfile.TemporaryDirectory() as folder:
     plain = "\n".join(",".join(row[f"tau{i}"] for i in (1, 2, 3)) for row in rows) + "\n"
     check("its torques are torques", code == 0 and out == run("device", "encode", arm, given=plain.encode())[1] and len(out.splitlines()) == 2, (err, out))
     code, out, err = run("device", "encode", arm, given=table.encode())
-    check("a table without forces says what it lacks", code == 2 and "tau1 is not among them" in err and "fx,fy,fz" in err and not out, err)
+    check("a table without forces says what it lacks", code == 2 and "without torques (tau1, ...)" in err and "fx,fy,fz" in err and not out, err)
     code, out, err = run("device", "encode", arm, "--from-arm", given=b"q1,q2,q3,speed\n0,0,0,1\n")
     check("another column is still named", code == 2 and '"speed"' in err, err)
     code, out, err = run("device", "encode", arm, "--from-arm", given=b"q1,position1\n0,1\n")

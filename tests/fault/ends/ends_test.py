@@ -95,7 +95,7 @@ check("SIGSTOP: a force comes", run.arm.wait_for_force())
 run.process.send_signal(signal.SIGSTOP)
 check("a daemon that stands still: the guard switches the motors off", run.arm.silent_after(20) is not None)
 code, said = run.end()
-check("and ends it after a while", code == -signal.SIGKILL and "the servo stands still" in said, (code, said))
+check("and ends it after a while", code == -signal.SIGKILL and "the servo makes no more ticks" in said, (code, said))
 
 def guards(run):
     """Processes whose parent is the daemon, and which are no zombies."""
@@ -122,7 +122,7 @@ time.sleep(1)  # until it has been told of the arm
 check("another takes its place, and the force stays", len(guards(run)) == 1 and guards(run) != first and run.arm.motors_on(), (first, guards(run)))
 run.process.kill()
 code, said = run.end()
-check("and switches the motors off", run.arm.silent_after(10) is not None and "the guard process ended; another watches" in said, (code, said))
+check("and switches the motors off", run.arm.silent_after(10) is not None and "the guard process ended; a new one has replaced it" in said, (code, said))
 
 run = run_of("never", rig={"guarded": "false"})
 check("without a guard: a force comes", run.arm.wait_for_force())

@@ -21,7 +21,7 @@ for rate, slow in (("340", True), ("1000", False)):
     why = json.loads(told)["devices"][0]["less_force"] if code == 0 else told
     run.process.terminate()
     said = run.end()[1]
-    words = "the servo's rate is low: after a fault one command may stay on for 2.94 ms, so it pushes with at most 8.09 N instead of 8.5 N"
+    words = "the servo's rate is low: after a fault the motors may keep the last command for 2.94 ms, so the force is limited to 8.09 N instead of 8.5 N"
     check(f"{rate} Hz: the status says why it pushes less, or nothing", why.startswith(words) if slow else why is None, why)
     check(f"{rate} Hz: so does the run", (words in said) == slow, said)
 finish()

@@ -38,7 +38,7 @@ bool Admittance::locate() noexcept HSP_RT {
 void Admittance::step(const Vector3d& force, const Vector3d& measured, double dt) noexcept HSP_RT {
   if (!started_ || !(dt > 0) || !force.allFinite()) return;
   const double decay = damping_ * dt / mass_;
-  const double drift = decay > 1e-9 ? -std::expm1(-decay) / decay : 1;  // of v' = f/m - (b/m) v over dt
+  const double drift = decay > 1e-9 ? -std::expm1(-decay) / decay : 1;  // solves v' = f/m - (b/m) v over dt
   v_ = std::exp(-decay) * v_ + dt * drift / mass_ * force;
   x_ += dt * v_;  // the new velocity, so that a contact in the loop keeps its energy instead of gaining some
   if (measured.allFinite() && (x_ - measured).norm() > kMaxLead)
@@ -46,9 +46,10 @@ void Admittance::step(const Vector3d& force, const Vector3d& measured, double dt
   follow(dt);
 }
 
-/// Moves the joints one step toward the virtual mass; where they cannot follow, it cannot go either.
+/// Moves the joints one step toward the virtual mass. If the joints cannot follow, the virtual mass stops too.
 void Admittance::follow(double dt) noexcept HSP_RT {
-  constexpr double kReached = 1e-4;  // [m] more than a step's curvature causes: a joint limit or a singular pose
+  // [m] a larger error does not come from curvature within a step, but from a joint limit or a singular pose
+  constexpr double kReached = 1e-4;
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HDV_MAX_JOINTS> J(6, q_.size());
   const JointVector before = q_;
   if (device_->kinematics().jacobian(device_->handle(), q_.data(), J.data()) == HSP_OK && J.allFinite()) {
@@ -66,7 +67,7 @@ void Admittance::follow(double dt) noexcept HSP_RT {
   if ((x_ - tip_).norm() > kReached) keepTo(tip_);
 }
 
-/// The virtual mass stands at `where`; it keeps only the velocity that leads back there.
+/// Puts the virtual mass at `where`. Of its velocity only the part that leads back to `where` is kept.
 void Admittance::keepTo(const Vector3d& where) noexcept HSP_RT {
   const Vector3d beyond = x_ - where;
   const double out = v_.dot(beyond);

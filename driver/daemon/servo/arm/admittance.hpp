@@ -15,27 +15,27 @@ namespace hapticd::servo {
 class Admittance {
  public:
   static constexpr double kMaxLead = 0.02;  ///< [m] the virtual mass waits for an arm that lags farther behind
-  static constexpr double kHoming = 1;  ///< [1/s] at which joints that the tip leaves free go back to where they began
+  /// [1/s] rate at which joints that the tip does not need return to their first place
+  static constexpr double kHoming = 1;
 
-  /// [main] Says why this device cannot do it; "" if it can.
+  /// [main] Returns why compliance control is impossible with this device, or "" if it is possible.
   static std::string refusal(const hdv_info& info);
 
-  /// [main] @param device is open already, and stays in place
+  /// [main] @param device must be open, and must outlive this object
   Admittance(const scene::Admittance& settings, const host::DeviceInstance& device);
 
-  /// [rt] Puts the virtual mass at rest where the joints are. False if the joints are unknown.
+  /// [rt] Puts the virtual mass at rest at the tip of these joints. Returns false if the joints are unknown.
   bool start(const double* joints) noexcept HSP_RT;
   bool started() const noexcept { return started_; }
-  void stop() noexcept { started_ = false; }  ///< [rt]
-
-  /// [rt] Moves the virtual mass by dt [s] under a force [N], and the joints with it. @param measured tip of the arm
-  /// [m] All in the device frame. The force is constant over a tick, and the motion under it is exact.
+  void stop() noexcept { started_ = false; }
+  /// [rt] Moves the virtual mass, and the joints with it, for dt [s] under a force [N]. The force is constant over a
+  /// tick, and the motion under it is exact. All vectors are in the device frame. @param measured tip of the arm [m]
   void step(const Eigen::Vector3d& force, const Eigen::Vector3d& measured, double dt) noexcept HSP_RT;
 
-  const JointVector& joints() const noexcept { return q_; }              ///< reference for the arm
+  const JointVector& joints() const noexcept { return q_; }              ///< joint positions that the arm must follow
   const Eigen::Vector3d& position() const noexcept { return x_; }        ///< position of the virtual mass [m]
-  const Eigen::Vector3d& velocity() const noexcept { return v_; }        ///< [m/s]
-  const Eigen::Vector4d& orientation() const noexcept { return turn_; }  ///< of the tip at the reference: w, x, y, z
+  const Eigen::Vector3d& velocity() const noexcept { return v_; }        ///< velocity of the virtual mass [m/s]
+  const Eigen::Vector4d& orientation() const noexcept { return turn_; }  ///< of the tip at joints(): w, x, y, z
 
  private:
   bool locate() noexcept HSP_RT;
@@ -46,7 +46,7 @@ class Admittance {
   const host::DeviceInstance* device_;
   JointVector q_, home_;
   Eigen::Vector3d x_{0, 0, 0}, v_{0, 0, 0};
-  Eigen::Vector3d tip_{0, 0, 0};  ///< of the joints q_
+  Eigen::Vector3d tip_{0, 0, 0};  ///< [m] tip of an arm at the joints q_
   Eigen::Vector4d turn_{1, 0, 0, 0};
   bool started_ = false;
 };

@@ -15,20 +15,22 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr double kFastestTip = 5;  ///< [m/s] limit of real hardware, unless limits.velocity says otherwise
+constexpr double kFastestTip = 5;  ///< [m/s] speed limit of a real arm if limits.velocity is not given
 
-/// In the form in which the kinematics extension writes it.
+/// The Jacobian, in the memory layout that the kinematics extension of a device writes.
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HDV_MAX_JOINTS>;
 
-constexpr double kAssumedMass =
-    0.05;  ///< [kg] mass of a light arm, so that the passivity controller may add little damping
+/// [kg] a light arm, if the mass is unknown: the passivity controller then adds only little damping
+constexpr double kAssumedMass = 0.05;
 
-/// A simulated arm hurts nobody, and a recording keeps the forces that were felt.
+/// True if this arm may use its full force at any rate: a simulated arm hurts nobody, and a replay must repeat the
+/// forces that were felt.
 bool pushesInFull(const hdv_info& info, const ArmOptions& options) {
   return options.full_when_slow || (info.capabilities & HDV_C_SIMULATED) != 0;
 }
 
-/// An arm without measured torques can only push. A slow one pushes less.
+/// Limits of the device file, made stricter for this arm: an arm with at most three joints can only push, and a slow
+/// real arm pushes less.
 scene::Limits limitsOf(const scene::Limits& described, const hdv_info& info, const ArmOptions& options) {
   scene::Limits limits = described;
   if (info.joint_count <= 3) limits.torque_slew = 0;
@@ -40,12 +42,12 @@ scene::Limits limitsOf(const scene::Limits& described, const hdv_info& info, con
   return limits;
 }
 
-/// [N] by the device and its file, even if it is slow; 0: unknown.
+/// [N] Largest force by the device and its file, before a slow rate reduces it; 0 if it is unknown.
 double fullForce(const scene::Limits& limits, const hdv_info& info) {
   return Limiter(limits, info.max_force).maxForce();
 }
 
-/// What HDAPI programs need to see and the device lacks; "" if it lacks nothing.
+/// Returns an error if the settings for HDAPI programs name something that the device does not have; "" if all exists.
 std::string refusalOf(const std::optional<scene::HdArm>& hd, const hdv_info& info) {
   const auto told = [](const std::string& key, uint32_t wrong, uint32_t count, const char* things) {
     return key + " is " + std::to_string(wrong) + ", but the device has " + std::to_string(count) + " " + things +
@@ -142,7 +144,7 @@ void Arm::watchSamples(const scene::Limits& limits) {
 void Arm::exchangeDry(Nanoseconds now) noexcept HSP_RT {
   if (taken_.exchange(true)) return;
   hdv_sample sample{};
-  (void)device_->read(now, sample);  // if something is wrong with it, the first tick will find that too
+  (void)device_->read(now, sample);  // the first tick finds the same error, if there is one
   (void)device_->write(now, {sizeof(hdv_command), HDV_OFF, {}, {}});
   fresh_at_ = now;
   taken_.store(false);
@@ -191,9 +193,9 @@ uint32_t Arm::links(std::array<LinkEnd, HDV_MAX_LINKS>& ends) const noexcept HSP
   return links->link_count;
 }
 
-/// Under compliance control shapes meet the virtual mass, not the arm that follows it.
+/// Under compliance control, shapes meet the virtual mass and not the arm that follows it.
 void Arm::takeVirtualProbe() noexcept HSP_RT {
-  if (limiter_.fault() != Fault::kNone) return admittance_->stop();  // from now on only by force, which can be faded
+  if (limiter_.fault() != Fault::kNone) return admittance_->stop();  // now driven by force, which can be faded
   if (!admittance_->started() && !admittance_->start(sample_.position)) return;
   const Eigen::Vector4d& q = admittance_->orientation();
   probe_.position = R_world_device_ * admittance_->position() + origin_world_;
@@ -201,8 +203,8 @@ void Arm::takeVirtualProbe() noexcept HSP_RT {
   probe_.velocity = R_world_device_ * admittance_->velocity();
 }
 
-/// Compliance control: `force` of the contacts and the hand's push move the virtual mass; the arm follows it. False if
-/// that is impossible now, so that the force goes to the motors.
+/// Compliance control: `force` of the contacts and the push of the hand move the virtual mass, and the arm follows the
+/// mass. Returns false if that is impossible now; the force then goes to the motors.
 bool Arm::comply(double dt, const Eigen::Vector3d& force, const Weight::Torques& weight) noexcept HSP_RT {
   if (!admittance_ || !admittance_->started()) return false;
   const auto hand = handForce();
@@ -214,7 +216,7 @@ bool Arm::comply(double dt, const Eigen::Vector3d& force, const Weight::Torques&
   admittance_->step(R_world_device_.transpose() * (force + *hand), tip, dt);
   command_.mode = HDV_POSITION;
   for (uint32_t i = 0; i < device_->info().joint_count; ++i) command_.position[i] = admittance_->joints()[i];
-  // The arm adds it to its own loop, which need not sag then to carry the weight.
+  // The arm adds these torques to its own position loop, which otherwise sags under the weight.
   std::copy(weight.begin(), weight.end(), command_.torque);
   return true;
 }
@@ -243,7 +245,7 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
     command.mode = HDV_TORQUE;
     Eigen::Map<Eigen::VectorXd> tau(command.torque, joints);
     const Eigen::Vector3d force_device = R_world_device_.transpose() * force;
-    tau.noalias() = J.topRows<3>().transpose() * force_device;  // see Thompson et al. 1999, Eq. 9
+    tau.noalias() = J.topRows<3>().transpose() * force_device;  // Thompson et al. 1999, Eq. 9
     if (turns()) tau.noalias() += J.bottomRows<3>().transpose() * (R_world_device_.transpose() * torque);
     scaleToMotors(weight, command);
   }
@@ -251,14 +253,14 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
   const bool wrote = write_status_ >= 0;
   send(now);
   if (write_status_ >= 0) return;
-  // If a command could not be written, the last one stays on, and nothing is left with which to ramp.
+  // If a command could not be written, the motors keep the last one, and a ramp is impossible.
   if (wrote) device_->cut();
   trip(Fault::kDeviceLost);
   limiter_.cut(Fault::kDeviceLost, 0);
 }
 
-/// A force that no torque can make is not sent. Where the tip is known but its Jacobian is not, the module is at
-/// fault.
+/// Sends no force, because the torques for it are unknown. If the tip is known but its Jacobian is not, the device
+/// module is at fault.
 void Arm::sendsNothing() noexcept HSP_RT {
   limiter_.sentNothing();
   if (!probe_.valid) return;
@@ -270,7 +272,7 @@ void Arm::send(Nanoseconds now) noexcept HSP_RT {
   if (taken_.exchange(true)) return;  // the watchdog is writing its zero force
   if (cut_in_write_) cut_.store(true);
   cut_in_write_ = false;
-  if (cut_.load()) {  // the module waits for this tick's acknowledgement, so motors are off
+  if (cut_.load()) {  // the motors are off until this tick has acknowledged the cut
     findCut(CutFound::kInWrite);
     command_ = {sizeof command_, HDV_OFF, {}, {}};
   }
@@ -291,8 +293,8 @@ void Arm::cut(double after) noexcept {
   stuck_here_.store(in != nullptr && in->device && in->name == name_, std::memory_order_release);
   cut_after_.store(after);
   if (device_->cut()) return;
-  // A module without a cut of its own may be called by one thread at a time: if the servo is inside it, only the
-  // hardware's own watchdog is left.
+  // A module without hdv.cut/1 may be called by one thread at a time: if the servo is inside the module now, only the
+  // hardware's own watchdog can help.
   if (taken_.exchange(true)) return;
   hdv_command off{};
   off.struct_size = sizeof off;
@@ -307,7 +309,7 @@ void Arm::findCut(CutFound when) noexcept HSP_RT {
 }
 
 void Arm::cutAsThen(CutFound when, double after) noexcept HSP_RT {
-  cut_known_ = true;  // the recording contains it already
+  cut_known_ = true;  // the recording contains this cut already
   cut_after_.store(after);
   cut_in_write_ = when == CutFound::kInWrite;
   if (when == CutFound::kInRead) cut_.store(true);
@@ -331,8 +333,8 @@ Weight::Torques Arm::weightTorques(const TipJacobian& J, double dt) noexcept HSP
 }
 
 void Arm::scaleToMotors(const Weight::Torques& gravity, hdv_command& command) noexcept HSP_RT {
-  // Scales all joints by one factor, so that the direction of the force on the hand stays true when a motor is at its
-  // limit. The torques that carry the arm's weight come first, or the arm would fall on the hand.
+  // Scales all joints by one factor, so that the force on the hand keeps its direction when a motor is at its limit.
+  // The torques that carry the arm's weight are not scaled, or the arm would fall on the hand.
   double factor = 1;
   for (uint32_t i = 0; i < device_->info().joint_count; ++i) {
     const double most = device_->info().max_torque[i], asked = command.torque[i];

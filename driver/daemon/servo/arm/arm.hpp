@@ -28,13 +28,13 @@
 namespace hapticd::servo {
 
 struct ArmOptions {
-  double rate = 1000;                        ///< [Hz]
-  bool needs_velocity = false;               ///< run the estimator
-  const host::Playback* playback = nullptr;  ///< samples from a recording instead of the hardware
-  scene::Clients clients = {};               ///< whether programs may push on it
-  bool found_pressed = false;                ///< as formerly, a hold button that was down before the run enables forces
-  bool full_when_slow = false;               ///< as formerly, a real arm pushes with its full force however slow it is
-  bool former_passivity = false;             ///< as formerly, a program's steady push counts as created energy
+  double rate = 1000;                        ///< [Hz] of the servo
+  bool needs_velocity = false;               ///< true if the velocity of the tip must be estimated
+  const host::Playback* playback = nullptr;  ///< replay: samples from a recording, instead of the hardware
+  scene::Clients clients = {};               ///< whether and how hard programs may push on it
+  bool found_pressed = false;     ///< for old recordings: a hold button that was down before the run enables forces
+  bool full_when_slow = false;    ///< for old recordings: a slow real arm pushes with its full force
+  bool former_passivity = false;  ///< for old recordings: a program's steady push counts as created energy
 };
 
 class Arm {
@@ -43,91 +43,94 @@ class Arm {
   static Result<std::unique_ptr<Arm>> open(const scene::Device& device, const scene::Servo& servo,
                                            const ArmOptions& options, const host::Services::Log& log);
 
-  /// [main] Starts reading and writing. @param now time of the first read
+  /// [main] Starts the device. @param now time of the first read
   Result<void> start(Nanoseconds now, const Eigen::Vector3d& gravity_world);
-  void stop() { device_->stop(); }  ///< [main] motors off
+  void stop() { device_->stop(); }  ///< [main] ends the exchange with the device: motors off
 
-  /// [rt] One exchange with the device before the first tick: the motors are off, and no result is kept.
+  /// [rt] Reads and writes the device once before the first tick, with motors off. No result is kept.
   void exchangeDry(Nanoseconds now) noexcept HSP_RT;
 
-  /// [rt] The newest sample as a probe in the world frame. A bad sample gives an invalid probe and a fault.
+  /// [rt] Returns the newest sample as a probe in the world frame. A bad sample gives an invalid probe and a fault.
   const Probe& read(Nanoseconds now, double dt) noexcept HSP_RT;
 
   /// [rt] Limits a wrench (N, N m, world frame), maps it to torques (tau = J^T W + gravity) and hands it to the device.
-  /// @param exchange what the scene reports of its energy, for the passivity controller
+  /// @param exchange energy that the scene reports, for the passivity controller
   void write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque,
              passivity::Exchange exchange = {}) noexcept HSP_RT;
 
-  /// [any] Frees the motors at once, while the servo is stuck or dying; async-signal-safe. It holds until clear().
-  /// @param after [s] that the servo was stuck
+  /// [any] Frees the motors at once, while the servo is stuck or dying; async-signal-safe. The motors stay free until
+  /// clear(). @param after [s] for which the servo was stuck
   void cut(double after) noexcept;
   /// [any] True if the last cut has been sent to the hardware, as far as the module knows; async-signal-safe.
   bool cutLeft() const noexcept { return device_->cutLeft(); }
-  /// [rt] Says whether anything in the scene can be felt: if nothing can, not even the arm's weight is carried.
+  /// [rt] @param wanted true if something in the scene can be felt. Otherwise the motors do not even carry the arm's
+  /// weight.
   void carryWeight(bool wanted) noexcept HSP_RT { weight_.carry(wanted); }
-  /// [rt] Clears the latched fault, and a cut, by the user's order.
+  /// [rt] Clears the latched fault, and a cut, because the user asked for it.
   void clear() noexcept HSP_RT;
 
-  /// When the servo finds that its motors were cut: a replay must find it then too.
+  /// At which moment of a tick the servo finds that its motors were cut. A replay must find it at the same moment.
   enum class CutFound : uint8_t { kNo, kInWrite, kInRead };
-  /// [rt] What was found since the last call.
+  /// [rt] Returns the moment at which a cut was found since the last call, or kNo.
   CutFound takeCutFound() noexcept HSP_RT { return std::exchange(cut_found_, CutFound::kNo); }
-  double cutAfter() const noexcept { return cut_after_.load(); }  ///< [s] how long the servo was stuck
-  /// [rt] Called before a tick of a replay: the cut will be found in it, as it was in the recorded run.
+  double cutAfter() const noexcept { return cut_after_.load(); }  ///< [s] how long the servo was stuck at the cut
+  /// [rt] Called before a tick of a replay: this tick finds the cut, as the same tick of the recorded run did.
   void cutAsThen(CutFound when, double after) noexcept HSP_RT;
 
   const hdv_info& info() const { return device_->info(); }
   host::DeviceInstance& device() { return *device_; }
   Limiter& limiter() noexcept { return limiter_; }
-  /// [any] True if its enable switch was down when the run began and was not released since: no force flows.
+  /// [any] True if the enable switch was down when the run began and has not been released since. No force flows then.
   bool foundPressed() const noexcept { return found_pressed_.load(std::memory_order_relaxed); }
-  /// [any] The device's words for its last fault, "cause; cure"; nullptr: it gave none.
+  /// [any] Returns the device's text for its last fault, "cause; cure", or nullptr if the device gave none.
   const char* trouble() const noexcept { return trouble_.load(std::memory_order_acquire); }
-  /// [any] The same for a fault that only the device can explain; nullptr for every other fault.
+  /// [any] Returns trouble() if only the device can explain this fault; nullptr for every other fault.
   const char* troubleOf(Fault fault) const noexcept {
     if (fault == Fault::kStuck) return stuck_here_.load(std::memory_order_acquire) ? stuck_words_.c_str() : nullptr;
     const bool own = fault == Fault::kDeviceLost || fault == Fault::kDeviceFault || fault == Fault::kStale;
     return own ? trouble() : nullptr;
   }
   const Limiter& limiter() const noexcept { return limiter_; }
-  const Eigen::Vector3d& force() const noexcept { return force_; }  ///< [N] world, as sent
+  const Eigen::Vector3d& force() const noexcept { return force_; }  ///< [N] world frame, as sent to the device
   const Probe& probe() const noexcept { return probe_; }
-  const hdv_sample& sample() const noexcept { return sample_; }     ///< as read() got it
-  const hdv_command& command() const noexcept { return command_; }  ///< as write() gave it
+  const hdv_sample& sample() const noexcept { return sample_; }     ///< as the last read() got it
+  const hdv_command& command() const noexcept { return command_; }  ///< as the last write() sent it
   const MotorHeat& heat() const noexcept { return heat_; }
-  LedHand& hand() noexcept { return hand_; }  ///< of a simulated arm
+  LedHand& hand() noexcept { return hand_; }  ///< the hand that holds a simulated arm
   const LedHand& hand() const noexcept { return hand_; }
   ClientForces& clients() noexcept { return clients_; }  ///< programs that push on the hand
   const ClientForces& clients() const noexcept { return clients_; }
-  hsp_status readStatus() const noexcept { return read_status_; }    ///< of the last read
-  hsp_status writeStatus() const noexcept { return write_status_; }  ///< of the last write
-  /// [rt] Force [N] of the hand on the arm, world frame, from the joint torques of the newest sample less what carries
-  /// the arm's own weight: -pinv(J^T) (tau - gravity). Nothing if the device measures no torque. In motion it includes
-  /// the inertia of what lies beyond the load cells.
+  hsp_status readStatus() const noexcept { return read_status_; }    ///< result of the last read
+  hsp_status writeStatus() const noexcept { return write_status_; }  ///< result of the last write
+  /// [rt] Returns the force [N] of the hand on the arm, world frame: -pinv(J^T) (tau - gravity), with the measured
+  /// joint torques tau and the torques that carry the arm's own weight. Empty if the device measures no torque. In
+  /// motion the force includes the inertia of the parts between the load cells and the hand.
   std::optional<Eigen::Vector3d> handForce() const noexcept HSP_RT;
-  /// [rt] The Jacobian at the newest sample, world frame: rows x, y, z of the tip [m/rad] and of the turn [rad/rad],
-  /// one column per joint, zeros beyond. False if it is unknown now.
+  /// [rt] Gives the Jacobian at the newest sample, world frame: three rows for the position of the tip [m/rad], three
+  /// for its rotation [rad/rad], one column per joint, zeros in the other columns. Returns false if it is unknown now.
   bool jacobian(double (&rows)[6][HDV_MAX_JOINTS]) const noexcept HSP_RT;
-  /// Compliance control; nullptr: this arm is driven by force.
+  /// Returns the compliance control, or nullptr if this arm is driven by force.
   const Admittance* admittance() const noexcept { return admittance_ ? &*admittance_ : nullptr; }
-  /// The passivity controller; nullptr: this arm needs none.
+  /// Returns the passivity controller, or nullptr if this arm needs none.
   const passivity::PassivityController* passivity() const noexcept { return passivity_ ? &*passivity_ : nullptr; }
-  /// Why it pushes less than its limits allow; "" if it does not.
+  /// Returns why the arm's rate makes it push less than its limits allow, or "" if it pushes in full.
   const std::string& slowness() const { return slowness_; }
-  /// True if it can turn the hand; an arm of three joints can only push.
+  /// True if the arm can apply torques to the hand. An arm with three joints can only push.
   bool turns() const { return device_->info().joint_count > 3; }
-  /// The far end of a link, world frame.
+  /// The far end of one link of the arm, world frame.
   struct LinkEnd {
-    double position[3], orientation[4];  ///< [m], w x y z of the link's body
+    double position[3], orientation[4];  ///< [m]; orientation of the link: w x y z
   };
   uint32_t linkCount() const { return device_->links() != nullptr ? device_->links()->link_count : 0; }
-  /// [rt] The far ends of the links at the newest sample. 0: there are none, or they are unknown now.
+  /// [rt] Gives the far ends of the links at the newest sample and returns their number: 0 if the device reports no
+  /// links, or if they are unknown now.
   uint32_t links(std::array<LinkEnd, HDV_MAX_LINKS>& ends) const noexcept HSP_RT;
   const Eigen::Matrix3d& mount() const noexcept { return R_world_device_; }
-  const Eigen::Vector3d& origin() const noexcept { return origin_world_; }  ///< [m] of the device frame, in the world
+  /// [m] of the device frame, in the world
+  const Eigen::Vector3d& origin() const noexcept { return origin_world_; }
   bool estimatesVelocity() const { return velocity_.has_value(); }
   bool simulated() const noexcept { return (device_->info().capabilities & HDV_C_SIMULATED) != 0; }
-  double rampOut() const noexcept { return limiter_.rampOut(); }  ///< [s]
+  double rampOut() const noexcept { return limiter_.rampOut(); }  ///< [s] from full force to none
 
  private:
   Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter,
@@ -142,8 +145,8 @@ class Arm {
   double trustIn(Nanoseconds age) const noexcept HSP_RT;
   bool comply(double dt, const Eigen::Vector3d& force, const Weight::Torques& weight) noexcept HSP_RT;
   void takeVirtualProbe() noexcept HSP_RT;
-  /// What carries the arm's own weight in this tick; zeros if the module does not know, or does not answer with
-  /// numbers.
+  /// Returns the torques that carry the arm's own weight in this tick: zeros if the module does not know them, or if
+  /// its answer is not finite.
   Weight::Torques weightTorques(const TipJacobian& J, double dt) noexcept HSP_RT;
   void scaleToMotors(const Weight::Torques& gravity, hdv_command& command) noexcept HSP_RT;
   void heatMotors(double dt) noexcept HSP_RT;
@@ -177,18 +180,18 @@ class Arm {
   hdv_command command_{};
   hsp_status read_status_ = HSP_OK, write_status_ = HSP_OK;
   std::atomic<const char*> trouble_{nullptr};
-  bool well_ = false;  // in this tick, nothing was wrong with the device
-  double calm_ = 0;    // [s] how long it has been well, and still or free
+  bool well_ = false;  // the device had no trouble in this tick
+  double calm_ = 0;    // [s] how long the device has been well, and at rest or without force
   Eigen::Vector3d calm_at_ = Eigen::Vector3d::Zero();
   uint64_t last_sequence_ = 0;
   Nanoseconds fresh_at_ = 0;
-  double fresh_after_ = 0;  // [s] between the last two new samples
+  double fresh_after_ = 0;  // [s] time between the last two new samples
   bool fresh_ = false;      // the sample of this tick is new
   bool watches_jumps_ = false, tip_known_ = false;
-  double fastest_ = 0;        // [m/s] possible speed of a tip between two samples; 0: unbounded
-  double sample_period_ = 0;  // [s] of the arm's samples; 0: unknown
+  double fastest_ = 0;        // [m/s] a larger speed between two samples is a jump; 0: unbounded
+  double sample_period_ = 0;  // [s] between two samples of the arm; 0: unknown
   SampleSpeed sample_speed_{0, 0};
-  Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();  // of the last good sample, in the world
+  Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();  // [m] tip at the last good sample, world frame
   Probe probe_;
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
 };

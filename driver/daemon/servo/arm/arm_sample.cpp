@@ -10,17 +10,17 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr double kCalmFor = 0.5;           ///< [s] that a device must be well before its force comes back by itself
-constexpr double kCalmTravel = 0.02;       ///< [m] how far its tip may move meanwhile, while something pushes on it
+constexpr double kCalmFor = 0.5;           ///< [s] for which a device must be well before its force comes back
+constexpr double kCalmTravel = 0.02;       ///< [m] largest motion of the tip in that time, if a force waits for it
 constexpr double kStaleAfter = 0.05;       ///< [s] without a new sample: the position is too old for a force
-constexpr double kPeriodsTrusted = 2.001;  ///< periods without a new sample before the force fades: one may be late
-constexpr double kTrustFades = 2e-3;       ///< [s] in which it fades
+constexpr double kPeriodsTrusted = 2.001;  ///< periods without a new sample until the force fades: one may be late
+constexpr double kTrustFades = 2e-3;       ///< [s] duration of this fade
 constexpr double kPairWithin = 2e-3;       ///< [s] how much closer two samples may arrive than they were measured
 
 }  // namespace
 
-/// What share of a force a sample of this age allows: an arm that falls silent keeps the last force for at most two of
-/// its periods and 2 ms more. If its period is unknown, only a silence of 50 ms is noticed.
+/// Returns the share of a force that a sample of this age allows. An arm that sends no more samples keeps the last
+/// force for at most two of its periods and 2 ms more. If its period is unknown, only a silence of 50 ms is noticed.
 double Arm::trustIn(Nanoseconds age) const noexcept HSP_RT {
   if (sample_period_ <= 0) return 1;
   const double over = static_cast<double>(age) * kSecondsPerNanosecond - kPeriodsTrusted * sample_period_;
@@ -51,8 +51,8 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   }
   watchJump();
   if (admittance_) takeVirtualProbe();
-  // A device slower than the servo repeats its sample, whose difference is no speed; and the next difference, taken for
-  // that of one tick, would be several times the hand's. A virtual mass moves in every tick.
+  // A device slower than the servo repeats its sample. The estimator gets only new samples: a repeated one would look
+  // like rest, and the next new one like several times the speed of the hand. A virtual mass moves in every tick.
   if (velocity_ && (fresh_ || admittance_)) {
     probe_.velocity = velocity_->update(probe_.position, admittance_ ? dt : fresh_after_);
     limiter_.watchVelocity(probe_.velocity);
@@ -95,8 +95,8 @@ void Arm::trip(Fault fault, double measured) noexcept HSP_RT {
   limiter_.trip(fault, measured);
 }
 
-/// A device that was unplugged, silent or at fault gets its force back once it has been well for a while and the force
-/// surprises nobody: its tip rests, or nothing would push on it now.
+/// Gives a device that was unplugged, silent or at fault its force back once it has been well for a while, and if the
+/// force surprises nobody: the tip rests, or no force acts on it now.
 void Arm::recover(double dt, bool pushes) noexcept HSP_RT {
   const bool moved = pushes && !((probe_.position - calm_at_).norm() <= kCalmTravel);
   if (!well_ || !probe_.valid || moved || !limiter_.silent()) {
@@ -128,8 +128,8 @@ bool Arm::locate() noexcept HSP_RT {
   return true;
 }
 
-/// An encoder that lost its count, or a packet that was misread, must not determine the force: no hand moves a tip so
-/// far. While there is no force anyway, a device may find its zero or its position anew.
+/// Trips a fault if the tip moved farther between two samples than a hand can move it: an encoder lost its count, or a
+/// packet was misread. While the force is off anyway, a device may find its zero or its position again.
 void Arm::watchJump() noexcept HSP_RT {
   if (!watches_jumps_ || !fresh_) return;
   const double jumped = (probe_.position - tip_).norm() / std::max(fresh_after_, kPairWithin);

@@ -26,7 +26,7 @@ double boundOf(double wanted, double device) {
   return std::min(wanted > 0 ? wanted : kNone, device > 0 ? device : kNone);
 }
 
-/// Moves toward 0 or 1 and arrives there, because a remainder left by rounding is nobody's force.
+/// Moves a gain toward 0 or 1. It reaches exactly 0 or 1: a rest that rounding leaves must not stay as a force.
 double faded(double gain, bool in, double dt) noexcept HSP_RT {
   constexpr double kRounding = 1e-9;
   const double next = gain + (in ? dt / ClientForces::kFadeIn : -dt / ClientForces::kFadeOut);
@@ -64,7 +64,7 @@ void ClientForces::end(uint32_t place) noexcept HSP_RT {
 }
 
 bool ClientForces::awaits(uint64_t tick) const noexcept HSP_RT {
-  constexpr uint64_t kKeepsUp = 2;  // [ticks] a program that answers every tenth tick is not awaited in the nine others
+  constexpr uint64_t kKeepsUp = 2;  // [ticks] the servo does not wait for a program that answers, say, every tenth tick
   const auto awaited = [&](const Client& client) {
     if (client.slot == nullptr || !client.answered || tick - client.push.tick > kKeepsUp) return false;
     hapticd_push push;
@@ -94,7 +94,7 @@ void ClientForces::step(Client& client, uint64_t tick, double dt) noexcept HSP_R
   const bool was_silent = client.silence > kSilentAfter;
   client.silence = take(client, tick) ? 0 : client.silence + dt;
   const bool silent = client.slot == nullptr || client.silence > kSilentAfter;
-  if (silent && !was_silent && client.slot != nullptr) count(client.silences);  // a program that leaves is not silent
+  if (silent && !was_silent && client.slot != nullptr) count(client.silences);  // not counted if the program has left
   if (client.slot != nullptr && client.answered)
     client.quiet.store(silent ? client.silence : 0, std::memory_order_relaxed);
   client.gain = faded(client.gain, !silent, dt);
@@ -107,10 +107,10 @@ void ClientForces::step(Client& client, uint64_t tick, double dt) noexcept HSP_R
   torque_ += client.gain * bounded(client.push.torque, max_torque_);
 }
 
-/// True for a record that answers a newer tick than the last one did.
+/// Reads a program's record. Returns true if the record answers a newer tick than the last record did.
 bool ClientForces::take(Client& client, uint64_t tick) noexcept HSP_RT {
   hapticd_push push;
-  // Looks a second time: a program that writes just now has its answer ready for this tick.
+  // Reads a second time: if the program was writing during the first read, its answer may be complete now.
   if (client.slot == nullptr || (!client.slot->take(client.seen, push) && !client.slot->take(client.seen, push)))
     return false;
   if (const Refusal why = refusalOf(push, tick); why != Refusal::kNone) {
@@ -129,7 +129,7 @@ bool ClientForces::take(Client& client, uint64_t tick) noexcept HSP_RT {
   return true;
 }
 
-/// Takes what a program asks for, and decides how much of it is applied.
+/// Notes how much force a program asks for, and how much of it passes the bound.
 void ClientForces::note(Client& client) const noexcept HSP_RT {
   const double asked = Eigen::Map<const Vector3d>(client.push.force).norm();
   client.given.store(std::min(asked, max_force_), std::memory_order_relaxed);

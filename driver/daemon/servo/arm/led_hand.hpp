@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The hand of a simulated arm, led by a program: it wants to be where the program says, and its own mass, spring and
-/// damper do the rest.
+/// The hand of a simulated arm, led by a program: the program sets the place where the hand wants to be, and the hand's
+/// own mass, spring and damper move it there.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -11,16 +11,17 @@ namespace hapticd::servo {
 
 class LedHand {
  public:
-  /// [main] @param hand of the device; nullptr: it has none, and the lead is only accounted for, as in a replay
+  /// [main] @param hand the device's extension; nullptr if there is none: the lead is then only recorded, as in a
+  /// replay
   LedHand(const hdv_ext_hand* hand, hdv_device* device, const Eigen::Matrix3d& R_world_device,
           const Eigen::Vector3d& origin_world)
       : hand_(hand), device_(device), R_world_device_(R_world_device), origin_world_(origin_world) {}
 
-  /// [any] True if it does what a leader says.
+  /// [any] True if the hand can follow a leader.
   bool guided() const noexcept { return hand_ != nullptr && hand_->guided(device_) != 0; }
   bool led() const noexcept { return lead_.led(); }
 
-  /// [rt] A leader begins. @param tip world frame: where the hand is if nobody has led it before
+  /// [rt] A leader begins. @param tip [m] world frame: place of the hand, if nobody has led it before
   void begin(const link::PoseSlot& slot, const Eigen::Vector3d& tip) noexcept HSP_RT {
     if (!lead_.active()) {
       Eigen::Map<Eigen::Vector3d>(pose_.position) = tip;
@@ -28,9 +29,9 @@ class LedHand {
     }
     lead_.begin(slot, pose_);
   }
-  void end() noexcept HSP_RT { lead_.end(); }  ///< [rt] the hand stays where it is then
+  void end() noexcept HSP_RT { lead_.end(); }  ///< [rt] the leader has gone: the hand brakes and stays
 
-  /// [rt] Before the arm is read at t [s], dt [s] after the last; epoch: CLOCK_MONOTONIC [s] at t = 0.
+  /// [rt] Called before the arm is read at t [s], dt [s] after the last tick. @param epoch CLOCK_MONOTONIC [s] at t = 0
   void step(double t, double dt, double epoch) noexcept HSP_RT {
     if (!lead_.active()) return;
     lead_.step(t, dt, epoch, pose_);
@@ -42,9 +43,9 @@ class LedHand {
     hand_->guide(device_, p_device.data(), v_device.data(), kNoForce);
   }
 
-  const hapticd_target* taken() const noexcept { return lead_.taken(); }  ///< of the last step; nullptr: there was none
+  const hapticd_target* taken() const noexcept { return lead_.taken(); }  ///< record of the last step, or nullptr
   uint64_t refused() const noexcept { return lead_.refused(); }
-  Follow::Refusal why() const noexcept { return lead_.why(); }  ///< the last was
+  Follow::Refusal why() const noexcept { return lead_.why(); }  ///< reason of the last refusal
 
  private:
   const hdv_ext_hand* hand_;

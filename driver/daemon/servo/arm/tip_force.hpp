@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The force at the tip that measured joint torques amount to.
+/// Calculates the force at the tip from measured joint torques.
 #pragma once
 #include <Eigen/Core>
 
@@ -7,25 +7,25 @@
 
 namespace hapticd::servo {
 
-/// Its rows are the velocity of the tip in the device frame, with one column per joint.
+/// Maps joint rates to the velocity of the tip: three rows x, y, z in the device frame, one column per joint.
 using TipJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, HDV_MAX_JOINTS>;
 using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, HDV_MAX_JOINTS, 1>;
 
-/// J J^T of a tip, which can be inverted near singular poses too: directions in which the arm cannot move are damped
-/// (Nakamura & Hanafusa 1986), so that an answer stays bounded and fades to zero along them.
+/// Inverts J J^T of a tip, near singular poses too: directions in which the arm can hardly move are damped (Nakamura &
+/// Hanafusa 1986), so that a result stays bounded and fades to zero along them.
 class TipInverse {
  public:
   static constexpr double kDamped = 0.05;  ///< singular values below this fraction of the largest are damped
 
-  /// [rt]
+  /// [rt] Factorizes J J^T.
   explicit TipInverse(const TipJacobian& J) noexcept;
 
-  /// [rt] pinv(J) v: the smallest joint rates that move the tip with v.
+  /// [rt] Returns pinv(J) v: the smallest joint rates that move the tip with velocity v.
   JointVector rates(const Eigen::Vector3d& velocity) const noexcept;
-  /// [rt] pinv(J^T) tau: the force at the tip that explains the torques best (the inverse of Thompson et al. 1999, Eq.
-  /// 9).
+  /// [rt] Returns pinv(J^T) tau: the force at the tip that explains the torques best (inverts Thompson et al. 1999,
+  /// Eq. 9).
   Eigen::Vector3d force(const JointVector& torque) const noexcept;
-  /// [rt] 1: far from singular. Below 1 some direction is damped; 0: the arm cannot move along it.
+  /// [rt] Returns 1 far from singular poses, less if some direction is damped, and 0 if the arm cannot move along it.
   double health() const noexcept { return health_; }
 
  private:

@@ -32,7 +32,7 @@ double shareWithin(double most, const Weight::Torques& torques, const TipJacobia
     lever = std::max(lever, J.col(i).norm());
   }
   if (largest == 0) return 1;
-  // The numbers must have finite squares, so a weight of 1e300 N is bounded like any other.
+  // Scaled down first, so that squares stay finite: a weight of 1e300 N is then bounded like any other.
   JointVector direction(J.cols());
   for (Eigen::Index i = 0; i < J.cols(); ++i) direction[i] = torques[static_cast<size_t>(i)] / largest;
   const double at_tip = largest * TipInverse(J).force(direction).norm();

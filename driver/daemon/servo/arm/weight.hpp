@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The torques that carry the arm's own weight. They come from the masses in a device file, which may be wrong: so they
-/// are ramped like every force, and never amount to more at the tip than limits.weight.
+/// The torques that carry the arm's own weight. They come from the masses in a device file, which may be wrong. So
+/// these torques are ramped like every force, and are never worth more than limits.weight at the tip.
 #pragma once
 #include <array>
 
@@ -13,14 +13,14 @@ class Weight {
  public:
   using Torques = std::array<double, HDV_MAX_JOINTS>;  ///< [N m], or [N] for a sliding joint
 
-  /// [main] @param max_force [N] of the arm, used where limits.weight is not given; 0: unknown, no bound
+  /// [main] @param max_force [N] of the arm, used if limits.weight is not given; 0: unknown, so there is no bound
   Weight(const scene::Limits& limits, double max_force);
 
-  /// [rt] Whether the arm is carried at all: if nothing in the scene can be felt, its motors stay off.
+  /// [rt] Sets whether the weight is carried at all: if nothing in the scene can be felt, the motors stay off.
   void carry(bool wanted) noexcept HSP_RT { wanted_ = wanted; }
 
-  /// [rt] The torques of this tick: what the kinematics ask for, bounded and faded. Call once a tick.
-  /// @param J of the tip, device frame @param allowed share of a full force that ramps and faults allow now, 0 to 1
+  /// [rt] Bounds and fades the torques that the kinematics ask for. Call it once per tick.
+  /// @param J of the tip, device frame @param allowed share of the full force that ramps and faults allow now, 0 to 1
   /// @return true if limits.weight made them smaller
   bool bound(Torques& torques, const TipJacobian& J, double allowed, double dt) noexcept HSP_RT;
 
@@ -30,8 +30,8 @@ class Weight {
   bool wanted_ = false;
 };
 
-/// [rt] The factor that reduces joint torques to `most` [N] at the tip; 1 where they amount to less. A joint that
-/// hardly moves the tip may not have more than `most` times the longest lever of the arm.
+/// [rt] Returns the factor that reduces joint torques to `most` [N] at the tip, or 1 if they are worth less. The torque
+/// of a joint that hardly moves the tip is bounded by `most` times the longest lever of the arm.
 double shareWithin(double most, const Weight::Torques& torques, const TipJacobian& J) noexcept HSP_RT;
 
 }  // namespace hapticd::servo

@@ -128,8 +128,8 @@ void Core::listLive() noexcept HSP_RT {
   live_.clear();
   for (uint32_t i = 0; i < models_.size(); ++i) {
     const bool traced = models_[i].always || models_[i].active_surfaces > 0;
-    if (traced || models_[i].moves) live_.push_back(i);  // reserved for all of them: never allocates
-    if (!traced) clearContacts(i);  // one that follows a path goes on without being traced, and has no foot then
+    if (traced || models_[i].moves) live_.push_back(i);  // capacity is reserved for all models, so this never allocates
+    if (!traced) clearContacts(i);                       // a model on a path still moves, but has no foot point
   }
 }
 
@@ -139,7 +139,7 @@ void Core::receiveRecords() noexcept HSP_RT {
        ++received_count_) {
     const link::ActivationRecord& record = received_[received_count_];
     ModelState& model = models_[record.model];
-    if (model.shape == nullptr) continue;  // it has left
+    if (model.shape == nullptr) continue;  // the model has left the run
     if (record.order == link::ActivationRecord::Order::kStop) {
       model.shape->deactivate(record.near.probe, record.near.surface);
       changed |= --model.active_surfaces == 0;
@@ -155,7 +155,7 @@ void Core::findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     jumped_[i] = 0;
     if (!probes[i].valid) {
-      wants_search_ = true;  // the next sample may be elsewhere
+      wants_search_ = true;  // the tip may be far away in the next sample
       continue;
     }
     const double travel = (probes[i].position - last_position_[i]).norm();
@@ -176,7 +176,7 @@ void Core::fillProbe(const ModelState& model, const Probe& probe, uint32_t index
   in.time_ns = static_cast<uint64_t>(t * 1e9);
   if (jumped_[index] != 0) in.flags |= HSP_IN_JUMP;
   if (!probe.valid) in.flags |= HSP_IN_INVALID;
-  const Vector3d& p_world = last_position_[index];  // the last good one
+  const Vector3d& p_world = last_position_[index];  // from the last good sample
   Map(in.position) = model.frame.pointToModel(p_world);
   if (!model.frame.identity) ++transforms_;
   const uint32_t needs = model.shape->report().flags;
@@ -227,7 +227,7 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   }
 }
 
-/// Runs the plugin over inputs_ and outputs_, and takes its time if that is measured.
+/// Runs the plugin on inputs_, fills outputs_, and measures the time if the settings ask for it.
 void Core::callShape(ModelState& model, double dt, hsp_pose& pose) noexcept HSP_RT {
   hsp_step step{};
   step.struct_size = sizeof step;
@@ -261,7 +261,7 @@ void Core::sendTransform(ModelState& model, uint32_t index) noexcept HSP_RT {
   transform.model = index;
   for (size_t i = 0; i < 3; ++i) transform.position[i] = model.pose.position[i];
   for (size_t i = 0; i < 4; ++i) transform.orientation[i] = model.pose.orientation[i];
-  link_.transforms.push(transform);  // the queue is full, but the next tick sends a newer one
+  link_.transforms.push(transform);  // lost if the queue is full; the next tick sends a newer one
 }
 
 }  // namespace hapticd::servo

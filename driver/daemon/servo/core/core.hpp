@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The heart of the servo: a function of (state, probes, dt). The same core runs on a real clock, in virtual time and
-/// over a recorded path; same input gives the same bits.
+/// The core of the servo: steps all models for one tick, as a function of (state, probes, dt). The same core runs on a
+/// real clock, in virtual time and in a replay. The same input gives the same result, bit by bit.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -24,124 +24,126 @@
 
 namespace hapticd::servo {
 
-/// One arm's tip, in the world frame.
+/// The tip of one arm, world frame.
 struct Probe {
   Vector3d position = Vector3d::Zero();  ///< [m]
-  Vector3d velocity = Vector3d::Zero();  ///< [m/s] zero unless something in the scene uses it
+  Vector3d velocity = Vector3d::Zero();  ///< [m/s] zero if nothing in the scene uses it
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  bool valid = false;  ///< the sample is good; otherwise no shape pushes
+  bool valid = false;  ///< true if the sample is good; otherwise no shape pushes
 };
 
-/// What one model answered to one probe in the last tick; vectors in the world frame.
+/// The answer of one model to one probe in the last tick; vectors in the world frame.
 struct Contact {
   hsp_contact world{};
   bool traced = false;
 };
 
-/// A model as the servo sees it.
+/// The state of one model in the servo.
 struct ModelState {
   host::ShapeInstance* shape = nullptr;
   hsp_pose pose{};
   Frame frame;
-  Frame before;       ///< its frame one tick ago; kept if the model moves
-  Path path;          ///< kinematic models
-  MinimumJerk glide;  ///< the motion that a person asked for; it precedes the path
+  Frame before;       ///< its frame one tick ago; only kept if the model moves
+  Path path;          ///< motion of a kinematic model, from a file
+  MinimumJerk glide;  ///< motion that a user asked for (ctl move); it overrides the path
   bool kinematic = false;
-  bool enabled = true;                  ///< it is felt; otherwise it is faded out and only traced
-  bool leaving = false;                 ///< it fades out and then leaves its place
-  bool until_free = false;              ///< it was added or enabled while a tip may be in it: see enters()
-  double free_for = 0;                  ///< [s] for which no tip was in it since
-  std::array<hsp_change, 8> changes{};  ///< live parameters for the next step
+  bool enabled = true;                  ///< true: it is felt; false: it fades out and is only traced
+  bool leaving = false;                 ///< true if it fades out to be removed from the run
+  bool until_free = false;              ///< true: it is not felt before every tip is outside, see enters()
+  double free_for = 0;                  ///< [s] how long no tip has been inside, while until_free
+  std::array<hsp_change, 8> changes{};  ///< values of live parameters for the next step
   uint32_t change_count = 0;
-  uint32_t active_surfaces = 0;  ///< over all probes
+  uint32_t active_surfaces = 0;  ///< traced surfaces, all probes together
   bool always = false;           ///< stepped in every tick, because it traces itself or moves by itself
-  bool moves = false;            ///< its pose may change
+  bool moves = false;            ///< true if its pose may change
   hsp_status status = HSP_OK;
-  hsp_status failed_status = HSP_OK;  ///< the first status that step may not return
-  Pull pull;                          ///< the pull that silenced it, or the largest jump of its force
+  hsp_status failed_status = HSP_OK;  ///< the first status not allowed by the ABI that step() returned
+  Pull pull;                          ///< the pull for which it was silenced, or the largest jump of its force
   Guard guard;
-  ClaimBounds claims;         ///< what it may do
-  bool overran = false;       ///< its last step took too long, which counts against it
-  bool overran_then = false;  ///< it overran in the run that is replayed
-  uint64_t step_ns = 0;       ///< time of the last step; 0 when not measured
-  bool cpu_timed = false;     ///< that is the thread's own time, without interruptions
-  // How exactly it answers: less so while a tick takes too long, see load_shedding.hpp.
-  uint32_t level = 0, coarsest = 0;  ///< the level now, and the coarsest so far
-  uint64_t finer_ns = 0;             ///< time of a step before the level was lowered
+  ClaimBounds claims;         ///< how fast its force may change
+  bool overran = false;       ///< its last step took too long, and was counted as a strike
+  bool overran_then = false;  ///< replay: it overran in this tick of the recorded run
+  uint64_t step_ns = 0;       ///< time of the last step; 0 if not measured
+  bool cpu_timed = false;     ///< step_ns is CPU time of the thread, without interruptions
+  // Its accuracy: reduced while ticks take too long, see load_shedding.hpp.
+  uint32_t level = 0, coarsest = 0;  ///< Accuracy level now, and the coarsest one so far
+  uint64_t finer_ns = 0;             ///< time of a step before the level was last lowered
   double rested = 0;                 ///< [s] since its last step
   uint64_t degraded_ticks = 0;
   double degraded_residual = 0;  ///< [m] largest error that a degraded answer reported
-  LedPose lead;                  ///< lead of a kinematic model; it precedes glide and path
+  LedPose lead;                  ///< a leader's motion of a kinematic model; it overrides glide and path
 };
 
 struct CoreSettings {
-  uint64_t budget_ns = 0;       ///< for all shapes in a tick; 0: no limit
-  double max_probe_speed = 20;  ///< [m/s] faster motion between two samples is a jump
+  uint64_t budget_ns = 0;       ///< time for all shapes of a tick together; 0: no limit
+  double max_probe_speed = 20;  ///< [m/s] a faster probe is treated as a jump
   uint32_t spare_models = 0;    ///< empty places for models that are added during the run
-  bool measure = false;         ///< take the CPU time of each step
-  double evaluation_ns = 0;     ///< > 0: time per evaluation that a step is charged, instead of what it takes
-  bool former_claims = false;   ///< as formerly, claims do not bound torques, nor steps after a parameter was set
+  bool measure = false;         ///< measure the time of each step
+  double evaluation_ns = 0;     ///< if > 0, a step costs its evaluations times this, not its real time
+  bool former_claims = false;   ///< for old recordings: torques and steps after a set parameter are not bounded
 };
 
-/// What the arms do with a tick's answers; settled before the first tick. What nobody uses is not computed.
+/// Which results of a tick the arms use; set before the first tick. Other results are not computed.
 struct Uses {
-  bool torque = true;    ///< an arm can turn the hand, or torques are written to a file
-  bool exchange = true;  ///< an arm has a passivity controller
-  /// [N] The most that each arm lets through, by probe; 0 or missing: unknown.
+  bool torque = true;    ///< true if an arm can apply torques, or torques are written to a file
+  bool exchange = true;  ///< true if an arm has a passivity controller
+  /// [N] Largest force that each arm lets through, by probe; 0 or missing: unknown.
   std::vector<double> max_force = {};
-  std::vector<double> max_torque = {};  ///< [N m] the same
+  std::vector<double> max_torque = {};  ///< [N m] the same for torques
 };
 
 class Core {
  public:
-  /// [main] @param models active instances in the order of the scene, with the poses they were activated at
+  /// [main] @param models active shapes in the order of the scene, in the poses in which they were activated
   Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& scene, uint32_t probe_count,
        const CoreSettings& settings, link::Link& link);
 
-  /// [main] Called before the first tick; without it everything is computed.
+  /// [main] Called before the first tick. Without this call, every result is computed.
   void serve(const Uses& uses);
 
-  /// [rt] Called before the first tick: CLOCK_MONOTONIC [s] at t = 0, which is the clock of leaders.
+  /// [rt] Called before the first tick. `epoch` is the CLOCK_MONOTONIC time [s] of t = 0; leaders use that clock.
   void startAt(double epoch) noexcept HSP_RT { epoch_ = epoch; }
 
-  /// [rt] One tick at time t [s], dt [s] after the last (0: the first). Fills contacts() and force().
+  /// [rt] Runs one tick at time t [s], dt [s] after the last one (0 for the first). Fills contact() and force().
   void tick(double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
 
-  /// [main] Tells what the servo must know of an active shape before its first tick.
+  /// [main] Returns the state with which the servo starts an active shape.
   static ModelState stateOf(host::ShapeInstance& shape, const scene::Model& described);
 
-  /// [rt] Called before tick(): decides from the last tick's cost how exactly each model answers. @return what changed
+  /// [rt] Called before tick(): sets the accuracy of each model from the cost of the last tick. @return what changed
   std::span<const LoadShedding::Change> shedLoad() noexcept HSP_RT;
 
-  /// [rt] Obeys an order to a model, before tick(). False if it cannot be obeyed.
+  /// [rt] Called before tick(): obeys an order that concerns a model. Returns false if that is impossible.
   bool obey(const Order& order, double t) noexcept HSP_RT;
 
-  /// [any] Only one reader: a place whose model has left, so that its shape may be destroyed.
+  /// [any] Gives the number of a model that has left the run, so that its shape may be destroyed. Returns false if
+  /// there is none. Only one thread may call it.
   bool takeReleased(uint32_t& model) noexcept { return released_.pop(model); }
 
-  /// [rt] Tells the simulation side where the probes are; called before tick(), so that a search in lockstep sees them.
+  /// [rt] Sends the positions of the probes to the proximity search; called before tick(), so that a search in lockstep
+  /// sees them.
   void publish(double t, std::span<const Probe> probes) noexcept HSP_RT;
 
-  /// Force [N] and torque [N m] of all models on a probe, world frame.
+  /// Sums of the forces [N] and torques [N m] of all models on a probe, world frame.
   const Vector3d& force(uint32_t probe) const noexcept { return forces_[probe]; }
   const Vector3d& torque(uint32_t probe) const noexcept { return torques_[probe]; }
-  /// What moving models did to a probe since the last tick, and what its contacts can give back.
+  /// Energy that moving models gave to a probe since the last tick, and that its contacts can still give back.
   const passivity::Exchange& exchange(uint32_t probe) const noexcept { return exchanges_[probe]; }
   std::span<const ModelState> models() const noexcept { return models_; }
   const Contact& contact(uint32_t model, uint32_t probe) const noexcept {
     return contacts_[size_t{model} * probe_count_ + probe];
   }
-  /// True if the last tick had a jump or a lost track, so that the simulation side should search at once.
+  /// True if the last tick had a jump or a lost track, so that a proximity search should run at once.
   bool wantsSearch() const noexcept { return wants_search_; }
-  /// Transforms in the last tick: n inverse ones of probes, m of points and m of normals; models at the world's origin
-  /// need none.
+  /// Number of transforms in the last tick: one per model and probe, and two per traced foot (point and normal). Models
+  /// whose frame is the world frame need none.
   uint32_t transforms() const noexcept { return transforms_; }
-  /// Models that have something to do in this tick, in scene order.
+  /// Models that are traced or move in this tick, in scene order.
   std::span<const uint32_t> live() const noexcept { return live_; }
-  /// Activation records that the last tick took, for the recording.
+  /// Activation records that the last tick obeyed, for the recording.
   std::span<const link::ActivationRecord> received() const noexcept { return {received_.data(), received_count_}; }
   uint32_t probeCount() const noexcept { return probe_count_; }
-  /// [rt] How many models are present, felt or not.
+  /// [rt] Returns how many models are in the run, felt or not.
   uint32_t present() const noexcept { return present_; }
 
  private:
@@ -154,7 +156,7 @@ class Core {
   void stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
   bool mayRest(const ModelState& model, uint32_t index, double dt) const noexcept HSP_RT;
   struct Begun {
-    Nanoseconds wall = 0, cpu = 0;  ///< 0: not taken
+    Nanoseconds wall = 0, cpu = 0;  ///< 0: not measured
   };
   Begun beginCost() const noexcept HSP_RT;
   void takeCost(ModelState& model, const Begun& begun) noexcept HSP_RT;
@@ -183,20 +185,20 @@ class Core {
   link::Link& link_;
   uint32_t probe_count_;
   std::vector<ModelState> models_;
-  std::vector<uint32_t> live_;  // models with something to do, in scene order, so that the sum is always the same
-  std::vector<Load> loads_;     // of the models that were stepped
+  std::vector<uint32_t> live_;  // see live(); in scene order, so that forces are always added in the same order
+  std::vector<Load> loads_;     // costs of the models that were stepped
   LoadShedding shedding_;
   std::vector<Claim> claims_;  // [model * probe_count + probe]
-  // Of the answer being judged: kept, because making it anew would cost as much as judging it.
+  // The answer that is judged now. A member, because constructing it would cost as much as judging it.
   ClaimStep claim_step_;
-  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();  // motion of its model in this tick, if it moves
+  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();  // turn in this tick of the model being judged
   std::vector<Contact> contacts_;                       // [model * probe_count + probe]
-  std::vector<hsp_probe> inputs_;                       // of the model being stepped
+  std::vector<hsp_probe> inputs_;                       // probes for the model being stepped
   std::vector<hsp_contact> outputs_;
-  // Bounded, so that a flood of records does not make a tick late; the rest waits for the next tick.
+  // Bounded, so that many records at once do not make a tick late: the rest waits for the next tick.
   std::array<link::ActivationRecord, 1024> received_;
   size_t received_count_ = 0;
-  std::vector<Vector3d> last_position_;               // position of the last good sample
+  std::vector<Vector3d> last_position_;               // at the last good sample, by probe
   std::vector<Eigen::Quaterniond> last_orientation_;  // the same
   std::vector<uint8_t> jumped_, seen_;
   std::vector<Vector3d> forces_, torques_;
@@ -208,10 +210,10 @@ class Core {
   double epoch_ = 0;
   uint64_t tick_ = 0;
   uint64_t budget_left_ns_ = 0;
-  bool preempted_ = false;  // their counts in this tick, if anybody asked for them
-  // After a tick that was too long, the thread's own time is measured, at the cost of one system call per step.
-  uint32_t suspicious_ = 0;  // ticks for which it is still measured
-  bool cpu_timed_ = false;   // it was measured in the last tick
+  bool preempted_ = false;  // the kernel interrupted the thread in this tick; only known after excused()
+  // After a tick that was too long, CPU time is measured for a while, at the cost of one system call per step.
+  uint32_t suspicious_ = 0;  // ticks for which CPU time is still measured
+  bool cpu_timed_ = false;   // CPU time was measured in the last tick
 };
 
 }  // namespace hapticd::servo

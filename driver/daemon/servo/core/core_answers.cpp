@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What becomes of a shape's answer: it is judged, held to the plugin's claims, and kept in the world frame.
+/// Checks the answer of a shape, reduces it to the plugin's claims, and stores it in the world frame.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -15,20 +15,20 @@ using ConstMap = Eigen::Map<const Vector3d>;
 
 constexpr double kLargest = 1e100;
 
-/// Also false for numbers whose squares overflow: neither a length of them nor a ratio of two would mean anything.
+/// False also for finite numbers whose squares overflow, because no length can be calculated from them.
 bool finite(const double* values, size_t count) noexcept HSP_RT {
   for (size_t i = 0; i < count; ++i)
     if (!(std::abs(values[i]) <= kLargest)) return false;
   return true;
 }
 
-/// Adjacent numbers of the answer to a probe: its force and torque, then its foot with normal and depth.
+/// Adjacent numbers of an answer. Wrench: force and torque. Foot: foot point, normal and depth.
 using Wrench = Eigen::Map<const Eigen::Matrix<double, 6, 1>>;
 using Foot = Eigen::Map<const Eigen::Matrix<double, 7, 1>>;
 static_assert(offsetof(hsp_contact, torque) == offsetof(hsp_contact, force) + 3 * sizeof(double));
 static_assert(offsetof(hsp_contact, depth_m) == offsetof(hsp_contact, point) + 6 * sizeof(double));
 
-/// If the sum of the squares is small, so is each number. Every answer in every tick is checked in this way.
+/// Fast check, because it runs for every answer in every tick: if the sum of the squares is small, so is each number.
 bool finite(const hsp_contact& c) noexcept HSP_RT {
   const bool traced = (c.flags & HSP_OUT_TRACED) != 0;
   const double squares = Wrench(c.force).squaredNorm() + (traced ? Foot(c.point).squaredNorm() : 0);
@@ -38,8 +38,8 @@ bool finite(const hsp_contact& c) noexcept HSP_RT {
 
 }  // namespace
 
-/// True if the torque of the answer to this probe was beyond the claim, to which it is then reduced. Judged before the
-/// force, which tells the claim where the probe was.
+/// Reduces the torque of the answer to this probe to the claim, and returns true if it was larger. Call it before the
+/// force is judged, because judging the force stores the place of the probe.
 bool Core::holdTorque(const ModelState& model, Claim& claim, uint32_t probe, double dt) noexcept HSP_RT {
   ClaimStep& step = claim_step_;
   hsp_contact& out = outputs_[probe];
@@ -56,9 +56,11 @@ bool Core::holdTorque(const ModelState& model, Claim& claim, uint32_t probe, dou
 
 namespace {
 
-constexpr double kFreeFor = 0.05;  ///< [s] a search finds what is near every 5 ms, or later on a busy machine
+/// [s] a model counts as free after this time; a search runs every 5 ms, less often on a busy machine
+constexpr double kFreeFor = 0.05;
 
-/// Keeps the largest jump so far, in the form in which the plugin would report it; its time is noted after the step.
+/// Keeps the largest jump of force so far, as the number that the plugin must report to be allowed it. The caller adds
+/// the time.
 void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, const hsp_contact& out) noexcept HSP_RT {
   const double size = step.force.norm();
   const double felt = step.max_force > 0 && size > step.max_force ? step.max_force / size : 1;
@@ -70,8 +72,9 @@ void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, con
 
 }  // namespace
 
-/// Which parts of the answer to this probe were beyond the claim, to which they are then reduced. This and what calls
-/// it go into judge(): they are asked of every answer in every tick, and calls cost as much as they do.
+/// Reduces force and torque of the answer to this probe to the claim, and returns which of them was larger. This
+/// function and its caller are inlined into judge(): they run for every answer in every tick, and a call costs as much
+/// as they do.
 [[gnu::always_inline]] inline Trouble Core::holdToClaim(ModelState& model, uint32_t index, uint32_t probe,
                                                         double dt) noexcept HSP_RT {
   hsp_contact& out = outputs_[probe];
@@ -84,7 +87,7 @@ void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, con
   step.max_force = uses_.max_force[probe];
   if ((out.flags & HSP_OUT_TRACED) != 0) step.normal = model.frame.vectorToWorld(ConstMap(out.normal));
   step.turn = model.moves ? &turn_ : nullptr;
-  if (model.claims.moves_itself) {  // after the probe was moved into its frame
+  if (model.claims.moves_itself) {  // inputs_ are relative to the pose before this step
     step.p_world = last_position_[probe];
     step.p_model = model.frame.pointToModel(step.p_world);
     step.origin = model.frame.origin_world;
@@ -102,7 +105,7 @@ void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, con
   return claim.excused() ? Trouble::kNone : held ? Trouble::kJump : Trouble::kTwists;
 }
 
-/// What a healthy answer may still violate: the time that it was given, and the claims of the shape.
+/// Checks an answer without other errors against the time for a step and the claims of the shape.
 [[gnu::always_inline]] inline Trouble Core::holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
   constexpr int kJumps = 3;
   Trouble trouble = Trouble::kNone;
@@ -115,7 +118,7 @@ void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, con
   return trouble == Trouble::kNone ? holdToTime(model) : trouble;
 }
 
-/// Decides whether the answers may be felt; a model that moves itself goes to its new pose.
+/// Decides whether the answers of a model may be felt. A model that moves itself takes its new pose.
 Trouble Core::judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT {
   bool answers_finite = true;
   for (const hsp_contact& out : outputs_) answers_finite &= finite(out);
@@ -137,7 +140,7 @@ Trouble Core::judge(ModelState& model, uint32_t index, double dt, const hsp_pose
   return trouble;
 }
 
-/// A part of the last good force, with which a model in trouble is still felt.
+/// Replaces the answer by a part of the last good force, to fade out a model in trouble.
 void Core::fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP_RT {
   Contact& last = contacts_[size_t{index} * probe_count_ + probe];
   last.traced = false;
@@ -145,7 +148,7 @@ void Core::fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP
   Map(last.world.torque) *= part;
 }
 
-/// True if one of the answers pulls; the pull is then noted.
+/// Returns true, and notes the pull, if one of the answers pulls the probe in.
 bool Core::pulls(ModelState& model) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     if (!pullsIn(outputs_[i], model.frame.pointToModel(last_position_[i]))) continue;
@@ -155,7 +158,8 @@ bool Core::pulls(ModelState& model) noexcept HSP_RT {
   return false;
 }
 
-/// The force of the last tick was held while the model's surface moved on; that work was done by the model.
+/// Adds the work that a moving model did on the probe: the force of the last tick times the motion of the surface
+/// since.
 void Core::bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     const Contact& held = contacts_[size_t{index} * probe_count_ + i];
@@ -168,7 +172,8 @@ void Core::bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT {
   }
 }
 
-/// A wall whose force grows with depth stores less than force times depth. A soft shape tells what it stores.
+/// Adds the energy that a contact can give back: at most force times depth, for any wall whose force grows with depth.
+/// A soft shape reports its energy itself.
 void Core::bookContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT {
   const ConstMap force(contact.world.force);
   if (force.isZero(0)) return;
@@ -181,7 +186,7 @@ void Core::bookContact(const ModelState& model, const Contact& contact, uint32_t
 }
 
 Trouble Core::takePose(ModelState& model, hsp_pose pose) noexcept HSP_RT {
-  constexpr double kUnit = 1e-3;  // as scenes may give them
+  constexpr double kUnit = 1e-3;  // the same tolerance as for quaternions in scenes
   constexpr double kExact = 1e-12;
   if (!finite(pose.position, 13)) return Trouble::kNotFinite;
   Eigen::Map<Eigen::Vector4d> q(pose.orientation);
@@ -210,10 +215,10 @@ void Core::takeContact(ModelState& model, uint32_t index, uint32_t probe, double
   if (!frame.identity) transforms_ += 2;
 }
 
-/// Whether a model that was added or enabled may be felt. It may not while a tip is in it: its whole force would reach
-/// a hand at once that had met nothing on its way. What pushes without a surface has no outside, so it fades in slowly.
-/// In its first ticks no search has told what is near, and a model that has not been looked at seems to be free.
-/// @param pace [s] of its fade in this tick
+/// Decides whether a model that was added or enabled may be felt. It is not felt while a tip is inside, because its
+/// whole force would reach the hand at once. A model that pushes without a surface has no outside, so it fades in
+/// slowly. The model must have been free for kFreeFor, because before the first search every model seems to be free.
+/// @param pace [s] of the fade in this tick; made smaller for a slow fade
 bool Core::enters(ModelState& model, std::span<const Probe> probes, double& pace) const noexcept HSP_RT {
   bool asked = false, pushes = false;
   for (uint32_t i = 0; i < probe_count_; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What an answer may cost: how exactly each shape answers, and what happens to one that takes too long.
+/// The cost of answers: the accuracy of each shape, and what happens to a shape that takes too long.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -10,8 +10,8 @@
 
 namespace hapticd::servo {
 
-/// A shape at the coarsest level answers only in every fourth tick if no probe can reach it before its next turn: it
-/// stands still, and its foot and distance are those of a moment ago. The turns are spread over the ticks.
+/// True if a shape may skip this tick. A resting shape at the coarsest level answers only in every fourth tick if no
+/// probe can reach it before; meanwhile its last foot and distance are used. Different shapes skip different ticks.
 bool Core::mayRest(const ModelState& model, uint32_t index, double dt) const noexcept HSP_RT {
   if (model.always || model.moves || model.change_count > 0) return false;
   if ((tick_ + index) % Accuracy::kTurns == 0) return false;
@@ -29,7 +29,7 @@ Core::Begun Core::beginCost() const noexcept HSP_RT {
 }
 
 void Core::takeCost(ModelState& model, const Begun& begun) noexcept HSP_RT {
-  constexpr uint32_t kSuspicion = 100;  // ticks for which a strike counts
+  constexpr uint32_t kSuspicion = 100;  // [ticks] for which CPU time is measured after a tick that was too long
   model.step_ns = monotonicNow() - begun.wall;
   model.cpu_timed = begun.cpu != 0;
   if (settings_.evaluation_ns > 0) {
@@ -39,13 +39,13 @@ void Core::takeCost(ModelState& model, const Begun& begun) noexcept HSP_RT {
   } else if (model.cpu_timed) {
     model.step_ns = std::min(model.step_ns, os::cpuTimeOfThread() - begun.cpu);
   }
-  // a spent budget stays at 1, so that the next shape may still answer, but must be quick
+  // a spent budget stays at 1 ns (0 means unlimited), so that the next shape still answers, but as fast as it can
   if (budget_left_ns_ > 0) budget_left_ns_ = budget_left_ns_ > model.step_ns ? budget_left_ns_ - model.step_ns : 1;
   if (budget_left_ns_ == 1 && settings_.evaluation_ns == 0) suspicious_ = kSuspicion;
 }
 
-/// A shape is not at fault for a tick that was long because the kernel interrupted it. Where the thread's own time is
-/// measured, interruptions are not part of it and excuse nothing; otherwise a watchdog on the same processor would
+/// True if the kernel interrupted the thread in this tick, so that a long step is not the shape's fault. If CPU time is
+/// measured, interruptions are not in it, so they excuse nothing; otherwise a watchdog on the same processor would
 /// excuse every step.
 bool Core::excused() noexcept HSP_RT {
   if (settings_.evaluation_ns > 0 || cpu_timed_) return false;

@@ -52,7 +52,7 @@ bool Core::adopt(ModelState& place, const Order& order) noexcept HSP_RT {
   if (place.shape != nullptr || order.model == nullptr) return false;
   std::swap(place, *order.model);
   ++present_;
-  place.guard.silence();  // fades in
+  place.guard.silence();  // so that its force fades in
   place.until_free = true;
   place.free_for = 0;
   listLive();
@@ -70,7 +70,7 @@ bool Core::change(ModelState& model, const Order& order) noexcept HSP_RT {
   if (host::damps(plugin, order.param)) claims.damping = std::max(claims.damping, order.value);
   if (host::stiffens(plugin, order.param) && claims.stiffness > 0)
     claims.stiffness = std::max(claims.stiffness, order.value);
-  // What was asked for may change the force under a resting probe; such a jump is not the plugin's fault.
+  // A new value may change the force on a resting probe. Such a jump is not the plugin's fault.
   for (uint32_t i = 0; i < probe_count_; ++i) {
     Claim& claim = claims_[size_t{order.target} * probe_count_ + i];
     if (settings_.former_claims)
@@ -82,7 +82,7 @@ bool Core::change(ModelState& model, const Order& order) noexcept HSP_RT {
 }
 
 void Core::releaseLeaving() noexcept HSP_RT {
-  // Records that still name the model must be gone first; the simulation side was told before the order came.
+  // Activation records that still name the model must be used up first. The proximity search already ignores the model.
   if (leaving_ == 0 || received_count_ == received_.size()) return;
   for (uint32_t i = 0; i < models_.size() && leaving_ > 0; ++i) {
     ModelState& model = models_[i];

@@ -11,7 +11,8 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kThere = 1e-9;  ///< [m], [rad] nearer to a resting target it has arrived: no encoder sees less
+/// [m], [rad] nearer than this to a resting target, the motion ends; no encoder resolves less
+constexpr double kThere = 1e-9;
 
 bool finite(const double* values, int count) noexcept HSP_RT {
   for (int i = 0; i < count; ++i)
@@ -19,7 +20,7 @@ bool finite(const double* values, int count) noexcept HSP_RT {
   return true;
 }
 
-/// This also holds for a vector whose squares overflow.
+/// Shortens a vector to a length of at most `most`, also if its squares overflow.
 Vector3d capped(Vector3d v, double most) noexcept HSP_RT {
   const double largest = v.cwiseAbs().maxCoeff();
   if (largest > most) v *= most / largest;
@@ -31,7 +32,7 @@ Quaterniond quaternion(const double* q) noexcept HSP_RT {
   return Quaterniond(q[0], q[1], q[2], q[3]).normalized();
 }
 
-/// The rotation vector of the shorter turn.
+/// Returns the rotation vector of a quaternion, for the shorter way round.
 Vector3d rotationVector(const Quaterniond& turn) noexcept HSP_RT {
   const double sine = turn.vec().norm();
   if (sine == 0) return Vector3d::Zero();
@@ -48,7 +49,7 @@ Quaterniond turnBy(const Vector3d& rotation) noexcept HSP_RT {
   return turn;
 }
 
-/// How far a target has moved on, in seconds of its twist, `age` [s] after its time.
+/// Returns for how many seconds of its twist a target has moved on, `age` [s] after its time: the twist fades.
 double reachOf(double age) noexcept HSP_RT {
   const double fading = std::clamp(age - Follow::kTwistHolds, 0.0, Follow::kTwistFades);
   return std::min(age, Follow::kTwistHolds) + fading * (1 - 0.5 * fading / Follow::kTwistFades);
@@ -58,21 +59,21 @@ struct Bounds {
   double speed, acceleration;
 };
 
-/// Follows a target with a position, or with the turn of a frame.
+/// Motion of the pose and of its target: of the position, or of the rotation.
 struct Motion {
   Vector3d velocity;   ///< now
-  Vector3d of_target;  ///< over this tick
-  Vector3d error;      ///< from here to the target's place after this tick
+  Vector3d of_target;  ///< mean velocity of the target over this tick
+  Vector3d error;      ///< from the pose now to the target after this tick
 };
 
-/// At rest at a resting target it no longer follows, which would otherwise last for ever.
+/// True if the pose has reached a resting target, so that the motion can end. An exponential approach never ends.
 bool arrived(const Motion& motion, const Bounds& most, double dt) noexcept HSP_RT {
   return motion.of_target.isZero(0) && motion.error.norm() <= kThere &&
          motion.velocity.norm() <= most.acceleration * dt;
 }
 
-/// The velocity over the tick is that of the target plus one that closes the error and can still be braked: sqrt(a e)
-/// leaves half of the acceleration for a target that moves meanwhile.
+/// Returns the velocity over the tick: that of the target, plus a velocity that reduces the error and can still be
+/// braked. With sqrt(a e), braking needs half of the acceleration, and the rest is left for a target that moves.
 Vector3d nextVelocity(const Motion& motion, const Bounds& most, double dt) noexcept HSP_RT {
   const Vector3d behind = motion.error - dt * motion.of_target;
   const double distance = behind.norm();
@@ -124,7 +125,7 @@ bool Follow::aim(const hapticd_target& target, double t) noexcept HSP_RT {
 void Follow::step(double t, double dt, hsp_pose& pose) noexcept HSP_RT {
   if (rests_) return;
   const double reach = reachOf(t - t_target_);
-  // Not the twist of this moment but its mean over the tick, so that a leader of constant velocity is met exactly.
+  // The mean twist over the tick, not the twist now, so that a leader of constant velocity is followed without error.
   const double trust = dt > 0 ? (reach - reachOf(t - t_target_ - dt)) / dt : 0;
   stepPosition(trust, reach, dt);
   stepOrientation(trust, reach, dt);

@@ -10,11 +10,11 @@ namespace hapticd::servo {
 
 using Eigen::Vector3d;
 
-/// Pose of a model in the world, as a rotation matrix for use within a tick; poses are stored as quaternions.
+/// Pose of a model in the world, with a rotation matrix, for use within a tick. Elsewhere poses have quaternions.
 struct Frame {
   Eigen::Matrix3d R_world_model = Eigen::Matrix3d::Identity();
   Vector3d origin_world = Vector3d::Zero();
-  bool identity = true;  ///< a model at the world's origin costs no transform
+  bool identity = true;  ///< true if it is the world frame: transforms can be skipped
 
   static Frame of(const hsp_pose& pose) noexcept {
     Frame frame;
@@ -24,7 +24,7 @@ struct Frame {
     frame.identity = frame.origin_world.isZero(0) && q.vec().isZero(0);
     return frame;
   }
-  /// World position to model frame: the inverse transform.
+  /// Transforms a position from the world to the model frame.
   Vector3d pointToModel(const Vector3d& p_world) const noexcept {
     return identity ? p_world : Vector3d(R_world_model.transpose() * (p_world - origin_world));
   }

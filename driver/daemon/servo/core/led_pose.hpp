@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A pose that a program outside leads: the memory it writes, what of it is taken, and the motion that follows.
+/// A pose that another program leads: reads the program's records from shared memory, checks them, and moves the pose.
 #pragma once
 #include <cstdint>
 
@@ -11,11 +11,13 @@ namespace hapticd::servo {
 
 class LedPose {
  public:
-  /// How a record without an orientation (four zeros) is understood.
+  /// Whether records need an orientation. kAsked: a record without one (four zeros) is refused. kNever: zeros mean the
+  /// identity.
   enum class Turns { kAsked, kNever };
   explicit LedPose(Turns turns = Turns::kAsked) : turns_(turns) {}
 
-  /// [rt] A leader begins. @param slot its memory, valid until end() @param from the present pose, with velocities
+  /// [rt] A leader begins. @param slot the leader's memory, valid until end() @param from the present pose and
+  /// velocities
   void begin(const link::PoseSlot& slot, const hsp_pose& from) noexcept HSP_RT {
     slot_ = &slot;
     seen_ = refused_ = 0;
@@ -23,20 +25,20 @@ class LedPose {
     active_ = true;
     follow_.begin(from);
   }
-  /// [rt] The leader has gone: what it led brakes, and stays where that ends.
+  /// [rt] The leader has gone: the pose brakes, and stays where the braking ends.
   void end() noexcept HSP_RT {
     slot_ = nullptr;
     fresh_ = false;
     follow_.release();
   }
-  /// [rt] Something else moves the pose from now on.
+  /// [rt] Gives the pose up: something else moves it from now on.
   void forget() noexcept HSP_RT { active_ = fresh_ = false; }
 
-  /// True if this decides the pose, with a leader or after one has gone.
+  /// True if the pose comes from here: while a leader leads, and after it has gone.
   bool active() const noexcept { return active_; }
   bool led() const noexcept { return slot_ != nullptr; }
 
-  /// [rt] One tick at t [s], dt [s] after the last: looks once for a new record and moves on. @param epoch
+  /// [rt] One tick at t [s], dt [s] after the last one: reads a new record, if there is one, and moves. @param epoch
   /// CLOCK_MONOTONIC [s] at t = 0
   void step(double t, double dt, double epoch, hsp_pose& pose) noexcept HSP_RT {
     fresh_ = false;
@@ -44,11 +46,11 @@ class LedPose {
     follow_.step(t, dt, pose);
   }
 
-  /// The record that the last step took, for the recording; nullptr if there was none.
+  /// Returns the record that the last step accepted, for the recording, or nullptr.
   const hapticd_target* taken() const noexcept { return fresh_ ? &taken_ : nullptr; }
-  /// How many records of this leader were refused so far.
+  /// Returns how many records of this leader were refused so far.
   uint64_t refused() const noexcept { return refused_; }
-  /// Why the last of them was refused.
+  /// Returns why the last refused record was refused.
   Follow::Refusal why() const noexcept { return why_; }
 
  private:

@@ -7,7 +7,8 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr uint32_t kWeight = 4;  ///< weight of a tick that was too long against a good one: every fifth is forgiven
+/// a tick that was too long counts as much as four good ones: one in five may be too long
+constexpr uint32_t kWeight = 4;
 
 bool lowers(const Load& load) noexcept HSP_RT {
   return load.step_ns > 0 && load.level < Accuracy::kCoarsest;
@@ -22,7 +23,7 @@ std::span<const LoadShedding::Change> LoadShedding::judge(std::span<const Load> 
   for (const Load& load : loads) spent += load.step_ns;
   if (since_raise_ < kLongest) ++since_raise_;
   if (spent > budget_ns) {
-    // The accuracy that was given back did not fit: the next attempt waits longer, so that accuracy does not alternate.
+    // The last raise of accuracy was too much: the next attempt waits longer, so that accuracy does not alternate.
     patience_ = since_raise_ < patience_ ? std::min(2 * patience_, kLongest) : patience_;
     calm_ = 0;
     over_ = std::min(over_ + kWeight, 2 * kWeight * kLasting);
@@ -38,13 +39,14 @@ std::span<const LoadShedding::Change> LoadShedding::judge(std::span<const Load> 
   return {changes_.data(), count_};
 }
 
-/// A shape in contact stays as it is if the tick was merely interrupted.
+/// True if a shape may be lowered now. A shape in contact is lowered only after a lasting overload: a short one may be
+/// an interruption.
 bool LoadShedding::mayLower(const Load& load) const noexcept HSP_RT {
   return lowers(load) && (load.importance <= 0 || over_ >= kWeight * kLasting);
 }
 
-/// A shape in contact that takes too long by itself, and did so before: nothing interrupted it, so it is not waited
-/// for.
+/// True if a shape takes too long by itself, without interruptions, and the overload is not the first: it is lowered
+/// without waiting, even in contact.
 bool LoadShedding::isProven(const Load& load) const noexcept HSP_RT {
   return load.proven && lowers(load) && over_ >= 2 * kWeight;
 }
@@ -54,7 +56,8 @@ bool LoadShedding::changed(uint32_t model) const noexcept HSP_RT {
                      [&](const Change& c) { return c.model == model; });
 }
 
-/// Lowers the least important first; a shape that takes more than all together may take is lowered at once.
+/// Lowers the least important shape first. A shape that alone takes more than the whole budget goes to the coarsest
+/// level at once.
 void LoadShedding::lower(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT {
   for (const Load& load : loads)
     if (load.step_ns > budget_ns && (mayLower(load) || isProven(load)) && count_ < kMostChanges)
@@ -64,13 +67,13 @@ void LoadShedding::lower(std::span<const Load> loads, uint64_t spent, uint64_t b
     for (const Load& load : loads)
       if (mayLower(load) && !changed(load.model) && (least == nullptr || load.importance < least->importance))
         least = &load;
-    if (least == nullptr) return;  // nothing is left to lower: ticks will be late, and are counted
+    if (least == nullptr) return;  // no shape can be lowered further: ticks will be late, and are counted
     changes_[count_++] = {least->model, least->level + 1};
-    spent -= std::min(spent, least->step_ns / 2);  // how much a level may save
+    spent -= std::min(spent, least->step_ns / 2);  // estimated saving of one level
   }
 }
 
-/// Raises the most important first, if its former cost still fits; after long patience even if it does not.
+/// Raises the most important shape, if its former cost fits into the budget, or after a long time even if it does not.
 void LoadShedding::raise(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT {
   const Load* best = nullptr;
   for (const Load& load : loads)
@@ -79,7 +82,7 @@ void LoadShedding::raise(std::span<const Load> loads, uint64_t spent, uint64_t b
   const uint64_t with = spent - best->step_ns + std::max(best->finer_ns, best->step_ns);
   const bool fits = static_cast<double>(with) <= kComfort * static_cast<double>(budget_ns);
   if (calm_ < (fits ? patience_ : kLongest)) return;
-  if (since_raise_ >= 2 * patience_) patience_ = kPatience;  // the last one held
+  if (since_raise_ >= 2 * patience_) patience_ = kPatience;  // the last raise was not too much
   changes_[count_++] = {best->model, best->level - 1};
   calm_ = 0;
   since_raise_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Keeps the shapes of a tick within their budget: lowers the accuracy of the least important one first, and gives it
-/// back when there is room again. No shape is ever left out.
+/// Keeps the shapes of a tick within their budget of time: lowers the accuracy of the least important shape first, and
+/// raises the accuracy again when there is time. No shape is ever left out.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,12 +10,13 @@
 
 namespace hapticd::servo {
 
-/// How exactly a shape must answer. 0: as its parameters say. The method is never of first order: far from a curved
-/// surface that step leaves the foot, and the probe seems to be inside.
+/// How exactly a shape must answer. Level 0: as its parameters say. No level uses a first-order method, because far
+/// from a curved surface a first-order step loses the foot, and the probe would seem to be inside.
 struct Accuracy {
   static constexpr uint32_t kCoarsest = 3;
-  static constexpr uint32_t kTurns = 4;    ///< a coarsest shape out of reach answers in one of so many ticks
-  uint32_t max_iterations = 0, order = 0;  ///< hsp_step's
+  /// at the coarsest level, a shape out of reach answers in one of this many ticks
+  static constexpr uint32_t kTurns = 4;
+  uint32_t max_iterations = 0, order = 0;  ///< as in hsp_step
 
   static constexpr Accuracy of(uint32_t level) noexcept {
     constexpr Accuracy kLevels[kCoarsest + 1] = {{0, 0}, {4, 0}, {2, 0}, {1, 0}};
@@ -23,30 +24,30 @@ struct Accuracy {
   }
 };
 
-/// One shape, as the last tick left it.
+/// Cost and importance of one shape after the last tick.
 struct Load {
   uint32_t model = 0, level = 0;
-  uint64_t step_ns = 0;   ///< of the last tick
-  uint64_t finer_ns = 0;  ///< its cost one level finer, when it was last there
-  double importance = 0;  ///< [m] depth in contact, minus the distance otherwise; -infinity: not traced
-  bool proven = false;    ///< it took that time itself, without an interruption
+  uint64_t step_ns = 0;   ///< time of its step in the last tick
+  uint64_t finer_ns = 0;  ///< time of a step before its level was last lowered
+  double importance = 0;  ///< [m] depth, negative outside; -infinity if it is not traced
+  bool proven = false;    ///< step_ns is its own CPU time, without interruptions
 };
 
-/// Decides for the next tick from the cost of the last one. Costs are an argument: measured in a run, counted in
-/// tests.
+/// Decides the levels of the next tick from the costs of the last one. Costs are an argument, so that tests can use
+/// counted costs instead of measured ones.
 class LoadShedding {
  public:
-  static constexpr size_t kMostChanges = 4;     ///< in a tick
-  static constexpr double kComfort = 0.8;       ///< share of the budget up to which accuracy is given back
+  static constexpr size_t kMostChanges = 4;     ///< changes in one tick
+  static constexpr double kComfort = 0.8;       ///< accuracy is raised only below this share of the budget
   static constexpr uint32_t kLasting = 20;      ///< [ticks] of overload in a row before a shape in contact is lowered
-  static constexpr uint32_t kPatience = 200;    ///< [ticks] of low load before accuracy is given back
-  static constexpr uint32_t kLongest = 20'000;  ///< [ticks] the same after attempts that failed
+  static constexpr uint32_t kPatience = 200;    ///< [ticks] of low load before accuracy is raised
+  static constexpr uint32_t kLongest = 20'000;  ///< [ticks] longest such wait, after raises that were too much
 
   struct Change {
     uint32_t model = 0, level = 0;
   };
 
-  /// [rt] @param loads of the shapes that were stepped @param budget_ns of all of them
+  /// [rt] @param loads costs of the shapes that were stepped @param budget_ns time for all shapes together
   std::span<const Change> judge(std::span<const Load> loads, uint64_t budget_ns) noexcept HSP_RT;
 
  private:
@@ -58,9 +59,9 @@ class LoadShedding {
 
   std::array<Change, kMostChanges> changes_{};
   size_t count_ = 0;
-  uint32_t over_ = 0;                ///< ticks of overload in a row
+  uint32_t over_ = 0;                ///< weighted count of ticks of overload, see kWeight
   uint32_t calm_ = 0;                ///< ticks of low load in a row
-  uint32_t since_raise_ = kLongest;  ///< ticks
+  uint32_t since_raise_ = kLongest;  ///< ticks since accuracy was last raised
   uint32_t patience_ = kPatience;
 };
 

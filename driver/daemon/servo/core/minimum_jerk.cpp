@@ -20,7 +20,7 @@ void MinimumJerk::begin(double t, double seconds, const hsp_pose& pose, const do
   q_from_ = orientationOf(pose.orientation);
   q_to_ = orientationOf(to_orientation);
   if (q_to_.squaredNorm() == 0) q_to_ = q_from_;
-  if (q_from_.dot(q_to_) < 0) q_to_.coeffs() *= -1;  // the short way round
+  if (q_from_.dot(q_to_) < 0) q_to_.coeffs() *= -1;  // turn the shorter way round
   const Eigen::AngleAxisd turn(q_to_ * q_from_.conjugate());
   turn_ = turn.angle() * turn.axis();
   const double distance = (to_ - from_).norm();

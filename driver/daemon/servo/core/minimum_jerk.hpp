@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A kinematic model on its way to where a person asked it to go: smooth, and with the velocities that contacts need.
+/// The smooth motion of a kinematic model to a pose that a user asked for, with the velocities that contacts need.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -9,22 +9,23 @@ namespace hapticd::servo {
 
 class MinimumJerk {
  public:
-  static constexpr double kMoveSpeed = 0.2;      ///< [m/s] speed if nobody says how long a move takes
-  static constexpr double kShortest = 0.5;       ///< [s] shortest time of such a move
-  static constexpr double kMostSpeed = 1.0;      ///< [m/s] of a moved model, because a hand may be behind it
-  static constexpr double kMostTurn = 3.141593;  ///< [rad/s] at which a surface 0.3 m from its origin keeps to that too
-  static constexpr double kPeakOfMean = 1.875;   ///< speed of a path of least jerk
+  static constexpr double kMoveSpeed = 0.2;  ///< [m/s] highest speed if no duration is given
+  static constexpr double kShortest = 0.5;   ///< [s] shortest duration of such a move
+  static constexpr double kMostSpeed = 1.0;  ///< [m/s] highest speed of any move, because the model may hit a hand
+  /// [rad/s] keeps a surface 0.3 m from the model's origin below kMostSpeed too
+  static constexpr double kMostTurn = 3.141593;
+  static constexpr double kPeakOfMean = 1.875;  ///< peak over mean speed of a minimum-jerk path
 
   bool active() const noexcept { return active_; }
-  double seconds() const noexcept { return seconds_; }  ///< that it takes
+  double seconds() const noexcept { return seconds_; }  ///< duration of the move
 
-  /// [rt] From `pose` to another, beginning at t [s]. @param seconds at least; longer where it would be faster than
-  /// kMostSpeed or kMostTurn; 0: about kMoveSpeed @param to_orientation w,x,y,z, a unit quaternion; zeros: it stays as
-  /// it is
+  /// [rt] Starts a move from `pose` at t [s]. @param seconds shortest duration; the move takes longer if it would be
+  /// faster than kMostSpeed or kMostTurn; 0: choose it by kMoveSpeed @param to_orientation w,x,y,z, a unit quaternion;
+  /// zeros: keep the orientation
   void begin(double t, double seconds, const hsp_pose& pose, const double* to_position,
              const double* to_orientation) noexcept HSP_RT;
 
-  /// [rt] Pose and velocities at t: the path of least jerk, at rest at both ends.
+  /// [rt] Fills in pose and velocities at t, on the minimum-jerk path, which is at rest at both ends.
   void at(double t, hsp_pose& pose) const noexcept HSP_RT;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What a person asks of the running servo. Ordinary threads prepare it, a ring carries it, and the servo obeys at the
-/// start of a tick; a recording keeps it, because it changes forces.
+/// A change that somebody asks of the running servo. Ordinary threads prepare it, a ring buffer carries it, and the
+/// servo obeys it at the start of a tick. Recordings keep orders, because they change forces.
 #pragma once
 #include <cstdint>
 
@@ -17,18 +17,18 @@ struct Order {
     kEnable,   ///< the model becomes felt: its force fades in
     kDisable,  ///< the model becomes unfelt: its force fades out; it is still traced
     kMove,     ///< a kinematic model goes to a pose and stays
-    kSet,      ///< a live parameter
+    kSet,      ///< sets a live parameter
     kClear,    ///< the arm's latched fault is cleared; the force ramps in
     kHold,     ///< the arm's force ramps out until it is cleared
     kAdopt,    ///< a prepared model takes an empty place
     kRelease,  ///< the model fades out and leaves its place
-    // What the servo decides by itself, because of times that a replay cannot measure again. It is kept as orders are.
-    kAccuracy,  ///< how exactly a model answers
-    kOverran,   ///< the model's step took too long, which counts against it
+    // Decisions of the servo itself. They depend on measured times, which a replay cannot repeat, so they are recorded.
+    kAccuracy,  ///< the accuracy level of a model changed
+    kOverran,   ///< the model's step took too long, and was counted as a strike
     kCut,       ///< the watchdog cut the arm's motors
-    // Programs outside.
+    // Leads of other programs.
     kLead,   ///< a leader begins; `param` says what it leads
-    kUnlead  ///< it has gone
+    kUnlead  ///< the leader has gone
   };
   /// What a lead moves: `param` of kLead and kUnlead.
   enum class Led : uint32_t {
@@ -36,19 +36,19 @@ struct Order {
     kHand,   ///< where the hand of a simulated arm wants to be
     kForce   ///< a force on the hand of an arm
   };
-  /// `param` of kEnable: the model is felt once no tip is in it.
+  /// `param` of kEnable: the model is felt only once no tip is inside.
   static constexpr uint32_t kOnceFree = 1;
   Kind kind = Kind::kNone;
-  uint32_t target = 0;  ///< kSet; of leads: Led; kEnable: kOnceFree or, in older recordings, 0
-  uint32_t param = 0;   ///< number of the request, for the answer
-  uint32_t ticket = 0;  ///< for a lead of a force: which of the arm's places
-  uint32_t place = 0;   ///< of leads of a force: which of the arm's
-  double value = 0;     ///< kSet; kAccuracy: the level; kCut: 1 found before the tick's read, 0 at its write
-  double seconds = 0;  ///< kMove: how long it takes at least, 0: the servo's choice; kCut: how long the servo was stuck
-  double position[3] = {}, orientation[4] = {1, 0, 0, 0};  ///< kMove: world frame; no orientation (zeros): it stays
-  ModelState* model = nullptr;                             ///< kAdopt: exchanged with the empty place
-  const link::PoseSlot* slot = nullptr;                    ///< kLead: its memory, valid until kUnlead was obeyed
-  const link::PushSlot* push = nullptr;                    ///< the same, for a force
+  uint32_t target = 0;  ///< index of the model or the arm
+  uint32_t param = 0;   ///< kSet: the parameter; leads: Led; kEnable: kOnceFree, or 0 in older recordings
+  uint32_t ticket = 0;  ///< number of the request, for the answer
+  uint32_t place = 0;   ///< leads of a force: place of the program in the arm's ClientForces
+  double value = 0;     ///< kSet: new value; kAccuracy: level; kCut: 1 found before the tick's read, 0 at its write
+  double seconds = 0;   ///< kMove: shortest duration, 0: the servo chooses; kCut: how long the servo was stuck
+  double position[3] = {}, orientation[4] = {1, 0, 0, 0};  ///< kMove: world frame; four zeros keep the orientation
+  ModelState* model = nullptr;                             ///< kAdopt: swapped with the empty place
+  const link::PoseSlot* slot = nullptr;  ///< kLead: the leader's memory, valid until kUnlead was obeyed
+  const link::PushSlot* push = nullptr;  ///< kLead of a force: likewise
 };
 
 }  // namespace hapticd::servo

@@ -34,7 +34,7 @@ void Path::at(double t, hsp_pose& pose) noexcept {
         pose);
   linear = (b.pose.position - a.pose.position) / duration;
   Eigen::Quaterniond turn = b.pose.orientation * a.pose.orientation.conjugate();
-  if (turn.w() < 0) turn.coeffs() = -turn.coeffs();  // the shorter way, as slerp takes it
+  if (turn.w() < 0) turn.coeffs() = -turn.coeffs();  // the shorter way round, as in slerp
   const Eigen::AngleAxisd angle_axis(turn);
   angular = angle_axis.axis() * (angle_axis.angle() / duration);
 }

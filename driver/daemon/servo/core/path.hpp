@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The motion of a kinematic model: a pose at every time, from points of a file.
+/// The motion of a kinematic model from a file: interpolates a pose for every time between points.
 #pragma once
 #include <vector>
 
@@ -11,12 +11,12 @@ namespace hapticd::servo {
 class Path {
  public:
   Path() = default;
-  explicit Path(std::vector<scene::PathPoint> points) : points_(std::move(points)) {}  ///< [main] times grow
+  explicit Path(std::vector<scene::PathPoint> points) : points_(std::move(points)) {}  ///< [main] times must grow
 
   bool empty() const noexcept { return points_.empty(); }
 
-  /// [rt] Pose and velocities at time t [s]: linear and spherical interpolation; at rest before the first and after the
-  /// last point. Remembers the segment, so that growing times cost nothing.
+  /// [rt] Fills in pose and velocities at time t [s], by linear and spherical interpolation. The model rests before the
+  /// first and after the last point. The last segment is remembered, so that growing times need no search.
   void at(double t, hsp_pose& pose) noexcept;
 
  private:

@@ -44,7 +44,7 @@ hapticd_state stateOf(const TickTime& tick, const Arm& arm) noexcept HSP_RT {
 }  // namespace
 
 void Door::showState(std::byte* page, uint32_t arms) noexcept {
-  for (uint32_t i = 0; i < arms; ++i) {  // all zeros mean that it stays as it is
+  for (uint32_t i = 0; i < arms; ++i) {  // an empty slot is all zeros, as the page is already
     new (page + kStateAt + i * kStateStride) link::StateSlot;
     new (page + kStateAt + i * kStateStride + link::kJacobianAt) link::JacobianSlot;
   }
@@ -56,21 +56,21 @@ void Door::write(std::byte* page, const TickTime& tick, const Arms& arms) noexce
   hapticd_jacobian jacobian;
   jacobian.tick = tick.number;
   for (size_t i = 0; i < arms.size(); ++i) {
-    // This comes before the state, because a program that polls may answer as soon as the state is there.
+    // The Jacobian is written before the state, because a polling program may answer as soon as it sees the new state.
     if (arms[i]->clients().possible() && arms[i]->jacobian(jacobian.rows)) jacobianAt(page, i).put(jacobian);
     slotAt(page, i).put(stateOf(tick, *arms[i]));
   }
 }
 
-/// First comes the word, then the look at who waits, in the same order for all: whoever sets the flag after that look
-/// sees the new word before it sleeps.
+/// Writes the new tick, then checks whether a program waits. Both are sequentially consistent, so a program that sets
+/// its flag after this check sees the new tick before it sleeps.
 void Door::ring(uint32_t& word, uint32_t& waiting, uint64_t tick) noexcept HSP_RT {
   std::atomic_ref<uint32_t>(word).store(static_cast<uint32_t>(tick + 1));
   const std::atomic_ref<uint32_t> flag(waiting);
   if (flag.load() == 0) return;
   flag.store(0);
-  const NotRealTime the_one_call;                                       // it does not wait
-  if (os::wakeWaiting(&word, kMostWoken) == kMostWoken) flag.store(1);  // there may be more, which the next tick wakes
+  const NotRealTime the_one_call;                                       // this system call never blocks
+  if (os::wakeWaiting(&word, kMostWoken) == kMostWoken) flag.store(1);  // more may wait: the next tick wakes them
 }
 
 }  // namespace hapticd::servo

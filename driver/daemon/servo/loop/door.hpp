@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// What the loop tells programs outside beside the rows: the state of the arms before the shapes are felt, and a bell
-/// that wakes who waits. Neither exists until somebody asks, and then it stays until the end of the run.
+/// What the loop tells other programs in addition to rows: the state of the arms, written before the shapes are
+/// stepped, and a bell that wakes waiting programs. Both are made when a program first asks for them, and stay until
+/// the run ends.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -12,33 +13,33 @@
 
 namespace hapticd::servo {
 
-/// When a tick is.
+/// Number and time of a tick.
 struct TickTime {
   uint64_t number = 0;
   Nanoseconds time = 0;
-  double t = 0, dt = 0;  ///< [s]
+  double t = 0, dt = 0;  ///< [s] since the first tick; [s] since the last tick
 };
 
 class Door {
  public:
-  static constexpr uint32_t kStateAt = sizeof(hapticd_state_page);  ///< [bytes] of the first arm
-  static constexpr uint32_t kStateStride = 1152;                    ///< [bytes] whole cache lines
-  static constexpr int kMostWoken = 16;  ///< programs woken at a time: a crowd that waits must not delay a tick
+  static constexpr uint32_t kStateAt = sizeof(hapticd_state_page);  ///< [bytes] offset of the first arm
+  static constexpr uint32_t kStateStride = 1152;  ///< [bytes] from one arm to the next: whole cache lines
+  static constexpr int kMostWoken = 16;  ///< programs woken in one tick, because waking many would delay the tick
 
   static constexpr size_t stateBytes(size_t arms) { return kStateAt + arms * kStateStride; }
 
-  /// [any] Only one thread, and only once. @param page zeroed, of stateBytes(), valid until the loop has ended
+  /// [any] Called once at most. @param page stateBytes() bytes of zeros, valid until the loop has ended
   void showState(std::byte* page, uint32_t arms) noexcept;
-  /// [any] Only one thread, and only once. @param bell zeroed, valid until the loop has ended
+  /// [any] Called once at most. @param bell zeroed, valid until the loop has ended
   void hangBell(hapticd_bell* bell) noexcept { bell_.store(bell, std::memory_order_release); }
 
-  /// [rt] The arms were read.
+  /// [rt] Called after the arms were read: writes their state and rings the bell.
   void tell(const TickTime& tick, const Arms& arms) noexcept HSP_RT {
     if (std::byte* page = state_.load(std::memory_order_acquire); page != nullptr) write(page, tick, arms);
     if (hapticd_bell* bell = bell_.load(std::memory_order_acquire); bell != nullptr)
       ring(bell->state, bell->state_waiting, tick.number);
   }
-  /// [rt] The rows of the tick are written.
+  /// [rt] Called after the rows of the tick were written: rings the bell.
   void written(uint64_t tick) noexcept HSP_RT {
     if (hapticd_bell* bell = bell_.load(std::memory_order_acquire); bell != nullptr)
       ring(bell->rows, bell->rows_waiting, tick);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Runs the simulation side in step with simulated time, so that virtual runs and traces are the same every time: a
-/// search at the start, every 5 ms, and in the tick after a jump or a lost track.
+/// Runs the proximity search in step with virtual time, so that every virtual run gives the same result: at the start,
+/// every 5 ms, and in the tick after a jump or a lost track.
 #pragma once
 #include <functional>
 
@@ -10,10 +10,11 @@ namespace hapticd::servo {
 
 class Lockstep {
  public:
-  /// [main] @param core says when it wants a search; outlives this  @param search one global search
+  /// [main] @param core says when it needs a search; must outlive this object  @param search runs one global search
   Lockstep(const Core& core, std::function<void()> search) : core_(core), search_(std::move(search)) {}
 
-  /// Called before a tick at time t [s], after the probes were published. Not for real time: the search allocates.
+  /// Runs a search if it is due. Called before a tick at time t [s], after the probes were published. Not real-time:
+  /// the search allocates.
   void before(double t);
 
  private:

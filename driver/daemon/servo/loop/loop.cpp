@@ -14,8 +14,8 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr uint64_t kWarmUpTicks = 200;  ///< first touches of code and tables; only later faults and allocations count
-constexpr double kLateFault = 0.1;      ///< [s] without a tick, after which a stale force must not hold a hand
+constexpr uint64_t kWarmUpTicks = 200;  ///< page faults and allocations are counted only after these ticks
+constexpr double kLateFault = 0.1;  ///< [s] a longer gap between two ticks is a fault, because the last force stayed on
 
 bool isToArm(const Order& order) noexcept HSP_RT {
   switch (order.kind) {
@@ -68,7 +68,7 @@ void Loop::beat() noexcept HSP_RT {
   if (beat_ != nullptr) beat_->store(beat_->load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
 
-/// Nothing of these cycles is kept: what follows is the same with them and without them.
+/// Runs the dry cycles. No result is kept, so the ticks are the same with and without them.
 void Loop::runDry() noexcept HSP_RT {
   Nanoseconds deadline = clock_.now();
   for (uint64_t n = 0; n < settings_.dry_cycles && !stop_; ++n) {
@@ -123,7 +123,7 @@ void Loop::run() noexcept {
   finished_.store(true, std::memory_order_release);
 }
 
-/// What other threads and processes may know of a tick once its row is written.
+/// Tells other threads and processes that a tick has ended, once its row is written.
 void Loop::publishTick(uint64_t number, Nanoseconds ended) noexcept HSP_RT {
   door_.written(number);
   tick_count_.store(number + 1, std::memory_order_relaxed);
@@ -133,7 +133,7 @@ void Loop::publishTick(uint64_t number, Nanoseconds ended) noexcept HSP_RT {
   tick_begun_.store(0, std::memory_order_relaxed);
 }
 
-/// Page faults and allocations of the first ticks do not count against the later ones.
+/// Starts to count page faults and allocations, after the warm-up.
 void Loop::countFromHere() noexcept {
   search_allocations_ = 0;
   faults_warm_ = os::pageFaultsOfThread();
@@ -141,7 +141,7 @@ void Loop::countFromHere() noexcept {
   noteAllocations(true);
 }
 
-/// Between two ticks: waits for a while for samples that drive the loop, see PacedClock.
+/// Returns the longest time between two ticks that is normal: longer if samples drive the loop, see PacedClock.
 Nanoseconds Loop::longestRest() const noexcept HSP_RT {
   return settings_.paced ? 5 * settings_.period_ns / 2 : settings_.period_ns;
 }
@@ -150,7 +150,7 @@ void Loop::trip(Fault fault, double measured) noexcept HSP_RT {
   for (const auto& arm : arms_) arm->limiter().trip(fault, measured);
 }
 
-/// Ends the run. If something failed before, that is what the user must know, so it keeps its name.
+/// Ramps all forces down to end the run. An earlier fault is kept, because the user must know of it.
 void Loop::rampOut() noexcept HSP_RT {
   for (const auto& arm : arms_)
     if (arm->limiter().fault() == Fault::kNone) arm->limiter().trip(Fault::kStopped);
@@ -179,7 +179,7 @@ void Loop::obey(double t) noexcept HSP_RT {
   }
 }
 
-/// A hold is an order like the others, so that it is recorded; but it waits behind none of them.
+/// Turns holds into orders, so that they are recorded. Unlike other orders, they do not wait in the queue.
 void Loop::obeyHolds() noexcept HSP_RT {
   const uint64_t held = hold_.load(std::memory_order_relaxed);
   if (held == 0) return;
@@ -212,7 +212,7 @@ void Loop::obey(const Order& order, Arm& arm) noexcept HSP_RT {
   }
 }
 
-/// After a tick, writes decisions that depended on measured times into the log for replay.
+/// After a tick: logs the decisions that depended on measured times, for replay.
 void Loop::logTimedDecisions() noexcept HSP_RT {
   Order order;
   order.kind = Order::Kind::kOverran;
@@ -232,7 +232,7 @@ void Loop::logTimedDecisions() noexcept HSP_RT {
   }
 }
 
-/// What the servo does by itself to keep its deadline changes forces, so it is recorded as an order is.
+/// Sets the accuracy of the models for this tick. Changes are logged like orders, because they change forces.
 void Loop::shedLoad() noexcept HSP_RT {
   for (const LoadShedding::Change& change : core_.shedLoad()) {
     Order order;
@@ -247,14 +247,14 @@ void Loop::search(double t) noexcept {
   const Nanoseconds begun = monotonicNow();
   const uint64_t allocations = allocationsOfThread();
   const NotRealTime virtual_time_only;
-  noteAllocations(false);  // a search may
+  noteAllocations(false);  // a search may allocate
   lockstep_.before(t);
   noteAllocations(tick_count_.load(std::memory_order_relaxed) > kWarmUpTicks);
   search_allocations_ += allocationsOfThread() - allocations;
   search_time_ = monotonicNow() - begun;
 }
 
-/// Samples come at their own time, so a tick that follows them is at the time at which it woke.
+/// Returns the time of a tick: the time of waking if samples drive the loop, otherwise the deadline.
 Nanoseconds Loop::timeOfTick(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT {
   const Nanoseconds by_clock = skipMissed(deadline, woke);
   return settings_.paced ? woke : by_clock;
@@ -262,7 +262,7 @@ Nanoseconds Loop::timeOfTick(Nanoseconds deadline, Nanoseconds woke) noexcept HS
 
 Nanoseconds Loop::skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT {
   if (woke < deadline + settings_.period_ns) return deadline;
-  // Whole periods are skipped and the phase is kept: late ticks run back to back would only make the next ones late.
+  // Skips whole periods and keeps the phase, because late ticks run back to back would make the next ones late too.
   const uint64_t missed = (woke - deadline) / settings_.period_ns;
   log_.overrun(missed);
   return deadline + missed * settings_.period_ns;
@@ -285,7 +285,8 @@ void Loop::tick(const TickTime& tick) noexcept HSP_RT {
   wants_search_.store(core_.wantsSearch(), std::memory_order_relaxed);
 }
 
-/// Spins, because no sleep is that short, until every program that keeps up has answered, or its time is over.
+/// Waits until every program that keeps up has answered, or until answer_time is over. It waits busily, because a sleep
+/// would last too long.
 void Loop::listen(const TickTime& tick) noexcept HSP_RT {
   const auto awaited = [&](const auto& arm) { return arm->clients().awaits(tick.number); };
   const Nanoseconds begun = monotonicNow();
@@ -295,7 +296,8 @@ void Loop::listen(const TickTime& tick) noexcept HSP_RT {
   listen_time_ = now - begun;
 }
 
-/// Programs that push are asked as late as possible, so that an answer in this tick still counts in it.
+/// Writes the forces to one arm. The programs' answers are collected as late as possible, so that an answer in this
+/// tick still counts.
 void Loop::write(uint32_t index, const TickTime& tick) noexcept HSP_RT {
   Arm& arm = *arms_[index];
   ClientForces& clients = arm.clients();
@@ -304,7 +306,7 @@ void Loop::write(uint32_t index, const TickTime& tick) noexcept HSP_RT {
   if (!clients.present() && clients.share() == 1)
     return arm.write(tick.time, tick.dt, core_.force(index), core_.torque(index), core_.exchange(index));
   passivity::Exchange exchange = core_.exchange(index);
-  exchange.recoverable = std::numeric_limits<double>::infinity();  // nobody knows how much energy a program has stored
+  exchange.recoverable = std::numeric_limits<double>::infinity();  // the energy that a program has stored is unknown
   exchange.pushed = true;
   arm.write(tick.time, tick.dt, clients.share() * core_.force(index) + clients.force(),
             clients.share() * core_.torque(index) + clients.torque(), exchange);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The servo loop: waits for a deadline, reads the arms, runs the core, writes the arms, keeps the books. The clock is
-/// an argument: the same loop runs under SCHED_FIFO and in virtual time.
+/// The servo loop: waits for a deadline, reads the arms, runs the core, writes the arms, and logs the tick. The clock
+/// is an argument, so the same loop runs in real time and in virtual time.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -17,71 +17,74 @@ namespace hapticd::servo {
 
 struct LoopSettings {
   Nanoseconds period_ns = 1'000'000;
-  uint64_t ticks = 0;     ///< length of the run in periods; 0: until it is stopped
-  bool lockstep = false;  ///< searches in step with the ticks (virtual time) instead of in a thread of its own
-  bool paced = false;     ///< the clock follows an arm's samples: a tick is when the sample comes, not at the deadline
-  Nanoseconds answer_time = 0;  ///< time after a tick began in which the servo listens to pushing programs
-  uint64_t dry_cycles = 0;      ///< cycles with motors off before the first tick, which show how the machine keeps time
+  uint64_t ticks = 0;     ///< length of the run in periods; 0: until stop()
+  bool lockstep = false;  ///< proximity searches run within ticks (virtual time), not in their own thread
+  bool paced = false;     ///< an arm's samples drive the loop: a tick begins when the sample comes, not at the deadline
+  Nanoseconds answer_time = 0;  ///< the servo waits for the answers of pushing programs until this time in a tick
+  uint64_t dry_cycles = 0;  ///< cycles with motors off before the first tick, to see how well the machine keeps time
 };
 
-/// [main] The arm whose samples drive the loop: the first that can, if the scene asks for one. nullptr: the clock does.
+/// [main] Returns the arm whose samples drive the loop: if the scene asks for it, the first arm that can. Returns
+/// nullptr if the clock drives the loop.
 Arm* pacingArm(const scene::Servo& servo, const Arms& arms);
 
-/// [main] What these arms do with a tick's answers.
+/// [main] Returns which results of a tick these arms use.
 Uses usesOf(const Arms& arms);
 
 class Loop {
  public:
-  /// [main] Everything that is given by reference must outlive the loop.
-  /// @param lockstep runs the simulation side where the settings ask for it
+  /// [main] Everything given by reference must outlive the loop.
+  /// @param lockstep runs the proximity search if the settings ask for it
   Loop(Core& core, Lockstep lockstep, Arms& arms, Clock& clock, const LoopSettings& settings, TickLog& log);
 
-  /// [main] Called before run(): counts dry cycles and ticks for those who watch from outside. It outlives the run.
+  /// [main] Called before run(). @param count is increased in each dry cycle and tick, for watchdogs; must outlive the
+  /// run
   void beatOn(std::atomic<uint64_t>& count) { beat_ = &count; }
 
-  /// [rt] Runs until the ticks are done or a stop has ramped the forces down. Call it once.
+  /// [rt] Runs until all ticks are done, or until a stop has ramped the forces down. Call it once.
   void run() noexcept;
 
-  /// [any] Queues an order of a person. Orders are obeyed in turn, at the start of a tick. Only one thread may call
-  /// this. False if the queue is full, so that the order is lost.
+  /// [any] Queues an order. Orders are obeyed in turn, at the start of a tick. Only one thread may call this. Returns
+  /// false if the queue is full; the order is then lost.
   bool give(const Order& order) noexcept { return orders_.push(order); }
-  /// [any] How many orders were obeyed or refused so far.
+  /// [any] Returns how many orders were obeyed or refused so far.
   uint64_t ordersDone() const noexcept { return orders_done_.load(std::memory_order_acquire); }
 
-  /// [any] Ramps the forces of these arms to zero in the next tick, and keeps them off until they are cleared. It does
-  /// not wait behind other orders, and any number of threads may call it. Async-signal-safe. @param arms bit i: arm i
+  /// [any] Begins to ramp the forces of these arms to zero in the next tick, and keeps them off until the arms are
+  /// cleared. A hold does not wait behind other orders, and any number of threads may call this. Async-signal-safe.
+  /// @param arms bit i stands for arm i
   void hold(uint64_t arms) noexcept { hold_.fetch_or(arms, std::memory_order_relaxed); }
-  /// [any] True if no hold of these arms is still to be obeyed.
+  /// [any] True if every hold of these arms has been obeyed.
   bool holdsObeyed(uint64_t arms) const noexcept { return (hold_.load(std::memory_order_acquire) & arms) == 0; }
-  /// [any] True if every arm had ramped down, by a fault or a hold, when the last tick ended.
+  /// [any] True if the forces of every arm were zero at the end of the last tick, after a fault or a hold.
   bool silent() const noexcept { return silent_.load(std::memory_order_acquire); }
 
-  /// [any] Asks for an end: forces ramp to zero first. Async-signal-safe.
+  /// [any] Asks the loop to end. Forces ramp to zero first. Async-signal-safe.
   void stop() noexcept {
     Nanoseconds never = 0;
     stop_asked_.compare_exchange_strong(never, monotonicNow(), std::memory_order_relaxed);
     stop_.store(true, std::memory_order_relaxed);
   }
-  /// [any] CLOCK_MONOTONIC when an end was first asked for; 0: never.
+  /// [any] Returns the CLOCK_MONOTONIC time of the first stop(), or 0 if there was none.
   Nanoseconds stopAsked() const noexcept { return stop_asked_.load(std::memory_order_relaxed); }
 
-  /// [any] What outside programs are told in addition to the rows.
+  /// [any] Returns the part that other programs see in addition to rows.
   Door& door() noexcept { return door_; }
 
-  /// [any] Dry cycles that began a period late or more; final once there were ticks.
+  /// [any] Returns how many dry cycles began at least one period late. Final once the first tick has begun.
   uint64_t lateDryCycles() const noexcept { return late_dry_cycles_.load(std::memory_order_relaxed); }
 
-  /// [any] Ticks done so far, for watchdogs and status lines.
+  /// [any] Returns the number of ticks done so far, for watchdogs and status lines.
   uint64_t ticks() const noexcept { return tick_count_.load(std::memory_order_relaxed); }
-  /// [any] True if the core lost a track or saw a jump, so that a search is needed now.
+  /// [any] True if the core lost a track or saw a jump, so that a proximity search is needed now.
   bool wantsSearch() const noexcept { return wants_search_.load(std::memory_order_relaxed); }
-  /// [any] CLOCK_MONOTONIC of the tick in progress; 0: it waits for one.
+  /// [any] Returns the CLOCK_MONOTONIC time at which the tick in progress began, or 0 between two ticks.
   Nanoseconds tickBegun() const noexcept { return tick_begun_.load(std::memory_order_relaxed); }
-  /// [any] CLOCK_MONOTONIC by which the next tick must have begun; 0: none is to come.
+  /// [any] Returns the CLOCK_MONOTONIC time by which the next tick must have begun, or 0 if there will be none.
   Nanoseconds nextTick() const noexcept { return next_tick_.load(std::memory_order_relaxed); }
-  /// [any] CPU time that the thread of run() has used; async-signal-safe.
+  /// [any] Returns the CPU time that the thread of run() has used; async-signal-safe.
   Nanoseconds cpuTime() const noexcept { return os::cpuTime(cpu_clock_.load(std::memory_order_relaxed)); }
-  /// [any] CLOCK_MONOTONIC of the first tick, once there was one.
+  /// [any] Returns the CLOCK_MONOTONIC time of the first tick, or 0 before it.
   Nanoseconds firstTick() const noexcept { return first_tick_.load(std::memory_order_relaxed); }
   bool finished() const noexcept { return finished_.load(std::memory_order_acquire); }
 
@@ -117,11 +120,11 @@ class Loop {
   std::vector<Probe> probes_;
   uint64_t ramp_ticks_ = 0;
   std::atomic<uint64_t>* beat_ = nullptr;
-  double epoch_ = 0;  ///< [s] CLOCK_MONOTONIC of the first tick, in a run on the real clock
-  // In virtual time the simulation side works in this thread too, and its time does not count as the servo's.
+  double epoch_ = 0;  ///< [s] time of the first tick; CLOCK_MONOTONIC if the run uses the real clock
+  // In virtual time the proximity search runs in this thread too. Its time does not count as time of the servo.
   Nanoseconds search_time_ = 0;
-  Nanoseconds read_time_ = 0;    ///< of this tick
-  Nanoseconds listen_time_ = 0;  ///< the part of this tick spent on programs that had not answered yet
+  Nanoseconds read_time_ = 0;    ///< time in this tick for reading the arms
+  Nanoseconds listen_time_ = 0;  ///< time in this tick for waiting for programs' answers
   uint64_t search_allocations_ = 0, allocations_warm_ = 0;
   long faults_warm_ = 0;
   SpscRing<Order> orders_{256};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Who keeps the books of a loop: the loop tells every tick and every order, and knows nothing of files or pages.
+/// The interface through which the loop reports every tick and every order. Files and status pages are on the other
+/// side.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -14,10 +15,10 @@ namespace hapticd::servo {
 
 using Arms = std::vector<std::unique_ptr<Arm>>;
 
-/// What a tick took.
+/// How long a tick took.
 struct Spent {
   Nanoseconds total = 0;
-  Nanoseconds in_arms = 0;  ///< the part of it that arms took: physics of simulated arms, traffic of others
+  Nanoseconds in_arms = 0;  ///< part of `total` for the arms: physics of simulated arms, transfers of others
 };
 
 /// Every function is [rt] and called by the servo thread, in this order within a tick: begin, order (any number),
@@ -26,9 +27,9 @@ class TickLog {
  public:
   virtual ~TickLog() = default;
 
-  /// Called before a tick at time `now`.
+  /// A tick at time `now` begins.
   virtual void begin(Nanoseconds now, const Arms& arms) noexcept HSP_RT = 0;
-  /// An order was obeyed in this tick, or a decision that depends on measured times was taken.
+  /// An order was obeyed in this tick, or the servo made a decision that depends on measured times.
   virtual void order(const Order& order) noexcept HSP_RT = 0;
   /// `missed` whole periods were skipped.
   virtual void overrun(uint64_t missed) noexcept HSP_RT = 0;

@@ -10,14 +10,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The part of a force that another one has too: a force may always shrink.
+/// Returns the part of the force `of` from which a change to `to` is counted. A force may always shrink, so shrinking
+/// is no change.
 Vector3d nearestPart(const Vector3d& of, const Vector3d& to) noexcept HSP_RT {
   const double square = of.squaredNorm();
   if (!(square > 0)) return Vector3d::Zero();
   return std::clamp(to.dot(of) / square, 0.0, 1.0) * of;
 }
 
-/// [N/m] stiffness of the law of contact at its steepest place.
+/// [N/m] Largest stiffness that a contact law may have at its steepest place.
 double stiffnessOf(const ClaimBounds& bounds) noexcept HSP_RT {
   return Claim::kMargin * (bounds.stiffness > 0 ? bounds.stiffness : Claim::kUnclaimed);
 }
@@ -26,7 +27,7 @@ double stiffnessOf(const ClaimBounds& bounds) noexcept HSP_RT {
 
 Vector3d Claim::judge(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT {
   Vector3d let = step.force;
-  // The root of the square of a number is that number, so squares tell the same without a root in most ticks.
+  // Compares squares, so that most ticks need no square root.
   if (const double most = step.max_force, square = let.squaredNorm(); most > 0 && square > most * most)
     let *= most / std::sqrt(square);
   passes_ = std::min(kPasses, passes_ + kPassesPerSecond * dt);
@@ -51,28 +52,28 @@ Vector3d Claim::judge(const ClaimStep& step, const ClaimBounds& bounds, double d
   return held ? let : step.force;
 }
 
-/// True if the stiffness alone explains a change of this square [N^2], as in nearly every tick of a contact: then
-/// nothing else need be checked. It uses no root, so it leaves room for rounding.
+/// True if the stiffness alone explains a change of this square [N^2], as in nearly every tick of a contact; the other
+/// checks are then skipped. It compares squares, with a margin for rounding.
 bool Claim::surelyExplained(double square, const ClaimStep& step, const ClaimBounds& bounds) const noexcept HSP_RT {
   if (bounds.moves_itself) return false;
   const double per_metre = kSurely * stiffnessOf(bounds);
   return square <= per_metre * per_metre * (step.p_model - p_model_).squaredNorm();
 }
 
-/// Moves `let` back until its change fits the room. @return the share of this change by which the explained force
-/// follows
+/// Moves `let` back toward `from` until the change fits `room`. @return the share of the change by which the explained
+/// force follows
 double Claim::holdBack(Vector3d& let, const Vector3d& from, const Vector3d& change, const Room& room,
                        const ClaimStep& step, double dt, bool& held) noexcept HSP_RT {
   const double size = change.norm(), most = room.moved + room.jump, follows = room.moved + room.drift;
   held = size > most && !mayJump(step);
   if (held) let = from + change * (most / size);
   if (!held && (size > most || size <= follows)) return 1;
-  // What somebody asked for comes slowly; until it is there, the plugin is not at fault.
+  // A change after a set parameter is let through slowly. Until it is complete, the plugin is not at fault.
   if (asked_ && dt > 0) excused_ = std::max(excused_, std::min(kExcused, size / room.drift * dt));
   return follows / std::min(size, most);
 }
 
-/// One change of force and torque in a step that nothing explains.
+/// True if force and torque may change in this step without an explanation. Each such step uses up one allowed change.
 bool Claim::mayJump(const ClaimStep& step) noexcept HSP_RT {
   jumps_ = jumps_ || takePass(step);
   if (jumps_ || !asked_ || asked_passes_ < 1) return jumps_;
@@ -80,8 +81,8 @@ bool Claim::mayJump(const ClaimStep& step) noexcept HSP_RT {
   return jumps_ = true;
 }
 
-/// [N] or [N m] How much the turn of the model since the last step explains, besides its way: the force of a model that
-/// the host turns also turns.
+/// [N] or [N m] Change that the turn of the model since the last step explains. If the host turns the model, the
+/// explained force turns with it; if the shape turns itself, the change is bounded and returned.
 double Claim::turn(Vector3d& explained, const Eigen::Matrix3d& turn, const ClaimBounds& bounds,
                    double dt) noexcept HSP_RT {
   const Vector3d carried = turn * explained;
@@ -90,7 +91,7 @@ double Claim::turn(Vector3d& explained, const Eigen::Matrix3d& turn, const Claim
   return 0;
 }
 
-/// [N] How much the motion of probe and model since the last step may have changed the force.
+/// [N] Largest change of the force that the motion of probe and model since the last step explains.
 double Claim::explained(const ClaimStep& step, const ClaimBounds& bounds, double dt) const noexcept HSP_RT {
   double way = (step.p_model - p_model_).norm(), speed = std::max(step.velocity.norm(), velocity_.norm());
   double change = (step.velocity - velocity_).norm();
@@ -104,8 +105,8 @@ double Claim::explained(const ClaimStep& step, const ClaimBounds& bounds, double
   return stiffnessOf(bounds) * way + std::max(kDamping * change, kMargin * bounds.damping * speed);
 }
 
-/// [m] How far the surface at the probe may have moved because of a pose that the shape itself reports: at the speeds
-/// at which a body moves and turns, so that a model that spins in place explains next to nothing there.
+/// [m] How far the surface at the probe may have moved by the pose that the shape reports: bounded by kOwnSpeed and
+/// kOwnTurn, so that a model that spins about the probe explains next to nothing.
 double Claim::ownWay(const ClaimStep& step, double dt) const noexcept HSP_RT {
   const double along = std::min((step.origin - origin_).norm(), kOwnSpeed * dt);
   if (step.turn == nullptr) return along;
@@ -120,7 +121,7 @@ bool Claim::takePass(const ClaimStep& step) noexcept HSP_RT {
   return true;
 }
 
-/// Remembers only what the next step is compared with, because it runs for each shape, probe and tick.
+/// Remembers only the values that the next step needs, because it runs for each shape, probe and tick.
 void Claim::remember(const ClaimStep& step, const ClaimBounds& bounds) noexcept HSP_RT {
   known_ = (step.in & HSP_IN_INVALID) == 0;
   asked_ = jumps_ = false;
@@ -134,8 +135,8 @@ void Claim::remember(const ClaimStep& step, const ClaimBounds& bounds) noexcept 
   origin_ = step.origin;
 }
 
-/// Torques are held to a claim as forces are: a stiffness k at a handle of length l turns the hand back by k l^2 per
-/// radian, and a force that jumps by f is a torque that jumps by f l.
+/// Bounds torques like forces: on a handle of length l, a stiffness k gives k l^2 per radian, and a jump f of the force
+/// gives a jump f l of the torque.
 Vector3d Claim::judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT {
   Vector3d let = step.torque;
   if (const double size = let.norm(); step.max_torque > 0 && size > step.max_torque) let *= step.max_torque / size;
@@ -157,22 +158,23 @@ Vector3d Claim::judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, do
   return held ? let : step.torque;
 }
 
-/// [rad] How far the probe turned in the frame of the model since the last step, at least. A turn that the shape itself
-/// reports explains only that its torque turns with it: what a body can do at the probe is in explained().
+/// [rad] How far the probe turned in the frame of the model since the last step, not overestimated. A turn that the
+/// shape itself reports does not count here: explained() covers the motion of its surface.
 double Claim::angle(const ClaimStep& step, const ClaimBounds& bounds) const noexcept HSP_RT {
-  constexpr double kOfChord = 2.3;    // an angle up to half a turn, from the distance of its quaternion to the identity
-  constexpr double kOfMatrix = 0.72;  // a small angle, from the distance of two matrices
+  constexpr double kOfChord = 2.3;    // angle of up to half a turn, per distance between two quaternions
+  constexpr double kOfMatrix = 0.72;  // small angle, per distance between two matrices
   const double chord = std::min((step.orientation - orientation_).norm(), (step.orientation + orientation_).norm());
   const bool carried = step.turn != nullptr && !bounds.moves_itself;
   return kOfChord * chord + (carried ? kOfMatrix * (*step.turn - Eigen::Matrix3d::Identity()).norm() : 0);
 }
 
 bool pullsIn(const hsp_contact& contact, const Vector3d& p) noexcept HSP_RT {
-  constexpr double kSmallest = 1e-6, kRounding = 0.01;  // [m] a foot nearer than this gives no direction; [N]
+  // [m] A nearer foot gives no direction. [N] A smaller force is rounding, and so is a smaller share of a force.
+  constexpr double kSmallest = 1e-6, kRounding = 0.01;
   if ((contact.flags & HSP_OUT_TRACED) == 0) return false;
   const Vector3d force(contact.force), out = Vector3d(contact.point) - p;
   const double outward = contact.depth_m > 0 ? force.dot(out) : -force.dot(out);
-  if (!(outward < 0)) return false;  // pushes, as nearly always
+  if (!(outward < 0)) return false;  // the force pushes outward, as nearly always
   const double depth = out.norm(), size = force.norm();
   return depth > kSmallest && size > kRounding && outward < -kRounding * size * depth;
 }

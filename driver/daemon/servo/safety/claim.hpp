@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// A plugin claims how stiff its shape is at most, how much it damps, and how far its force may jump on purpose. These
-/// claims and the motion of the probe bound the change of the force. A force that changes by more is let through only
-/// as far as the bound. Forces are compared as vectors in the world frame, after every rotation, whether the model is
-/// traced or not. So are torques: by the same numbers, at the length of a handle.
+/// A plugin claims the largest stiffness and damping of its shape, and how far its force may jump on purpose. The
+/// claims and the motion of the probe bound how much the force may change in one step. A larger change is let through
+/// only up to this bound. Forces are compared as vectors in the world frame, after every rotation, also of models that
+/// are not traced. Torques are bounded by the same claims, on a handle of length kHandle.
 #pragma once
 #include <Eigen/Core>
 
@@ -10,82 +10,90 @@
 
 namespace hapticd::servo {
 
-/// What a shape may do to a probe, from its report and its parameters.
+/// The claims of a shape, from its report and its parameters.
 struct ClaimBounds {
-  double stiffness = 0;       ///< [N/m] 0: nothing was claimed, so kUnclaimed holds
-  double damping = 0;         ///< [N s/m]
-  double jump = 0;            ///< [N] jumps on purpose; at least kStep
-  bool moves_itself = false;  ///< it reports its own pose, which explains only so much
+  double stiffness = 0;       ///< [N/m] 0: no claim, so kUnclaimed is used
+  double damping = 0;         ///< [N s/m] largest damping
+  double jump = 0;            ///< [N] largest jump on purpose; values below kStep count as kStep
+  bool moves_itself = false;  ///< the shape reports its own pose; kOwnSpeed and kOwnTurn then apply
 };
 
-/// One answer of a shape to one probe, in the world frame unless a comment says otherwise. `normal` is used if a
-/// surface is traced, `p_world` and `origin` if the shape moves itself.
+/// One answer of a shape to one probe, in the world frame unless a comment says otherwise. `normal` is only used if a
+/// surface is traced; `p_world` and `origin` are only used if the shape moves itself.
 struct ClaimStep {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< [N]
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< outward, if a surface is traced
-  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();   ///< [m] the probe
-  Eigen::Vector3d p_model = Eigen::Vector3d::Zero();   ///< [m] the same in the frame of the model, after the step
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s] relative to the model; zero if it asks for none
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< [m] of the model, after the step
-  const Eigen::Matrix3d* turn = nullptr;               ///< of the model since its last step; nullptr: it does not turn
-  double max_force = 0;      ///< [N] that the arm lets through; 0: unknown. Larger forces are not compared.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< [N] on the probe
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< outward unit normal, if a surface is traced
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();   ///< [m] position of the probe
+  Eigen::Vector3d p_model = Eigen::Vector3d::Zero();   ///< [m] the probe in the frame of the model, after the step
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s] relative to the model; zero if the shape uses none
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< [m] origin of the model, after the step
+  const Eigen::Matrix3d* turn = nullptr;  ///< turn of the model since its last step; nullptr if there is none
+  /// [N] largest force that the arm lets through, 0: unknown; larger forces are reduced to it first
+  double max_force = 0;
   uint32_t in = 0, out = 0;  ///< HSP_IN_*, HSP_OUT_*
   // Only judgeTorque() uses these.
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m] on the probe
-  /// x y z w of the probe in the world; constant if the shape does not read how the probe is turned.
+  /// Orientation x y z w of the probe in the world; constant if the shape does not use the orientation.
   Eigen::Vector4d orientation = Eigen::Vector4d::UnitW();
-  double max_torque = 0;  ///< [N m] that the arm lets through; 0: unknown. Larger torques are not compared.
-  bool former = false;    ///< as formerly, a jump of the probe excuses nothing
+  /// [N m] largest torque that the arm lets through, 0: unknown; larger ones are reduced to it first
+  double max_torque = 0;
+  bool former = false;  ///< for old recordings: a jump of the probe excuses nothing
 };
 
-/// What is remembered for one model and one probe.
+/// Bounds the force and torque of one model on one probe, and remembers the last step.
 class Claim {
  public:
-  static constexpr double kMargin = 10;       ///< laws of contact are steeper in places than their authors think
-  static constexpr double kStep = 2;          ///< [N] a click may come as suddenly as this
-  static constexpr double kUnclaimed = 2000;  ///< [N/m] used where nothing is claimed
-  static constexpr double kDamping = 100;     ///< [N s/m] allowed to every shape: friction and inertia act like it
-  static constexpr double kDrift = 100;       ///< [N/s] by which a force may change with nothing to explain it
-  static constexpr double kOwnSpeed = 5;      ///< [m/s] speed of a surface that moves itself
-  static constexpr double kOwnTurn = 50;      ///< [rad/s] the same
-  /// A surface that is found anew under the probe, or a foot that goes over an edge, changes the force at once.
-  /// kPasses such changes may come together, and kPassesPerSecond per second.
+  /// factor on claims, because contact laws are steeper in places than their authors think
+  static constexpr double kMargin = 10;
+  static constexpr double kStep = 2;          ///< [N] a force may always jump by this much, as for a click
+  static constexpr double kUnclaimed = 2000;  ///< [N/m] stiffness that is assumed if none is claimed
+  /// [N s/m] allowed to every shape, because friction and inertia act like damping
+  static constexpr double kDamping = 100;
+  static constexpr double kDrift = 100;   ///< [N/s] a force may always change at this rate
+  static constexpr double kOwnSpeed = 5;  ///< [m/s] highest speed that is believed of a shape that moves itself
+  static constexpr double kOwnTurn = 50;  ///< [rad/s] the same for its turning
+  /// The force changes at once if a surface is newly found under the probe, or if the foot goes over an edge. kPasses
+  /// such changes may come in a row, and then kPassesPerSecond per second.
   static constexpr double kPasses = 3, kPassesPerSecond = 20;
-  static constexpr double kEdge = 0.1;     ///< [rad] a normal that turns farther in one step has crossed an edge
-  static constexpr double kSurely = 0.99;  ///< share of what stiffness explains: a smaller change needs no second look
-  /// [m] distance from the tip to where a hand holds the handle, which turns a force into a torque.
+  static constexpr double kEdge = 0.1;  ///< [rad] if the normal turns farther in one step, the foot went over an edge
+  /// a change below this share of what stiffness explains needs no other check
+  static constexpr double kSurely = 0.99;
+  /// [m] Distance from the tip to the place where a hand holds the handle. It turns a bound on forces into one on
+  /// torques.
   static constexpr double kHandle = 0.1;
-  /// A live parameter that somebody set may change the force at once: kAsked such changes may come together, and
-  /// kAskedPerSecond per second. A program that sets one in every tick must not let a plugin kick.
+  /// The force may change at once after a live parameter was set. kAsked such changes may come in a row, and then
+  /// kAskedPerSecond per second: a program that sets parameters in every tick must not allow a plugin to kick.
   static constexpr double kAsked = 3, kAskedPerSecond = 2;
-  static constexpr double kExcused = 1;  ///< [s] for which a change that was asked for may be held back without blame
-  /// [s] After a jump of the probe or a bad sample the search finds the surface anew some ticks later. The force may
-  /// then come at once, whatever the normal was, and the plugin is not blamed for what is held back.
+  /// [s] a change after a set parameter may be held back for this time without a strike
+  static constexpr double kExcused = 1;
+  /// [s] After a jump of the probe or a bad sample, the search finds the surface again some ticks later. For this time
+  /// the force may come at once, whatever the normal was, and the plugin is not blamed if it is held back.
   static constexpr double kFindsAnew = 0.1;
 
-  /// [rt] How much of the force of `step` may pass, world frame: all of it, or what the claim explains.
-  /// @param dt [s] since the last step  @param held true if the force was held back
+  /// [rt] Returns the force of `step`, or the part of it that the claim allows, world frame.
+  /// @param dt [s] since the last step  @param held becomes true if the force was held back
   Eigen::Vector3d judge(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
-  /// [rt] The same for the torque of `step`. Call it before judge(), which remembers where the probe was.
+  /// [rt] Does the same for the torque of `step`. Call it before judge(), because judge() stores the place of the
+  /// probe.
   Eigen::Vector3d judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
-  /// [rt] Somebody set a live parameter of the model: in the next step the force may change with nothing to explain it.
+  /// [rt] Somebody set a live parameter of the model: in the next step the force may change without an explanation.
   void expectChange() noexcept HSP_RT { asked_ = true; }
 
-  /// [rt] True if somebody asked for what was held back in the last step, or the probe jumped, so that the plugin is
-  /// not at fault.
+  /// [rt] True if a change that was held back is not the plugin's fault, because somebody set a parameter or the probe
+  /// jumped.
   bool excused() const noexcept HSP_RT { return excused_ > 0 || finds_anew_ > 0; }
 
-  /// [any] Compares the next step with nothing.
+  /// [any] Forgets the last step, so that the next one may have any force.
   void forget() noexcept { known_ = torque_known_ = false; }
 
  private:
-  /// What may become of a change, [N] or [N m].
+  /// How large a change may be, [N] or [N m].
   struct Room {
-    double moved;  ///< that motion explains
-    double jump;   ///< beyond it
-    double drift;  ///< allowed in this step, with nothing to explain it
+    double moved;  ///< part that motion explains
+    double jump;   ///< jump that is allowed in addition
+    double drift;  ///< slow change that is always allowed in this step
   };
   double holdBack(Eigen::Vector3d& let, const Eigen::Vector3d& from, const Eigen::Vector3d& change, const Room& room,
                   const ClaimStep& step, double dt, bool& held) noexcept HSP_RT;
@@ -101,27 +109,28 @@ class Claim {
 
   bool known_ = false, traced_ = false;
   bool torque_known_ = false;
-  bool asked_ = false, jumps_ = false;  // in this step: a parameter was set; a jump was allowed
+  bool asked_ = false, jumps_ = false;  // in this step: a parameter was set; a jump is allowed
   double passes_ = kPasses, asked_passes_ = kAsked;
-  double excused_ = 0, finds_anew_ = 0;  // [s] for which that still holds
-  /// [N] The force that motion explains, world frame: the force that passes is never farther from it than a jump.
+  double excused_ = 0, finds_anew_ = 0;  // [s] how long excused(), and kFindsAnew, still hold
+  /// [N] The force that motion explains, world frame. The force that passes is at most one jump away from it.
   Eigen::Vector3d explained_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_world_ = Eigen::Vector3d::Zero(), p_model_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero(), normal_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d explained_torque_ = Eigen::Vector3d::Zero();  // [N m] as explained_
+  Eigen::Vector3d explained_torque_ = Eigen::Vector3d::Zero();  // [N m] like explained_
   Eigen::Vector4d orientation_ = Eigen::Vector4d::UnitW();
 };
 
-/// A pull by a surface that reported that it only pushes.
+/// A pull by a surface that claims to push only.
 struct Pull {
-  double t = -1;      ///< [s] since the start of the run; negative: unknown
-  double depth = -1;  ///< [m] as the shape reported it; negative: unknown, or outside
-  double force = 0;   ///< [N]
+  double t = -1;      ///< [s] time since the start of the run; negative: unknown
+  double depth = -1;  ///< [m] as the shape reported it; negative: unknown or outside
+  double force = 0;   ///< [N] with which it pulled
 };
 
-/// [rt] True if the force of a contact pulls the probe deeper in, or toward the surface from outside, by more than
-/// rounding. Model frame. @param p where the probe is. The foot tells the way out, not the normal that the shape names.
+/// [rt] True if the force of a contact pulls the probe deeper in, or from outside toward the surface, by more than
+/// rounding. The direction outward is taken from the foot point, not from the reported normal. @param p [m] the probe,
+/// in the model frame
 bool pullsIn(const hsp_contact& contact, const Eigen::Vector3d& p) noexcept HSP_RT;
 
 }  // namespace hapticd::servo

@@ -59,7 +59,7 @@ std::string faultMessage(const std::string& device, Fault fault, double measured
     std::snprintf(state, sizeof state, " (measured: %.3g %s)", measured, unit);
     text += state;
   }
-  text += endsByItself(fault) ? "; its forces ended and come back in a ramp once it is well"
+  text += endsByItself(fault) ? "; its forces ended and come back in a ramp once the device works again"
                               : "; its forces ended and stay off until the fault is cleared";
   if (cure != std::string::npos) text += words.substr(cure);
   return text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What takes the force away until the user clears it, and the words for it.
+/// Faults, which take the force away until they are cleared or end by themselves, and their texts.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -7,34 +7,35 @@
 
 namespace hapticd::servo {
 
-/// What took the force away. Recordings keep the number, so new faults come at the end.
+/// What took the force away. A unit in brackets is the unit of the measured value. Recordings keep the number, so new
+/// faults come at the end.
 enum class Fault : uint8_t {
   kNone,
-  kNotFinite,      ///< a force or position that is not a number
+  kNotFinite,      ///< a force or position is not a number
   kDeviceLost,     ///< the device cannot be read or written
   kDeviceFault,    ///< the hardware reports a fault
-  kStale,          ///< no new sample for too long [s]
+  kStale,          ///< the device sent no new sample for too long [s]
   kTooFast,        ///< the tip moved faster than the limit [m/s]
-  kLate,           ///< too many ticks missed in a row [s]
+  kLate,           ///< too many ticks were missed in a row [s]
   kNotCalibrated,  ///< the device must be calibrated before it may push
   kStopped,        ///< the daemon is stopping
   kStuck,          ///< a tick did not end and the watchdog cut the motors [s]
-  kOverheated,     ///< a motor is hotter than it may be, by its model [degC]
+  kOverheated,     ///< a motor is hotter than allowed, by the model of its heat [degC]
   kJumped,         ///< two positions are farther apart than a hand can move [m/s]
   kNotUnit         ///< the device's orientation is not a unit quaternion [its length]
 };
 constexpr int kFaultCount = 13;
 
-/// True if the fault ends by itself once the device is well: unplugged, silent, at fault, not calibrated. A fault of
-/// the daemon or the user stays until the user clears it.
+/// True if the fault ends by itself once the device works again: kDeviceLost, kDeviceFault, kStale, kNotCalibrated.
+/// Other faults stay until the user clears them.
 bool endsByItself(Fault fault) noexcept;
 
-/// Words for a fault: what failed, and the command or action that cures it.
+/// Returns the text for a fault: what failed, and the command or action that cures it.
 const char* describe(Fault fault);
 
-/// [main] One message of four parts: what failed, the measured state, the consequence, what cures it.
-/// @param measured in the unit that the enumerator names
-/// @param why the device's own words, "cause; cure"; nullptr: it has none
+/// [main] Returns a message of four parts: what failed, the measured value, the consequence, and the cure.
+/// @param measured value, in the unit that is named at the enumerator
+/// @param why the device's own text, "cause; cure"; nullptr if it has none
 std::string faultMessage(const std::string& device, Fault fault, double measured, const char* why = nullptr);
 
 /// A fault that one thread latches and other threads read.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Stands between one shape and the hand: a shape that loses its surface, answers nonsense or says so itself is faded
-/// out over a bounded time, and only what it may be trusted with again is faded in.
+/// Stands between one shape and the hand: fades a shape out if it loses its surface, gives a wrong answer or reports an
+/// error. Only a shape that lost its surface is faded in again.
 #pragma once
 #include <cstdint>
 
@@ -12,51 +12,55 @@ namespace hapticd::servo {
 enum class Trouble : uint8_t {
   kNone,
   kLost,       ///< HSP_E_NUMERIC: the shape is reset and tried again
-  kNotFinite,  ///< a force or a pose is not a number: never trusted again
-  kBadStatus,  ///< step returned a status that the ABI does not allow: never trusted again
-  kOverrun,    ///< its steps repeatedly took longer than all shapes may in a tick: never trusted again
-  kJump,       ///< its force repeatedly jumped beyond the stiffness it claims: never trusted again
-  kNotUnit,    ///< a pose had a quaternion that also stretches: never trusted again
-  kPulls,      ///< a surface that only pushes pulled the probe in: never trusted again
-  kTwists      ///< its torque jumped, as kJump says of a force: never trusted again
+  kNotFinite,  ///< a force or a pose was not a number: never trusted again
+  kBadStatus,  ///< step() returned a status that the ABI does not allow: never trusted again
+  kOverrun,    ///< its steps repeatedly took longer than the budget of all shapes: never trusted again
+  kJump,       ///< its force repeatedly jumped by more than its claims allow: never trusted again
+  kNotUnit,    ///< a pose had a quaternion whose length is not 1: never trusted again
+  kPulls,      ///< a surface that claims to push only pulled the probe in: never trusted again
+  kTwists      ///< like kJump, but the torque jumped: never trusted again
 };
 
-/// Fades the force of one shape. All times are in seconds of the tick.
+/// Fades the force of one shape. All times are sums of dt.
 class Guard {
  public:
-  /// [s] A failed shape is silent within this time. A tip that nobody holds gains energy for as long, see
+  /// [s] The force of a failed shape is zero after this time. Until then a tip that nobody holds gains energy, see
   /// Limiter::kFaultRamp.
   static constexpr double kFadeOut = 0.002;
-  static constexpr double kLeave = 0.02;   ///< [s] the same where somebody asked for it: a model that is disabled
-  static constexpr double kFadeIn = 0.05;  ///< [s] a surface that is found again must not kick
-  /// [s] The same for a model that is added during a run and pushes without a surface: no hand can be outside of it.
+  static constexpr double kLeave = 0.02;  ///< [s] the same for a model that is disabled on request
+  /// [s] duration of a fade-in, so that a surface that is found again does not kick
+  static constexpr double kFadeIn = 0.05;
+  /// [s] Duration of the fade-in of a model that is added during a run and pushes without a surface: no hand can be
+  /// outside of it.
   static constexpr double kFadeInOfField = 1;
 
-  /// [rt] Judges the answer of one step.
+  /// [rt] Judges the answer of one step. @param finite true if all its numbers are finite
   Trouble judge(hsp_status status, bool finite) noexcept HSP_RT;
 
-  /// [rt] A finding about an answer whose numbers are sound. The gravest one is kept.
+  /// [rt] Notes a trouble that judge() cannot see. Once the shape is quarantined, the first reason is kept.
   Trouble enter(Trouble trouble) noexcept HSP_RT;
 
-  /// [rt] One step took longer than all shapes may, or one force was beyond the claim. Now and then that is forgiven,
-  /// but not `strikes` times within a hundred ticks.
+  /// [rt] Notes that one step took too long, or that one force was beyond the claim. This becomes a trouble if it
+  /// happens `strikes` times within a hundred ticks, or for long more often than once in a hundred ticks.
   Trouble strike(Trouble trouble, int strikes) noexcept HSP_RT;
 
-  /// [rt] The factor for the force of this tick. @param good its step succeeded @param wanted it is enabled
+  /// [rt] Returns the factor for the force of this tick. @param good true if the step succeeded @param wanted true if
+  /// the model is enabled
   double gain(bool good, bool wanted, double dt) noexcept HSP_RT;
 
-  /// [rt] Silent from now on, until gain() lets the force in.
+  /// [rt] Sets the factor to zero; gain() fades the force in from there.
   void silence() noexcept HSP_RT { gain_ = 0; }
 
-  /// The factor of the last tick.
+  /// Returns the factor of the last tick.
   double gain() const noexcept { return gain_; }
   bool quarantined() const noexcept { return trouble_ > Trouble::kLost; }
-  Trouble trouble() const noexcept { return trouble_; }  ///< the gravest so far
+  Trouble trouble() const noexcept { return trouble_; }  ///< the trouble that quarantined it, else the last one
 
  private:
-  static constexpr int kForgivenAfter = 100;  ///< [ticks]
+  static constexpr int kForgivenAfter = 100;  ///< [ticks] in which one strike is forgiven
   int strikes_ = 0;
-  double gain_ = 1;  // the first contact of a healthy shape needs no fade, since Eq. 4 starts at zero force
+  // starts at 1, because the first contact begins with zero force anyway (Eq. 4 of Thompson et al. 1999)
+  double gain_ = 1;
   Trouble trouble_ = Trouble::kNone;
 };
 

@@ -9,7 +9,7 @@ namespace hapticd::servo {
 
 namespace {
 
-/// [Hz] at or above this rate the next tick or sample comes soon enough for the full force.
+/// [Hz] At these rates or faster, the next tick or sample comes soon enough for the full force.
 constexpr double kServoRateInFull = 1 / kHeldInFull, kArmRateInFull = 2 / kHeldInFull;
 
 }  // namespace
@@ -36,12 +36,12 @@ std::string describeSlow(double servo_rate, double arm_rate, double device_force
   const bool by_arm = arm_rate > 0 && 2 / arm_rate > 1 / servo_rate;
   char text[320], instead[48] = "";
   if (asked > 0) std::snprintf(instead, sizeof instead, " instead of %.3g N", asked);
-  std::snprintf(
-      text, sizeof text,
-      "%s: after a fault one command may stay on for %.3g ms, so it pushes with at most %.3g N%s, which gives "
-      "a free arm 5 mJ and 1 mm; expected at least %.0f Hz for all of its force",
-      by_arm ? "its own rate is low" : "the servo's rate is low", held * 1e3, most, instead,
-      std::ceil(by_arm ? kArmRateInFull : kServoRateInFull));
+  std::snprintf(text, sizeof text,
+                "%s: after a fault the motors may keep the last command for %.3g ms, so the force is limited to %.3g "
+                "N%s, which moves "
+                "a free arm by at most 1 mm and gives it at most 5 mJ; expected at least %.0f Hz for the full force",
+                by_arm ? "its own rate is low" : "the servo's rate is low", held * 1e3, most, instead,
+                std::ceil(by_arm ? kArmRateInFull : kServoRateInFull));
   return text;
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A part of a ramp smaller than this is a rounding error: a fade must end at zero, and in time.
+/// A share of a ramp smaller than this is a rounding error: a fade must end exactly at zero, and in time.
 constexpr double kRounding = 1e-9;
 
 double rampedUp(double now, double dt, double seconds) noexcept HSP_RT {
@@ -29,8 +29,8 @@ bool cap(Vector3d& v, double most) noexcept HSP_RT {
   return true;
 }
 
-/// A force may grow and turn only at a bounded rate. It may always shrink: what a shape no longer gives is never held.
-/// @param slow the force as it would be if it never changed faster than the limit
+/// Bounds how fast a force grows and turns. A force may always shrink: a force that a shape no longer gives is never
+/// held. @param slow a force that follows the sent one at the limit @return true if the force was reduced
 bool limitSlew(Vector3d& v, const Vector3d& slow, double most) noexcept HSP_RT {
   const double asked = v.norm();
   const Vector3d change = v - slow;
@@ -40,7 +40,7 @@ bool limitSlew(Vector3d& v, const Vector3d& slow, double most) noexcept HSP_RT {
   return !cap(v, asked);
 }
 
-/// Moves `slow` toward the last force, and never leaves it farther behind than the rest of the window allows.
+/// Moves `slow` toward the last force. `slow` is never farther behind than the rest of the window allows.
 void follow(Vector3d& slow, const Vector3d& last, double slew, double dt) noexcept HSP_RT {
   const Vector3d behind = slow - last;
   const double size = behind.norm(), rest = slew * std::max(0.0, Limiter::kSlewWindow - dt);
@@ -71,13 +71,13 @@ void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position,
   }
   clipped_ = false;
   power_.pass(dt);
-  // What the last tick sent was held until now, however late this tick is.
+  // The motors held the last force until now, however late this tick is.
   const double held = std::min(dt, kImpulseWindow);
   impulse_ += (last_force_.norm() - impulse_ / kImpulseWindow) * held;
   if (limits_.slew > 0) follow(slow_force_, last_force_, limits_.slew, dt);
   if (limits_.torque_slew > 0) follow(slow_torque_, last_torque_, limits_.torque_slew, dt);
   if (fault() != Fault::kNone) {
-    // Fades along the last force, because the new one may be the fault itself.
+    // Fades the last force, because the new one may be the fault itself.
     fade_ = rampedDown(fade_, dt, faultRamp());
     force = fade_ * fault_force_;
     torque = fade_ * fault_torque_;
@@ -90,7 +90,7 @@ void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position,
   last_torque_ = torque;
 }
 
-/// [s] A planned end may take its time.
+/// [s] Duration of the ramp after a fault; longer for a planned end.
 double Limiter::faultRamp() const noexcept HSP_RT {
   return fault() == Fault::kStopped ? limits_.ramp_out : std::min(limits_.ramp_out, kFaultRamp);
 }
@@ -114,7 +114,7 @@ void Limiter::limit(Vector3d& force, Vector3d& torque, const Vector3d& position,
   torque *= near * heat_factor_;
   if (pushes && near < 1) count(Limit::kWorkspace);
   if (pushes && heat_factor_ < 1) count(Limit::kHeat);
-  // A shape may ask for many times the limit, as when a tip begins inside a model, so the limit ramps as well.
+  // A shape may ask for many times the limit, for example if a tip begins inside a model, so the limit ramps as well.
   const double share = ramp_ * fresh_;
   if (max_force_ > 0 && cap(force, max_force_ * share)) count(Limit::kForce);
   if (limits_.torque > 0 && cap(torque, limits_.torque * share)) count(Limit::kTorque);
@@ -122,18 +122,20 @@ void Limiter::limit(Vector3d& force, Vector3d& torque, const Vector3d& position,
   const double window = std::max(dt, kSlewWindow);
   if (limits_.slew > 0 && limitSlew(force, slow_force_, limits_.slew * window)) count(Limit::kSlew);
   if (limits_.torque_slew > 0 && limitSlew(torque, slow_torque_, limits_.torque_slew * window)) count(Limit::kSlew);
-  if (limits_.power > 0) limitPower(force);  // after slew, which may keep a direction in which the hand no longer moves
+  if (limits_.power > 0) limitPower(force);  // after slew, which may turn the force to where the hand does not move
 }
 
 void Limiter::limitPower(Vector3d& force) noexcept HSP_RT {
-  const double asked = force.norm();  // the power that the arm gives to the hand; the hand's own power does not count
+  // [N]; only power from the arm to the hand is limited
+  const double asked = force.norm();
   if (asked > 0 && cap(force, power_.most(force / asked, limits_.power))) count(Limit::kPower);
 }
 
 void Limiter::limitImpulse(Vector3d& force, double dt) noexcept HSP_RT {
-  // A leaky integrator with the window as its time constant: what flows in during a window is at most what it holds at
-  // the end plus what leaked meanwhile, so twice its size. Half the limit, then, bounds every window, wherever it
-  // begins. The cap falls as the book fills, so that a held force ends at its size / window without a step.
+  // impulse_ is a leaky integrator with the window as its time constant. The impulse of any window is at most what the
+  // integrator holds at the end plus what leaked meanwhile, so at most twice its largest value. So half the limit as
+  // the largest value bounds every window, wherever it begins. The cap falls as the integrator fills, so that a held
+  // force settles at size / window without a step.
   constexpr double kApproach = 0.01;  // [s]
   const double size = limits_.impulse / 2, booked = std::min(impulse_, size);
   const double most = (size - booked) / std::max(kApproach, dt) + booked / kImpulseWindow;
@@ -141,7 +143,7 @@ void Limiter::limitImpulse(Vector3d& force, double dt) noexcept HSP_RT {
 }
 
 double Limiter::workspaceFade(const Vector3d& position) const noexcept HSP_RT {
-  constexpr double kFadeWidth = 0.02;  // [m] over which the force fades beyond the limit
+  constexpr double kFadeWidth = 0.02;  // [m] distance beyond the limit over which the force fades to zero
   if (limits_.workspace <= 0) return 1;
   return std::clamp(1 - (position.norm() - limits_.workspace) / kFadeWidth, 0.0, 1.0);
 }
@@ -164,7 +166,7 @@ void Limiter::watchVelocity(const Vector3d& velocity) noexcept HSP_RT {
 
 void Limiter::watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT {
   if (!limits_.enable.button) return;
-  if (!buttons) {  // a toggle keeps its state: a button held during this does not count as pressed anew
+  if (!buttons) {  // a toggle keeps its state: a button held across bad samples is not a new press
     if (limits_.enable.mode == scene::EnableMode::kHold) enabled_ = false;
     return;
   }
@@ -181,10 +183,10 @@ void Limiter::watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT {
 
 void Limiter::trip(Fault fault, double measured) noexcept HSP_RT {
   const Fault before = fault_.get();
-  if (fault != Fault::kNone) cleared_ = false;  // there is more to clear
+  if (fault != Fault::kNone) cleared_ = false;  // the user has not cleared this fault
   if (fault == Fault::kNone || (before != Fault::kNone && (endsByItself(fault) || !endsByItself(before)))) return;
   measured_ = measured;
-  if (before != Fault::kNone) return fault_.set(fault);  // the force already ramps down
+  if (before != Fault::kNone) return fault_.set(fault);  // the force ramps down already
   fade_ = 1;
   fault_force_ = last_force_;
   fault_torque_ = last_torque_;
@@ -210,7 +212,7 @@ void Limiter::recover() noexcept HSP_RT {
 
 void Limiter::clear() noexcept HSP_RT {
   cleared_ = fade_ > 0;
-  if (cleared_) return;  // a force that ramps down reaches zero first
+  if (cleared_) return;  // apply() calls this again once the force is zero
   fault_.set(Fault::kNone);
   ramp_ = 0;
 }

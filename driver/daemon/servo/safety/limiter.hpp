@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Between contact and motors, whatever the plugins say: finite, ramped, limited in force, torque, slew, power and
-/// impulse, felt only while the enable switch says so, and latched off by a fault until the user clears it. Nothing
-/// here ever makes a force larger than it was asked for.
+/// Limits every force between contact and motors, whatever the plugins do. Forces are finite, ramped, and limited in
+/// size, torque, slew, power and impulse. They flow only while the enable switch allows it, and a fault turns them off.
+/// The limiter never makes a force larger than asked for.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -15,85 +15,88 @@
 
 namespace hapticd::servo {
 
-/// The limits that can bind, in the order in which they are applied.
+/// The limits that can reduce a force. nameOf() lists their names in this order.
 enum class Limit : uint8_t { kWorkspace, kHeat, kForce, kTorque, kPower, kImpulse, kSlew, kMotors, kWeight, kSample };
 constexpr size_t kLimitCount = 10;
-const char* nameOf(Limit limit);  ///< "force": the key under limits
+const char* nameOf(Limit limit);  ///< such as "force" for limits.force
 
-/// In how many ticks each limit made the force smaller.
+/// Counts in how many ticks each limit made the force smaller.
 struct Clips {
   std::array<uint64_t, kLimitCount> ticks{};
-  uint64_t any = 0;  ///< ticks in which at least one did
+  uint64_t any = 0;  ///< ticks in which at least one limit did
 };
 
 class Limiter {
  public:
-  static constexpr double kImpulseWindow = 0.1;  ///< [s] any window of this length for which limits.impulse holds
-  /// [s] At a fault, and when the enable switch is let go, a full force is gone in this time, or in limits.ramp_out if
-  /// that is shorter. A tip that nobody holds any more gains energy for as long: with 8.5 N on 75 g, 0.5 mJ. A planned
-  /// end takes limits.ramp_out.
+  static constexpr double kImpulseWindow = 0.1;  ///< [s] limits.impulse holds for any window of this length
+  /// [s] At a fault, or when the enable switch is released, a full force ramps to zero in this time, or in
+  /// limits.ramp_out if that is shorter. Until then a tip that nobody holds gains energy: 0.5 mJ with 8.5 N on 75 g. A
+  /// planned end takes limits.ramp_out.
   static constexpr double kFaultRamp = 0.002;
-  /// [s] A force that was reduced because the samples were old grows back in this time.
+  /// [s] A force that was reduced because the sample was old grows back in this time.
   static constexpr double kFreshRamp = 0.02;
-  /// [s] over which limits.slew is counted: a step of an encoder is as large at 20 kHz as at 1 kHz, so a bound on each
-  /// tick would clip good contact the more, the faster the servo.
+  /// [s] Window over which limits.slew is counted. A step of an encoder is as large at 20 kHz as at 1 kHz, so a bound
+  /// on each tick would clip good contact more in a faster servo.
   static constexpr double kSlewWindow = 0.001;
 
-  /// [main] @param device_max_force [N] of the device, 0: unknown
+  /// [main] @param device_max_force [N] reported by the device, 0: unknown
   Limiter(const scene::Limits& limits, double device_max_force);
 
   /// [rt] Limits one wrench. @param position of the tip relative to the device's centre [m], for the workspace limit
   void apply(Eigen::Vector3d& force, Eigen::Vector3d& torque, const Eigen::Vector3d& position,
              double dt) noexcept HSP_RT;
 
-  /// [rt] Judges the speed of the tip [m/s].
+  /// [rt] Checks the speed of the tip [m/s] against limits.velocity.
   void watchSpeed(double speed) noexcept HSP_RT;
-  /// [rt] Judges the tip's velocity [m/s], in the frame of the forces, and keeps it for the power limit.
+  /// [rt] Checks the tip's velocity [m/s], in the frame of the forces, and keeps it for the power limit.
   void watchVelocity(const Eigen::Vector3d& velocity) noexcept HSP_RT;
-  /// [rt] Takes the buttons of the newest sample, for the enable switch; nullopt: there is no good sample.
+  /// [rt] Takes the buttons of the newest sample, for the enable switch; nullopt if there is no good sample.
   void watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT;
-  /// [main] A hold button that was down before the run enables forces, as in recordings of versions that allowed it.
+  /// [main] For recordings of old versions: a hold button that was down before the run enables forces.
   void enableByFoundPressed() { released_ = true; }
-  /// [main] What limits.power must reckon with. @param lag [s] of the velocity that watchVelocity() gets
+  /// [main] Sets values for limits.power. @param lag [s] of the velocity that watchVelocity() gets
   /// @param mass [kg] of the arm at its tip, 0: unknown
   void expectMotion(double lag, double mass) { power_.expect(lag, mass); }
-  /// [rt] What share of the force the newest sample allows, from 1 to 0 as it ages. Call it before apply().
+  /// [rt] Sets the share of the force that the newest sample allows, from 1 down to 0 as it ages. Call it before
+  /// apply().
   void trustSample(double share) noexcept HSP_RT { trusted_ = share; }
-  /// [rt] The share of the force that the motors allow, 0 to 1; it holds from the next tick on.
+  /// [rt] Sets the share of the force that hot motors allow, 0 to 1, from the next tick on.
   void spareMotors(double factor) noexcept HSP_RT { heat_factor_ = factor; }
-  /// [rt] The motors' own limit, or that of the arm's weight, reduced the torques of this tick.
+  /// [rt] Counts that the motors' own limit reduced the torques of this tick.
   void clippedByMotors() noexcept HSP_RT { count(Limit::kMotors); }
   void clippedWeight() noexcept HSP_RT { count(Limit::kWeight); }
 
-  /// [rt] Latches a fault: the force ramps to zero from what it is now. The first fault is kept, unless it ends by
-  /// itself: then a graver one takes its place. @param measured for the message, in the unit of the fault
+  /// [rt] Latches a fault: the present force ramps to zero. The first fault is kept, but a fault that ends by itself is
+  /// replaced by one that does not. @param measured value for the message, in the unit of the fault
   void trip(Fault fault, double measured = 0) noexcept HSP_RT;
 
-  /// [rt] The motors were cut already: the fault latches, and there is no force left to ramp.
+  /// [rt] Latches a fault after the motors were cut: no force is left to ramp.
   void cut(Fault fault, double measured) noexcept HSP_RT;
 
-  /// [rt] Called after apply(), if the arm could not be told the force because nobody knows where it is. The rest of a
-  /// ramp is not resumed, and a later force grows from zero.
+  /// [rt] Called after apply() if the force could not be sent, because the position of the arm is unknown. A ramp to
+  /// zero then ends at once, and a later force grows from zero.
   void sentNothing() noexcept HSP_RT;
 
-  /// [rt] A fault that ends by itself is over, and the force ramps in again. Other faults stay.
+  /// [rt] Ends a fault that can end by itself, and the force ramps in again. Other faults stay.
   void recover() noexcept HSP_RT;
 
-  /// [rt] Clears a latched fault by the user's order: the force ramps in again once it has ramped out.
+  /// [rt] Clears a latched fault because the user asked for it: once the force has ramped out, it ramps in again.
   void clear() noexcept HSP_RT;
 
-  Fault fault() const noexcept { return fault_.get(); }          ///< [any]
+  Fault fault() const noexcept { return fault_.get(); }          ///< [any] the latched fault, or kNone
   Fault recovered() const noexcept { return recovered_.get(); }  ///< [any] the last fault that ended by itself
-  double measured() const noexcept { return measured_; }         ///< [main] at the fault
-  bool enabled() const noexcept { return enabled_; }             ///< forces are enabled by the switch, if there is one
-  bool foundPressed() const noexcept { return found_pressed_; }  ///< the enable switch, and not let go since
-  double rampOut() const noexcept { return limits_.ramp_out; }   ///< [s] from full force to none, at a planned end
-  const Clips& clips() const noexcept { return clips_; }         ///< [main] after the run
-  double maxForce() const noexcept { return max_force_; }        ///< [N] 0: none
-  double maxTorque() const noexcept { return limits_.torque; }   ///< [N m] 0: none
-  /// [rt] The share of a full force that the ramps allow in this tick, after apply(): 0 to 1.
+  double measured() const noexcept { return measured_; }         ///< [main] value at the fault, in its unit
+  bool enabled() const noexcept { return enabled_; }  ///< true if there is no enable switch, or it enables forces
+  /// true if the enable switch was down at the start and has not been released since
+  bool foundPressed() const noexcept { return found_pressed_; }
+  double rampOut() const noexcept { return limits_.ramp_out; }  ///< [s] from full force to zero, at a planned end
+  const Clips& clips() const noexcept { return clips_; }        ///< [main] after the run
+  double maxForce() const noexcept { return max_force_; }       ///< [N] 0: no limit
+  double maxTorque() const noexcept { return limits_.torque; }  ///< [N m] 0: no limit
+  /// [rt] Returns the share of a full force that the ramps allow in this tick, 0 to 1. Call it after apply().
   double allowed() const noexcept { return fault() == Fault::kNone ? ramp_ : fade_ * ramp_; }
-  bool silent() const noexcept { return fault() != Fault::kNone && fade_ == 0; }  ///< the force has ramped down to zero
+  /// true if a fault has ramped the force to zero
+  bool silent() const noexcept { return fault() != Fault::kNone && fade_ == 0; }
 
  private:
   using Vector3d = Eigen::Vector3d;
@@ -107,21 +110,22 @@ class Limiter {
 
   scene::Limits limits_;
   double max_force_;
-  double ramp_ = 0;  // from zero to full force, at the start and after a fault was cleared
-  double fade_ = 0;  // from the force at a fault to zero
+  double ramp_ = 0;  // 0 to 1, from zero to full force, at the start and after a fault was cleared
+  double fade_ = 0;  // 1 to 0, from the force at a fault to zero
   LatchedFault fault_, recovered_;
   double measured_ = 0;
-  // A switch must be pressed, not found pressed: somebody who tapes a button down does not hold it.
+  // The switch must be pressed during the run. A button that is down from the start may be taped down.
   bool enabled_ = true, button_was_down_ = true, released_ = false, found_pressed_ = false;
-  bool clipped_ = false;  // in this tick
+  bool clipped_ = false;  // a limit has reduced the force of this tick
   bool cleared_ = false;  // cleared by the user while the force was still ramping down
   double heat_factor_ = 1, impulse_ = 0;
-  double trusted_ = 1, fresh_ = 1;  // factor for the age of the sample: now, and as it grows again
+  double trusted_ = 1, fresh_ = 1;  // factors for the age of the sample: now; and while it grows back
   Clips clips_;
   PowerBound power_;
   Vector3d fault_force_ = Vector3d::Zero(), fault_torque_ = Vector3d::Zero();
   Vector3d last_force_ = Vector3d::Zero(), last_torque_ = Vector3d::Zero();
-  Vector3d slow_force_ = Vector3d::Zero(), slow_torque_ = Vector3d::Zero();  // follow the last ones at limits.slew
+  // These follow the last force and torque at limits.slew.
+  Vector3d slow_force_ = Vector3d::Zero(), slow_torque_ = Vector3d::Zero();
 };
 
 }  // namespace hapticd::servo

@@ -8,10 +8,10 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr double kCopper = 0.00393;   ///< [1/K] rise of a copper winding's resistance
-constexpr double kRatedAt = 25;       ///< [degC] at which data sheets give the resistance
-constexpr double kOvershoot = 5;      ///< [K] above the limit, which a held force alone never reaches
-constexpr double kLongestHold = 0.1;  ///< [s] of one torque; longer gaps end in other faults
+constexpr double kCopper = 0.00393;   ///< [1/K] relative rise of the resistance of copper
+constexpr double kRatedAt = 25;       ///< [degC] temperature at which data sheets give the resistance
+constexpr double kOvershoot = 5;      ///< [K] above the limit: overheated; a held force alone never reaches this
+constexpr double kLongestHold = 0.1;  ///< [s] longest time of one torque; longer gaps cause other faults
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void MotorHeat::heat(const double* torque, double dt) noexcept HSP_RT {
     const double power = m.resistance * (1 + kCopper * (b.winding - kRatedAt)) * current * current;
     const double to_housing = (b.winding - b.housing) / m.winding_housing;
     const double to_air = (b.housing - m.ambient) / m.housing_air;
-    // heat capacity = time constant / thermal resistance, as data sheets give the two
+    // heat capacity = time constant / thermal resistance; data sheets give these two
     b.winding += dt * (power - to_housing) * m.winding_housing / m.winding_time;
     b.housing += dt * (to_housing - to_air) * m.housing_air / m.housing_time;
     const double room = m.max_temperature - b.winding;

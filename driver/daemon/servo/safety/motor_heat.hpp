@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How hot the motors of one arm are, from the torques they are asked for: a winding that heats a housing that gives
-/// its heat to the air. No sensor is needed, and stall torque can be used for as long as the copper bears it.
+/// Estimates how hot the motors of one arm are from the commanded torques: each winding heats a housing, which gives
+/// its heat to the air. No sensor is needed, and stall torque can be used until the winding is near its limit.
 #pragma once
 #include <array>
 #include <vector>
@@ -12,29 +12,30 @@ namespace hapticd::servo {
 
 class MotorHeat {
  public:
-  static constexpr double kMargin = 10;  ///< [K] below its limit, at which derating of a motor begins
+  static constexpr double kMargin = 10;  ///< [K] derating of a motor begins this much below its limit
 
-  /// [main] @param motors in the order of the joints; joints beyond have none. All start at the air's temperature.
+  /// [main] @param motors in the order of the joints; further joints have no model. All start at air temperature.
   explicit MotorHeat(const std::vector<scene::Motor>& motors);
 
   bool empty() const noexcept { return count_ == 0; }
-  size_t count() const noexcept { return count_; }  ///< joints whose motors are modelled
+  size_t count() const noexcept { return count_; }  ///< number of joints whose motors are modelled
 
-  /// [rt] The torques [N m] at the joints are held for dt [s].
+  /// [rt] Calculates the heat of torques [N m] at the joints that are held for dt [s].
   void heat(const double* torque, double dt) noexcept HSP_RT;
 
-  /// The share of every force that the hottest motor allows: 1 while cool, 0 at its limit.
+  /// Returns the share of every force that the hottest motor allows: 1 while it is cool, 0 at its limit.
   double factor() const noexcept { return factor_; }
-  /// [degC] temperature of the winding nearest to its limit.
+  /// Returns the temperature [degC] of the winding that is nearest to its limit.
   double hottest() const noexcept { return hottest_; }
-  /// A winding is beyond its limit: something other than forces heats it, such as gravity compensation.
+  /// True if a winding is more than 5 K beyond its limit. Then something other than forces heats it, such as gravity
+  /// compensation.
   bool overheated() const noexcept { return overheated_; }
-  double winding(size_t joint) const noexcept { return bodies_[joint].winding; }  ///< [degC]
+  double winding(size_t joint) const noexcept { return bodies_[joint].winding; }  ///< [degC] of one motor's winding
 
  private:
   struct Bodies {
     scene::Motor motor;
-    double winding = 0, housing = 0;  ///< [degC]
+    double winding = 0, housing = 0;  ///< [degC] temperatures
   };
   std::array<Bodies, HDV_MAX_JOINTS> bodies_{};
   size_t count_ = 0;

@@ -23,7 +23,7 @@ void PowerBound::pass(double dt) noexcept HSP_RT {
 double PowerBound::most(const Eigen::Vector3d& direction, double power) const noexcept HSP_RT {
   const double ahead = lag_ + age_ + dt_;
   const double speed = direction.dot(velocity_) + kMargin * acceleration_ * ahead;
-  // F (v + F t/m) <= P, solved for F: a light arm is fast before the next command.
+  // Solves F (v + F t/m) <= P for F, because the force makes a light arm fast before the next command.
   const double gain = mass_ > 0 ? ahead / mass_ : 0;
   if (gain <= 0) return speed > 0 ? power / speed : HUGE_VAL;
   return (std::sqrt(speed * speed + 4 * gain * power) - speed) / (2 * gain);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The largest force along a direction that gives no more than a certain power to the hand, until the next command: the
-/// velocity is an estimate that lags, the hand may accelerate meanwhile, and the force itself accelerates it.
+/// Calculates the largest force along a direction that gives at most a certain power to the hand until the next
+/// command. It allows for three errors: the velocity is an estimate that lags, the hand may accelerate meanwhile, and
+/// the force itself accelerates the arm.
 #pragma once
 #include <Eigen/Core>
 
@@ -10,30 +11,30 @@ namespace hapticd::servo {
 
 class PowerBound {
  public:
-  static constexpr double kMargin = 1.5;     ///< of the accelerations that were seen: the next may be larger
-  static constexpr double kRemember = 0.02;  ///< [s] after which they are forgotten
+  static constexpr double kMargin = 1.5;     ///< factor on the largest recent acceleration: the next may be larger
+  static constexpr double kRemember = 0.02;  ///< [s] after which an acceleration is forgotten
 
-  /// [main] @param lag [s] of the velocity estimate  @param mass [kg] of the arm at its tip; 0: the force accelerates
-  /// it by nothing
+  /// [main] @param lag [s] of the velocity estimate  @param mass [kg] of the arm at its tip; 0: do not count how the
+  /// force accelerates the arm
   void expect(double lag, double mass) {
     lag_ = lag;
     mass_ = mass;
   }
 
-  /// [rt] A new estimate [m/s]; one that is not a number counts as rest.
+  /// [rt] Takes a new velocity estimate [m/s]. An estimate that is not finite counts as zero.
   void watch(const Eigen::Vector3d& velocity) noexcept HSP_RT;
 
-  /// [rt] Once a tick. @param dt [s] since the last tick, taken for the time to the next too
+  /// [rt] Called once per tick. @param dt [s] since the last tick; the next tick is assumed to come after the same time
   void pass(double dt) noexcept HSP_RT;
 
-  /// [rt] The largest force [N] along `direction` (unit) that stays within `power` [W]; infinite if the hand moves
-  /// against it.
+  /// [rt] Returns the largest force [N] along `direction` (unit) that stays within `power` [W]; infinite if the hand
+  /// moves against the force.
   double most(const Eigen::Vector3d& direction, double power) const noexcept HSP_RT;
 
  private:
   double lag_ = 0, mass_ = 0;
-  double acceleration_ = 0;  // [m/s^2] the largest recent one
-  double age_ = 0, dt_ = 0;  // [s] of the estimate, and of a tick
+  double acceleration_ = 0;  // [m/s^2] largest recent acceleration
+  double age_ = 0, dt_ = 0;  // [s] age of the estimate; duration of a tick
   bool known_ = false;
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A velocity estimator by name.
+/// Velocity estimators, made by name.
 #pragma once
 #include <Eigen/Core>
 #include <string_view>
@@ -9,7 +9,7 @@
 
 namespace hapticd::velocity {
 
-constexpr double kResolution = 30e-6;  ///< [m] of a PHANToM Premium; what is assumed where the device says nothing
+constexpr double kResolution = 30e-6;  ///< [m] of a PHANToM Premium; assumed if the device reports none
 
 /// One of the estimators. Copies are independent.
 class VelocityEstimator {
@@ -17,10 +17,11 @@ class VelocityEstimator {
   using Filter = std::variant<Window, Butterworth, AdaptiveWindow, LeastSquares, Kalman>;
   explicit VelocityEstimator(Filter filter) : filter_(std::move(filter)) {}  ///< [main]
 
-  /// [rt] Takes a position [m], `dt` [s] after the last one (0 for the first); gives the velocity [m/s], zero until two
-  /// are known. A position that is not finite, or dt that is not positive, changes nothing and repeats the last answer.
+  /// [rt] Takes a position [m], `dt` [s] after the last one (0 for the first). Returns the velocity [m/s], zero until
+  /// two positions are known. A position that is not finite, or a dt that is not positive, is ignored: the last
+  /// velocity is returned again.
   Eigen::Vector3d update(const Eigen::Vector3d& position, double dt) noexcept;
-  void reset() noexcept;  ///< [rt] forgets the past
+  void reset() noexcept;  ///< [rt] forgets all positions
 
  private:
   Filter filter_;
@@ -28,12 +29,12 @@ class VelocityEstimator {
   bool started_ = false;
 };
 
-/// [main] By name and knob:
+/// [main] Makes an estimator. The meaning of `parameter` depends on `name`:
 ///   window        n of Eq. 5, samples            butterworth   cut-off [Hz]
 ///   foaw          longest window, samples        least_squares samples, at least 3
 ///   kalman        density of the white jerk [m^2/s^5]
 /// @param rate [Hz] of the samples  @param resolution [m] of a measured position (foaw and kalman)
-/// @throws std::invalid_argument that says what was expected.
+/// @throws std::invalid_argument with a text that says what was expected.
 VelocityEstimator make(std::string_view name, double parameter, double rate, double resolution = kResolution);
 
 }  // namespace hapticd::velocity

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// How far an estimate of velocity lags behind the hand.
+/// How long a velocity estimate lags behind the hand.
 #pragma once
 #include <numbers>
 
@@ -7,7 +7,7 @@
 
 namespace hapticd::servo {
 
-/// [any] [s] At most, for a margin. @param rate [Hz] of the samples
+/// [any] Returns the largest delay [s] of an estimator. @param rate [Hz] of the samples
 inline double estimatorDelay(const scene::Velocity& how, double rate) {
   if (how.estimator == "butterworth") return 0.5 / rate + 1 / (std::numbers::sqrt2 * std::numbers::pi * how.parameter);
   if (how.estimator == "kalman") return 4 / rate;

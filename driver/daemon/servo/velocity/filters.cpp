@@ -18,7 +18,7 @@ Vector3d Window::update(const Vector3d& position, double dt) noexcept {
 }
 
 Butterworth::Butterworth(double cutoff_hz, double rate) : period_(1 / rate) {
-  const double c = 1 / std::tan(M_PI * cutoff_hz / rate);  // bilinear transform, cut-off kept exactly
+  const double c = 1 / std::tan(M_PI * cutoff_hz / rate);  // bilinear transform, prewarped so that the cut-off is exact
   b0_ = 1 / (1 + M_SQRT2 * c + c * c);
   a1_ = 2 * (1 - c * c) * b0_;
   a2_ = (1 - M_SQRT2 * c + c * c) * b0_;
@@ -35,7 +35,8 @@ Vector3d Butterworth::update(const Vector3d& position, double dt) noexcept {
   }
   const Vector3d difference = (position - last_) / dt;
   last_ = position;
-  if (!primed_) {  // as if it had always moved like this, so that it does not start with a step
+  if (!primed_) {  // starts as if the probe had always moved at this speed, so that the filter does not begin with a
+                   // step
     s2_ = (b0_ - a2_) * difference;
     s1_ = (2 * b0_ - a1_) * difference + s2_;
     primed_ = true;
@@ -74,7 +75,7 @@ Vector3d LeastSquares::update(const Vector3d& position, double dt) noexcept {
   for (int age = 0; age + 1 < n; ++age) span += history_.step(age);
   if (!(span > 0)) return Vector3d::Zero();
   if (n < 3) return (position - history_.position(n - 1)) / span;
-  // Times run from 0 (newest) to -1 and positions are relative to the newest: the equations are well scaled anywhere.
+  // Times run from 0 (newest) to -1, and positions are relative to the newest, so the equations are always well scaled.
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
   double time = 0;
   for (int age = 0; age < n; ++age) {
@@ -96,7 +97,8 @@ Vector3d Kalman::update(const Vector3d& position, double dt) noexcept {
     x_ = position;
     v_.setZero();
     a_.setZero();
-    covariance_ = Vector3d(variance_, 1, 100).asDiagonal();  // a hand: about 1 m/s and 10 m/s^2
+    // for a hand: 1 m/s, 10 m/s^2
+    covariance_ = Vector3d(variance_, 1, 100).asDiagonal();
     return v_;
   }
   const double t2 = dt * dt / 2;
@@ -113,7 +115,7 @@ Vector3d Kalman::update(const Vector3d& position, double dt) noexcept {
   v_ += gain[1] * innovation;
   a_ += gain[2] * innovation;
   covariance_ = predicted - gain * predicted.row(0);
-  covariance_ = ((covariance_ + covariance_.transpose()) / 2).eval();  // rounding errors must not tilt it over days
+  covariance_ = ((covariance_ + covariance_.transpose()) / 2).eval();  // symmetric, also after days of rounding errors
   return v_;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The estimators, each with one knob. All take samples at varying dt: a missed tick gives a multiple of the period.
+/// The velocity estimators, each with one parameter. All accept varying dt, because a missed tick doubles the time
+/// between two samples.
 #pragma once
 #include <Eigen/Core>
 
@@ -7,11 +8,12 @@
 
 namespace hapticd::velocity {
 
-constexpr int kMaxWindow = 1024;  ///< samples of a window
-constexpr int kMaxAdaptive = 32;  ///< most samples of foaw, whose cost grows with the square of their number
-constexpr int kMaxMissed = 16;    ///< periods that a filter bridges; after a longer gap it restarts
+constexpr int kMaxWindow = 1024;  ///< most samples of a window
+constexpr int kMaxAdaptive = 32;  ///< most samples of foaw; its cost grows with the square of their number
+constexpr int kMaxMissed = 16;    ///< a filter bridges a gap of this many periods; after a longer gap it restarts
 
-/// (x_i - x_(i-n)) / (nT): Thompson et al. 1999, Eq. 5. Delay nT/2, white-noise gain sqrt(2)/(nT).
+/// The difference (x_i - x_(i-n)) / (nT) of Thompson et al. 1999, Eq. 5. Its delay is nT/2, its gain for white noise
+/// sqrt(2)/(nT).
 class Window {
  public:
   explicit Window(int n) : history_(n + 1) {}                                   ///< [main]
@@ -22,7 +24,7 @@ class Window {
   History history_;
 };
 
-/// The difference of two samples through a low pass of second order, Butterworth.
+/// The difference of two samples, filtered by a second-order Butterworth low-pass filter.
 class Butterworth {
  public:
   Butterworth(double cutoff_hz, double rate);                                   ///< [main]
@@ -35,8 +37,9 @@ class Butterworth {
   bool started_ = false, primed_ = false;
 };
 
-/// First-order adaptive window (Janabi-Sharifi, Hayward, Chen 2000): the longest window whose end points predict every
-/// sample between them within the noise. Long and quiet at rest, short and fast in motion.
+/// First-order adaptive window (Janabi-Sharifi, Hayward, Chen 2000): uses the longest window for which a straight line
+/// between its end points meets every sample within the noise. The window is long at rest, for low noise, and short in
+/// motion, for a short delay.
 class AdaptiveWindow {
  public:
   AdaptiveWindow(int longest, double noise) : history_(longest + 1), noise_(noise) {}  ///< [main] noise [m]
@@ -48,7 +51,7 @@ class AdaptiveWindow {
   double noise_;
 };
 
-/// Slope at the newest sample of the parabola through the last n samples with least squares.
+/// Fits a parabola to the last n samples by least squares, and takes its slope at the newest sample.
 class LeastSquares {
  public:
   explicit LeastSquares(int n) : history_(n) {}                                 ///< [main] n >= 3
@@ -59,10 +62,10 @@ class LeastSquares {
   History history_;
 };
 
-/// Kalman filter of constant acceleration, driven by white jerk.
+/// Kalman filter with a constant-acceleration model, driven by white-noise jerk.
 class Kalman {
  public:
-  /// [main] @param jerk_density of the white jerk [m^2/s^5]  @param resolution step of the measured positions [m]
+  /// [main] @param jerk_density spectral density of the jerk [m^2/s^5]  @param resolution of the measured positions [m]
   Kalman(double jerk_density, double resolution);
   Eigen::Vector3d update(const Eigen::Vector3d& position, double dt) noexcept;  ///< [rt]
   void reset() noexcept { started_ = false; }                                   ///< [rt]

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The last positions of a probe, newest first. Spans are sums of steps, so time does not lose digits over days.
+/// The last positions of a probe, newest first, each with the time since the one before. No absolute time is kept, so
+/// times do not lose digits over days.
 #pragma once
 #include <Eigen/Core>
 #include <vector>
@@ -16,9 +17,9 @@ class History {
     samples_[newest_] = {position, dt};
     if (count_ < static_cast<int>(samples_.size())) ++count_;
   }
-  /// [rt] age 0 is the newest.
+  /// [rt] Returns a position; age 0 is the newest.
   const Eigen::Vector3d& position(int age) const noexcept { return at(age).position; }
-  double step(int age) const noexcept { return at(age).dt; }  ///< [rt] [s] between sample `age` and the one before it
+  double step(int age) const noexcept { return at(age).dt; }  ///< [rt] [s] from the sample before to sample `age`
   int count() const noexcept { return count_; }
   void clear() noexcept { count_ = 0; }
 

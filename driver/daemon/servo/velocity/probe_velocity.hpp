@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The velocity of a probe, by the estimator that a scene asks for.
+/// The velocity of a probe, by the estimator that servo.velocity of the scene names.
 #pragma once
 #include <Eigen/Core>
 #include <stdexcept>
@@ -12,7 +12,7 @@ namespace hapticd::servo {
 
 using velocity::VelocityEstimator;
 
-inline constexpr double kMaxProbeSpeed = 20;  ///< [m/s] twice what a hand can do; beyond it the sample is a jump
+inline constexpr double kMaxProbeSpeed = 20;  ///< [m/s] twice the speed of a hand; a faster sample is a jump
 
 /// [main] @param rate [Hz] of the samples  @param resolution [m] of a position; 0: unknown
 inline Result<VelocityEstimator> makeEstimator(const scene::Velocity& how, double rate, double resolution = 0) {
@@ -23,13 +23,14 @@ inline Result<VelocityEstimator> makeEstimator(const scene::Velocity& how, doubl
   }
 }
 
-/// Estimates over samples that belong together: differences across a gap or a jump mean nothing, and a damper would
-/// push with them for as long as the estimator remembers.
+/// Estimates the velocity, and restarts after a gap or a jump: a difference across one would give a wrong velocity, and
+/// a damper would push with it for as long as the estimator remembers.
 class ProbeVelocity {
  public:
   explicit ProbeVelocity(const VelocityEstimator& estimator) : estimator_(estimator) {}
 
-  /// [rt] @param position [m]  @param dt [s] since the last sample  @return [m/s]; zero after a gap or a jump
+  /// [rt] Takes a sample and returns the velocity [m/s]: zero after a gap or a jump. @param position [m]
+  /// @param dt [s] since the last sample
   Eigen::Vector3d update(const Eigen::Vector3d& position, double dt) noexcept {
     const double way = known_ ? (position - last_).norm() : 0;
     speed_ = dt > 0 ? way / dt : 0;
@@ -39,12 +40,13 @@ class ProbeVelocity {
     return estimator_.update(position, dt);
   }
 
-  void reset() noexcept {  ///< [rt] there is a gap: no good sample
+  void reset() noexcept {  ///< [rt] called at a gap: there is no good sample
     known_ = false;
     estimator_.reset();
   }
 
-  double speed() const noexcept { return speed_; }  ///< [rt] [m/s] from the last sample to this one, also for a jump
+  /// [rt] [m/s] from the last sample to this one, also at a jump
+  double speed() const noexcept { return speed_; }
 
  private:
   VelocityEstimator estimator_;

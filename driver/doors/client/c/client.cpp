@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Connection and requests.
+/// The functions of client.h for the connection and for requests.
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -48,14 +48,15 @@ void tell(hapticd_error* error, const char* code, const std::string& text) {
 
 namespace {
 
-/// The socket of `name`, in the folder where programs look; under systemd also in the system's folder.
+/// Returns the socket of the daemon `name`, in the user's runtime folder or, for a daemon under systemd, in the
+/// system's folder.
 std::string baseOf(const std::string& name) {
   const std::string own = status::runtimeFolder(false) + "/" + name, system = "/run/hapticd/" + name;
   const auto isThere = [](const std::string& base) { return access((base + ".sock").c_str(), F_OK) == 0; };
   return !isThere(own) && isThere(system) ? system : own;
 }
 
-/// A program has no option --name, so the message must not mention one.
+/// Changes a message that mentions the option --name, which a program that uses this library may not have.
 std::string forPrograms(std::string text) {
   constexpr std::string_view kOption = "name a running one with --name";
   if (const size_t at = text.find(kOption); at != std::string::npos)
@@ -75,16 +76,17 @@ hapticd_client* connect(const std::string& name, hapticd_error* error) {
 bool refused(const std::string& line, hapticd_error* error) {
   const Json json = Json::parse(line, nullptr, false);
   if (json.is_object() && json.value("ok", false)) return false;
-  if (!json.is_object()) return tell(error, "damaged", "the answer is no JSON: " + line), true;
+  if (!json.is_object()) return tell(error, "damaged", "the answer is not JSON: " + line), true;
   tell(error, json.value("code", std::string("failed")).c_str(), json.value("error", std::string("refused")));
   return true;
 }
 
 }  // namespace
 
-/// So that the daemon does not report a program that died. Without an answer the connection's end does the same.
+/// Ends a lead with a request, so that the daemon does not report that the program died. If no answer comes, the end of
+/// the connection ends the lead.
 void endInOrder(hapticd_client& client, const hapticd_lead& lead) try {
-  constexpr double kPatience = 0.5;  // s
+  constexpr double kPatience = 0.5;  // [s]
   const std::lock_guard lock(client.asking);
   if (!client.line.ended()) (void)client.line.askForMore(lead.unlead, kPatience);
 } catch (const std::exception&) {
@@ -119,18 +121,19 @@ std::byte* hapticd_client::page(const char* request, hapticd::client::Mapping& k
   return kept.data();
 }
 
-/// Why there was no answer: the daemon has ended, or it ended this connection, or it takes too long.
+/// Reports why there was no answer: the daemon has ended, it has closed this connection, or it takes too long.
 void hapticd_client::tellOfSilence(const std::string& problem, hapticd_error* error) {
   if (!line.ended()) return tell(error, "timeout", problem);
   constexpr useconds_t kMeanwhile = 20'000;  // [us] a daemon that ends closes its connections first
   usleep(kMeanwhile);
   if (ended() || access((base + ".sock").c_str(), F_OK) != 0) return tell(error, "gone", problem);
-  tell(
-      error, "too_many",
-      "the daemon ended this connection, because others waited for its place while it was silent\n  fix: connect anew");
+  tell(error, "too_many",
+       "the daemon closed this connection, because it was silent and other programs needed its place\n"
+       "  fix: connect again");
 }
 
-/// A connection may end before the daemon does, if others need its place.
+/// Checks whether the daemon still runs, because the end of the connection does not show it: the daemon may close a
+/// connection whose place other programs need.
 bool hapticd_client::ended() {
   return line.ended() && hapticd_alive(this) == 0;
 }
@@ -160,7 +163,7 @@ int hapticd_alive(hapticd_client* client) {
   if (client->line.ended() && !client->rows.isFile(client->base + ".blackbox.h5")) return 0;  // another has its name
   const std::string file = client->base + ".lock";
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  // Another user's lock cannot be opened; its socket disappears with the daemon.
+  // The lock file of another user cannot be opened. Then the socket tells: it disappears when the daemon ends.
   if (fd < 0) return errno == EACCES && access((client->base + ".sock").c_str(), F_OK) == 0 ? 1 : 0;
   const bool free = flock(fd, LOCK_SH | LOCK_NB) == 0;
   close(fd);
@@ -170,7 +173,7 @@ int hapticd_alive(hapticd_client* client) {
 long hapticd_ask(hapticd_client* client, const char* request, char* answer, size_t bytes, hapticd_error* error) try {
   tell(error, "", "");
   if (std::strchr(request, '\n') != nullptr)
-    return tell(error, "bad_request", "a request is one line, this one has several"), -1;
+    return tell(error, "bad_request", "a request must be one line, but this one has several"), -1;
   Answer got;
   const bool done = client->ask(request, got, error);
   if (answer != nullptr && bytes > 0) {

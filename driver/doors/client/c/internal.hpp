@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the files of the client library share. Nothing of it is seen outside.
+/// Types that the files of the client library share. Users of the library do not see them.
 #pragma once
 #include <sys/mman.h>
 #include <sys/types.h>
@@ -25,7 +25,7 @@ namespace hapticd::client {
 class Mapping {
  public:
   Mapping() = default;
-  /// @param bytes 0: all of the file. After an error nothing is mapped: data() is nullptr, and errno says why
+  /// Maps a file. After an error, data() is nullptr and errno says why. @param bytes 0 for the whole file
   Mapping(int fd, size_t bytes, int protection);
   Mapping(Mapping&& other) noexcept : data_(std::exchange(other.data_, nullptr)), bytes_(other.bytes_) {}
   Mapping& operator=(Mapping&& other) noexcept {
@@ -36,7 +36,7 @@ class Mapping {
   ~Mapping();
   std::byte* data() const { return data_; }
   size_t bytes() const { return bytes_; }
-  /// nullptr: it is not all inside.
+  /// Returns the address of byte `place`, or nullptr if not all `bytes` bytes from there are in the mapping.
   std::byte* at(size_t place, size_t bytes) const {
     return place <= bytes_ && bytes <= bytes_ - place ? data_ + place : nullptr;
   }
@@ -51,10 +51,10 @@ struct Stream {
   std::string name;
   uint64_t* written = nullptr;  ///< in the mapping
   uint64_t* rows = nullptr;
-  uint64_t handed = 0;  ///< rows before this number were read already, by some thread
+  uint64_t handed = 0;  ///< number of rows that some thread has read already
   uint64_t capacity = 0;
   size_t row_words = 0;
-  std::list<std::string> texts;  ///< names to which the columns point
+  std::list<std::string> texts;  ///< owns the texts to which the columns point
   std::vector<hapticd_column> columns;
 };
 
@@ -64,10 +64,10 @@ class Rows {
   static Result<Rows> open(const std::string& file);
   const std::string& about() const { return about_; }
   const std::vector<std::string>& devices() const { return devices_; }
-  /// ns from one tick to the next.
+  /// Returns the time [ns] from one tick to the next.
   int64_t period() const { return period_; }
   std::vector<Stream>& streams() { return streams_; }
-  /// True if the file belongs to the daemon to which it connected: another daemon would have replaced it.
+  /// True if `file` is still the file that was opened; another daemon of this name would have replaced the file.
   bool isFile(const std::string& file) const;
   static uint64_t written(const Stream& stream);
   static long read(const Stream& stream, uint64_t& row, void* rows, size_t most);
@@ -84,29 +84,29 @@ class Rows {
   ino_t inode_ = 0;
 };
 
-/// What a request got.
+/// The answer to a request, and the descriptor that may come with it.
 struct Answer {
   std::string line;
   Descriptor descriptor;
 };
 
-/// Any `error` may be nullptr.
+/// Fills in `error`, which may be nullptr.
 void tell(hapticd_error* error, const char* code, const std::string& text);
 
-/// Ends a lead that would otherwise end with the client.
+/// Ends a lead with a request, before the client ends.
 void endInOrder(hapticd_client& client, const hapticd_lead& lead);
 
 }  // namespace hapticd::client
 
-/// Names as in client.h.
+/// The client of client.h.
 struct hapticd_client {
   hapticd_client(std::string where, hapticd::control::Client on, hapticd::client::Rows box)
       : base(std::move(where)), line(std::move(on)), rows(std::move(box)) {}
-  /// Sends a request whose answer only says that it was done.
+  /// Sends a request and reads the answer. False if it was refused, or if no answer came; `error` says why.
   bool ask(const std::string& request, hapticd::client::Answer& answer, hapticd_error* error);
-  /// Sends a request whose answer nobody waits for.
+  /// Sends a request without waiting for the answer.
   void leave(const std::string& request);
-  /// The memory of a request, mapped once. nullptr if it cannot be had
+  /// Returns the memory that comes with the answer to a request, mapped once, or nullptr if it is not available.
   std::byte* page(const char* request, hapticd::client::Mapping& kept, size_t least, int protection);
 
   /// [any] True if the daemon of this client has ended, so that its rows and states are old.
@@ -119,7 +119,7 @@ struct hapticd_client {
   std::mutex asking, mapping;
   hapticd::client::Mapping bell, states;
   std::list<hapticd_lead*> leads;
-  std::atomic<int64_t> listen_ns = 0;  ///< time before and after a tick is due in which it polls
+  std::atomic<int64_t> listen_ns = 0;  ///< [ns] time before and after a tick is due in which next_state polls
 };
 
 struct hapticd_lead {

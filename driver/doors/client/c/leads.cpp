@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Leads: memory that this program writes and the servo looks at once a tick.
+/// Leads: memory that this program writes and the servo reads once per tick.
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@ namespace {
 using hapticd::client::Answer;
 using hapticd::client::tell;
 
-/// Why the arm gets no force, in the daemon's words; "" if it gets what is asked for.
+/// Returns the daemon's reason why the arm gets no force, or "" if the arm gets the force.
 std::string noForce(const std::string& answer) {
   const auto json = nlohmann::json::parse(answer, nullptr, false);
   return json.is_object() && json.contains("no_force") ? json["no_force"].get<std::string>() : "";
@@ -30,7 +30,7 @@ hapticd_lead* leadOf(hapticd_client* client, const char* what, const char* name,
   const std::string begin = requestOf("lead", what, name), end = requestOf("unlead", what, name);
   Answer answer;
   if (!client->ask(begin, answer, told)) {
-    if (std::strcmp(told->code, "timeout") == 0) client->leave(end);  // it may still be led, though by nobody
+    if (std::strcmp(told->code, "timeout") == 0) client->leave(end);  // the lead may have begun: ends it
     return nullptr;
   }
   hapticd::client::Mapping memory(answer.descriptor.get(), HAPTICD_LEAD_BYTES, PROT_READ | PROT_WRITE);
@@ -66,7 +66,7 @@ int hapticd_lead_put(hapticd_lead* lead, const hapticd_target* target) {
 
 int hapticd_lead_push(hapticd_lead* lead, const hapticd_push* push) {
   if (!lead->pushes || lead->client->line.ended()) return -1;
-  // The daemon would refuse and count it, but could not say so, because nothing comes back this way.
+  // Checked here, because the daemon would refuse and count such a record without an answer to this program.
   for (const double* numbers : {push->force, push->torque})
     for (int i = 0; i < 3; ++i)
       if (!(std::abs(numbers[i]) <= hapticd::link::kLargestPush)) return -1;
@@ -77,7 +77,8 @@ int hapticd_lead_push(hapticd_lead* lead, const hapticd_push* push) {
 void hapticd_lead_end(hapticd_lead* lead) try {
   if (lead == nullptr) return;
   Answer answer;
-  (void)lead->client->ask(lead->unlead, answer, nullptr);  // refused: it has ended with the daemon or with the model
+  (void)lead->client->ask(lead->unlead, answer,
+                          nullptr);  // if refused, the lead has ended already
   lead->client->leads.remove(lead);
   delete lead;
 } catch (const std::exception&) {

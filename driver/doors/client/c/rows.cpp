@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Rows of the black box. Its writer stores the words of a row with release and then the count of rows: a row is whole
-/// if the writer has not come round meanwhile.
+/// Rows of the black box. The writer stores the words of a row with release order, and then the count of rows. A row
+/// that was copied is valid if the writer did not overwrite its place in the ring meanwhile.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -50,14 +50,14 @@ Result<void> Rows::readStreams() {
   auto* header = reinterpret_cast<record::FileHeader*>(memory_.at(record::kHeaderAt, sizeof(record::FileHeader)));
   if (header == nullptr || std::strncmp(header->magic, record::kRecordingFormat, sizeof header->magic) != 0 ||
       header->ring != 1 || header->stream_count > record::kMaxStreams)
-    return Error{"is not a black box of a daemon that this library knows"};
+    return Error{"is not a black box of a daemon of this version"};
   const auto* about = reinterpret_cast<const char*>(memory_.at(header->about_address, header->about_bytes));
-  if (about == nullptr) return Error{"ends inside its description"};
+  if (about == nullptr) return Error{"ends inside its description: it is incomplete or damaged"};
   about_.assign(about, header->about_bytes);
   for (uint32_t i = 0; i < header->stream_count; ++i) {
     record::StreamHeader& stream = header->streams[i];
     if (stream.row_bytes == 0 || stream.row_bytes % 8 != 0 || stream.row_bytes > record::kMaxRowBytes)
-      return Error{"has rows of no possible size"};
+      return Error{"has rows of an impossible size: it is damaged"};
     Stream& known = streams_.emplace_back();
     known.name.assign(stream.name, strnlen(stream.name, sizeof stream.name));
     known.written = &stream.rows;
@@ -91,7 +91,7 @@ Result<void> Rows::readAbout() {
       known.doc = kept(stream, column, "doc");
       std::strncpy(known.type, column.at("type").get<std::string>().c_str(), sizeof known.type - 1);
       known.offset = column.at("offset");
-      if (known.offset > stream.row_words * 8 - 4) return Error{"has a column outside its row"};
+      if (known.offset > stream.row_words * 8 - 4) return Error{"has a column outside its row: it is damaged"};
       stream.columns.push_back(known);
     }
   }
@@ -115,7 +115,7 @@ long Rows::read(const Stream& stream, uint64_t& row, void* rows, size_t most) {
         std::memcpy(to, &value, 8);
       }
     }
-    if (count > 0 && written(stream) - first >= stream.capacity) continue;  // overtaken: newer ones
+    if (count > 0 && written(stream) - first >= stream.capacity) continue;  // overwritten meanwhile: reads newer rows
     row = first + count;
     return static_cast<long>(count);
   }
@@ -159,6 +159,6 @@ long hapticd_read(hapticd_client* client, int stream, uint64_t* row, void* rows,
   if (*row > handed.load(std::memory_order_relaxed))
     handed.store(*row, std::memory_order_relaxed);
   else if (client->ended())
-    return -1;  // what was reported before is not new
+    return -1;  // rows that were read before are not new
   return got;
 }

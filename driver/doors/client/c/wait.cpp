@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The bell: waits for rows and for states of a tick.
+/// Waits for the rows and for the states of a tick, with the bell (hapticd_bell).
 #include <linux/futex.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -30,18 +30,20 @@ void sleepUntil(int64_t ns) {
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &when, nullptr);
 }
 
-/// Sleeps until the word is no longer `seen`, or until a spurious wake-up, but at most for this time.
+/// Sleeps until the word is no longer `seen`, at most for the given time. It may return earlier (spurious wake-up).
 void sleepOn(uint32_t& word, uint32_t& waiting, uint32_t seen, long ms) {
   std::atomic_ref<uint32_t>(waiting).store(1);
-  if (std::atomic_ref<uint32_t>(word).load() != seen) return;  // it rang before it could know that this program waits
+  if (std::atomic_ref<uint32_t>(word).load() != seen)
+    return;  // the servo counted before it could see that this program waits
   const timespec limit{ms / kMsPerSecond, ms % kMsPerSecond * kNsPerMs};
   syscall(SYS_futex, &word, FUTEX_WAIT, seen, &limit, nullptr, 0);
 }
 
-/// Asks until `there` is true, or nowMs() is `end`. @return 1: it was true; 0: not in time; -1: the daemon has ended
+/// Calls `there` after each wake-up until it returns true, or until nowMs() is `end`. @return 1 if it returned true, 0
+/// if not in time, -1 if the daemon has ended
 template <class There>
 int waitFor(hapticd_client* client, uint32_t& word, uint32_t& waiting, long end, There&& there) {
-  constexpr long kLongest = 100;  // a wake-up may be lost if somebody writes to the bell
+  constexpr long kLongest = 100;  // [ms] a wake-up may be lost if another program writes to the bell
   for (;;) {
     const uint32_t seen = std::atomic_ref<uint32_t>(word).load();
     if (there()) return 1;
@@ -57,7 +59,7 @@ hapticd_bell* bellOf(hapticd_client* client) {
       client->page(R"({"do":"bell"})", client->bell, sizeof(hapticd_bell), PROT_READ | PROT_WRITE));
 }
 
-/// The newest record of an arm; the servo writes it in less than a microsecond.
+/// Reads the newest record of an arm. It tries again while the servo writes, which takes less than a microsecond.
 template <class Record>
 bool newest(std::byte* at, Record& record) {
   constexpr int kTries = 1000;
@@ -69,10 +71,10 @@ bool newest(std::byte* at, Record& record) {
   return false;
 }
 
-/// Polls while the tick after `state` is due. @return whether there is one after `after`
+/// Polls around the time at which the tick after `state` is due. @return true if a tick after `after` came
 bool listen(std::byte* at, int64_t period, int64_t before, uint64_t after, hapticd_state& state) {
   const int64_t due = static_cast<int64_t>(state.time_ns) + period, now = nowNs();
-  // In virtual time, or after a pause of the daemon, nobody knows when the next tick is due.
+  // In virtual time, or after a pause of the daemon, the time of the next tick is unknown.
   if (due + before < now || due - now > 2 * period) return false;
   sleepUntil(due - before);
   while (nowNs() < due + before)
@@ -80,7 +82,7 @@ bool listen(std::byte* at, int64_t period, int64_t before, uint64_t after, hapti
   return false;
 }
 
-/// The record of an arm on the page of states. nullptr if there is none
+/// Returns the record of an arm in the memory of `state`, or nullptr if there is none.
 std::byte* recordOf(hapticd_client* client, int device, size_t behind, size_t bytes) {
   const auto* page = reinterpret_cast<hapticd_state_page*>(
       client->page(R"({"do":"state"})", client->states, sizeof(hapticd_state_page), PROT_READ));
@@ -108,7 +110,7 @@ int hapticd_next_state(hapticd_client* client, int device, uint64_t after, int t
   const auto there = [&] { return newest(at, *state) && (after == UINT64_MAX || state->tick > after); };
   const int64_t before = client->listen_ns.load(std::memory_order_relaxed), period = client->rows.period();
   const long end = nowMs() + timeout_ms;
-  if (after == UINT64_MAX && client->ended()) return -1;  // the newest state is older than the one asked for
+  if (after == UINT64_MAX && client->ended()) return -1;  // there will be no new state
   if (there()) return 1;
   if (before > 0 && after != UINT64_MAX && timeout_ms * kNsPerMs > 2 * period &&
       listen(at, period, before, after, *state))

@@ -30,8 +30,9 @@ std::string nameOf(const TDF_Label& label) {
   Standard_PCharacter at = text.data();
   wide.ToUTF8CString(at);
   text.resize(text.find('\0'));
-  if (text.rfind("=>[", 0) == 0) return "";  // name of a reference without a name
-  for (const char* kind : {"COMPOUND", "COMPSOLID", "SOLID", "SHELL", "FACE"})  // and shapes without one
+  if (text.rfind("=>[", 0) == 0) return "";  // Open CASCADE's name for a reference that has no name
+  // and its names for shapes that have none
+  for (const char* kind : {"COMPOUND", "COMPSOLID", "SOLID", "SHELL", "FACE"})
     if (text == kind) return "";
   return brep::plainText(std::move(text));
 }
@@ -43,7 +44,8 @@ std::uint32_t packed(const Quantity_ColorRGBA& colour) {
   return byte(rgb[0]) | byte(rgb[1]) << 8 | byte(rgb[2]) << 16 | byte(static_cast<double>(colour.Alpha())) << 24;
 }
 
-/// First solids, then shells that belong to no solid, then the faces that belong to no shell, as one compound.
+/// Returns first the solids, then the shells that belong to no solid, then the faces that belong to no shell, as one
+/// compound.
 std::vector<TopoDS_Shape> piecesOf(const TopoDS_Shape& shape) {
   std::vector<TopoDS_Shape> pieces;
   for (TopExp_Explorer at(shape, TopAbs_SOLID); at.More(); at.Next()) pieces.push_back(at.Current());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The tree of an XCAF document.
+/// Reads the assembly tree of an XCAF document.
 #pragma once
 #include <TDocStd_Document.hxx>
 
@@ -10,8 +10,8 @@ namespace hapticd::cad {
 /// [main] Appends the shapes of a document with their names, colours and poses. @throws CadError
 void readTree(const Handle(TDocStd_Document) & document, CadFile& file);
 
-/// [main] Appends a shape: one node for each solid, free shell and set of loose faces in it, in a common assembly if
-/// there are several.
+/// [main] Appends a shape: one node for each of its solids, for each free shell, and for its loose faces together. If
+/// these are several nodes, an assembly holds them.
 void addShape(const TopoDS_Shape& shape, Node node, CadFile& file);
 
 }  // namespace hapticd::cad

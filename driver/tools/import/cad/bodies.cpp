@@ -42,19 +42,21 @@ bool bounds(const TopoDS_Edge& edge) {
   return edge.Orientation() == TopAbs_FORWARD || edge.Orientation() == TopAbs_REVERSED;
 }
 
-/// The edges of a wire, each after the one that ends where it starts; in the order of the file if that misses some.
+/// Returns the edges of a wire, so that each starts where the one before ends. If this loses edges, returns them in the
+/// order of the file.
 std::vector<TopoDS_Edge> inOrder(const TopoDS_Wire& wire, const TopoDS_Face& face, const brep::Face& range) {
   std::vector<TopoDS_Edge> all, ordered;
   for (TopoDS_Iterator at(wire); at.More(); at.Next())
     if (const TopoDS_Edge edge = TopoDS::Edge(at.Value()); bounds(edge)) all.push_back(edge);
-  BRepTools_WireExplorer at;  // with the face's range, which it would otherwise compute from all loops for each of them
+  BRepTools_WireExplorer at;  // the range of the face is given, because the explorer would otherwise compute it from
+                              // all loops, for each loop
   at.Init(wire, face, range.lo[0], range.hi[0], range.lo[1], range.hi[1]);
   for (; at.More() && ordered.size() <= all.size(); at.Next())
     if (bounds(at.Current())) ordered.push_back(at.Current());
   return ordered.size() == all.size() ? ordered : all;
 }
 
-/// The box of a face's loops, or of the whole surface if it has none.
+/// Finds the parameter range of a face: the box of its loops, or that of the whole surface if it has none.
 void findRange(const TopoDS_Face& face, brep::Face& record) {
   BRepTools::UVBounds(face, record.lo[0], record.hi[0], record.lo[1], record.hi[1]);
   for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -75,7 +77,7 @@ BodyBuilder::Sizes BodyBuilder::sizes() const {
           part_.edges.size(),    part_.coedges.size(), part_.loops.size(),   part_.faces.size(), part_.losses.size()};
 }
 
-/// Removes what a face that failed has added.
+/// Removes the records of a face that could not be kept.
 void BodyBuilder::cutBack(const Sizes& to) {
   cut(part_.surfaces, to.surfaces), cut(part_.curves3, to.curves3), cut(part_.curves2, to.curves2);
   cut(part_.reals, to.reals), cut(part_.vertices, to.vertices), cut(part_.edges, to.edges);
@@ -145,7 +147,7 @@ void BodyBuilder::addCoedge(const TopoDS_Face& face, const TopoDS_Edge& edge) {
   if (!(record.t0 < record.t1)) throw Unkept("one of its edges has no length");
   const double wide = 1e-9 * (record.t1 - record.t0);
   if (std::abs(record.t0 - t0) > wide || std::abs(record.t1 - t1) > wide)
-    throw Unkept("an edge and its curve in the face's parameters are not run through alike");
+    throw Unkept("an edge and its curve in the face's parameters have different ranges");
   if (unfolding_) {
     if (pole) throw Unkept("it has a pole");
     double c0 = 0, c1 = 0;
@@ -173,14 +175,14 @@ void BodyBuilder::addLoop(const TopoDS_Face& face, const TopoDS_Shape& wire, con
     const bool pole = BRep_Tool::Degenerated(edge);
     if (pole && flat) continue;  // a plane has no poles
     if (!pole) BRep_Tool::Range(edge, t0, t1);
-    if (!pole && !(t0 < t1)) continue;  // it is a point, which its neighbours contain as well
+    if (!pole && !(t0 < t1)) continue;  // the edge is a point, which its neighbours contain as well
     addCoedge(face, edge);
   }
   loop.count = sizeOf(part_.coedges) - loop.first;
   if (loop.count > 0) part_.loops.push_back(loop);
 }
 
-/// @param shape the surface's true shape; null: it stays what it is
+/// @param shape the recognised surface; nullptr to keep the surface of the face
 void BodyBuilder::addFace(const TopoDS_Face& oriented, const brep::Surface* shape) {
   const TopoDS_Face face = TopoDS::Face(oriented.Oriented(TopAbs_FORWARD));
   const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
@@ -211,7 +213,7 @@ void BodyBuilder::addFace(const TopoDS_Face& oriented, const brep::Surface* shap
   part_.faces.push_back(record);
 }
 
-/// True if the face was a plane, cylinder, cone or sphere stored as a spline, and could be kept as that.
+/// Returns true if the face was a plane, cylinder, cone or sphere stored as a spline, and was added as such.
 bool BodyBuilder::addDisguised(const TopoDS_Face& face) {
   const Sizes before = sizes();
   try {
@@ -226,7 +228,7 @@ bool BodyBuilder::addDisguised(const TopoDS_Face& face) {
       ++recognised_;
       return true;
     }
-  } catch (const Unkept&) {  // it stays a spline
+  } catch (const Unkept&) {  // keep it as a spline
   } catch (const Standard_Failure&) {
   }
   unfolding_.reset();

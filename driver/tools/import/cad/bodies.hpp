@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// One body: its faces, loops, coedges, edges and vertices as records of a part.
+/// Converts one body: its faces, loops, coedges, edges and vertices become records of a part.
 #pragma once
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS_Edge.hxx>
@@ -16,12 +16,12 @@ namespace hapticd::cad {
 
 class BodyBuilder {
  public:
-  /// @param name of the body, for losses
+  /// @param name name of the body, for the list of losses
   BodyBuilder(const Colours& colours, std::string name, brep::Part& part);
 
   /// [main] Appends the body and returns its index. Faces that cannot be kept become losses.
   std::uint32_t add(const TopoDS_Shape& shape, std::uint32_t name, std::uint32_t colour);
-  /// How many of its spline faces were planes, cylinders and the like.
+  /// Returns how many of its spline faces were found to be planes, cylinders, cones or spheres.
   std::size_t recognisedFaces() const { return recognised_; }
 
  private:
@@ -43,10 +43,10 @@ class BodyBuilder {
   const Colours& colours_;
   std::string name_;
   brep::Part& part_;
-  TopTools_IndexedMapOfShape edges_, vertices_;  ///< edges of the body; equal in whatever orientation
+  TopTools_IndexedMapOfShape edges_, vertices_;  ///< edges and vertices of the body; the orientation does not matter
   std::vector<std::uint32_t> edge_index_, vertex_index_;
   std::size_t face_number_ = 0, recognised_ = 0;
-  std::optional<Unfolding> unfolding_;  ///< for the present face, if its surface was recognised
+  std::optional<Unfolding> unfolding_;  ///< set while a face is converted whose surface was recognised
 };
 
 }  // namespace hapticd::cad

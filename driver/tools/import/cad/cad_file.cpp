@@ -29,7 +29,7 @@ Handle(TDocStd_Document) newDocument() {
   return document;
 }
 
-/// A unit's name in the form in which this project's files write it.
+/// Returns the name of a unit as this project's files write it.
 std::string shortUnit(std::string unit) {
   std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) { return std::tolower(c); });
   const std::pair<const char*, const char*> known[] = {{"millimetre", "mm"}, {"millimeter", "mm"}, {"centimetre", "cm"},
@@ -67,7 +67,8 @@ void readStep(const std::string& file, CadFile& cad) {
   findLostFaces(reader.ChangeReader().WS(), millimetresIn(cad.unit), cad.losses);
 }
 
-/// The last section of an IGES file is one line with a T in column 73; the reader does not notice if it is missing.
+/// Returns true if the file has the last section of an IGES file, which is one line with a T in column 73. The reader
+/// does not notice if it is missing.
 bool endsAsIges(const std::string& file) {
   constexpr std::size_t kSection = 72;
   std::ifstream in(file);
@@ -94,7 +95,7 @@ void readIges(const std::string& file, CadFile& cad) {
   findLostFaces(reader.WS(), 1, cad.losses);
 }
 
-/// True if a word is C's text for what is not a number: "nan", "-inf", "1.#QNAN" and the like.
+/// Returns true if a word is C's text for a value that is not finite: "nan", "-inf", "1.#QNAN" and the like.
 bool isNoNumber(std::string word) {
   std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
   if (word.find("#qnan") != word.npos || word.find("#inf") != word.npos || word.find("#ind") != word.npos) return true;
@@ -102,7 +103,7 @@ bool isNoNumber(std::string word) {
   return word == "nan" || word.starts_with("nan(") || word == "inf" || word == "infinity";
 }
 
-/// Open CASCADE computes for ever with coordinates that are not numbers, so they are looked for before it begins.
+/// Fails if a coordinate is not finite, because Open CASCADE would then compute for ever.
 void refuseNoNumbers(const std::string& file) {
   std::ifstream in(file);
   std::string line, word;
@@ -119,7 +120,7 @@ void readBrep(const std::string& file, CadFile& cad) {
   TopoDS_Shape shape;
   const BRep_Builder builder;
   const Handle(Progress) progress = new Progress("reading shapes");
-  // The reader loops for ever where a word is missing, so the stream is made to throw.
+  // The reader loops for ever if a word is missing, so the stream is made to throw.
   std::ifstream in(file);
   try {
     in.exceptions(std::ios::failbit | std::ios::badbit);
@@ -136,7 +137,7 @@ void readBrep(const std::string& file, CadFile& cad) {
   addShape(shape, node, cad);
 }
 
-/// The loose faces of a file format without solids (IGES) are examined together, so that they can be sewn.
+/// Gathers the loose faces of a file format without solids (IGES) in one compound, so that they can be sewn.
 void gatherLooseFaces(CadFile& cad, const std::string& name) {
   TopoDS_Compound all;
   const BRep_Builder builder;
@@ -157,7 +158,7 @@ void gatherLooseFaces(CadFile& cad, const std::string& name) {
   }
   if (gathered < 2) return;
   std::swap(cad.nodes, kept);
-  for (Node& node : cad.nodes)  // the removed roots stood among the others
+  for (Node& node : cad.nodes)  // with assemblies, indices of parents would be wrong without the removed roots
     if (node.parent >= 0) return std::swap(cad.nodes, kept);
   Node node;
   node.name = node.body_name = name;

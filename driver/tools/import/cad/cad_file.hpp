@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A CAD file as Open CASCADE reads it: a tree of assemblies and shapes with names, colours and poses. Lengths are
-/// millimetres here: that is what its readers give, whatever the unit of the file.
+/// A CAD file as Open CASCADE reads it: a tree of assemblies and shapes with names, colours and poses. Lengths are in
+/// millimetres here, because the readers of Open CASCADE give millimetres whatever the unit of the file is.
 #pragma once
 #include <TopoDS_Shape.hxx>
 #include <cstdint>
@@ -14,26 +14,27 @@
 
 namespace hapticd::cad {
 
-/// What the user must know about a file that cannot be imported.
+/// The reason why a file cannot be imported, as a text for the user.
 struct CadError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// An assembly, or a shape where it stands.
+/// An assembly, or a shape at its place.
 struct Node {
   std::string name;
   std::string body_name;     ///< name of the shape itself; instances have their own names
   std::uint32_t colour = 0;  ///< as in brep::Face
   int parent = -1;           ///< index of the assembly that holds it
-  TopoDS_Shape shape;        ///< null: an assembly. It has no location of its own.
-  gp_Trsf pose;              ///< to the frame of the file [mm]
+  TopoDS_Shape shape;        ///< null for an assembly; a shape has no location of its own
+  gp_Trsf pose;              ///< from the frame of the shape to the frame of the file [mm]
 };
 
 struct CadFile {
-  std::vector<Node> nodes;                                 ///< parents come before their children
-  std::string unit;                                        ///< "mm", "in"
-  std::unordered_map<const void*, std::uint32_t> colours;  ///< colours of faces and other shapes, by their TShape
-  std::vector<brep::Loss> losses;                          ///< faces of the file that the reader could not make
+  std::vector<Node> nodes;  ///< parents come before their children
+  std::string unit;         ///< "mm", "in"
+  /// Colours of faces and other shapes; the key is the address of the TShape.
+  std::unordered_map<const void*, std::uint32_t> colours;
+  std::vector<brep::Loss> losses;  ///< faces of the file that the reader could not make
 };
 
 /// [main] Reads .step, .stp, .iges, .igs, .brep and .rle. @throws CadError

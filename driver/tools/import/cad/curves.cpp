@@ -36,7 +36,7 @@ void refuse(const std::string& wrong, const char* what) {
   if (!wrong.empty()) throw Unkept(std::string(what) + ": " + wrong);
 }
 
-/// What Curve3 and Curve2 have in common: splines of Open CASCADE in two and three dimensions share their methods.
+/// Fills a Curve3 or Curve2 from a spline; splines of Open CASCADE in two and three dimensions have the same methods.
 template <class Record, class Spline, class Point>
 Record splineRecord(const Spline& spline, double scale, Part& part, const Point& coordinates) {
   Record record;
@@ -57,7 +57,7 @@ Record splineRecord(const Spline& spline, double scale, Part& part, const Point&
   return record;
 }
 
-/// A periodic spline as one that ends at t0 and t1, with the same parameters.
+/// Turns a periodic spline into one that ends at t0 and t1, with the same parameters.
 template <class Spline>
 Spline unrolled(const Spline& spline, double t0, double t1) {
   if (!spline->IsPeriodic()) return spline;
@@ -87,7 +87,8 @@ Handle(Geom2d_Curve) basisOf(Handle(Geom2d_Curve) curve) {
   return curve;
 }
 
-/// Curves whose degree is beyond the kernel's are approximated like curves of other kinds.
+/// Returns true for a spline whose degree the kernel supports. Other splines are approximated, like curves of other
+/// kinds.
 template <class Spline>
 bool isKept(const Spline& spline) {
   return !spline.IsNull() && spline->Degree() <= spline::kMaxDegree;
@@ -106,7 +107,7 @@ Handle(Geom_BSplineCurve) asSpline(const Handle(Geom_Curve) & curve, double t0, 
 }
 
 Handle(Geom2d_BSplineCurve) asSpline(const Handle(Geom2d_Curve) & curve, double t0, double t1, double& error) {
-  constexpr double kNear = 1e-9;  // of parameters
+  constexpr double kNear = 1e-9;  // [units of the parameters]
   auto spline = Handle(Geom2d_BSplineCurve)::DownCast(curve);
   if (!Handle(Geom2d_BezierCurve)::DownCast(curve).IsNull()) spline = Geom2dConvert::CurveToBSplineCurve(curve);
   if (isKept(spline)) return unrolled(spline, t0, t1);
@@ -122,7 +123,7 @@ brep::Vector2 plain(const gp_XY& v) {
   return {v.X(), v.Y()};
 }
 
-/// True for numbers beyond what a part may hold, or that are not numbers.
+/// Throws Unkept if a number of the record is too large for a part, or not finite.
 template <class Record>
 void refuseFar(const Record& record, double most, const char* what) {
   for (const auto* axis : {&record.o, &record.x, &record.y})

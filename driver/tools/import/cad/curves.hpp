@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Curves of Open CASCADE to records of a part, in their own parameters.
+/// Converts curves of Open CASCADE to records of a part, with the same parameters.
 #pragma once
 #include <Geom2d_Curve.hxx>
 #include <Geom_Curve.hxx>
@@ -16,24 +16,26 @@ inline constexpr double kMetres = 1e-3;
 
 inline constexpr double kFullTurn = 2 * std::numbers::pi;  ///< [rad]
 
-/// Why a face or a curve cannot be kept; the text follows its name.
+/// The reason why a face or a curve cannot be kept. The text of the user has the name in front of it.
 struct Unkept : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// How much accuracy a record lost: 0 if nothing was approximated.
+/// The record that was added, and how much accuracy was lost.
 struct Kept {
   std::uint32_t index = brep::kNone;
-  double error = 0;  ///< [m] of curves in space and of surfaces; in parameters for pcurves
+  double error = 0;  ///< 0 if nothing was approximated; for curves in space and surfaces in m, for pcurves in units of
+                     ///< the parameters
 };
 
-/// [main] Appends a curve; what is not a line, circle, ellipse or spline is approximated over [t0, t1]. @throws Unkept
+/// [main] Appends a curve. A curve that is not a line, circle, ellipse or spline is approximated over [t0, t1]. @throws
+/// Unkept
 Kept addCurve(const Handle(Geom_Curve) & curve, double t0, double t1, brep::Part& part);
 
-/// [main] The same in the parameters of a surface. @throws Unkept
+/// [main] Does the same for a curve in the parameter plane of a surface (a pcurve). @throws Unkept
 Kept addPlaneCurve(const Handle(Geom2d_Curve) & curve, double t0, double t1, brep::Part& part);
 
-/// [main] A point or direction in metres.
+/// [main] Converts a point or vector from millimetres to metres.
 brep::Vector metres(const gp_XYZ& v);
 
 }  // namespace hapticd::cad

@@ -26,7 +26,7 @@ namespace hapticd::cad {
 namespace {
 
 constexpr double kLongest = 10;     ///< [s] for fixing a body, and for one run of sewing
-constexpr double kFirstGap = 1e-6;  ///< [mm] tolerance of sewing; then 100 times as much, while edges stay free
+constexpr double kFirstGap = 1e-6;  ///< [mm] first tolerance of sewing; raised 100-fold while edges stay free
 constexpr double kWidestGap = 1e-2;
 constexpr double kGapShare = 1e-3;  ///< share of the diagonal: sewing never closes wider gaps
 
@@ -74,7 +74,7 @@ struct Seam {
   double gap = 0;
 };
 
-/// Sews with ever wider gaps as long as that leaves fewer edges free.
+/// Sews the faces, with larger tolerances as long as that leaves fewer edges free.
 Seam sewn(const TopoDS_Shape& faces, const std::string& body) {
   const double widest = std::min(kWidestGap, kGapShare * diagonalOf(faces));
   Seam best;
@@ -108,7 +108,7 @@ TopoDS_Shape sewnFaces(const TopoDS_Shape& faces, const std::string& body, Colou
   return seam.shape;
 }
 
-/// True for a closed shell, which bounds a volume.
+/// Makes a solid from a closed shell, because it bounds a volume. Other shapes are returned unchanged.
 TopoDS_Shape solidOf(const TopoDS_Shape& shape, const std::string& body, std::vector<std::string>& steps) {
   TopExp_Explorer shells(shape, TopAbs_SHELL);
   if (!shells.More() || TopExp_Explorer(shape, TopAbs_SOLID).More()) return shape;

@@ -28,7 +28,7 @@ bool isFace(const Entity& entity) {
   return entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface)) || entity->IsKind(STANDARD_TYPE(IGESGeom_TrimmedSurface));
 }
 
-/// Extent [mm] of the points from which a face of a STEP file is made; 0 if none are found.
+/// Returns the extent [mm] of the points from which a face of a STEP file is made; 0 if none are found.
 double extentOf(const Interface_Graph& graph, const Entity& face, double to_mm) {
   constexpr std::size_t kMostEntities = 20'000;
   Bnd_Box box;
@@ -55,7 +55,7 @@ std::string reasonOf(const Handle(Transfer_Binder) & binder) {
   const Handle(Interface_Check) check = binder->Check();
   if (check->NbFails() > 0) return check->CFail(1);
   if (check->NbWarnings() > 0) return check->CWarning(1);
-  return "the reader made nothing of it";
+  return "the reader could not convert it";
 }
 
 std::string nameOf(const Handle(Interface_InterfaceModel) & model, const Entity& entity) {
@@ -74,11 +74,11 @@ void findMissingEntities(const Handle(XSControl_WorkSession) & session, std::vec
   if (session->Model().IsNull()) return;
   const Handle(Interface_Check) check = session->Model()->GlobalCheck(Standard_True);
   for (Standard_Integer i = 1; i <= check->NbFails() && losses.size() < kMost; ++i) {
-    const std::string text = check->CFail(i);  // Parses "Unresolved Reference, Ent.Id.#16 Param.n0 4 (Id.#284)".
+    const std::string text = check->CFail(i);  // for example "Unresolved Reference, Ent.Id.#16 Param.n0 4 (Id.#284)".
     if (text.rfind("Unresolved", 0) != 0) continue;
     const std::size_t from = text.rfind('#'), to = text.find(')', from);
     const std::string what = from < to && to != std::string::npos ? "entity " + text.substr(from, to - from) : text;
-    losses.push_back({what, "others refer to it, and it does not stand in the file", 0, brep::kNone});
+    losses.push_back({what, "other entities refer to it, but the file does not contain it", 0, brep::kNone});
   }
 }
 

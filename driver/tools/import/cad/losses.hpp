@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Faces that stand in a STEP or IGES file and that its reader could not make.
+/// Finds faces of a STEP or IGES file that its reader could not make.
 #pragma once
 #include <XSControl_WorkSession.hxx>
 
@@ -8,10 +8,11 @@
 namespace hapticd::cad {
 
 /// [main] Appends a loss for each face of the file without a shape, with the reader's reason.
-/// @param to_mm millimetres per unit of the coordinates that the file states
+/// @param to_mm millimetres per unit of the coordinates in the file
 void findLostFaces(const Handle(XSControl_WorkSession) & session, double to_mm, std::vector<brep::Loss>& losses);
 
-/// [main] Appends a loss for each entity to which others of a STEP file refer, but which is missing from it.
+/// [main] Appends a loss for each entity that other entities of a STEP file refer to, but that the file does not
+/// contain.
 void findMissingEntities(const Handle(XSControl_WorkSession) & session, std::vector<brep::Loss>& losses);
 
 }  // namespace hapticd::cad

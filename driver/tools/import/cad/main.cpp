@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd-import`: a CAD file to a part file. `hapticd import` starts it, and takes its end for the file's fault.
+/// `hapticd-import`: converts a CAD file to a part file. `hapticd import` starts it; if it crashes, `hapticd import`
+/// reports that the file is damaged.
 #include <sys/prctl.h>
 #include <sys/resource.h>
 
@@ -26,11 +27,12 @@ constexpr int kWorked = 0, kFailed = 1, kBadInput = 2;
 
 struct Options {
   std::string file, out;
-  double memory_mb = 0, time_s = 0;  ///< 0: no limit
+  double memory_mb = 0, time_s = 0;  ///< 0 means no limit
   bool check = false, json = false;
 };
 
-/// What the file may cost. Sanitizers use more addresses than any limit allows.
+/// Limits processor time and memory. Memory is not limited with sanitizers, which use more addresses than any limit
+/// allows.
 void setLimits(const Options& options) {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);

@@ -65,9 +65,9 @@ class PartBuilder {
 
   static bool isRigid(const gp_Trsf& pose) { return !pose.IsNegative() && std::abs(pose.ScaleFactor() - 1) < 1e-12; }
 
-  /// The rotation is made orthogonal to the last bit, as a part file requires.
+  /// Sets the pose of an instance. The rotation is made orthogonal to the last bit, as a part file requires.
   static void place(const gp_Trsf& pose, brep::Instance& instance) {
-    if (!isRigid(pose)) return;  // the body includes the pose
+    if (!isRigid(pose)) return;  // the body was built with the pose included
     const gp_Quaternion turn = pose.GetRotation();
     const gp_Mat rows = turn.Normalized().GetMatrix();
     for (int i = 0; i < 3; ++i) {
@@ -77,7 +77,8 @@ class PartBuilder {
     }
   }
 
-  /// A body is built once, but mirrored and scaled ones are built at each place. kNone: nothing of it can be kept.
+  /// Returns the index of a node's body, or kNone if nothing of the body can be kept. A body is built once, but
+  /// mirrored and scaled bodies are built for each of their places.
   std::uint32_t bodyOf(Node& node) {
     const std::string name = node.body_name.empty() ? node.name : node.body_name;
     if (!isRigid(node.pose)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A part of a CAD file: bodies once, instances wherever they stand.
+/// Builds a part from a CAD file: each body once, with an instance for each of its places.
 #pragma once
 #include "cad_import/cad_file.hpp"
 #include "cad_import/report.hpp"
@@ -7,7 +7,7 @@
 namespace hapticd::cad {
 
 /// [main] Heals and converts every body of a file. The caller fills in Source::file and sha256. @throws CadError if
-/// nothing is left of it.
+/// nothing of the file can be kept.
 brep::Part buildPart(CadFile& file, Report& report);
 
 }  // namespace hapticd::cad

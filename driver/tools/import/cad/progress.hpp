@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Where an import stands, on a terminal; and limits of time for single steps of it.
+/// Shows the progress of an import on a terminal, and limits the time of its single steps.
 #pragma once
 #include <Message_ProgressIndicator.hxx>
 #include <chrono>
@@ -10,7 +10,8 @@ namespace hapticd::cad {
 /// Open CASCADE asks this object while it works; it shows the progress, and stops the work after a time.
 class Progress : public Message_ProgressIndicator {
  public:
-  /// @param what words for the terminal. @param seconds after which the step is broken off; 0: never.
+  /// @param what name of the step, for the terminal @param seconds time after which the step is stopped; 0 means no
+  /// limit
   explicit Progress(std::string what, double seconds = 0);
   ~Progress() override;
   Standard_Boolean UserBreak() override;

@@ -31,13 +31,13 @@ brep::Vector plain(const Vector3d& v) {
   return {v[0], v[1], v[2]};
 }
 
-/// Points and normals of a surface.
+/// Sample points and normals of a surface.
 struct Cloud {
   std::vector<Vector3d> points, normals;
-  Vector3d middle{0, 0, 0};  ///< a point of it
+  Vector3d middle{0, 0, 0};  ///< a point in the middle of the surface
 };
 
-/// An even grid over [lo, hi]; empty where the surface has no normal somewhere.
+/// Samples an even grid over [lo, hi]. Returns an empty cloud if the surface has no normal at one of its points.
 Cloud sampled(const Handle(Geom_Surface) & surface, const Vector2& lo, const Vector2& hi) {
   constexpr int kAcross = 17;
   Cloud cloud;
@@ -63,7 +63,7 @@ Vector3d mean(const std::vector<Vector3d>& v) {
   return sum / static_cast<double>(v.size());
 }
 
-/// The direction along which vectors spread least about their mean.
+/// Returns the direction along which the vectors differ least from `about`.
 Vector3d flattest(const std::vector<Vector3d>& v, const Vector3d& about) {
   Matrix3d spread = Matrix3d::Zero();
   for (const Vector3d& x : v) spread += (x - about) * (x - about).transpose();
@@ -96,7 +96,8 @@ std::optional<Surface> planeOf(const Handle(Geom_BSplineSurface) & spline, const
   return s;
 }
 
-/// Centre and radius with which P = c + r n, by least squares, along the directions that `keep` selects.
+/// Finds centre c and radius r with P = c + r n for all points, by least squares, in the directions that `keep`
+/// selects.
 bool center(const Cloud& cloud, const Matrix3d& keep, Vector3d& c, double& r) {
   const Vector3d p0 = mean(cloud.points), n0 = mean(cloud.normals);
   double pn = 0, nn = 0;
@@ -168,7 +169,7 @@ std::optional<Surface> coneOf(const Cloud& cloud) {
   return s;
 }
 
-/// (u, v) of a point near the surface, with u nearest to `near_u`.
+/// Returns (u, v) of a point near the surface, with the u that is nearest to `near_u`.
 Vector2d parametersOf(const Surface& s, const Vector3d& p, double near_u) {
   const Vector3d d = p - vec(s.o), x = vec(s.x), y = vec(s.y), z = vec(s.z);
   if (s.kind == SurfaceKind::kPlane) return {d.dot(x) / x.squaredNorm(), d.dot(y) / y.squaredNorm()};
@@ -178,7 +179,7 @@ Vector2d parametersOf(const Surface& s, const Vector3d& p, double near_u) {
   return {u, d.dot(z) / z.squaredNorm()};
 }
 
-/// Point and tangents.
+/// A point of a surface and its two tangents.
 struct Tangents {
   Vector3d p, u, v;
 };
@@ -196,7 +197,7 @@ Tangents tangentsAt(const Surface& s, const Vector2d& uv) {
   return {o + r * e + uv[1] * z, r * f, slope * e + z};
 }
 
-/// A curve in space, seen along the normal of a plane: it is exact, whatever its kind.
+/// Projects a curve in space onto a plane, along the normal. This is exact for all kinds of curves.
 brep::Curve2 projected(const brep::Curve3& c, const Surface& s, brep::Part& part) {
   const auto seen = [&](const Vector3d& w) {
     const Vector3d x = vec(s.x), y = vec(s.y);
@@ -252,7 +253,8 @@ void Unfolding::widen(const Vector2& uv) {
   }
 }
 
-/// The angle u at a point of the spline's parameters, unwound along the way from the middle of the face.
+/// Returns the angle u at a point given by the spline's parameters, without jumps of a full turn along the way from the
+/// middle of the face.
 double Unfolding::angleAt(const gp_Pnt2d& uv) const {
   constexpr int kSteps = 64;
   double u = 0;
@@ -267,9 +269,9 @@ double Unfolding::angleAt(const gp_Pnt2d& uv) const {
 
 namespace {
 
-constexpr int kSpans = 64;  ///< of the spline in the parameters that follows an edge
+constexpr int kSpans = 64;  ///< number of spans of the spline that follows an edge in the parameter plane
 
-/// The line in the parameters that is at `a` where t is t0, and at `b` where t is t1.
+/// Returns the line in the parameter plane that is at `a` for t = t0 and at `b` for t = t1.
 brep::Curve2 lineBetween(const Vector2& a, const Vector2& b, double t0, double t1) {
   brep::Curve2 line;
   for (std::size_t k = 0; k < 2; ++k) {
@@ -279,7 +281,8 @@ brep::Curve2 lineBetween(const Vector2& a, const Vector2& b, double t0, double t
   return line;
 }
 
-/// Cubics with the slopes of the edge, which err by h^4 / 384 of its fourth derivative.
+/// Builds a spline of cubics with the points and slopes of the edge. Its error is h^4 / 384 times the fourth
+/// derivative.
 template <class Sample>
 brep::Curve2 cubicsThrough(const std::vector<Sample>& samples, double t0, double t1, brep::Part& part) {
   brep::Curve2 spline;
@@ -330,7 +333,7 @@ std::vector<Unfolding::Sample> Unfolding::samplesAlong(const Handle(Geom_Curve) 
   return samples;
 }
 
-/// True if a line in the parameters stays on the edge.
+/// Returns true if a line in the parameter plane follows the edge.
 bool Unfolding::follows(const brep::Curve2& line, const std::vector<Sample>& samples) const {
   return std::all_of(samples.begin(), samples.end(), [&](const Sample& s) {
     const Tangents there = tangentsAt(shape_, Vector2d(s.uv[0], s.uv[1]));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Planes, cylinders, cones and spheres that a CAD program wrote as splines: their feet have closed forms.
+/// Recognises planes, cylinders, cones and spheres that a CAD program wrote as splines, because their foot points have
+/// closed forms.
 #pragma once
 #include <Geom_Surface.hxx>
 #include <optional>
@@ -9,23 +10,24 @@
 
 namespace hapticd::cad {
 
-/// [main] The surface that a spline surface is over [lo, hi], if it is one to within 1e-6 mm everywhere. Its normal
-/// points where that of the spline does, so that loops keep their direction.
+/// [main] Returns the plane, cylinder, cone or sphere that a spline surface is over [lo, hi], if the two differ by at
+/// most 1e-6 mm everywhere. Its normal points to the same side as the normal of the spline, so that loops keep their
+/// direction.
 std::optional<brep::Surface> recognised(const Handle(Geom_Surface) & surface, const brep::Vector2& lo,
                                         const brep::Vector2& hi);
 
-/// The curves of a face's edges in the parameters of the recognised surface.
+/// Finds the curves of a face's edges in the parameters of the recognised surface.
 class Unfolding {
  public:
-  /// @param surface the spline, @param lo, hi the range of the face in it
+  /// @param surface the spline @param lo, hi the range of the face in the parameters of the spline @param shape the
+  /// recognised surface
   Unfolding(const Handle(Geom_Surface) & surface, const brep::Vector2& lo, const brep::Vector2& hi,
             const brep::Surface& shape);
 
   /// [main] Appends the pcurve of an edge and widens the box of the face by it.
-  /// @param curve of the edge in space. @param record the same as it stands in the part. @param uv a point of the old
-  /// pcurve, at `t`: it tells on which side of a seam the coedge runs. @param within [m] farthest it may be from the
-  /// edge
-  /// @throws Unkept if the edge leaves the surface
+  /// @param curve curve of the edge in space @param record the same curve as a record of the part @param uv point of
+  /// the old pcurve at `t`; it shows on which side of a seam the coedge runs @param within [m] largest allowed distance
+  /// of the edge from the surface @throws Unkept if the edge leaves the surface
   std::uint32_t addPlaneCurve(const Handle(Geom_Curve) & curve, const brep::Curve3& record, double t0, double t1,
                               const gp_Pnt2d& uv, double t, double within, brep::Part& part);
 

@@ -16,7 +16,7 @@ constexpr const char* kSurfaceNames[] = {"plane",    "cylinder",  "cone",       
                                          "B-spline", "extrusion", "revolution", "offset"};
 
 struct Counts {
-  std::size_t placed = 0, faces = 0;  ///< bodies that are placed somewhere, and their faces
+  std::size_t placed = 0, faces = 0;  ///< number of bodies that have an instance, and of their faces
   std::map<std::string, std::size_t> kinds;
 };
 
@@ -59,7 +59,8 @@ std::string textOf(const Part& part, const Report& report, const std::string& ou
     if (++lines <= kMostLines) text += "  " + line + "\n";
   };
   if (report.recognised > 0)
-    add(plural(report.recognised, "spline face is", "spline faces are") + " in truth of another kind, and taken so");
+    add(plural(report.recognised, "spline face is", "spline faces are") +
+        " in fact of a simpler kind (plane, cylinder, cone or sphere), and converted");
   for (const std::string& step : report.steps) add(step);
   for (const std::string& warning : part.warnings) add(warning);
   for (const brep::Loss& loss : part.losses)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What an import did, for the person who started it.
+/// The report of an import, for the person who started it.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,14 +10,14 @@ namespace hapticd::cad {
 
 struct Report {
   std::vector<std::string> steps;  ///< what was healed, sewn or recognised, in order
-  std::size_t recognised = 0;      ///< spline faces that were planes, cylinders and the like
+  std::size_t recognised = 0;      ///< number of spline faces that were found to be planes, cylinders, cones or spheres
   double seconds = 0;
 };
 
-/// [main] Lines for a person: what is in the part, what was done, what was lost.
+/// [main] Returns lines for a person: what is in the part, what was done, what was lost.
 std::string textOf(const brep::Part& part, const Report& report, const std::string& out);
 
-/// [main] The same for programs (JSON).
+/// [main] Returns the same report for programs, as JSON.
 std::string jsonOf(const brep::Part& part, const Report& report, const std::string& out);
 
 }  // namespace hapticd::cad

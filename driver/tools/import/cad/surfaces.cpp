@@ -34,7 +34,7 @@ Vector plain(const gp_XYZ& v) {
   return {v.X(), v.Y(), v.Z()};
 }
 
-/// The frame of a surface of revolution: unit vectors across, and `along` metres per unit of v.
+/// Makes a surface of revolution with the given axes. `along` is in metres per unit of v.
 Surface framed(SurfaceKind kind, const gp_Ax3& axes, double along, double r0, double r1) {
   Surface s;
   s.kind = kind;
@@ -47,7 +47,7 @@ Surface framed(SurfaceKind kind, const gp_Ax3& axes, double along, double r0, do
   return s;
 }
 
-/// A periodic spline as one that ends at lo and hi along the axis, with the same parameters.
+/// Turns a periodic spline into one that ends at lo and hi in that parameter, with the same parameters.
 void unroll(const Handle(Geom_BSplineSurface) & s, bool along_u, const Vector2& lo, const Vector2& hi) {
   const std::size_t axis = along_u ? 0 : 1;
   Standard_Real first[2], last[2];
@@ -129,7 +129,7 @@ Surface planeRecord(const gp_Ax3& axes) {
   return s;
 }
 
-/// Extrusions, revolutions and offsets; what they are made of is added before them.
+/// Adds extrusions, revolutions and offsets, after the curve or surface that they are made of.
 bool swept(const Handle(Geom_Surface) & surface, const Vector2& lo, const Vector2& hi, Part& part, Surface& s,
            double& error) {
   if (const auto extrusion = Handle(Geom_SurfaceOfLinearExtrusion)::DownCast(surface); !extrusion.IsNull()) {
@@ -162,7 +162,7 @@ bool swept(const Handle(Geom_Surface) & surface, const Vector2& lo, const Vector
   return true;
 }
 
-/// Planes, cylinders, cones, spheres and tori.
+/// Converts planes, cylinders, cones, spheres and tori. Returns false for other kinds.
 bool analytic(const Handle(Geom_Surface) & surface, Surface& s) {
   if (const auto plane = Handle(Geom_Plane)::DownCast(surface); !plane.IsNull()) {
     s = planeRecord(plane->Position());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Surfaces of Open CASCADE to records of a part, in their own parameters.
+/// Converts surfaces of Open CASCADE to records of a part, with the same parameters.
 #pragma once
 #include <Geom_Surface.hxx>
 
@@ -7,7 +7,8 @@
 
 namespace hapticd::cad {
 
-/// [main] Appends a surface as it is needed over [lo, hi]; a kind that a part does not have is approximated.
+/// [main] Appends a surface, at least the range [lo, hi] of it. A kind of surface that a part does not have is
+/// approximated.
 /// @throws Unkept
 Kept addSurface(const Handle(Geom_Surface) & surface, const brep::Vector2& lo, const brep::Vector2& hi,
                 brep::Part& part);

@@ -13,9 +13,9 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using Triangle = std::array<Vector3d, 3>;
 
-constexpr double kNothing = 1e-9;  ///< share of a triangle's size: a corner nearer to its plane lies on it
+constexpr double kNothing = 1e-9;  ///< share of a triangle's size: a nearer corner lies on the plane
 
-/// Where the way from a to b goes through a triangle; a way that ends on its plane only touches it.
+/// Returns where the line from a to b passes through a triangle. A line that ends on its plane only touches it.
 std::optional<Vector3d> pierces(const Vector3d& a, const Vector3d& b, const Triangle& t) {
   const Vector3d u = t[1] - t[0], v = t[2] - t[0], n = u.cross(v);
   const double size = std::max(u.norm(), v.norm()), least = kNothing * size * n.norm();
@@ -43,9 +43,9 @@ class Sweep {
     for (std::size_t t = 0; t < corners.size(); ++t) boxes_[shell[t]].extend(boxOf(t));
   }
 
-  /// Along x, each triangle is tried with those that begin before it ends.
+  /// Sorts the triangles along x, and tries each with those that begin before it ends.
   Crossings run() {
-    constexpr std::size_t kMost = 200'000'000;  // some seconds
+    constexpr std::size_t kMost = 200'000'000;  // pairs, which take some seconds
     take();
     Crossings found;
     std::size_t tried = 0;
@@ -73,7 +73,8 @@ class Sweep {
     for (const std::uint32_t corner : corners_[t]) box.extend(points_[corner]);
     return box;
   }
-  /// Triangles within the box of another shell. Shells are few, or small and far apart.
+  /// Collects the triangles that lie in the box of another shell. This is fast, because shells are few, or small and
+  /// far apart.
   void take() {
     constexpr std::size_t kFew = 64;
     for (std::size_t t = 0; t < corners_.size(); ++t) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The edges of triangles, sorted so that all triangles of an edge stand in one row.
+/// The edges of triangles, sorted so that all entries of one edge stand next to each other.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 namespace hapticd::importing {
 
 struct MeshEdge {
-  std::uint64_t ends;  ///< lower point in the upper half, higher point in the lower half
+  std::uint64_t ends;  ///< indices of the two points: the smaller in the upper 32 bits, the larger in the lower 32 bits
   std::uint32_t code;  ///< 4 * triangle + edge
 };
 
@@ -27,14 +27,15 @@ inline std::vector<MeshEdge> meshEdges(const std::vector<std::array<std::uint32_
   return edges;
 }
 
-/// [any] Where the row of the edge that begins at `i` ends.
+/// [any] Returns the index behind the last entry of the edge whose first entry is `i`.
 inline std::size_t endOfEdge(const std::vector<MeshEdge>& edges, std::size_t i) {
   std::size_t end = i + 1;
   while (end < edges.size() && edges[end].ends == edges[i].ends) ++end;
   return end;
 }
 
-/// [main] Indexed by 3 * triangle + edge: the code of the other triangle if there are exactly two, else 0xffffffff.
+/// [main] Returns the neighbours, indexed by 3 * triangle + edge: the code of the other triangle if the edge has
+/// exactly two triangles, else 0xffffffff.
 inline std::vector<std::uint32_t> pairedNeighbours(const std::vector<MeshEdge>& edges, std::size_t triangles) {
   std::vector<std::uint32_t> across(3 * triangles, 0xffffffffu);
   for (std::size_t i = 0; i < edges.size();) {

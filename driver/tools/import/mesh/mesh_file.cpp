@@ -24,7 +24,7 @@ Error tooMany(const std::string& where) {
   return Error{where + "more than 20,000,000 triangles"};
 }
 
-/// An OBJ index, counted from 1, or backward from the last point.
+/// Reads an OBJ index, which counts from 1, or backward from the last point if it is negative.
 std::optional<std::uint32_t> objIndex(std::string_view word, std::size_t points) {
   word = word.substr(0, word.find('/'));
   std::int64_t index = 0;
@@ -95,7 +95,7 @@ Result<MeshFile> parseMesh(std::string_view bytes, const std::string& name) {
 Result<MeshFile> parseObjMesh(std::string_view bytes, const std::string& name) {
   MeshFile mesh;
   Weld weld(mesh.points);
-  std::vector<std::uint32_t> points;  // by number in the file
+  std::vector<std::uint32_t> points;  // index of each point of the file after equal points were joined
   std::vector<std::uint32_t> polygon;
   Words words(bytes);
   while (words.nextLine()) {

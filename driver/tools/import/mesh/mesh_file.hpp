@@ -24,7 +24,7 @@ struct MeshFile {
 /// Errors give the line if there are lines.
 Result<MeshFile> parseMesh(std::string_view bytes, const std::string& name);
 
-/// [main] The single formats.
+/// [main] Read one format each.
 Result<MeshFile> parseObjMesh(std::string_view bytes, const std::string& name);
 Result<MeshFile> parseStlMesh(std::string_view bytes, const std::string& name);
 Result<MeshFile> parsePlyMesh(std::string_view bytes, const std::string& name);

@@ -28,7 +28,7 @@ class Repair {
     dropDuplicates();
     edges_ = meshEdges(corners_);
     orient();
-    edges_ = meshEdges(corners_);  // flipped triangles number their edges anew
+    edges_ = meshEdges(corners_);  // flipped triangles have other edge numbers
     countEdges();
     turnOutward();
     report_.crossings = crossingsOf(points_, corners_, shell_, report_.shells);
@@ -65,7 +65,7 @@ class Repair {
     report_.duplicates = std::erase_if(corners_, [&](const Corners&) { return drop[at++] != 0; });
   }
 
-  /// Turns triangles so that neighbours agree. In each shell the orientation of the majority is kept.
+  /// Reverses triangles so that neighbours agree. In each shell the orientation of the majority is kept.
   void orient() {
     const std::vector<std::uint32_t> across = pairedNeighbours(edges_, corners_.size());
     shell_.assign(corners_.size(), kNone);
@@ -106,7 +106,7 @@ class Repair {
   }
 
   void countEdges() {
-    std::vector<std::uint32_t> next(points_.size(), kNone);  // over free edges
+    std::vector<std::uint32_t> next(points_.size(), kNone);  // next point along the free edges
     for (std::size_t i = 0; i < edges_.size();) {
       const std::size_t end = endOfEdge(edges_, i);
       report_.non_manifold += end - i > 2;
@@ -126,7 +126,8 @@ class Repair {
     }
   }
 
-  /// A closed shell must enclose a positive volume, unless it lies inside another one, where it may be a cavity.
+  /// Reverses closed shells that are inside out. A shell inside another one is left as it is, because it may be a
+  /// cavity.
   void turnOutward() {
     std::vector<Eigen::AlignedBox3d> boxes(report_.shells);
     std::vector<double> volumes(report_.shells, 0);
@@ -151,7 +152,7 @@ class Repair {
     std::vector<std::uint32_t> number(points_.size(), kNone);
     std::vector<Vector3d> kept;
     for (Corners& c : corners_)
-      for (std::uint32_t& corner : c) {  // in the order of use, so that neighbours in space are neighbours in memory
+      for (std::uint32_t& corner : c) {  // numbered in the order of use, so neighbours stay close in memory
         if (number[corner] == kNone) {
           number[corner] = static_cast<std::uint32_t>(kept.size());
           kept.push_back(points_[corner]);
@@ -162,7 +163,7 @@ class Repair {
   }
 
   MeshReport& report_;
-  std::vector<std::uint32_t> shell_;  ///< by triangle
+  std::vector<std::uint32_t> shell_;  ///< shell of each triangle
 };
 
 std::string counted(std::size_t count, const char* one, const char* many) {

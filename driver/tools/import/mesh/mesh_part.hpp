@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Makes a part of a triangle mesh: repairs what can be repaired, and reports it.
+/// Makes a part from a triangle mesh: repairs what can be repaired, and reports the repairs.
 #pragma once
 #include "kernels/brep/part.hpp"
 #include "mesh_import/mesh_crossings.hpp"
@@ -15,24 +15,25 @@ struct MeshOptions {
 
 /// What was found in a mesh, and what was done about it.
 struct MeshReport {
-  std::size_t triangles = 0, points = 0;  ///< kept
-  std::size_t degenerate = 0;             ///< left out: without area
-  std::size_t duplicates = 0;             ///< left out, because they have the same three corners as another
-  std::size_t flipped = 0;                ///< reversed, to agree with their neighbours or to enclose a volume
-  std::size_t non_manifold = 0;           ///< edges of more than two triangles
-  std::size_t unorientable = 0;           ///< edges whose triangles cannot agree about the outside
-  std::size_t free_edges = 0, holes = 0;  ///< edges of one triangle, and the closed chains that they form
+  std::size_t triangles = 0, points = 0;  ///< numbers of triangles and points that were kept
+  std::size_t degenerate = 0;             ///< triangles that were left out because they have no area
+  std::size_t duplicates = 0;    ///< triangles that were left out because they have the same three corners as another
+  std::size_t flipped = 0;       ///< triangles that were reversed, to agree or to enclose a positive volume
+  std::size_t non_manifold = 0;  ///< edges with more than two triangles
+  std::size_t unorientable = 0;  ///< edges whose two triangles cannot be given the same outward side
+  std::size_t free_edges = 0, holes = 0;  ///< edges with only one triangle, and the closed chains that they form
   std::size_t shells = 0;                 ///< connected surfaces
-  bool closed = false;                    ///< it bounds a volume
-  double volume = 0;                      ///< [m^3] if closed
-  Eigen::Vector3d size{0, 0, 0};          ///< [m] of the box
+  bool closed = false;                    ///< true if the mesh bounds a volume
+  double volume = 0;                      ///< [m^3] enclosed volume if closed
+  Eigen::Vector3d size{0, 0, 0};          ///< [m] size of the bounding box
   Crossings crossings;                    ///< shells that pass through each other
 };
 
-/// [main] One body of triangles, in which `file_name` is noted. @throws std::invalid_argument if nothing is left of it.
+/// [main] Makes a part with one body of triangles, and notes `file_name` in it. @throws std::invalid_argument if no
+/// triangle can be kept.
 brep::Part meshPart(const MeshFile& mesh, const MeshOptions& options, const std::string& file_name, MeshReport& report);
 
-/// [main] The report as lines for a person. Empty parts are left out.
+/// [main] Returns the report as lines for a person. Counts that are zero are left out.
 std::vector<std::string> linesOf(const MeshReport& report);
 
 }  // namespace hapticd::importing

@@ -12,7 +12,7 @@
 
 namespace hapticd::importing {
 
-/// Splits a text into lines and these into words, without copies.
+/// Splits a text into lines and each line into words, without copies.
 class Words {
  public:
   explicit Words(std::string_view text) : rest_(text) {}
@@ -26,7 +26,7 @@ class Words {
     ++number_;
     return true;
   }
-  /// The next word of the line, empty at its end.
+  /// Returns the next word of the line; empty at the end of the line.
   std::string_view next() {
     const std::size_t begin = line_.find_first_not_of(kSpace);
     if (begin == std::string_view::npos) return line_ = {};
@@ -36,7 +36,7 @@ class Words {
     return word;
   }
   std::size_t lineNumber() const { return number_; }
-  std::string_view rest() const { return rest_; }  ///< what follows the line
+  std::string_view rest() const { return rest_; }  ///< the text after this line
 
  private:
   static constexpr std::string_view kSpace = " \t\r\v\f";
@@ -44,7 +44,7 @@ class Words {
   std::size_t number_ = 0;
 };
 
-/// A finite number, if it is the whole word.
+/// Returns the number if the whole word is a finite number.
 inline std::optional<double> finiteNumber(std::string_view word) {
   if (!word.empty() && word[0] == '+') word.remove_prefix(1);
   double value = 0;
@@ -53,7 +53,7 @@ inline std::optional<double> finiteNumber(std::string_view word) {
   return value;
 }
 
-/// The next three words as a point.
+/// Returns the next three words as a point, if they are finite numbers.
 inline std::optional<Eigen::Vector3d> nextPoint(Words& words) {
   Eigen::Vector3d p;
   for (int k = 0; k < 3; ++k) {
@@ -64,7 +64,7 @@ inline std::optional<Eigen::Vector3d> nextPoint(Words& words) {
   return p;
 }
 
-/// Gives equal points one index, by open addressing over their bits.
+/// Gives equal points the same index, with a hash table (open addressing) of their bits.
 class Weld {
  public:
   explicit Weld(std::vector<Eigen::Vector3d>& points) : points_(points), table_(1024, kFree) {}

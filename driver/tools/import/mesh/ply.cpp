@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// PLY, the format of Turk's and of most scanners: a text header, then text or binary of either byte order.
+/// Reads PLY, the format of Greg Turk and of most scanners: a text header, then text or binary of either byte order.
 #include <bit>
 #include <cstring>
 
@@ -30,7 +30,7 @@ std::size_t sizeOf(Type type) {
 struct Property {
   std::string_view name;
   Type type = Type::kUnknown;   ///< type of the value, or of each value in a list
-  Type count = Type::kUnknown;  ///< type of a list's length; kUnknown: it is not a list
+  Type count = Type::kUnknown;  ///< type of a list's length; kUnknown if it is not a list
 };
 struct Element {
   std::string_view name;
@@ -138,7 +138,9 @@ class Reader {
     Element element;
     element.name = words_.next();
     const auto count = finiteNumber(words_.next());
-    if (!count || *count < 0 || *count > 4e9) return fail("expected element name count");
+    if (!count || *count < 0 || *count > 4e9)
+      return fail(
+          "this line has no name or no valid count; expected \"element NAME COUNT\", such as \"element vertex 8\"");
     element.count = static_cast<std::size_t>(*count);
     elements_.push_back(std::move(element));
     return true;

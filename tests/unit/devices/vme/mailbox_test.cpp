@@ -124,7 +124,7 @@ TEST_F(MailboxTest, PlacesThatCannotBeAreNamed) {
   p = place, p.command = 0xfff0;
   EXPECT_NE(refusal(p).find("beyond the window"), std::string::npos) << refusal(p);
   p = place, p.command = 0x40;
-  EXPECT_NE(refusal(p).find("lies in the state block"), std::string::npos) << refusal(p);
+  EXPECT_NE(refusal(p).find("overlaps the state block"), std::string::npos) << refusal(p);
   p = place, p.command = 0x101;
   EXPECT_NE(refusal(p).find("multiple of 2"), std::string::npos) << refusal(p);
 }

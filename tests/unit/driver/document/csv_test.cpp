@@ -55,7 +55,8 @@ TEST(Csv, NamesLineColumnAndWhatWasExpected) {
             "p.csv:1:1: the header is \"t,x,y\", expected t,x,y,z or t,x,y,z,qw,qx,qy,qz");
   EXPECT_EQ(firstProblem("t,x,y,z\n0,1,two,3\n"), "p.csv:2:5: y: \"two\" is not valid, expected a finite number");
   EXPECT_EQ(firstProblem("t,x,y,z\n0,1,2\n"), "p.csv:2:1: 3 columns, expected 4");
-  EXPECT_EQ(firstProblem("t,x,y,z\n1,0,0,0\n1,0,0,0\n"), "p.csv:3:1: t: 1 does not grow, expected more than 1");
+  EXPECT_EQ(firstProblem("t,x,y,z\n1,0,0,0\n1,0,0,0\n"),
+            "p.csv:3:1: t: 1 does not grow from row to row, expected more than 1");
   EXPECT_EQ(firstProblem("t,x,y,z\n0,nan,0,0\n"), "p.csv:2:3: x: \"nan\" is not valid, expected a finite number");
   EXPECT_EQ(firstProblem("# only a comment\n"),
             "p.csv:1:1: there are no rows, expected a header t,x,y,z or t,x,y,z,qw,qx,qy,qz and at least one row");
@@ -65,13 +66,14 @@ TEST(Csv, SaysHowToWriteWhatASpreadsheetWrites) {
   EXPECT_EQ(firstProblem("t,x,y,z\n0,\"1\",2,3\n"),
             "p.csv:2:3: x: \"\"1\"\" is not valid, expected a finite number; write 1, without quotes or a tag");
   EXPECT_EQ(firstProblem("t,x,y,z\n0;0,5;1;2\n"),
-            "p.csv:2:1: 2 columns, expected 4; columns are separated by commas, and decimals have a point");
-  EXPECT_EQ(firstProblem("t,x,y,z\n0,0,5,1,2\n"), "p.csv:2:1: 5 columns, expected 4; a half is 0.5, with a point");
+            "p.csv:2:1: 2 columns, expected 4; separate columns by commas, and write decimals with a point");
+  EXPECT_EQ(firstProblem("t,x,y,z\n0,0,5,1,2\n"),
+            "p.csv:2:1: 5 columns, expected 4; write decimals with a point: 0.5, not 0,5");
   EXPECT_EQ(firstProblem("t,x,y,z\n0 1 2 3\n"),
-            "p.csv:2:1: 1 column, expected 4; columns are separated by commas, and decimals have a point");
+            "p.csv:2:1: 1 column, expected 4; separate columns by commas, and write decimals with a point");
   EXPECT_EQ(firstProblem("t;x;y;z\n"),
-            "p.csv:1:1: the header is \"t;x;y;z\", expected t,x,y,z or t,x,y,z,qw,qx,qy,qz; columns are separated by "
-            "commas, and decimals have a point");
+            "p.csv:1:1: the header is \"t;x;y;z\", expected t,x,y,z or t,x,y,z,qw,qx,qy,qz; separate columns by "
+            "commas, and write decimals with a point");
 }
 
 TEST(Csv, LetsNumbersBeNotFiniteWhereTheRulesSaySo) {

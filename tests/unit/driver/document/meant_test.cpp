@@ -19,12 +19,12 @@ TEST(Meant, SaysHowToWriteANumberThatWasWrittenOtherwise) {
                                   {"1 kHz", "Hz", "; write 1000: 1 kHz are 1000 Hz"},
                                   {"5 furlongs", "m", "; write the number alone, in m"},
                                   {"5 mm", "", "; write the number alone, in SI units"},
-                                  {"50%", "", "; write 0.5: nothing is counted in percent"},
-                                  {"1000;", "Hz", "; write 1000, without the ; behind it"},
+                                  {"50%", "", "; write 0.5: percentages are not accepted"},
+                                  {"1000;", "Hz", "; write 1000, without the ; after it"},
                                   {"1'000", "Hz", "; write 1000, with nothing between the digits"},
-                                  {"1000 // Hz", "Hz", "; a comment begins with a blank and #"},
-                                  {"\u22129.81", "m/s^2", "; write -9.81, with the minus of the keyboard"},
-                                  {"2pi/4096", "", "; write the number itself: nothing is calculated here"},
+                                  {"1000 // Hz", "Hz", "; begin a comment with a blank and #"},
+                                  {"\u22129.81", "m/s^2", "; write -9.81, with the minus sign of the keyboard"},
+                                  {"2pi/4096", "", "; write the result as a number: formulas are not calculated"},
                                   {"0x10", "Hz", "; write it as a decimal number"}};
   for (const auto& [text, unit, meant] : cases) EXPECT_EQ(numberMeant(text, unit), meant) << text;
   for (const char* text : {"", "fast", "1.2.3", "10-20", "1000 2000", "1 2", "0,5,1", ",", "-", "mm", "true"})
@@ -38,7 +38,8 @@ TEST(Meant, ReadsAListInATextAndTwoNumbersInOne) {
   };
   EXPECT_EQ(listMeant(node("0 0 0.1"), 3), "; write [0, 0, 0.1]");
   EXPECT_EQ(listMeant(node("0, -9.81, 0"), 3), "; write [0, -9.81, 0]");
-  EXPECT_EQ(listMeant(node("[0,5, 0, 0]"), 3), "; a comma stands between two numbers: a half is 0.5, with a point");
+  EXPECT_EQ(listMeant(node("[0,5, 0, 0]"), 3),
+            "; a comma separates two numbers: write decimals with a point, such as 0.5");
   EXPECT_EQ(listMeant(node("{x: 0, y: 0, z: 0}"), 3), "; write the numbers alone, as [x, y, z]");
   for (const char* text : {"[0, 0.1]", "somewhere", "0 0", "[a, b, c, d]"}) EXPECT_EQ(listMeant(node(text), 3), "");
   EXPECT_EQ(mappingMeant(node("rate = 1000")), "; write rate: 1000, with a colon and a blank");
@@ -48,8 +49,8 @@ TEST(Meant, ReadsAListInATextAndTwoNumbersInOne) {
 
 TEST(Meant, FindsTheValueInsideAKey) {
   EXPECT_EQ(suggestion("rate:1000", {"rate"}), " (no blank after the colon, expected \"rate: 1000\")");
-  EXPECT_EQ(suggestion("\u00a0rate", {"rate"}), " (it has a no-break space in it, expected blanks)");
-  EXPECT_EQ(suggestion("5", {"rate"}), " (a comma stands before it: a half is 0.5, with a point)");
+  EXPECT_EQ(suggestion("\u00a0rate", {"rate"}), " (it contains a no-break space, expected ordinary blanks)");
+  EXPECT_EQ(suggestion("5", {"rate"}), " (there is a comma before it: write decimals with a point, such as 0.5)");
   EXPECT_EQ(suggestion("poke", {"none", "press"}), "");
 }
 

@@ -19,7 +19,8 @@ TEST(Slip, NamesTheBracketOrTheQuoteThatIsOpen) {
   EXPECT_EQ(told("a: {b: 1\nc: []\n"), "t.yaml:1:4: not YAML: the { that begins here is never closed, expected }");
   EXPECT_EQ(told("a: {b: [1, 2}\n"),
             "t.yaml:1:13: not YAML: the } comes while the [ of line 1, column 8 is open, expected ] before it");
-  EXPECT_EQ(told("a: {b: 1}}\n"), "t.yaml:1:10: not YAML: the } closes nothing, expected one fewer");
+  EXPECT_EQ(told("a: {b: 1}}\n"),
+            "t.yaml:1:10: not YAML: the } closes nothing; remove it, or add the bracket that it closes");
   EXPECT_EQ(told("a: \"b\nc: 1\n"),
             "t.yaml:1:4: not YAML: the \" that begins here is never closed, expected another one");
   EXPECT_EQ(told("a: 'it''s\nc: 1\n"),

@@ -59,8 +59,8 @@ std::string told(const std::string& file, double distance) {
 TEST(MatDeformable, SaysWhatIsFeltAndHintsWhereTheFileSaysOtherwise) {
   const std::string palpation = HAPTICD_SOURCE_DIR "/config/models/palpation.yaml";
   const std::string old = told(palpation, 0), now = told(palpation, .006);
-  EXPECT_NE(old.find("shear_distance in its place"), std::string::npos) << old;
-  EXPECT_EQ(now.find("shear_distance in its place"), std::string::npos) << now;
+  EXPECT_NE(old.find("use shear_distance instead"), std::string::npos) << old;
+  EXPECT_EQ(now.find("use shear_distance instead"), std::string::npos) << now;
   EXPECT_NE(now.find("0 felt 961 N/m 1 mm deep, 961 N/m 5 mm deep; the file says 961 N/m: (15.47, -11.87"),
             std::string::npos)
       << now;

@@ -115,7 +115,7 @@ TEST(MedialFile, ElasticConstantsStandForTheStiffnessOfALayer) {
             std::string::npos);
   EXPECT_NE(complaintOf(good + "  young: 1e4\n  poisson: 0.4\n  thickness: 0.02\n  stiffness: 3\n").find("either"),
             std::string::npos);
-  EXPECT_NE(complaintOf(good + "  stiffness: 3\n  poisson: 0.4\n").find("only beside young"), std::string::npos);
+  EXPECT_NE(complaintOf(good + "  stiffness: 3\n  poisson: 0.4\n").find("only together with young"), std::string::npos);
   EXPECT_NE(complaintOf(good + "  young: 1e9\n  poisson: 0.5\n  thickness: 0.001\n").find("at most 1e6"),
             std::string::npos);
 }

@@ -134,7 +134,7 @@ TEST(Pendulum, RefusesASwingFasterThanTheRate) {
   makeBall(plugin, 1e6);
   plugin.set("inertia", 1e-6);
   EXPECT_LT(plugin.activate(), 0);
-  EXPECT_NE(plugin.log.find("expected at most 3.2e+04 rad/s at 1000 Hz"), std::string::npos) << plugin.log;
+  EXPECT_NE(plugin.log.find("at most 3.2e+04 rad/s at 1000 Hz"), std::string::npos) << plugin.log;
 }
 
 }  // namespace

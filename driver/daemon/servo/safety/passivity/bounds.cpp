@@ -12,7 +12,8 @@ double dirichlet(int n, double theta) noexcept {
   return std::sin((n + 0.5) * theta) / std::sin(theta / 2);
 }
 
-/// Stiffness is bounded from above where its own term is active, from below where the delay turned it round.
+/// Range of passive stiffnesses. The condition at one frequency is an upper bound, or a lower bound at frequencies
+/// where the delay changes the sign of the stiffness.
 struct Interval {
   double low = 0, high = std::numeric_limits<double>::infinity();
 };
@@ -22,7 +23,8 @@ struct Wall {
   int n, delay;
   double period;
 
-  /// What is left of b for the stiffness, and the share that each N/m takes, at one frequency.
+  /// At one frequency, left(): the damping b that the wall's damping leaves for stiffness; share(): how much of it each
+  /// N/m needs.
   double left(double theta) const noexcept {
     return b - damping / (2 * n) * (dirichlet(delay, theta) - dirichlet(delay + n, theta));
   }
@@ -30,7 +32,7 @@ struct Wall {
   double bound(double theta) const noexcept { return left(theta) / share(theta); }
 };
 
-/// The minimum of sign * bound between two grid points, by golden section.
+/// Finds the minimum of sign * bound between two grid points by golden-section search.
 double refine(const Wall& wall, double sign, double low, double high) noexcept {
   constexpr double kGolden = 0.6180339887498949;
   constexpr int kSteps = 60;
@@ -88,7 +90,7 @@ double maxStiffness(double b, double damping, int n, int delay, double period) n
       k.low = std::max(k.low, best);
     }
   }
-  // theta -> 0, where D_n -> 2n + 1
+  // the limit theta -> 0, for which D_n -> 2n + 1
   k.high = std::min(k.high, (b + damping) / (period * (delay + 0.5)));
   return k.high > k.low ? k.high : 0;
 }

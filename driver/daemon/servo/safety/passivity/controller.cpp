@@ -8,18 +8,21 @@ namespace hapticd::passivity {
 
 namespace {
 
-constexpr double kSmoothing = 2.5e-3;  ///< [s] of each of two stages: one count of an encoder in a tick is no speed
-constexpr double kRepayment = 5e-3;    ///< [s] in which an energy debt must be paid back
-constexpr double kRise = 5e-3;         ///< [s] rise time of the damping when there is a debt
-constexpr double kFall = 0.1;          ///< [s] of the damping, when it is paid: longer than a turn of what a hand feels
-constexpr double kMemory = 0.1;        ///< [s] for which a debt outlives its contact
+constexpr double kSmoothing = 2.5e-3;  ///< [s] time constant of each of two stages that smooth the velocity: one
+                                       ///< encoder count in a tick is not yet motion
+constexpr double kRepayment = 5e-3;    ///< [s] in which the damping must pay an energy debt back
+constexpr double kRise = 5e-3;         ///< [s] rise time of the damping while there is a debt
+/// [s] fall time of the damping once it is paid: longer than one period of a vibration that a hand feels
+constexpr double kFall = 0.1;
+constexpr double kMemory = 0.1;  ///< [s] for which a debt is remembered after the contact
 
-// Under a program's push:
-constexpr double kSteady = 0.1;       ///< [s] a program may give energy with what changes more slowly than this
-constexpr double kSwingMemory = 0.5;  ///< [s] of the book of what swings: encoder counts add up to no vibration
-constexpr double kFirm = 1;           ///< [N] force whose work over a step of the encoder is no debt yet
-constexpr double kPlay = 1.5;         ///< steps of the encoder to and fro that do not count as motion
-constexpr double kLively = 0.02;      ///< [s] after which a probe within this play is at rest
+// These hold while a program pushes:
+constexpr double kSteady = 0.1;  ///< [s] changes of force slower than this may give energy
+/// [s] memory of the energy of swinging parts, so that encoder counts do not add up to a vibration
+constexpr double kSwingMemory = 0.5;
+constexpr double kFirm = 1;       ///< [N] the work of this force over one encoder step is not yet a debt
+constexpr double kPlay = 1.5;     ///< encoder steps to and fro that do not count as motion
+constexpr double kLively = 0.02;  ///< [s] a probe that stays within kPlay for this time is at rest
 
 double part(double dt, double time) noexcept {
   return std::min(1.0, dt / time);
@@ -49,7 +52,7 @@ Eigen::Vector3d PassivityController::update(const Eigen::Vector3d& position, con
     held_ = force.allFinite() ? force : Eigen::Vector3d::Zero();
     added_.setZero();
     started_ = position.allFinite();
-    return force;  // also for a force that is not a number, which the limiter ends
+    return force;  // a force that is not finite is returned too; the limiter ends it
   }
   const Eigen::Vector3d way = started_ ? Eigen::Vector3d(position - position_) : Eigen::Vector3d::Zero();
   position_ = position;
@@ -76,8 +79,8 @@ void PassivityController::follow(const Eigen::Vector3d& way, double dt) noexcept
   velocity_ += share * (smoothed_ - velocity_);
 }
 
-/// The way gone, which damping resists. Under a push, a step of the encoder to and fro does not count: the damping lags
-/// behind such a flicker, and would feed it instead of ending it.
+/// Returns the part of the way that damping must resist. Under a push, encoder steps to and fro do not count: the
+/// damping lags behind such a flicker, and would feed it instead of ending it.
 Eigen::Vector3d PassivityController::moved(const Eigen::Vector3d& way, double dt, bool pushed) noexcept {
   if (!pushed || (position_ - rest_).norm() > kPlay * resolution_) {
     rest_ = position_;
@@ -88,13 +91,12 @@ Eigen::Vector3d PassivityController::moved(const Eigen::Vector3d& way, double dt
   return lively_ * way;
 }
 
-/// A second book holds what is left of force and motion without the slow part of both. One filter takes it off both:
-/// what is passive stays passive in these books, and what makes energy as it swings makes it here too, as does the
-/// damping that is added against it.
+/// Keeps a second energy sum, of force and motion without their slow parts. The same high-pass filter acts on both, so
+/// what is passive stays passive in this sum, and what creates energy by swinging creates it here too.
 void PassivityController::bookSwing(const Eigen::Vector3d& way, double dt, const Exchange& exchange) noexcept {
   if (!exchange.pushed || !pushed_) {
-    if (pushed_) energy_ = std::max(energy_, swing_);  // a push that ends leaves only that debt
-    swing_ = std::min(0.0, energy_);                   // and a push that begins pays none
+    if (pushed_) energy_ = std::max(energy_, swing_);  // after a push, only the debt of the swinging part remains
+    swing_ = std::min(0.0, energy_);                   // a new push does not pay an earlier debt
     steady_ = held_;
     drift_ = velocity_;
     pushed_ = exchange.pushed;
@@ -109,15 +111,15 @@ void PassivityController::bookSwing(const Eigen::Vector3d& way, double dt, const
   swing_ *= 1 - part(dt, kSwingMemory);
 }
 
-/// Energy that a contact left is nobody's credit. A debt is remembered for a while: a wall that throws the hand off and
-/// is met again at once is just the vibration that must end.
+/// Called without contact: a credit is forgotten at once, but a debt is remembered for a while, because a wall that
+/// throws the hand off and is met again at once is the vibration that must end.
 void PassivityController::leaveContact(double dt) noexcept {
   energy_ = std::min(0.0, energy_) * (1 - part(dt, kMemory));
   swing_ = std::min(0.0, swing_);
 }
 
-/// The damping rises while there is a debt and falls slowly once it is paid. If a debt were paid in one tick, the force
-/// would be a blow each time the book is one encoder count below zero.
+/// Raises the damping while there is a debt, and lowers it slowly once the debt is paid. If a debt were paid in one
+/// tick, the hand would feel a blow each time the energy sum is one encoder count below zero.
 void PassivityController::settle(const Eigen::Vector3d& force, double dt) noexcept {
   const double book = pushed_ ? std::max(energy_, swing_) : energy_, firm = pushed_ ? kFirm : 0;
   const double debt = -book - resolution_ * (force.norm() + firm), rate = kRepayment * velocity_.squaredNorm();
@@ -125,8 +127,9 @@ void PassivityController::settle(const Eigen::Vector3d& force, double dt) noexce
   damping_ += part(dt, wanted > damping_ ? kRise : kFall) * (wanted - damping_);
 }
 
-/// Never more than the part of the force along the way: it may cancel a push and double a resistance, but reverses no
-/// force. It begins and ends with the force, so that the edge of a contact is no step.
+/// Returns the damping force. It is never larger than the part of the force along the motion: it may cancel a push or
+/// double a resistance, but it never reverses a force. So it is zero without a force, and a contact begins without a
+/// step.
 Eigen::Vector3d PassivityController::resistance(const Eigen::Vector3d& force) const noexcept {
   const double speed2 = velocity_.squaredNorm();
   if (!(speed2 > 0)) return Eigen::Vector3d::Zero();

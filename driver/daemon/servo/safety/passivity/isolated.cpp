@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kLongestWindow = 256;
 
-/// Without units: k = K T^2 / m, b = B T / m. The motion decays if its largest swing in the last quarter of a long
-/// stretch is smaller than in the second.
+/// True if the motion decays: in a long simulation, the largest swing of the last quarter is smaller than that of the
+/// second quarter. The parameters have no units: k = K T^2 / m, b = B T / m.
 bool comesToRest(double k, double b, int n) noexcept {
   std::array<double, kLongestWindow> past;  // positions of the last n samples
   past.fill(1);
@@ -31,7 +31,7 @@ bool comesToRest(double k, double b, int n) noexcept {
   return swing[3] < swing[1];
 }
 
-/// The largest stable k for a damping b, by bisection; as k grows, stability is lost only once.
+/// Finds the largest stable k for a damping b by bisection: below it every k is stable, and above it none is.
 double largestStiffness(double b, int n) noexcept {
   constexpr int kHalvings = 18;
   double low = 0, high = 1;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* lead_model.c - moves a kinematic model up and down about where it is, and tells the force that the hand feels
+/* lead_model.c - moves a kinematic model up and down about its pose, and prints the force that the hand feels
  * meanwhile.
  *
  *     cc lead_model.c -o lead_model $(pkg-config --cflags --libs hapticd-client) -lm
@@ -19,7 +19,7 @@ static double now(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* The place of a column in a row; -1: there is none of that name. */
+/* Returns the byte at which a column begins in its row, or -1 if there is no column of that name. */
 static long place(hapticd_client* client, int stream, const char* name) {
   const hapticd_column* columns;
   const long count = hapticd_columns(client, stream, &columns, NULL);
@@ -28,7 +28,7 @@ static long place(hapticd_client* client, int stream, const char* name) {
   return -1;
 }
 
-/* Where a model is, from the answer to `snapshot`, which is JSON without spaces. 0: it does not say. */
+/* Reads where a model is from the answer to `snapshot`, which is JSON without spaces. Returns 0 if it is not there. */
 static int pose_of(hapticd_client* client, const char* model, hapticd_target* pose, hapticd_error* error) {
   static char answer[1 << 20];
   char name[256];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* spring.c - pulls the hand to where it is now, with a force of this program's own.
+/* spring.c - pulls the hand to its present place, with a force that this program computes.
  *
  *     cc spring.c -o spring $(pkg-config --cflags --libs hapticd-client)
  *     hapticd run SCENE        with `clients: add` in the scene

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Programs beside a running hapticd: read what it does every tick, move models, push on arms.
+"""For programs that use a running hapticd: they read the data of every tick, move models, and push on arms.
 
     import hapticd
 

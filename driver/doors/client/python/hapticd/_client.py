@@ -26,7 +26,7 @@ _MOST_LINE = 1 << 24
 
 
 def _in_memory(folder: str) -> bool:
-    """The folder is on a file system in memory, as the daemon asks of its own."""
+    """True if the folder is on a file system in memory, as the daemon requires for its folder."""
     try:
         with open("/proc/self/mountinfo", encoding="utf-8") as mounts:
             best, kind = "", ""
@@ -42,7 +42,7 @@ def _in_memory(folder: str) -> bool:
 
 
 def runtime_folder(name: str) -> str:
-    """Where a daemon of this name shows itself; see control.md."""
+    """Returns the runtime folder of the daemon of this name; see control.md."""
     folders = []
     if os.environ.get("RUNTIME_DIRECTORY"):
         folders.append(os.environ["RUNTIME_DIRECTORY"].split(":")[0])
@@ -60,7 +60,7 @@ def runtime_folder(name: str) -> str:
 
 
 class _Line:
-    """A socket of lines of JSON, with the descriptors that come along."""
+    """A socket with lines of JSON, and with the descriptors that come with them."""
 
     def __init__(self, file: str) -> None:
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -69,10 +69,10 @@ class _Line:
         except OSError as error:
             self._socket.close()
             raise HapticdError(f"no daemon answers at {file}: {error.strerror}") from None
-        self._begun = b""  # a line whose end has not come yet
-        self._begun_with: list[int] = []  # and the descriptors that it brings
+        self._begun = b""  # the beginning of a line whose end has not come yet
+        self._begun_with: list[int] = []  # the descriptors that came with it
         self._lines: deque[tuple[bytes, list[int]]] = deque()
-        self._descriptors: list[int] = []  # of the last line that was given out
+        self._descriptors: list[int] = []  # descriptors of the last line that was returned
 
     def say(self, request: dict[str, Any]) -> None:
         try:
@@ -85,7 +85,7 @@ class _Line:
             raise HapticdError(f"the daemon is gone: {error.strerror}") from None
 
     def hear(self, timeout: Optional[float]) -> Optional[dict[str, Any]]:
-        """The next line; None: there was none in time."""
+        """Returns the next line, or None if none came in time."""
         end = None if timeout is None else time.monotonic() + timeout
         while not self._lines:
             if self._socket.fileno() < 0:
@@ -123,7 +123,7 @@ class _Line:
             self._begun_with += fds
 
     def ended(self) -> bool:
-        """The other end is closed: the kernel tells at once, however its process ended."""
+        """True if the other end is closed. The kernel reports this at once, even if the process was killed."""
         if self._socket.fileno() < 0:
             return False
         socket_ = select.poll()
@@ -131,7 +131,7 @@ class _Line:
         return bool(socket_.poll(0))
 
     def descriptor(self) -> int:
-        """The one that came with the last line."""
+        """Returns the descriptor that came with the last line."""
         if not self._descriptors:
             raise HapticdError("the daemon sent no memory along with its answer")
         return self._descriptors.pop(0)
@@ -151,7 +151,7 @@ class _Line:
 
 
 class Events:
-    """What happens in a daemon, as it happens."""
+    """An iterator over the events of a daemon, as they happen."""
 
     def __init__(self, line: _Line, patience: float, timeout: Optional[float], died: Callable[[], bool]) -> None:
         self._line, self._timeout, self._died = line, timeout, died
@@ -183,7 +183,7 @@ class Events:
 
 
 class Client:
-    """A connection to a running daemon. What it leads ends with it. One thread at a time."""
+    """A connection to a running daemon. Its leads end with it. Only one thread at a time may use it."""
 
     def __init__(self, name: str = "hapticd", folder: Optional[str] = None, timeout: float = 10) -> None:
         self.name, self.timeout = name, timeout
@@ -204,24 +204,24 @@ class Client:
 
     @property
     def about(self) -> dict[str, Any]:
-        """What the daemon says of itself: versions, scene, devices, and unit and meaning of every column."""
+        """The daemon's description of itself: versions, scene, devices, and unit and meaning of every column."""
         return self._box.about
 
     @property
     def streams(self) -> dict[str, Stream]:
-        """All streams by their names."""
+        """All streams, by name."""
         return self._box.streams
 
     def rows(self, stream: str = "ticks", last: int = 1000) -> Any:
-        """The newest rows of a stream, oldest first: a numpy structured array. Raises HapticdError once the daemon has
-        ended: its rows are old then (`streams[stream].last(last)` reads them all the same)."""
+        """The newest rows of a stream, oldest first: a numpy structured array. Raises HapticdError if the daemon has
+        ended, because its rows are old then (`streams[stream].last(last)` still reads them)."""
         self._check()
         return self._box.streams[stream].last(last)
 
     def follow(self, stream: str = "ticks", timeout: Optional[float] = None, pause: float = 0.01) -> Iterator[Any]:
-        """Rows as they come: arrays of one row or more, without gaps as long as each is taken within what is kept.
-        Ends with the daemon, or where no row came for `timeout` seconds. Raises HapticdError, behind the last row, where
-        the daemon was killed or crashed."""
+        """Yields new rows as arrays of one row or more. There are no gaps if the caller takes each array before its rows
+        are overwritten. It ends with the daemon, or if no row came for `timeout` seconds. If the daemon was killed or
+        crashed, it raises HapticdError after the last row."""
         rows = self._box.streams[stream]
         at, since = rows.written, time.monotonic()
         while True:
@@ -238,12 +238,12 @@ class Client:
                 time.sleep(pause)
 
     def alive(self) -> bool:
-        """The daemon runs: it holds the lock on its name."""
+        """True if the daemon runs: it holds the lock on its name."""
         try:
             with open(self._base + ".lock", "rb") as lock:
                 fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
                 return False
-        except PermissionError:  # another user's: it answers, or it does not
+        except PermissionError:  # the lock of another user: only the socket tells
             return os.path.exists(self._base + ".sock")
         except BlockingIOError:
             return True
@@ -258,11 +258,11 @@ class Client:
             return None
 
     def ended(self) -> bool:
-        """The daemon that this client is connected to has ended. One that took its name since does not count."""
+        """True if the daemon of this client has ended, even if another daemon has its name now."""
         return self._line.ended() and (self._file_of_box() != self._box_file or not self.alive())
 
     def died(self) -> bool:
-        """It ended without putting its files away: it was killed, or it crashed."""
+        """True if the daemon ended without removing its files: it was killed, or it crashed."""
         return self.ended() and os.path.exists(self._base + ".sock")
 
     def _gone(self) -> str:
@@ -276,7 +276,8 @@ class Client:
     # ---- requests
 
     def ask(self, **request: Any) -> dict[str, Any]:
-        """Any request of control.md, as ask(do="set", model="teapot", ...). Raises Refused where the daemon refuses."""
+        """Sends any request of control.md, such as ask(do="set", model="teapot", ...). Raises Refused if the daemon
+        refuses it."""
         self._asked += 1
         try:
             return self._answered(dict(request, id=self._asked))
@@ -294,36 +295,36 @@ class Client:
             if answer is None:
                 raise HapticdError(f"the daemon did not answer within {self.timeout:g} s")
             if answer.get("id") != self._asked:
-                continue  # too late for one that was given up
+                continue  # an answer that came too late, after its request had timed out
             if not answer.get("ok"):
                 raise Refused(answer.get("error", "refused"), answer.get("code", "failed"))
             return answer
 
     @property
     def models(self) -> dict[str, Model]:
-        """The models as they are now, by name."""
+        """The models and their present state, by name."""
         return Named("model", {facts["name"]: Model(self, facts) for facts in self.ask(do="list")["models"]})
 
     def status(self) -> dict[str, Any]:
-        """Time, missed ticks, devices with their faults, models that are not felt."""
+        """The daemon's status: time, missed ticks, devices with their faults, models that are not felt."""
         return self.ask(do="status")
 
     def snapshot(self) -> dict[str, Any]:
-        """Where to begin to read: the next row of each stream, every model with its pose, every device."""
+        """A point at which to begin to read: the next row of each stream, every model with its pose, every device."""
         return self.ask(do="snapshot")
 
     def hold(self, device: Optional[str] = None) -> None:
-        """Ramps the force of a device out until it is cleared; of all without a name."""
+        """Ramps the force of a device out until it is cleared. Without a name, of all devices."""
         self.ask(do="hold", **({"device": device} if device else {}))
 
     def clear(self, device: Optional[str] = None) -> None:
-        """Clears a latched fault: the force ramps in."""
+        """Clears a latched fault or a hold: the force ramps in."""
         self.ask(do="clear", **({"device": device} if device else {}))
 
     def events(self, timeout: Optional[float] = None) -> "Events":
-        """Events from now on, as an iterator over dicts with `event`, `tick`, `t` and what belongs to it. It ends with the
-        daemon, or where none came for `timeout` seconds; raises HapticdError where the daemon was killed or crashed. On a
-        connection of its own."""
+        """Events from now on, as an iterator over dicts with `event`, `tick`, `t` and further keys of the event. It ends
+        with the daemon, or if no event came for `timeout` seconds. It raises HapticdError if the daemon was killed or
+        crashed. It uses a separate connection."""
         return Events(_Line(self._base + ".sock"), self.timeout, timeout, self.died)
 
     # ---- leads
@@ -347,12 +348,12 @@ class Client:
             raise
         except HapticdError:
             if not self._line.ended():
-                self._line.say({"do": "unlead", **target})  # it may be led yet, and by nobody
+                self._line.say({"do": "unlead", **target})  # the lead may have begun: ends it
             raise
 
     def lead_force(self, device: str) -> ForceLead:
         """Pushes on the hand of an arm, tick by tick; `push` does it in a thread. The scene must allow it (`clients`).
-        Warns (NoForceWarning) where the arm gets no force now."""
+        Warns (NoForceWarning) if the arm gets no force now."""
         target = {"force": device}
         answer = self._begin(target)
         if answer.get("no_force"):
@@ -360,13 +361,13 @@ class Client:
         return ForceLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target), self._lost_lead)
 
     def _lost_lead(self) -> str:
-        """Why no lead of this connection counts any more; "": they do."""
+        """Returns why the leads of this connection have no effect any more, or "" if they have."""
         if not self._line.ended():
             return ""
         return self._gone() if self.ended() else "the daemon ended the connection, and with it this lead; connect anew"
 
     def _lost(self) -> str:
-        """Why no answer comes on this connection; "": it may yet."""
+        """Returns why no answer can come on this connection, or "" if one may still come."""
         if not self._line.ended():
             return ""
         time.sleep(0.02)  # a daemon that ends closes its connections first
@@ -376,7 +377,7 @@ class Client:
                 "  fix: connect anew")
 
     def _no_force(self, device: str) -> str:
-        """[any thread] Why an arm gets no force now, as the daemon says it; "": it gets what is asked for."""
+        """[any thread] Returns the daemon's reason why an arm gets no force now, or "" if it gets its force."""
         line = _Line(self._base + ".sock")
         try:
             line.say({"do": "status"})
@@ -386,14 +387,14 @@ class Client:
         return next((d.get("no_force") or "" for d in answer.get("devices", []) if d["name"] == device), "")
 
     def push(self, device: str, callback: Callable[[State], Optional[Sequence[float]]], priority: int = 70) -> ForceThread:
-        """Calls `callback(state)` once a tick in a thread of its own (SCHED_FIFO `priority` where that is allowed); the
-        force [N] that it gives back, in the world frame, is added to what the hand feels. Warns (NoForceWarning) where the
-        arm gets no force, now and whenever that begins."""
+        """Calls `callback(state)` once per tick in a separate thread (SCHED_FIFO `priority` if that is allowed); the
+        force [N, world frame] that it returns is added to the force of the models. Warns (NoForceWarning) if the arm gets
+        no force now, and each time this begins."""
         return ForceThread(self, device, callback, priority)
 
     def state(self, device: str) -> State:
-        """The arm in the newest tick. The first call waits for the next tick, at most `timeout` of the client. Raises
-        HapticdError once the daemon has ended: its newest tick is that of the past."""
+        """Returns the state of the arm in the newest tick. The first call waits for the next tick, at most `timeout` of
+        the client. Raises HapticdError if the daemon has ended, because its newest tick is old then."""
         self._check()
         if self._states is None:
             self._states = self._state_page()
@@ -424,8 +425,8 @@ class Client:
         return [d["name"] for d in self.about["devices"]]
 
     def wait(self, tick: int, timeout: float = 1.0) -> bool:
-        """Sleeps until the rows of this tick are written, at most `timeout` seconds: whether they are. Raises HapticdError
-        where the daemon ended before."""
+        """Sleeps until the rows of this tick are written, at most `timeout` seconds. Returns True if they are. Raises
+        HapticdError if the daemon ends before."""
         end = time.monotonic() + timeout
         rows = self._box.streams["ticks"]
         seen = rows.written
@@ -465,6 +466,6 @@ class Client:
 
 
 def connect(name: str = "hapticd", folder: Optional[str] = None, timeout: float = 10) -> Client:
-    """A client of the daemon that runs as `name`. `folder` is where it shows itself, found without; `timeout` in
-    seconds for an answer."""
+    """Connects to the daemon `name`. `folder` is its runtime folder, which is found if it is not given; `timeout` is
+    the longest time for an answer in seconds."""
     return Client(name, folder, timeout)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 
 class HapticdError(Exception):
-    """The daemon is not there, went away, or what it says cannot be understood."""
+    """There is no daemon, it has ended, or its answer cannot be understood."""
 
 
 class Refused(HapticdError):
-    """The daemon answered that it will not do it. `code` is one word for programs, the text is for people."""
+    """The daemon refused a request. `code` is one word for programs, the text is for people."""
 
     def __init__(self, text: str, code: str = "failed") -> None:
         super().__init__(text)
@@ -20,7 +20,7 @@ class NoForceWarning(UserWarning):
 
 
 class Named(dict):  # type: ignore[type-arg]
-    """A dictionary that says what there is where a name is not found."""
+    """A dictionary whose error for an unknown name lists the known names."""
 
     def __init__(self, what: str, *parts: object) -> None:
         super().__init__(*parts)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leads: memory that this program writes and the servo looks at once a tick."""
+"""Leads: memory that this program writes and the servo reads once per tick."""
 from __future__ import annotations
 
 import math
@@ -49,7 +49,7 @@ class _Slot:
 
 
 class Ending:
-    """What `end()` ends, for `with`."""
+    """Calls `end()` at the end of a `with` block."""
 
     def end(self) -> None:
         raise NotImplementedError
@@ -59,17 +59,17 @@ class Ending:
             self.end()
         except HapticdError:
             if kind is None:
-                raise  # else it would hide what went wrong first
+                raise  # only then, so that the first error is not hidden
 
 
 class Lead(Ending):
-    """Something that this program leads. Ends with `end()`, with the client, or with `with`."""
+    """A lead of this program. It ends with `end()`, with the client, or at the end of a `with` block."""
 
     def __init__(self, fd: int, size: int, unlead: Callable[[], Any],
                  lost: Callable[[], str] = lambda: "") -> None:
         self._slot: Optional[_Slot] = _Slot(fd, size)
         self._unlead = unlead
-        self._lost = lost  # why it counts no more; "": it does
+        self._lost = lost  # why the lead has no effect any more, or ""
 
     def _put(self, record: bytes) -> None:
         if self._slot is None:
@@ -79,7 +79,7 @@ class Lead(Ending):
         self._slot.put(record)
 
     def end(self) -> None:
-        """Leads no more: a model brakes and stays, a force ramps out. Raises HapticdError where the daemon has ended."""
+        """Ends the lead: a model brakes and stays, a force ramps out. Raises HapticdError if the daemon has ended."""
         if self._slot is None:
             return
         self._slot.close()
@@ -98,9 +98,9 @@ class PoseLead(Lead):
     def put(self, position: Sequence[float], orientation: Sequence[float] = (1.0, 0.0, 0.0, 0.0),
             linear: Sequence[float] = (0.0, 0.0, 0.0), angular: Sequence[float] = (0.0, 0.0, 0.0),
             when: Optional[float] = None) -> None:
-        """Where it shall be: position [m], orientation (a unit quaternion w, x, y, z), and how it moves there: linear
-        [m/s] and angular [rad/s] velocity, in the world frame. `when` [s] on the clock of `time.monotonic()` says for
-        which moment; without it, for now. Newest wins; nothing here waits."""
+        """Sets where the model or hand must go: position [m], orientation (a unit quaternion w, x, y, z), and its linear
+        [m/s] and angular [rad/s] velocity there, in the world frame. `when` [s] is the time for which they hold, on the
+        clock of `time.monotonic()`; the default is now. The newest target wins. It never waits."""
         stamp = time.monotonic() if when is None else when
         try:
             record = _TARGET.pack(*position, *orientation, *linear, *angular, stamp)
@@ -121,7 +121,7 @@ class PoseLead(Lead):
 
 
 class ForceLead(Lead):
-    """Pushes on the hand of an arm. 3 ms after the last answer the force ramps out, and is gone after 20 ms."""
+    """A force on the hand of an arm. 3 ms after the last answer the force ramps out; after 20 ms it is zero."""
 
     def put(self, tick: int, force: Sequence[float], torque: Sequence[float] = (0.0, 0.0, 0.0),
             woke_ns: int = 0) -> None:

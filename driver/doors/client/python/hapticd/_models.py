@@ -19,23 +19,23 @@ class Parameter:
     unit: str
     min: float
     max: float
-    safety: bool  #: a hand may feel the change suddenly: setting it needs consent
+    safety: bool  #: True if a hand may feel the change suddenly, so that setting it needs consent
     value: float
     whole: bool
     doc: str
 
 
 class Model:
-    """A model, as it was when the list was asked for."""
+    """A model, in its state at the time of the request."""
 
     def __init__(self, client: "Client", facts: dict[str, Any]) -> None:
         self._client = client
         self.name: str = facts["name"]
-        self.number: int = facts["number"]  #: in the columns `model` of rows
+        self.number: int = facts["number"]  #: number of the model in the columns `model` of rows
         self.plugin: str = facts["plugin"]
         self.enabled: bool = facts["enabled"]
         self.kinematic: bool = facts["kinematic"]
-        self.leader: Optional[int] = facts["leader"]  #: process that leads it
+        self.leader: Optional[int] = facts["leader"]  #: id of the process that leads the model
         self.position: list[float] = facts["pose"]["position"]  #: m, world frame
         self.orientation: list[float] = facts["pose"]["orientation"]  #: w, x, y, z
         self.parameters: dict[str, Parameter] = Named(
@@ -45,26 +45,27 @@ class Model:
         return f"<hapticd model {self.name!r} of {self.plugin}>"
 
     def get(self, parameter: str) -> Any:
-        """The value of any parameter, also of those that cannot change."""
+        """Returns the value of any parameter, including those that cannot change."""
         return self._client.ask(do="get", model=self.name, parameter=parameter)["value"]
 
     def set(self, parameter: str, value: float, consent: bool = False) -> None:
-        """Sets a live parameter. Whoever holds the arm must agree (`consent`) to what a hand may feel suddenly."""
+        """Sets a live parameter. If a hand may feel the change suddenly, the person who holds the arm must agree
+        (`consent`)."""
         request: dict[str, Any] = {"do": "set", "model": self.name, "parameter": parameter, "value": value}
         if consent:
             request["consent"] = True
         self._client.ask(**request)
 
     def enable(self) -> None:
-        """Its force fades in."""
+        """Fades the force of the model in."""
         self._client.ask(do="enable", model=self.name)
 
     def disable(self) -> None:
-        """Its force fades out; it is traced on."""
+        """Fades the force of the model out. The model is still traced."""
         self._client.ask(do="disable", model=self.name)
 
     def move(self, position: Sequence[float], seconds: Optional[float] = None) -> float:
-        """Sends a kinematic model to a position [m]. Gives back how many seconds it takes."""
+        """Sends a kinematic model to a position [m]. Returns how many seconds the motion takes."""
         request: dict[str, Any] = {"do": "move", "model": self.name, "position": list(position)}
         if seconds is not None:
             request["seconds"] = seconds

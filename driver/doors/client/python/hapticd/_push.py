@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A force loop of one's own: a thread that answers every tick."""
+"""A force loop in Python: a thread that answers every tick with a force."""
 from __future__ import annotations
 
 import os
@@ -17,18 +17,19 @@ from ._state import FAULTS, Bell, State, StatePage
 if TYPE_CHECKING:
     from ._client import Client
 
-_TOO_OLD = 20_000_000  # ns: an answer so long after its tick is ignored
+_TOO_OLD = 20_000_000  # ns: an answer that comes later after its tick is ignored
 _STOPPED = 8  # the fault of an arm that is held, or whose run ends
-_PATIENCE = 0.1  # s between two looks at whether anything is alive
+_PATIENCE = 0.1  # s between two checks whether the daemon and the main thread are alive
 
 Force = Sequence[float]
 
 
 class ForceThread(Ending):
-    """Calls `callback(state)` in a thread once a tick; what it gives back, three numbers in N (or six with the torque in
-    N m), pushes on the hand; None answers nothing. An exception in the callback ends the push, is printed at once, stays
-    in `error`, and is raised by `end()`; so is the end of the daemon. `end()` warns where no tick was answered, or answers
-    came too late to count. A NoForceWarning comes when the arm begins to get no force."""
+    """Calls `callback(state)` in a thread once per tick. The callback returns the force on the hand, three numbers in N
+    (or six with the torque in N m), or None for no answer to this tick. An exception in the callback ends the push: it
+    is printed at once, stays in `error`, and `end()` raises it. The end of the daemon is such an exception too. `end()`
+    warns if no tick was answered, or if answers came too late. A NoForceWarning comes each time the arm begins to get
+    no force."""
 
     def __init__(self, client: "Client", device: str, callback: Callable[[State], Optional[Force]], priority: int) -> None:
         self._lead: ForceLead = client.lead_force(device)
@@ -38,20 +39,20 @@ class ForceThread(Ending):
         self._client, self._device = client, device
         self._callback, self._priority = callback, priority
         self._stop = threading.Event()
-        self.answers = 0  #: ticks that were answered
-        self.unanswered = 0  #: ticks to which the callback gave back None
-        self.late = 0  #: answers that came more than 20 ms after their tick, which count for nothing
-        self.real_time = False  #: the thread has the priority that was asked for
-        self.error: Optional[BaseException] = None  #: that ended it
+        self.answers = 0  #: number of ticks that were answered
+        self.unanswered = 0  #: number of ticks for which the callback returned None
+        self.late = 0  #: number of answers that came more than 20 ms after their tick, and had no effect
+        self.real_time = False  #: True if the thread has the requested priority
+        self.error: Optional[BaseException] = None  #: the exception that ended the thread
         self._thread = threading.Thread(target=self._run, name="hapticd-push", daemon=True)
         self._thread.start()
 
     def _run(self) -> None:
         try:
-            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(self._priority))  # 0: of this thread alone
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(self._priority))  # 0 means this thread only
             self.real_time = True
         except OSError:
-            pass  # it works without; late answers ramp the force out
+            pass  # without priority it works too, but late answers ramp the force out
         try:
             self._answer()
         except BaseException as error:  # noqa: B902 - told at once, and raised in end()
@@ -62,13 +63,13 @@ class ForceThread(Ending):
             self._page.close()
 
     def _tell(self, error: BaseException) -> None:
-        """Nobody may look at the main thread for long."""
+        """Reports an error at once, because the main thread may not ask for it for a long time."""
         shown = None if isinstance(error, HapticdError) else error.__traceback__
         text = "".join(traceback.format_exception(type(error), error, shown))
         print(f"hapticd: the push on {self._device} has ended, and its force ramps out:\n{text}", end="", file=sys.stderr)
 
     def _watch(self, state: State) -> None:
-        """A fault that begins is told beside the ticks: words for it take a request."""
+        """Warns of a fault that begins, outside the ticks, because the text of the fault needs a request."""
         if state.fault != self._fault and state.fault != 0:
             threading.Thread(target=self._tell_fault, args=(state.fault,), daemon=True).start()
         self._fault = state.fault
@@ -90,7 +91,7 @@ class ForceThread(Ending):
     def _answer(self) -> None:
         seen, last = self._bell.wait("state", -1, 0), -1
         first = self._page.read(self._arm)
-        self._fault = first.fault if first else 0  # of which lead_force() warned
+        self._fault = first.fault if first else 0  # lead_force() has warned of it already
         while not self._stop.is_set():
             seen = self._bell.wait("state", seen, _PATIENCE)
             woke = time.monotonic_ns()

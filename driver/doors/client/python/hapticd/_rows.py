@@ -13,7 +13,7 @@ from ._error import HapticdError, Named
 
 try:
     import numpy
-except ImportError:  # rows are those below then
+except ImportError:  # then the row classes below are used
     numpy = None  # type: ignore[assignment]
 
 _HEADER_AT = 512  # see recording.md, "Layout for other writers and readers"
@@ -69,7 +69,7 @@ class Stream:
 
     @property
     def written(self) -> int:
-        """Rows ever written: the number of the row to come."""
+        """Number of rows written so far, which is the number of the next row."""
         return struct.unpack_from("<Q", self._memory, self._count_at)[0]
 
     def _kept(self, first: int, written: int) -> int:
@@ -77,8 +77,8 @@ class Stream:
         return max(first, written - self.capacity + 1, 0)
 
     def read(self, first: int, most: Optional[int] = None) -> tuple[int, Any]:
-        """Rows from number `first` on, at most `most`. Those that are not kept any more are left out: gives back the
-        number of the first row that it has, and the rows. Never waits."""
+        """Returns rows from number `first` on, at most `most`. Rows that are no longer kept are left out, so it returns
+        the number of the first row that it has, and the rows. It never waits."""
         if first < 0 or (most is not None and most < 0):
             raise ValueError(f"rows are counted from 0: read({first}, {most}); the newest n are last(n)")
         while True:
@@ -112,7 +112,7 @@ class Stream:
 
 
 class BlackBox:
-    """The whole file: what it says of itself, and its streams."""
+    """The whole file: its description and its streams."""
 
     def __init__(self, file: str) -> None:
         try:

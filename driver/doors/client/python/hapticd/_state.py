@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The arms in the tick that is going on, and the bell that wakes who waits for it."""
+"""The states of the arms in the current tick, and the bell that wakes a waiting program."""
 from __future__ import annotations
 
 import ctypes
@@ -26,20 +26,20 @@ FAULTS = ("", "not finite", "device lost", "device at fault", "stale samples", "
 
 
 class State(NamedTuple):
-    """An arm before the shapes are felt. SI units, world frame."""
+    """The state of an arm at the start of a tick, before the shapes are stepped. SI units, world frame."""
 
     tick: int
     time_ns: int  #: CLOCK_MONOTONIC of the tick's deadline
     t: float  #: s since the first tick
     dt: float  #: s since the tick before
-    position: tuple[float, float, float]  #: m, tip
+    position: tuple[float, float, float]  #: m, position of the tip
     orientation: tuple[float, float, float, float]  #: w, x, y, z
     velocity: tuple[float, float, float]  #: m/s
     joints: tuple[float, ...]  #: rad or m
-    sent: tuple[float, float, float]  #: N, by the tick before
-    good: bool  #: the sample was good; otherwise the pose is an older one
+    sent: tuple[float, float, float]  #: N, force that the previous tick sent
+    good: bool  #: True if the sample was good; if not, the pose is older
     buttons: int  #: bit i: button i is down
-    fault: int  #: why no force flows, 0: it does; `fault_name` has a word for it
+    fault: int  #: why the arm gets no force, 0 if it gets its force; `fault_name` has the name
 
     @property
     def fault_name(self) -> str:
@@ -58,7 +58,7 @@ class StatePage:
         self.arms, self._stride = _PAGE.unpack_from(self._memory, 0)
 
     def read(self, arm: int) -> Optional[State]:
-        """The newest; None: there was none yet."""
+        """Returns the newest record, or None if there was none yet."""
         at = _FIRST + arm * self._stride
         for _ in range(1000):  # the servo writes for less than a microsecond
             count = _COUNT.unpack_from(self._memory, at)[0]
@@ -77,7 +77,7 @@ class StatePage:
 
 
 class Bell:
-    """Words that the servo counts up; it wakes who waits."""
+    """Words that the servo counts up. It wakes programs that wait for them."""
 
     def __init__(self, fd: int, size: int) -> None:
         try:

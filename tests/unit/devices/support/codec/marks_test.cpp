@@ -88,7 +88,7 @@ TEST(Marks, AFieldThatContradictsThemIsRefused) {
   EXPECT_NE(complaint(format(kEscaped, R"({"is":"fault","at":3,"type":"u8","bit":0})"))
                 .find("wire.input.fields[1].at: takes bits of byte 3, where framing.end puts its mark 0x7e"),
             std::string::npos);
-  EXPECT_NE(complaint(format(kEscaped, "", "", R"("id":5,)")).find("wire.input.id: 5 is the first byte"),
+  EXPECT_NE(complaint(format(kEscaped, "", "", R"("id":5,)")).find("wire.input.id: 5 is the report id"),
             std::string::npos);
 }
 

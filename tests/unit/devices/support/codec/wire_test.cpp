@@ -133,8 +133,8 @@ TEST(Wire, NothingStandsOnTheBitsOfAJoint) {
   EXPECT_EQ(complaintOf(positionAnd("")), "");
   EXPECT_EQ(
       complaintOf(positionAnd(R"({"is":"button","button":1,"at":3,"type":"u8"})")),
-      "wire.input.fields[1].at: takes bits of byte 3, which fields[0] (position of joint 1) has already, expected bits "
-      "of its own: correct at, bit_offset or type of one of them");
+      "wire.input.fields[1].at: takes bits of byte 3, which fields[0] (position of joint 1) uses already; correct at, "
+      "bit_offset or type of one of the two fields");
   EXPECT_EQ(complaintOf(positionAnd(R"({"is":"button","button":1,"at":4,"type":"u8"})")), "");
   EXPECT_NE(
       complaintOf(R"({"is":"counter","at":0,"type":"u16"},)" + positionAnd("")).find("fields[1].at: takes bits of"),
@@ -172,9 +172,8 @@ TEST(Wire, ATorqueHasBothSigns) {
                            R"("type":"u16","scale":0.001,"offset":-32.768)"})
     EXPECT_EQ(complaintOf(positionAnd(""), good), "") << good;
   EXPECT_EQ(complaintOf(positionAnd(""), R"("type":"u16","scale":0.001)"),
-            "wire.output.fields[0].type: \"u16\" is 0 to 65.535 N m with this scale and offset, expected both signs: a "
-            "signed "
-            "type such as i16, or an offset that puts zero in the middle");
+            "wire.output.fields[0].type: \"u16\" is 0 to 65.535 N m with this scale and offset; expected both signs: "
+            "use a signed type such as i16, or an offset that puts zero in the middle");
   EXPECT_NE(complaintOf(positionAnd(""), R"("type":"i16","scale":0.001,"offset":33)").find("expected both signs"),
             std::string::npos);
 }
@@ -185,11 +184,11 @@ TEST(Wire, ANumberHasOneScaleAndATorqueNoDegrees) {
   };
   EXPECT_EQ(position(R"("scale_degrees":0.0044,"offset_degrees":3)"), "");
   EXPECT_EQ(position(R"("scale":7e-5,"scale_degrees":0.0044)"),
-            "wire.input.fields[0].scale_degrees: beside scale, expected one of them");
+            "wire.input.fields[0].scale_degrees: cannot be used together with scale; remove one of the two");
   EXPECT_EQ(position(R"("scale":7e-5,"offset":1,"offset_degrees":3)"),
-            "wire.input.fields[0].offset_degrees: beside offset, expected one of them");
+            "wire.input.fields[0].offset_degrees: cannot be used together with offset; remove one of the two");
   EXPECT_EQ(complaintOf(positionAnd(""), R"("type":"i16","scale_degrees":0.01)"),
-            "wire.output.fields[0].scale_degrees: of a torque, expected scale in N m: only angles have degrees");
+            "wire.output.fields[0].scale_degrees: a torque has no degrees; use scale in N m");
 }
 
 TEST(Wire, AFieldBeyondTheReportIsToldOnceAndWithTheSizeThatItNeeds) {

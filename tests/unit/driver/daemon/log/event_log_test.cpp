@@ -65,12 +65,12 @@ TEST_F(EventWords, TellTimeAndForceOfAPull) {
 TEST_F(EventWords, SayThatASwitchWasFoundPressed) {
   EXPECT_EQ(log_.messageOfSwitch(0).who, "phantom");
   EXPECT_EQ(log_.messageOfSwitch(0).level, HSP_LOG_WARNING);
-  EXPECT_NE(log_.messageOfSwitch(0).text.find("let it go once"), std::string::npos);
+  EXPECT_NE(log_.messageOfSwitch(0).text.find("release it"), std::string::npos);
 }
 
 TEST_F(EventWords, NameTheProcessThatLeads) {
   EXPECT_EQ(of(HAPTICD_JOINED, 0, 4711).text, "process 4711 leads it");
-  EXPECT_EQ(of(HAPTICD_LOST, 0, 4711).text, "process 4711 leads it no more");
+  EXPECT_EQ(of(HAPTICD_LOST, 0, 4711).text, "process 4711 no longer leads it");
 }
 
 TEST_F(EventWords, OfAHoldAndOfItsEndMatch) {

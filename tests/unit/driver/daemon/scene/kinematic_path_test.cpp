@@ -36,9 +36,11 @@ TEST(KinematicPath, TakesPositionsAlone) {
 }
 
 TEST(KinematicPath, NamesLineColumnAndReason) {
-  EXPECT_EQ(firstProblem("t,x,y,z\n0,0,0,0\n0,0,0,0\n"), "p.csv:3:1: t: 0 does not grow, expected more than 0");
+  EXPECT_EQ(firstProblem("t,x,y,z\n0,0,0,0\n0,0,0,0\n"),
+            "p.csv:3:1: t: 0 does not grow from row to row, expected more than 0");
   EXPECT_EQ(firstProblem("t,x,y,z\n0,0,inf,0\n"), "p.csv:2:5: y: \"inf\" is not valid, expected a finite number");
-  EXPECT_EQ(firstProblem("t,x,y,z\n0,0,0,0,9\n"), "p.csv:2:1: 5 columns, expected 4; a half is 0.5, with a point");
+  EXPECT_EQ(firstProblem("t,x,y,z\n0,0,0,0,9\n"),
+            "p.csv:2:1: 5 columns, expected 4; write decimals with a point: 0.5, not 0,5");
   EXPECT_EQ(firstProblem("t,x,y,z\n0,0,0,1e300\n"),
             "p.csv:2:7: z: \"1e300\" is not valid, expected a finite number of at most 1e+06");
   EXPECT_EQ(firstProblem("t,x,y,z\n"),

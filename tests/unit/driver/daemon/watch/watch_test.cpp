@@ -314,7 +314,7 @@ TEST(CrashDeathTest, OneInsideTheCutOfTheMotorsStillEndsInQuarantine) {
     const Calling calling(ownerOf("bad", "model"));
     std::raise(SIGFPE);
   };
-  EXPECT_EXIT(crash(), testing::ExitedWithCode(1), "SIGFPE.*\n.*to switch the motors off crashed as well");
+  EXPECT_EXIT(crash(), testing::ExitedWithCode(1), "SIGFPE.*\n.*switching the motors off crashed too");
   ASSERT_EQ(quarantined(dir).size(), 1u);
   EXPECT_EQ(quarantined(dir)[0].plugin, "bad");
   std::filesystem::remove_all(dir);

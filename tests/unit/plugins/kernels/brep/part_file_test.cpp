@@ -71,7 +71,7 @@ TEST(PartFile, SaysWhatIsWrongWithOtherFiles) {
   };
   EXPECT_EQ(error(""), "x.hpart: not a part file of format hapticd-part/1; expected one that hapticd import wrote");
   EXPECT_NE(error(file.substr(0, 30)).find("the header is cut off"), std::string::npos);
-  EXPECT_NE(error(file.substr(0, file.size() - 8)).find("is it whole"), std::string::npos);
+  EXPECT_NE(error(file.substr(0, file.size() - 8)).find("may be incomplete"), std::string::npos);
   std::string damaged = file;
   damaged[file.size() - 1] ^= 1;
   EXPECT_NE(error(damaged).find("its checksum differs"), std::string::npos);
@@ -93,23 +93,23 @@ std::string spoilt(const std::function<void(Part&)>& spoil) {
 TEST(PartCheck, NamesTheRecordThatBreaksARule) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(spoilt([](Part&) {}), "");
-  EXPECT_EQ(spoilt([](Part& p) { p.coedges[2].edge = 3; }), "edge 1: coedge 2 is of another edge");
+  EXPECT_EQ(spoilt([](Part& p) { p.coedges[2].edge = 3; }), "edge 1: coedge 2 belongs to another edge");
   EXPECT_EQ(spoilt([&](Part& p) { p.surfaces[0].r[0] = nan; }),
             "surface 0: a radius is nan, expected a finite number up to 1000000");
   EXPECT_EQ(spoilt([](Part& p) { p.surfaces[0].r[0] = -1; }), "surface 0: r0 is -1, expected above 0");
-  EXPECT_EQ(spoilt([](Part& p) { p.faces[1].surface = 7; }), "face 1: surface 7, expected less than 3");
+  EXPECT_EQ(spoilt([](Part& p) { p.faces[1].surface = 7; }), "face 1: surface 7, but the index must be below 3");
   EXPECT_EQ(spoilt([](Part& p) { p.loops[1].count = 0xfffffff0u; }),
-            "loop 1: coedges 4 to 4294967284, expected within 6");
+            "loop 1: coedges 4 to 4294967284, but there are only 6");
   EXPECT_EQ(spoilt([](Part& p) { p.edges[0].t1 = p.edges[0].t0; }),
-            "edge 0: parameters from 0 to 0, expected finite and ascending");
+            "edge 0: parameters from 0 to 0, expected finite numbers, the second greater than the first");
   EXPECT_EQ(spoilt([](Part& p) { p.coedges[0].next = 0; }),
-            "edge 0: its list has more than the 2 coedges that it states");
+            "edge 0: its list has more than the 2 coedges that coedge_count gives");
   EXPECT_EQ(spoilt([](Part& p) { p.instances[0].pose[0] = -1; }),
-            "instance 0: the pose mirrors, expected a rotation (a mirrored body is a body of its own)");
-  EXPECT_EQ(spoilt([](Part& p) { p.instances[0].parent = 0; }), "instance 0: parent 0, expected less than 0");
-  EXPECT_EQ(spoilt([](Part& p) { p.instances.clear(); }), "no instances, expected at least one");
+            "instance 0: the pose mirrors, expected a rotation (store a mirrored body as a separate body)");
+  EXPECT_EQ(spoilt([](Part& p) { p.instances[0].parent = 0; }), "instance 0: parent 0, but the index must be below 0");
+  EXPECT_EQ(spoilt([](Part& p) { p.instances.clear(); }), "the part has no instances, expected at least one");
   EXPECT_EQ(spoilt([](Part& p) { p.bodies[0].face_count = 2; }),
-            "bodies: they hold 2 faces, expected all 3, once each");
+            "bodies: together they have 2 faces, but the part has 3; each must belong to exactly one body");
 }
 
 /// Whatever single word of a record is spoilt: the reader answers, with an error or a part that passes the check again.

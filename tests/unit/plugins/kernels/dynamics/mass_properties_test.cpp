@@ -60,7 +60,7 @@ TEST(MassProperties, AnInertiaThatNoSolidHasIsRefusedWithItsMoments) {
     return "";
   };
   EXPECT_EQ(complaint(Vector3d(1, 2, 3).asDiagonal()), "") << "a flat plate";
-  EXPECT_NE(complaint(Vector3d(1, 2, 3.1).asDiagonal()).find("1, 2, 3.1 kg m^2, expected none above the sum"),
+  EXPECT_NE(complaint(Vector3d(1, 2, 3.1).asDiagonal()).find("1, 2, 3.1 kg m^2, expected no moment above the sum"),
             std::string::npos);
   EXPECT_NE(complaint(Vector3d(1, -2, 3).asDiagonal()).find("expected all above 0"), std::string::npos);
   Matrix3d skew = Matrix3d::Identity();

@@ -136,7 +136,7 @@ TEST(Loop, CountsEveryAllocationOfAPlugin) {
   EXPECT_GE(most.count, kEnoughTicks / 2);
   const std::string told = record::allocationText(report, most);
   EXPECT_NE(told.find(" mostly in the plugin allocating ("), std::string::npos) << told;
-  EXPECT_NE(told.find("fix: make room in activate()"), std::string::npos) << told;
+  EXPECT_NE(told.find("fix: allocate the memory in activate()"), std::string::npos) << told;
 }
 #endif
 

@@ -82,7 +82,8 @@ TEST(RecoveryTest, AGraverFaultTakesThePlaceOfOneThatEndsByItself) {
 TEST(RecoveryTest, TheDevicesOwnWordsAreTheMessage) {
   const std::string text = faultMessage("arm", Fault::kDeviceFault, 0, "a stalled endpoint; unplug it");
   EXPECT_EQ(text,
-            "device arm: a stalled endpoint; its forces ended and come back in a ramp once it is well; unplug it");
+            "device arm: a stalled endpoint; its forces ended and come back in a ramp once the device works again; "
+            "unplug it");
   EXPECT_NE(faultMessage("arm", Fault::kNotFinite, 0).find("until the fault is cleared"), std::string::npos);
 }
 

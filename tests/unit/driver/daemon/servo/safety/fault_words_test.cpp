@@ -33,7 +33,8 @@ TEST(FaultWords, HaveTheConsequenceAndTheCure) {
             "device arm: the tip moved faster than limits.velocity (measured: 7 m/s); its forces ended and stay off "
             "until the fault is cleared; hold the arm, then start again");
   EXPECT_EQ(faultMessage("arm", Fault::kStale, 0.06, "no report came; look at the cable"),
-            "device arm: no report came (measured: 0.06 s); its forces ended and come back in a ramp once it is well; "
+            "device arm: no report came (measured: 0.06 s); its forces ended and come back in a ramp once the device "
+            "works again; "
             "look at the cable");
   EXPECT_EQ(faultMessage("arm", Fault::kStopped, 0),
             "device arm: stopped by the user; its forces ended and stay off until the fault is cleared");

@@ -52,12 +52,17 @@ TEST(HeldCommand, TellsWhyAnArmPushesLessAndTheCure) {
   EXPECT_EQ(describeSlow(1000, 1000, 8.5, 8.5), "");
   EXPECT_EQ(describeSlow(100, 1000, 8.5, 1.1), "") << "that little it has all the same";
   EXPECT_EQ(describeSlow(100, 1000, 8.5, 8.5),
-            "the servo's rate is low: after a fault one command may stay on for 10 ms, so it pushes with at most 1.1 N "
-            "instead of 8.5 N, which gives a free arm 5 mJ and 1 mm; expected at least 358 Hz for all of its force");
-  EXPECT_EQ(describeSlow(1000, 500, 0, 0),
-            "its own rate is low: after a fault one command may stay on for 4 ms, so it pushes with at most 5.95 N, "
-            "which gives a free arm 5 mJ and 1 mm; expected at least 715 Hz for all of its force");
-  EXPECT_NE(describeSlow(100, 100, 0, 0).find("its own rate is low: after a fault one command may stay on for 20 ms"),
+            "the servo's rate is low: after a fault the motors may keep the last command for 10 ms, so the force is "
+            "limited to 1.1 N "
+            "instead of 8.5 N, which moves a free arm by at most 1 mm and gives it at most 5 mJ; expected at least 358 "
+            "Hz for the full force");
+  EXPECT_EQ(
+      describeSlow(1000, 500, 0, 0),
+      "its own rate is low: after a fault the motors may keep the last command for 4 ms, so the force is limited to "
+      "5.95 N, "
+      "which moves a free arm by at most 1 mm and gives it at most 5 mJ; expected at least 715 Hz for the full force");
+  EXPECT_NE(describeSlow(100, 100, 0, 0)
+                .find("its own rate is low: after a fault the motors may keep the last command for 20 ms"),
             std::string::npos);
   EXPECT_EQ(describeSlow(100, 1000, 8.5, 0.5), "");
   EXPECT_NE(describeSlow(100, 0, 0, 0).find("the servo's rate"), std::string::npos) << "an arm that names none";
