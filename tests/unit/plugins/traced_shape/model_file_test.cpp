@@ -56,7 +56,8 @@ TEST_F(ModelFileTest, RefusesMoreYamlThanMemoryIsGoodFor) {
   std::string knots = "0, 0";
   while (knots.size() < (2u << 20)) knots += ", 0.5";
   const std::string yaml = with(kSquare, "[0, 0, 1, 1]", "[" + knots + ", 1, 1]");
-  EXPECT_NE(complaintOf(yaml).find("larger than 2 MiB, the most for YAML"), std::string::npos) << complaintOf(yaml).substr(0, 200);
+  EXPECT_NE(complaintOf(yaml).find("larger than 2 MiB, the most for YAML"), std::string::npos)
+      << complaintOf(yaml).substr(0, 200);
   const std::string json = "{\"format\": \"hapticd-model/1\", \"surfaces\": [{\"knots\": [[" + knots + "], []]}]}";
   EXPECT_EQ(complaintOf(json).find("larger"), std::string::npos);
   EXPECT_NE(complaintOf(json).find("degree"), std::string::npos) << complaintOf(json).substr(0, 200);
