@@ -128,6 +128,8 @@ void MatDeformable::describe(const MedialFile& file, double tick) const {
     if (!geometry_.ends_with(".ma") && given != usual(id))
       say(HSP_LOG_WARNING, std::string(id) + ": has no effect: " + geometry_ +
                                " says what its points have; expected it with a medial mesh without materials (.ma)");
+  if (!geometry_.ends_with(".ma") && rings_ != static_cast<int>(usual("rings")))
+    say(HSP_LOG_WARNING, "rings: has no effect: only a medial mesh (.ma) has them; expected influence for a grid");
   const double size = body_->bounds().sizes().maxCoeff();
   if (!(size > kLarge)) return;
   char text[128];
@@ -145,6 +147,9 @@ void MatDeformable::describeDynamics(const MedialFile& file) const {
                               : "off: the body follows the probe at once, and the force is that of a body at rest";
   if (by_file) text += without ? " (so for .ma files; felt makes it felt)" : " (so for files of this format)";
   say(HSP_LOG_DEBUG, text);
+  if (dynamics != kFelt && relaxation_share_ > 0)
+    say(HSP_LOG_WARNING, std::string("relaxation.share: has no effect: dynamics is ") +
+                             (dynamics == kSeen ? "seen" : "off") + "; expected dynamics: felt, which relaxes");
   if (without && by_file && dynamics == kSeen && mass_ != usual("mass"))
     say(HSP_LOG_WARNING,
         "mass: is seen and not felt, as dynamics is that of .ma files, seen; dynamics: felt makes it felt");

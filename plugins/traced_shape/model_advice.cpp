@@ -86,6 +86,31 @@ void adviseWeights(const SurfaceData& surface, std::size_t index, Problems& odd)
     }
 }
 
+/// [m] All lines of a net together, whose points lie `along_u` and `along_v` apart in the list.
+double lengthOfNet(const SurfaceData& surface, std::size_t along_u, std::size_t along_v) {
+  const auto rows = static_cast<std::size_t>(surface.count(0)), columns = static_cast<std::size_t>(surface.count(1));
+  double length = 0;
+  for (std::size_t i = 0; i < rows; ++i)
+    for (std::size_t j = 0; j < columns; ++j) {
+      const Vector3d& at = surface.points[i * along_u + j * along_v];
+      if (i + 1 < rows) length += (surface.points[(i + 1) * along_u + j * along_v] - at).norm();
+      if (j + 1 < columns) length += (surface.points[i * along_u + (j + 1) * along_v] - at).norm();
+    }
+  return length;
+}
+
+/// A net that is written in the other order runs to and fro, and is the longer for it.
+void adviseOrder(const SurfaceData& surface, std::size_t index, Problems& odd) {
+  constexpr double kShorter = 0.8;
+  const auto rows = static_cast<std::size_t>(surface.count(0)), columns = static_cast<std::size_t>(surface.count(1));
+  const double as_read = lengthOfNet(surface, columns, 1), turned = lengthOfNet(surface, 1, rows);
+  if (turned < kShorter * as_read)
+    odd.add(surfaceAt(index, "points"),
+            written("run to and fro: the net of %zu by %zu is %.3g times as long as it would be if u ran fastest; "
+                    "expected all points of the first u, then of the next: v runs fastest",
+                    rows, columns, as_read / turned));
+}
+
 /// Two sides that end in one corner and hardly part from there: the other corner of one was meant to be that of the
 /// other. Surfaces that are apart on purpose, such as a lid above its pot, share no corner.
 class Gaps {
@@ -194,6 +219,7 @@ std::vector<std::string> adviseModel(const ModelFile& file, const trace::Model& 
   for (std::size_t i = 0; i < file.surfaces.size() && !odd.full(); ++i) {
     if (hasNoArea(file.surfaces[i]))
       odd.add(surfaceAt(i, "points"), "lie in one place or on one line, so the surface has no area and is not felt");
+    adviseOrder(file.surfaces[i], i, odd);
     if (!file.surfaces[i].weights.empty()) adviseWeights(file.surfaces[i], i, odd);
   }
   adviseNames(file, odd);

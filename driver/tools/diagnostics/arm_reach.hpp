@@ -14,6 +14,10 @@ namespace hapticd::diagnostics {
 /// generous if they are not.
 double reachOf(const scene::Device& device, const host::DeviceInstance& arm, const Eigen::Vector3d& tip_device);
 
+/// [main] [m] From a tip to one model, as below.
+std::optional<double> distanceOf(const scene::Scene& scene, const servo::World& world, servo::Core& core,
+                                 uint32_t model, const Eigen::Vector3d& tip, uint32_t probe);
+
 /// The model that is nearest to a tip.
 struct NearestModel {
   size_t index = 0;

@@ -64,12 +64,38 @@ void judgeInertia(const GivenModel& given, double most, double reach) {
                                       most, given.number("mass"), radius, given.size()));
 }
 
+/// What a hinge or a slider turns or moves about, where there is none.
+void judgeJoint(const GivenModel& given) {
+  const std::string joint = given.choice("joint");
+  const scene::Value *pivot = given.find("pivot"), *axis = given.find("axis");
+  if (joint == "free" && (pivot != nullptr || axis != nullptr))
+    given.warn({pivot != nullptr ? "pivot" : "axis"},
+               fmt::format("has no effect: {} is free, as no joint is given; expected joint: hinge{} beside it",
+                           given.model().name, pivot != nullptr ? "" : " or slider"));
+  if (joint == "slider" && pivot != nullptr && given.vector("pivot").norm() > 0)
+    given.warn({"pivot"}, "has no effect: a slider moves along its axis and does not turn; expected joint: hinge");
+}
+
 void judgeDynamic(const GivenModel& given) {
+  judgeJoint(given);
   judgeHold(given);
   judgeCenter(given);
   const scene::Value* inertia = given.find("inertia");
   if (inertia != nullptr && !inertia->numbers.empty())
     judgeInertia(given, *std::max_element(inertia->numbers.begin(), inertia->numbers.end()), given.size());
+}
+
+/// All of a mass as a point at its centre has this moment about the pivot, and every body has more.
+void judgeLeastInertia(const GivenModel& given) {
+  constexpr double kRounding = 1e-3;
+  const double length = given.number("length"), inertia = given.number("inertia");
+  const double least = given.number("mass") * length * length;
+  if (inertia > 0 && inertia < (1 - kRounding) * least)
+    given.warn({"inertia"},
+               fmt::format("{:g} kg m^2 is less than mass times length squared, {:.3g} kg m^2, and no body "
+                           "has less about its pivot; expected the moment about the pivot and not about "
+                           "the centre",
+                           inertia, least));
 }
 
 double farthestCorner(const Eigen::AlignedBox3d& box, const Vector3d& from) {
@@ -84,6 +110,7 @@ void judgePendulum(const GivenModel& given) {
   if (across.norm() < kAcross * gravity.norm())
     return given.warn({"axis"}, "is along gravity, so no weight turns " + given.model().name +
                                     " back; expected one across it, as [0, 0, 1]");
+  judgeLeastInertia(given);
   if (!given.box()) return;
   if (given.number("inertia") > 0)
     judgeInertia(given, given.number("inertia"), std::max(given.number("length"), farthestCorner(*given.box(), pivot)));

@@ -70,11 +70,12 @@ void judgeLength(const GivenModel& given, const scene::Value& value, const host:
     if (value.id == id) return;
   const double most = mostIn(value, param, "m");
   const bool own = host::ships(given.model().library);  // whose lengths are known to be those of the model
-  const double bound = given.box() && value.id != "length" ? (own ? 2 : 10) * given.size() : kOutOfReach;
+  const bool wave = value.id == "texture.wavelength";   // longer than a side: less than one bump
+  const double size = given.box() && wave ? given.box()->sizes().maxCoeff() : given.size();
+  const double bound = given.box() && value.id != "length" ? (wave ? 1 : own ? 2 : 10) * size : kOutOfReach;
   if (most <= bound) return;
-  const std::string than = given.box() && value.id != "length"
-                               ? fmt::format("the model, which is {:.3g} m large", given.size())
-                               : std::string("anybody reaches");
+  const std::string than = given.box() && value.id != "length" ? fmt::format("the model, which is {:.3g} m large", size)
+                                                               : std::string("anybody reaches");
   given.warn({value.id},
              fmt::format("{0:g} m is more than {1}; expected metres: {0:g} mm are {2:g} m", most, than, most * kMilli));
 }
@@ -110,12 +111,24 @@ void judgeForce(const GivenModel& given, const scene::Value& value, const host::
                            most, most * kMilli));
 }
 
+/// A stop that gives way more than the surface that presses on it.
+void judgeStop(const GivenModel& given, const scene::Value& value) {
+  constexpr double kSoft = 100, kSofter = 0.5;  // [N/m], of the surface
+  const double surface = given.number("stiffness");
+  if (value.id == "end_stiffness" && value.number < std::max(kSoft, kSofter * surface))
+    given.warn({"end_stiffness"},
+               fmt::format("{0:g} N/m is no stop: 1 mm beyond the travel gives {1:g} N more, and the surface has "
+                           "{2:g} N/m; expected more than that, in N/m ({0:g} N/mm is {3:g} N/m)",
+                           value.number, value.number * kMilli, surface, value.number * 1000));
+}
+
 /// A spring beside the one of the surface, in N/mm as data sheets have it.
 void judgeSpring(const GivenModel& given, const scene::Value& value) {
   constexpr double kUnfelt = 5;  // [N/m] 10 mm of it give 0.05 N, less than most arms rub
   if (value.id != "stiffness" && value.id.ends_with("stiffness") && value.number < kUnfelt)
     given.warn({value.id}, fmt::format("{:g} N/m cannot be felt: 1 mm gives {:g} N; expected N/m (1 N/mm is 1000 N/m)",
                                        value.number, value.number * kMilli));
+  judgeStop(given, value);
 }
 
 /// Dampers of the surface: what they hold a hand with that strokes calmly.

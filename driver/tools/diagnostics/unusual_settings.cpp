@@ -47,6 +47,20 @@ void judgeServo(const scene::Scene& scene, document::Problems& warnings) {
                                  servo.budget_us, servo.budget_us * 1000));
 }
 
+/// Where HDAPI programs have their origin: at an arm, or where it reaches.
+void judgeOrigin(const scene::Scene& scene, document::Problems& warnings) {
+  constexpr double kFar = 2;  // [m] beyond the reach of arms
+  const Vector3d& origin = scene.clients.origin;
+  double away = origin.norm();
+  if (scene.clients.frame == scene::ClientFrame::kWorld)
+    for (const scene::Device& device : scene.devices) away = std::min(away, (origin - device.mount.position).norm());
+  const double most = origin.cwiseAbs().maxCoeff();
+  if (away > kFar)
+    document::report(warnings, placeIn(scene, "clients.origin"), "clients.origin",
+                     fmt::format("{:.4g} m away from where arms reach; expected metres: {:g} mm are {:g} m", away, most,
+                                 most / 1000));
+}
+
 /// What a scene says of the hand that leads a simulated arm: two that are led apart meet no more than two people do.
 std::string handOf(const scene::Device& device) {
   std::string text;
@@ -113,6 +127,7 @@ document::Problems unusualSettings(const scene::Scene& scene, const ModelBoxes& 
   document::Problems warnings;
   judgeGravity(scene, warnings);
   judgeServo(scene, warnings);
+  judgeOrigin(scene, warnings);
   judgeArms(scene, warnings);
   judgeBases(scene, boxes, warnings);
   return warnings;

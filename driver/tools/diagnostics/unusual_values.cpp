@@ -6,6 +6,7 @@
 #include <map>
 
 #include "diagnostics/given_model.hpp"
+#include "diagnostics/key_place.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -16,20 +17,28 @@ const scene::Value* valueOf(const scene::Model& model, const char* id) {
   return nullptr;
 }
 
-/// What two models have in common that lie in one place: their file, its part that is shown, the side that is felt, and
-/// the pose to the micrometre.
-std::string placeText(const scene::Model& model) {
+/// To the micrometre.
+std::string poseText(const scene::Pose& pose) {
   constexpr double kSame = 1e-6;
+  std::string text;
+  const Eigen::Quaterniond& q = pose.orientation;
+  const double sign = q.w() < 0 ? -1 : 1;
+  for (const double x : {pose.position.x(), pose.position.y(), pose.position.z(), sign * q.w(), sign * q.x(),
+                         sign * q.y(), sign * q.z()})
+    text += fmt::format("\n{:.0f}", x / kSame + 0.0);
+  return text;
+}
+
+/// What two models have in common that lie in one place: their file, its part that is shown, the side that is felt, and
+/// the pose, or each of the poses that they take on a path.
+std::string placeText(const scene::Model& model) {
   const scene::Value* geometry = valueOf(model, "geometry");
-  if (geometry == nullptr || model.kinematic) return "";
+  if (geometry == nullptr || (model.kinematic && model.path.empty())) return "";
   std::string text = model.plugin + "\n" + geometry->text;
   if (const scene::Value* instance = valueOf(model, "instance")) text += "\n" + instance->text;
   if (const scene::Value* sides = valueOf(model, "sides")) text += fmt::format("\nsides {}", sides->number);
-  const Eigen::Quaterniond& q = model.pose.orientation;
-  const double sign = q.w() < 0 ? -1 : 1;
-  for (const double x : {model.pose.position.x(), model.pose.position.y(), model.pose.position.z(), sign * q.w(),
-                         sign * q.x(), sign * q.y(), sign * q.z()})
-    text += fmt::format("\n{:.0f}", x / kSame + 0.0);
+  if (!model.kinematic) return text + poseText(model.pose);
+  for (const scene::PathPoint& point : model.path) text += fmt::format("\nt {}", point.t) + poseText(point.pose);
   return text;
 }
 
@@ -53,14 +62,29 @@ document::Problems tellModelsInOnePlace(const scene::Scene& scene) {
       document::report(
           warnings, model.place, fmt::format("models[{}].pose", group[i]),
           fmt::format("{} lies in {} (line {}): the same geometry in the same place, so a hand feels the sum "
-                      "of both; expected another pose",
-                      model.name, first.name, first.place.line));
+                      "of both; expected another {}",
+                      model.name, first.name, first.place.line, model.kinematic ? "path" : "pose"));
     }
   return warnings;
 }
 
+/// A path says where the model is at every time.
+void tellIdlePoses(const scene::Scene& scene, document::Problems& warnings) {
+  for (size_t i = 0; i < scene.models.size(); ++i) {
+    const scene::Model& model = scene.models[i];
+    const std::string pose = poseText(model.pose);
+    if (model.path.empty() || pose == poseText({}) || pose == poseText(model.path.front().pose)) continue;
+    const std::string key = fmt::format("models[{}].pose", i);
+    document::report(warnings, placeOfKey(model.place.file, key).value_or(model.place), key,
+                     fmt::format("has no effect: {} is where its path says, in the world; expected the path alone, "
+                                 "with the pose added to its rows",
+                                 model.name));
+  }
+}
+
 document::Problems unusualValues(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog) {
   document::Problems warnings = tellModelsInOnePlace(scene);
+  tellIdlePoses(scene, warnings);
   const std::optional<Eigen::AlignedBox3d> unknown;
   for (size_t i = 0; i < scene.models.size(); ++i) {
     const auto plugin = catalog.shape(scene.models[i].plugin);
