@@ -138,6 +138,8 @@ void MatDeformable::describe(const MedialFile& file, double tick) const {
       say(HSP_LOG_WARNING,
           std::string(id) + ": has no effect: " + geometry_ +
               " gives the materials of its points; this parameter is only for a medial mesh without materials (.ma)");
+  if (!geometry_.ends_with(".ma") && rings_ != static_cast<int>(usual("rings")))
+    say(HSP_LOG_WARNING, "rings: has no effect: only a medial mesh (.ma) has rings; for a grid, set influence");
   const double size = body_->bounds().sizes().maxCoeff();
   if (!(size > kLarge)) return;
   char text[128];
@@ -158,6 +160,9 @@ void MatDeformable::describeDynamics(const MedialFile& file) const {
     text += without ? " (the default for .ma files; with dynamics: felt the hand feels it)"
                     : " (the default for files of this format)";
   say(HSP_LOG_DEBUG, text);
+  if (dynamics != kFelt && relaxation_share_ > 0)
+    say(HSP_LOG_WARNING, std::string("relaxation.share: has no effect: dynamics is ") +
+                             (dynamics == kSeen ? "seen" : "off") + "; to feel the relaxation, set dynamics to felt");
   if (without && by_file && dynamics == kSeen && mass_ != usual("mass"))
     say(HSP_LOG_WARNING,
         "mass: has no effect on the force, because dynamics is `seen` by default for .ma files; to feel the mass, set "

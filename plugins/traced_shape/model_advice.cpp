@@ -85,6 +85,33 @@ void adviseWeights(const SurfaceData& surface, std::size_t index, Problems& odd)
     }
 }
 
+/// Returns the length in m of all lines of a control net. `along_u` and `along_v` are the distances in the list between
+/// neighbours.
+double lengthOfNet(const SurfaceData& surface, std::size_t along_u, std::size_t along_v) {
+  const auto rows = static_cast<std::size_t>(surface.count(0)), columns = static_cast<std::size_t>(surface.count(1));
+  double length = 0;
+  for (std::size_t i = 0; i < rows; ++i)
+    for (std::size_t j = 0; j < columns; ++j) {
+      const Vector3d& at = surface.points[i * along_u + j * along_v];
+      if (i + 1 < rows) length += (surface.points[(i + 1) * along_u + j * along_v] - at).norm();
+      if (j + 1 < columns) length += (surface.points[i * along_u + (j + 1) * along_v] - at).norm();
+    }
+  return length;
+}
+
+/// Warns of a control net whose points were written with u fastest. Read with v fastest, its lines run to and fro, so
+/// they are longer.
+void adviseOrder(const SurfaceData& surface, std::size_t index, Problems& odd) {
+  constexpr double kShorter = 0.8;
+  const auto rows = static_cast<std::size_t>(surface.count(0)), columns = static_cast<std::size_t>(surface.count(1));
+  const double as_read = lengthOfNet(surface, columns, 1), turned = lengthOfNet(surface, 1, rows);
+  if (turned < kShorter * as_read)
+    odd.add(surfaceAt(index, "points"),
+            written("run to and fro: the net of %zu by %zu is %.3g times as long as it would be if u ran fastest; "
+                    "expected all points of the first u, then of the next: v runs fastest",
+                    rows, columns, as_read / turned));
+}
+
 /// Finds two sides that begin at a common corner and end near each other: their other corners were probably meant to be
 /// the same. Surfaces that are apart on purpose, such as a lid above its pot, share no corner.
 class Gaps {
@@ -195,6 +222,7 @@ std::vector<std::string> adviseModel(const ModelFile& file, const trace::Model& 
     if (hasNoArea(file.surfaces[i]))
       odd.add(surfaceAt(i, "points"),
               "all points lie in one place or on one line, so the surface has no area and cannot be felt");
+    adviseOrder(file.surfaces[i], i, odd);
     if (!file.surfaces[i].weights.empty()) adviseWeights(file.surfaces[i], i, odd);
   }
   adviseNames(file, odd);

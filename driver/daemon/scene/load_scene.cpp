@@ -101,6 +101,10 @@ class SceneLoader {
     const int index = info.indexOf("motion");
     if (index >= 0) return reader.readOne(node, key, static_cast<uint32_t>(index));
     const auto choice = in_.choice(node, key, kMotions);
+    if (choice && kMotions[*choice] != "dynamic" && (info.flags & HSP_C_MOVES) != 0)
+      return in_.problem(node, key,
+                         "plugin " + info.name + " moves the model by itself, so it is not " + kMotions[*choice] +
+                             "; expected no motion" + (kMotions[*choice] == "kinematic" ? " and no path" : ""));
     if (choice && kMotions[*choice] == "dynamic" && (info.flags & HSP_C_MOVES) == 0)
       in_.problem(node, key,
                   "plugin " + info.name +

@@ -57,11 +57,16 @@ double reachOf(const scene::Device& device, const host::DeviceInstance& arm, con
   return farthest;
 }
 
+std::optional<double> distanceOf(const scene::Scene& scene, const servo::World& world, servo::Core& core,
+                                 uint32_t model, const Vector3d& tip, uint32_t probe) {
+  return distanceTo(scene.models[model], *world.shapes()[model], core.contact(model, probe), tip);
+}
+
 std::optional<NearestModel> nearestModel(const scene::Scene& scene, const servo::World& world, servo::Core& core,
                                          const Vector3d& tip, uint32_t probe) {
   std::optional<NearestModel> nearest;
   for (uint32_t i = 0; i < scene.models.size(); ++i) {
-    const auto away = distanceTo(scene.models[i], *world.shapes()[i], core.contact(i, probe), tip);
+    const auto away = distanceOf(scene, world, core, i, tip, probe);
     if (!away) return std::nullopt;
     if (!nearest || *away < nearest->away) nearest = {i, *away};
   }

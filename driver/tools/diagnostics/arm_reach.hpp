@@ -14,6 +14,10 @@ namespace hapticd::diagnostics {
 /// Without arm.limits the distance is an overestimate.
 double reachOf(const scene::Device& device, const host::DeviceInstance& arm, const Eigen::Vector3d& tip_device);
 
+/// [main] Returns the distance in m from a tip to one model, or nothing if the model cannot tell.
+std::optional<double> distanceOf(const scene::Scene& scene, const servo::World& world, servo::Core& core,
+                                 uint32_t model, const Eigen::Vector3d& tip, uint32_t probe);
+
 /// The model that is nearest to a tip.
 struct NearestModel {
   size_t index = 0;

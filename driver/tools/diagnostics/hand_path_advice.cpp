@@ -31,6 +31,18 @@ std::string pathOf(const scene::Device& device) {
   return follows && path != nullptr ? path->text : "";
 }
 
+/// Warns of a path that the script of the hand does not follow. A scene may replace the script of its device file, so
+/// the two must stand in one file.
+void tellIdlePath(const scene::Device& device, document::Problems& warnings) {
+  const scene::Value *script = given(device, "hand.script"), *path = given(device, "hand.path");
+  if (device.module != "simulated" || path == nullptr || path->text.empty() || !pathOf(device).empty()) return;
+  if (script == nullptr || script->place.file == path->place.file)
+    document::report(warnings, path->place, "hand.path",
+                     fmt::format("has no effect: the hand of {} does not follow a path; add script: path beside it, or "
+                                 "remove the path",
+                                 device.name));
+}
+
 /// Returns why the arm cannot reach a place, or "". The search starts from the joints of the row before.
 std::string obstacle(const host::DeviceInstance& arm, const double* place, std::array<double, HDV_MAX_JOINTS>& joints) {
   const hdv_ext_kinematics& kinematics = arm.kinematics();
@@ -82,6 +94,7 @@ std::string tryRows(const scene::Device& device, const std::string& file) {
 document::Problems unreachableRows(const scene::Scene& scene) {
   document::Problems warnings;
   for (const scene::Device& device : scene.devices) {
+    tellIdlePath(device, warnings);
     const std::string file = pathOf(device);
     if (file.empty()) continue;
     const auto told = host::runInChild([&] { return tryRows(device, file); }, kPathLimitMs);

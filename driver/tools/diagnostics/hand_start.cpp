@@ -13,6 +13,7 @@
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/key_place.hpp"
 #include "diagnostics/limit_advice.hpp"
+#include "diagnostics/untouchable.hpp"
 #include "diagnostics/walk_advice.hpp"
 #include "host/child.hpp"
 #include "host/device_instance.hpp"
@@ -151,6 +152,10 @@ std::string tryTips(const scene::Scene& scene, bool may_walk) {
   core.tick(0, 0, tips);
   const uint32_t inside = packInside(static_cast<uint32_t>(scene.models.size()), core, tips, found);
   const uint32_t far = packFar(scene, **world, core, hands, found);
+  std::vector<TipReach> reaches;
+  for (const Hand& hand : hands) reaches.push_back({hand.probe.position, hand.reach});
+  if (far == 0 && tips.size() == scene.devices.size()) packProblems(outOfReach(scene, **world, core, reaches), found);
+  packProblems(enclosedModels(scene, **world), found);
   // The hands run their scripts only if they start in the right place, because other warnings would follow from a wrong
   // start.
   if (inside + far == 0 && may_walk && tips.size() == scene.devices.size())

@@ -66,12 +66,40 @@ void judgeInertia(const GivenModel& given, double most, double reach) {
                          most, given.number("mass"), radius, given.size()));
 }
 
+/// Warns of a pivot or an axis that the joint of the body does not use.
+void judgeJoint(const GivenModel& given) {
+  const std::string joint = given.choice("joint");
+  const scene::Value *pivot = given.find("pivot"), *axis = given.find("axis");
+  if (joint == "free" && (pivot != nullptr || axis != nullptr))
+    given.warn({pivot != nullptr ? "pivot" : "axis"},
+               fmt::format("has no effect: {} is a free body, because no joint is given; add joint: hinge{} beside it",
+                           given.model().name, pivot != nullptr ? "" : " or slider"));
+  if (joint == "slider" && pivot != nullptr && given.vector("pivot").norm() > 0)
+    given.warn({"pivot"},
+               "has no effect: a slider moves along its axis and does not turn; to make it turn, set joint: hinge");
+}
+
 void judgeDynamic(const GivenModel& given) {
+  judgeJoint(given);
   judgeHold(given);
   judgeCenter(given);
   const scene::Value* inertia = given.find("inertia");
   if (inertia != nullptr && !inertia->numbers.empty())
     judgeInertia(given, *std::max_element(inertia->numbers.begin(), inertia->numbers.end()), given.size());
+}
+
+/// Warns of a moment of inertia below mass times length squared, that of a point mass at the centre. Every real body
+/// has more (parallel axis theorem).
+void judgeLeastInertia(const GivenModel& given) {
+  constexpr double kRounding = 1e-3;
+  const double length = given.number("length"), inertia = given.number("inertia");
+  const double least = given.number("mass") * length * length;
+  if (inertia > 0 && inertia < (1 - kRounding) * least)
+    given.warn({"inertia"},
+               fmt::format("{:g} kg m^2 is less than mass times length squared, {:.3g} kg m^2, and no body "
+                           "has less about its pivot; the value must be the moment about the pivot, not about "
+                           "the centre",
+                           inertia, least));
 }
 
 double farthestCorner(const Eigen::AlignedBox3d& box, const Vector3d& from) {
@@ -86,6 +114,7 @@ void judgePendulum(const GivenModel& given) {
   if (across.norm() < kAcross * gravity.norm())
     return given.warn({"axis"}, "is along gravity, so no weight turns " + given.model().name +
                                     " back; expected an axis across it, such as [0, 0, 1]");
+  judgeLeastInertia(given);
   if (!given.box()) return;
   if (given.number("inertia") > 0)
     judgeInertia(given, given.number("inertia"), std::max(given.number("length"), farthestCorner(*given.box(), pivot)));

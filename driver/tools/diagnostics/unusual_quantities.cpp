@@ -74,11 +74,13 @@ void judgeLength(const GivenModel& given, const scene::Value& value, const host:
   const double most = mostIn(value, param, "m");
   // for plugins that ship, lengths are known to be those of the model
   const bool own = host::ships(given.model().library);
-  const double bound = given.box() && value.id != "length" ? (own ? 2 : 10) * given.size() : kOutOfReach;
+  // a wave that is longer than a side makes less than one bump
+  const bool wave = value.id == "texture.wavelength";
+  const double size = given.box() && wave ? given.box()->sizes().maxCoeff() : given.size();
+  const double bound = given.box() && value.id != "length" ? (wave ? 1 : own ? 2 : 10) * size : kOutOfReach;
   if (most <= bound) return;
-  const std::string than = given.box() && value.id != "length"
-                               ? fmt::format("the model, which is {:.3g} m large", given.size())
-                               : std::string("anybody reaches");
+  const std::string than = given.box() && value.id != "length" ? fmt::format("the model, which is {:.3g} m large", size)
+                                                               : std::string("anybody reaches");
   given.warn({value.id}, fmt::format("{0:g} m is more than {1}; the value must be in m: {0:g} mm is {2:g} m", most,
                                      than, most * kMilli));
 }
@@ -121,6 +123,17 @@ void judgeForce(const GivenModel& given, const scene::Value& value, const host::
             most, most * kMilli));
 }
 
+/// Warns of an end stop that is softer than the surface that presses on it.
+void judgeStop(const GivenModel& given, const scene::Value& value) {
+  constexpr double kSoft = 100, kSofter = 0.5;  // [N/m], of the surface
+  const double surface = given.number("stiffness");
+  if (value.id == "end_stiffness" && value.number < std::max(kSoft, kSofter * surface))
+    given.warn({"end_stiffness"},
+               fmt::format("{0:g} N/m is too soft for a stop: 1 mm beyond the travel gives only {1:g} N more, and the "
+                           "surface has {2:g} N/m; expected more than the surface, in N/m ({0:g} N/mm is {3:g} N/m)",
+                           value.number, value.number * kMilli, surface, value.number * 1000));
+}
+
 /// Warns of a further stiffness (other than the surface's) that is too small to feel, because it was given in N/mm as
 /// in data sheets.
 void judgeSpring(const GivenModel& given, const scene::Value& value) {
@@ -129,6 +142,7 @@ void judgeSpring(const GivenModel& given, const scene::Value& value) {
     given.warn({value.id},
                fmt::format("{:g} N/m cannot be felt: 1 mm gives {:g} N; the value must be in N/m (1 N/mm is 1000 N/m)",
                            value.number, value.number * kMilli));
+  judgeStop(given, value);
 }
 
 /// Warns of dampers of the surface that hold back a slow hand with a large force.

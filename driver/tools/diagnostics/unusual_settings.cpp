@@ -50,6 +50,20 @@ void judgeServo(const scene::Scene& scene, document::Problems& warnings) {
                                  servo.budget_us, servo.budget_us * 1000));
 }
 
+/// Warns of an origin of HDAPI programs that is far away from all arms.
+void judgeOrigin(const scene::Scene& scene, document::Problems& warnings) {
+  constexpr double kFar = 2;  // [m] beyond the reach of arms
+  const Vector3d& origin = scene.clients.origin;
+  double away = origin.norm();
+  if (scene.clients.frame == scene::ClientFrame::kWorld)
+    for (const scene::Device& device : scene.devices) away = std::min(away, (origin - device.mount.position).norm());
+  const double most = origin.cwiseAbs().maxCoeff();
+  if (away > kFar)
+    document::report(warnings, placeIn(scene, "clients.origin"), "clients.origin",
+                     fmt::format("is {:.4g} m away from the arms; the value must be in m: {:g} mm is {:g} m", away,
+                                 most, most / 1000));
+}
+
 /// Returns the settings of a simulated hand as text. Two arms in the same place are allowed if their hands differ.
 std::string handOf(const scene::Device& device) {
   std::string text;
@@ -116,6 +130,7 @@ document::Problems unusualSettings(const scene::Scene& scene, const ModelBoxes& 
   document::Problems warnings;
   judgeGravity(scene, warnings);
   judgeServo(scene, warnings);
+  judgeOrigin(scene, warnings);
   judgeArms(scene, warnings);
   judgeBases(scene, boxes, warnings);
   return warnings;

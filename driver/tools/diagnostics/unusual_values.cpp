@@ -6,6 +6,7 @@
 #include <map>
 
 #include "diagnostics/given_model.hpp"
+#include "diagnostics/key_place.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -16,20 +17,28 @@ const scene::Value* valueOf(const scene::Model& model, const char* id) {
   return nullptr;
 }
 
-/// Returns a text that is equal for two models in the same place: it has their file, its part that is shown, the side
-/// that is felt, and the pose to the micrometre.
-std::string placeText(const scene::Model& model) {
+/// Returns a pose as text, to the micrometre. Equal poses have equal texts.
+std::string poseText(const scene::Pose& pose) {
   constexpr double kSame = 1e-6;
+  std::string text;
+  const Eigen::Quaterniond& q = pose.orientation;
+  const double sign = q.w() < 0 ? -1 : 1;
+  for (const double x : {pose.position.x(), pose.position.y(), pose.position.z(), sign * q.w(), sign * q.x(),
+                         sign * q.y(), sign * q.z()})
+    text += fmt::format("\n{:.0f}", x / kSame + 0.0);
+  return text;
+}
+
+/// Returns a text that is equal for two models in the same place: it has their file, its part that is shown, the side
+/// that is felt, and the pose, or each pose on their path.
+std::string placeText(const scene::Model& model) {
   const scene::Value* geometry = valueOf(model, "geometry");
-  if (geometry == nullptr || model.kinematic) return "";
+  if (geometry == nullptr || (model.kinematic && model.path.empty())) return "";
   std::string text = model.plugin + "\n" + geometry->text;
   if (const scene::Value* instance = valueOf(model, "instance")) text += "\n" + instance->text;
   if (const scene::Value* sides = valueOf(model, "sides")) text += fmt::format("\nsides {}", sides->number);
-  const Eigen::Quaterniond& q = model.pose.orientation;
-  const double sign = q.w() < 0 ? -1 : 1;
-  for (const double x : {model.pose.position.x(), model.pose.position.y(), model.pose.position.z(), sign * q.w(),
-                         sign * q.x(), sign * q.y(), sign * q.z()})
-    text += fmt::format("\n{:.0f}", x / kSame + 0.0);
+  if (!model.kinematic) return text + poseText(model.pose);
+  for (const scene::PathPoint& point : model.path) text += fmt::format("\nt {}", point.t) + poseText(point.pose);
   return text;
 }
 
@@ -50,16 +59,34 @@ document::Problems tellModelsInOnePlace(const scene::Scene& scene) {
   for (const std::vector<size_t>& group : modelsInOnePlace(scene))
     for (size_t i = 1; i < group.size(); ++i) {
       const scene::Model &first = scene.models[group[0]], &model = scene.models[group[i]];
-      document::report(warnings, model.place, fmt::format("models[{}].pose", group[i]),
-                       fmt::format("{} and {} (line {}) have the same geometry in the same place, so a hand feels the "
-                                   "sum of both; give one of them another pose",
-                                   model.name, first.name, first.place.line));
+      document::report(
+          warnings, model.place, fmt::format("models[{}].pose", group[i]),
+          fmt::format(
+              "{} and {} (line {}) have the same geometry in the same place, so a hand feels the sum of both; give "
+              "one of them another {}",
+              model.name, first.name, first.place.line, model.kinematic ? "path" : "pose"));
     }
   return warnings;
 }
 
+/// Warns of a pose beside a path, because the path alone says where the model is.
+void tellIdlePoses(const scene::Scene& scene, document::Problems& warnings) {
+  for (size_t i = 0; i < scene.models.size(); ++i) {
+    const scene::Model& model = scene.models[i];
+    const std::string pose = poseText(model.pose);
+    if (model.path.empty() || pose == poseText({}) || pose == poseText(model.path.front().pose)) continue;
+    const std::string key = fmt::format("models[{}].pose", i);
+    document::report(
+        warnings, placeOfKey(model.place.file, key).value_or(model.place), key,
+        fmt::format("has no effect: the path of {} gives its poses in the world; remove the pose, and add it "
+                    "to the rows of the path",
+                    model.name));
+  }
+}
+
 document::Problems unusualValues(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog) {
   document::Problems warnings = tellModelsInOnePlace(scene);
+  tellIdlePoses(scene, warnings);
   const std::optional<Eigen::AlignedBox3d> unknown;
   for (size_t i = 0; i < scene.models.size(); ++i) {
     const auto plugin = catalog.shape(scene.models[i].plugin);

@@ -30,6 +30,10 @@ def body(parameters, **how):
     return scene(model("motion: dynamic, " + parameters, **how))
 
 
+def moved(how, name="ball"):
+    return model("stiffness: 800", name=name) + "    motion: kinematic\n    path: lift.csv\n" + (f"    {how}\n" if how else "")
+
+
 def pendulum(parameters):
     return scene(model(parameters, "pendulum"))
 
@@ -48,14 +52,20 @@ SCENES = [
     ("a shell that nothing holds", scene(model("sides: both, pop_through: |0.001")), P + "pop_through", "cannot be felt"),
     ("one model in another", scene(model("stiffness: 800"), model("stiffness: 700", name="two").replace("  - n", "  - |n")),
      "models[1].pose", "ball (line 5)"),
+    ("one model in another on its path", scene(moved("pose: {position: [0.3, 0, 0]}"), moved("", "two").replace("  - n", "  - |n")),
+     "models[1].pose", "ball (line 5)"),
+    ("a pose beside a path", scene(moved("pose: |{position: [0.3, 0, 0]}")), "models[0].pose", "has no effect"),
     ("the stiffness of all in one place", scene(*(model("stiffness: 3000", name=f"w{i}") for i in range(6))).replace("stiffness: 3", "stiffness: |3", 1),
      P + "stiffness", "w0 with 5 models in its place pushes with up to 1.8e+04 N/m, and simulated"),
-    ("grams", body("mass: |500, tether: 20000"), P + "mass", "500 g are 0.5 kg"),
+    ("grams", body("mass: |500, tether: 20000"), P + "mass", "500 g is 0.5 kg"),
     ("a body that hangs far away", body("mass: 5, tether: |20"), P + "tether", "hangs 2.45 m below its pose"),
     ("a body that falls", body("mass: |0.5"), P + "mass", "nothing holds it"),
     ("a slider that falls", body(f"{MASS}joint: slider, axis: [0, 1, 0]").replace("mass: ", "mass: |"), P + "mass", "nothing holds it"),
     ("millimetres a second", body(MASS + "velocity: |[500, 0, 0], tether: 20, gravity: false"), P + "velocity", "500 mm/s is 0.5 m/s"),
     ("degrees a second", body(MASS + "spin: |[360, 0, 0], tether: 20, gravity: false"), P + "spin", "360 degrees/s is 6.283 rad/s"),
+    ("a pivot without a joint", body(MASS + "tether: 20, gravity: false, pivot: |[0.05, 0, 0], axis: [0, 1, 0]"), P + "pivot", "add joint: hinge beside"),
+    ("an axis without a joint", body(MASS + "tether: 20, gravity: false, axis: |[0, 1, 0]"), P + "axis", "add joint: hinge or slider"),
+    ("a pivot of a slider", body(MASS + "joint: slider, gravity: false, pivot: |[0.05, 0, 0]"), P + "pivot", "set joint: hinge"),
     ("a hinge in mm", body(MASS + "joint: hinge, pivot: |[50, 0, 0]", geometry=BOX), P + "pivot", "50 mm is 0.05 m"),
     ("a centre in mm", body(MASS + "tether: 200, center: |[0, 30, 0]", geometry=BOX), P + "center", "30 mm is 0.03 m"),
     ("a centre in another frame", body("mass: 1, gravity: false, tether: 50, center: |[0, 0, 0.3]", geometry=BOX), P + "center",
@@ -63,6 +73,7 @@ SCENES = [
     ("an inertia in kg mm^2", body(MASS + "tether: 200, inertia: |[8, 8, 8]", geometry=BOX), P + "inertia", "1 kg mm^2 is 1e-6"),
     ("degrees", pendulum("pivot: [0, 0.25, 0], angle: |45"), P + "angle", "if you meant 45 degrees, write 0.7854"),
     ("an axis along gravity", pendulum("pivot: [0, 0.25, 0], axis: |[0, 1, 0]"), P + "axis", "along gravity"),
+    ("an inertia about the centre", pendulum("pivot: [0, 0.25, 0], length: 0.25, mass: 0.5, inertia: |0.0005"), P + "inertia", "0.0312 kg m^2"),
     ("a pivot in mm", pendulum("pivot: |[0, 250, 0], length: 250"), P + "pivot", "250 mm is 0.25 m"),
     ("its mass in g", pendulum("pivot: [0, 0.25, 0], mass: |500"), P + "mass", "500 g is 0.5 kg"),
     ("a pivot below its body", pendulum("pivot: |[0, -0.25, 0], length: 0.25"), P + "pivot", "expected a pivot above them"),
@@ -70,12 +81,22 @@ SCENES = [
     ("a force in mN", scene(model(BUTTON + "|[[0, 0], [0.003, 400], [0.004, 200], [0.005, 300]]", "push_button", BOX)), P + "detent",
      "400 mN is 0.4 N"),
     ("a stop in N/mm", scene(model("axis: [0, 0, -1], end_stiffness: |3", "push_button", BOX)), P + "end_stiffness", "1 N/mm is 1000 N/m"),
+    ("a stop in N/mm beside one that is felt", scene(model("axis: [0, 0, -1], end_stiffness: |20", "push_button", BOX)), P + "end_stiffness", "too soft for a stop"),
+    ("a stop softer than the surface", scene(model("axis: [0, 0, -1], end_stiffness: |800", "push_button", BOX)), P + "end_stiffness", "too soft for a stop"),
     ("a wave in mm", scene(model("texture: {amplitude: 0.0001, wavelength: |0.5}")), P + "texture.wavelength", "0.5 mm is 0.0005 m"),
+    ("a wave of one bump", scene(model("texture: {amplitude: 0.0002, wavelength: |0.15}", geometry=BOX)), P + "texture.wavelength", "the model"),
+    ("a model out of reach beside one in reach", scene(model("stiffness: 800"), model("stiffness: 800", name="two") + "    pose: {position: |[3, 0, 0]}\n"),
+     "models[1].pose.position", "no arm reaches two"),
+    ("a body within a body", scene(model("stiffness: 800", geometry="whole.yaml"), model("stiffness: 800", name="two", geometry="knob.yaml")
+     + "    pose: {position: |[0, 0.01, 0]}\n"), "models[1].pose.position", "two lies within ball"),
     ("gravity up", scene(model("stiffness: 800"), top="servo: {gravity: |[0, 9.81, 0]}\n"), "servo.gravity", "points up"),
     ("gravity along z", scene(model("stiffness: 800"), top="servo: {gravity: |[0, 0, -9.81]}\n"), "servo.gravity", "+y is up"),
     ("gravity in cm", scene(model("stiffness: 800"), top="servo: {gravity: |[0, -981, 0]}\n"), "servo.gravity", "100 times the Earth's"),
     ("a radius in mm", scene(model("stiffness: 800"), top="servo: {activation_radius: |100}\n"), "servo.activation_radius", "100 mm is 0.1 m"),
-    ("a budget in ms", scene(model("stiffness: 800"), top="servo: {budget_us: |0.1}\n"), "servo.budget_us", "0.1 ms is 100 us"),
+    ("a budget in ms", scene(model("stiffness: 800"), top="servo: {budget_us: |0.1}\n"), "servo.budget_us", "0.1 ms is 100"),
+    ("an origin in mm", scene(model("stiffness: 800"), top="clients: {mode: add, origin: |[0, 0, 90]}\n"), "clients.origin", "90 mm is 0.09 m"),
+    ("a path that no script follows", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{script: press, radius: 0.053, path: |lift.csv}}\n"),
+     "hand.path", "has no effect"),
     ("two arms in one place", scene(model("stiffness: 800"), top=f"devices:\n  - {{file: {ARM}, name: left}}\n  - |{{file: {ARM}, name: right}}\n"),
      "devices[1].mount", "right is in the same place as left"),
     ("a mass that no arm follows", scene(model("stiffness: 800"), top="servo: {rate: 1500}\ndevices:\n"
@@ -122,6 +143,14 @@ def folded(lines):
     lines["front"].append("    weights: [1, 1, |800000, 1]")
 
 
+def bulge(turned):
+    """A net of 5 by 4 points, v fastest, or turned round."""
+    points = [[[0.02 * i, 0.03 * j, 0.02 if 0 < i < 4 and 0 < j < 3 else 0] for j in range(4)] for i in range(5)]
+    listed = [points[i][j] for j in range(4) for i in range(5)] if turned else [point for row in points for point in row]
+    return ("format: hapticd-model/1\nsurfaces:\n  - name: bulge\n    degree: [2, 1]\n    knots: [[0, 0, 0, 1, 2, 3, 3, 3], [0, 0, 1, 2, 3, 3]]\n"
+            f"    points: |{listed}\n")
+
+
 SOFT = "format: hapticd-model/2\nmedial:\n  points: [[[-0.04, 0, 0], [0, 0, 0], [0.04, 0, 0]]]\n  radius: [[0.02, 0.02, 0.02]]\n"
 MODELS = [
     ("a cube in mm", "nurbs_rigid", cube(half=50).replace("  - name: right", "  |- name: right"), "173 mm is 0.173 m"),
@@ -130,6 +159,7 @@ MODELS = [
     ("a name given twice", "nurbs_rigid", cube(second_right), '"right" is the name of surfaces[0]'),
     ("a corner mistyped", "nurbs_rigid", cube(mistyped), "their other ends are 5 mm apart"),
     ("a face beside its place", "nurbs_rigid", cube(shifted), "joins none of the 4 surfaces"),
+    ("points with u fastest", "nurbs_rigid", bulge(True), "v runs fastest"),
     ("a weight of 800000", "nurbs_rigid", cube(folded), "8e+05 times the neighbouring weight"),
     ("a soft body in g", "mat_deformable", SOFT + "  stiffness: 300\n  damping: 2\n  mass: |10\n", "10 g is 0.01 kg"),
     ("a reach in mm", "mat_deformable", SOFT + "  stiffness: 300\n  shear_reach: |3\n", "3 mm is 0.003 m"),
@@ -139,7 +169,8 @@ MODELS = [
     ("a stiffness in N/mm", "mat_deformable", SOFT + "  stiffness: |0.3\n", "1 N/mm is 1000 N/m"),
 ]
 SOFT_PARAMETERS = [("friction_static: |5, friction_dynamic: 1", "friction_static", "rubber"), ("crease: |1", "crease", "1 mm is 0.001 m"),
-                   ("shear_distance: |1", "shear_distance", "1 mm is 0.001 m")]
+                   ("shear_distance: |1", "shear_distance", "1 mm is 0.001 m"), ("rings: |4", "rings", "has no effect"),
+                   ("dynamics: off, relaxation: {share: |0.5, time: 0.2}", "relaxation.share", "dynamics is off")]
 
 # What is usual, though near to what is not.
 RIGHT = {
@@ -148,6 +179,8 @@ RIGHT = {
     "rubber.yaml": scene(model("friction_static: 1.2, friction_dynamic: 0.9")),
     "only-sliding-said.yaml": scene(model("friction_static: 0.4, friction_dynamic: 0")),
     "inside-and-outside.yaml": scene(model("sides: front"), model("sides: back, stiffness: 500", name="in")).replace("sphere", "cylinder"),
+    "beside-on-the-table.yaml": scene(model("stiffness: 800"), model("stiffness: 800", name="two") + "    pose: {position: [0.4, 0, 0]}\n"),
+    "a-hard-thing-in-a-soft-one.yaml": scene(model("", "mat_deformable", "soft-bar.yaml", "gel"), model("stiffness: 800", geometry="knob.yaml")),
     "beside.yaml": scene(model("stiffness: 800"), model("stiffness: 800", name="two") + "    pose: {position: [0.2, 0, 0]}\n"),
     "door.yaml": body(MASS + "joint: hinge, axis: [0, 1, 0], pivot: [-0.05, 0, 0]", geometry=BOX),
     "drawer.yaml": body("mass: 2, joint: slider, axis: [0, 0, 1], drag: 4", geometry=BOX),
@@ -156,6 +189,10 @@ RIGHT = {
     "two-people.yaml": scene(model("stiffness: 800"), top="devices:\n" + "".join(
         f"  - {{file: {ARM}, name: {name}, hand: {{script: {script}}}}}\n" for name, script in (("left", "hold"), ("right", "stroke")))),
     "flail.yaml": pendulum("pivot: [0, 1, 0], length: 1, angle: 3.1, rate: 2, damping: 0.01"),
+    "on-its-path.yaml": scene(moved("pose: {position: [0, 0, 0]}")),
+    "button.yaml": scene(model("axis: [0, 0, -1], stiffness: 3000, end_stiffness: 4000", "push_button", BOX)),
+    "cut-in.yaml": scene(model("texture: {amplitude: 0.0001, wavelength: 0.02}", geometry=BOX)),
+    "origin-at-the-arm.yaml": scene(model("stiffness: 800"), top="clients: {mode: add, origin: [0, 0.1, 0.3]}\n"),
     "rod.yaml": pendulum("pivot: [0, 0.25, 0], length: 0.2, inertia: 0.02, mass: 0.4"),
 }
 
@@ -186,6 +223,9 @@ def texts(warnings):
 
 
 def scenes(folder):
+    write(folder, "knob.yaml", cube(half=0.01))
+    write(folder, "whole.yaml", cube())
+    write(folder, "lift.csv", "t,x,y,z\n0,0,0,0\n3,0,0.03,0\n")
     placed = [(*write(folder, f"scene{i}.yaml", text), name, key, word) for i, (name, text, key, word) in enumerate(SCENES)]
     told = checked([one[0] for one in placed], folder)
     for file, line, column, name, key, word in placed:
@@ -212,10 +252,25 @@ def models(folder):
         check(f"{name}: no more than that", sum(word in text for text in texts(told[user])) == 1, texts(told[user]))
 
 
+def refused(folder):
+    """What the host cannot do with a model."""
+    for motion, plugin in (("kinematic", "push_button"), ("kinematic", "pendulum"), ("static", "pendulum"), ("dynamic", "mat_deformable")):
+        path = "\n    path: lift.csv" if motion == "kinematic" else ""
+        file, line, column = write(folder, "refused.yaml", scene(model("", plugin) + f"    motion: |{motion}{path}\n"))
+        code, out, _ = program(HAPTICD, own_state(folder))("check", "--json", file)
+        problems = [one for one in json.loads(out)["files"][0]["problems"] if one["key"] == "models[0].motion"]
+        check(f"a {plugin} that is {motion}: refused at its place", code == 2 and [(one["line"], one["column"]) for one in problems] == [(line, column)]
+              and plugin in problems[0]["what"], (line, column, out))
+
+
 def right(folder):
+    write(folder, "lift.csv", "t,x,y,z\n0,0,0,0\n3,0,0.03,0\n")
     write(folder, "knob.yaml", cube(half=0.01))
+    write(folder, "soft-bar.yaml", SOFT + "  stiffness: 300\n")
     own = [write(folder, name, text)[0] for name, text in RIGHT.items()]
     write(folder, "whole.yaml", cube())
+    write(folder, "net.yaml", bulge(False))
+    own.append(write(folder, "bulge.yaml", scene(model("sides: both", geometry="net.yaml")))[0])
     own.append(write(folder, "cube.yaml", scene(model("", geometry="whole.yaml")))[0])
     shipped = sorted(glob.glob(os.path.join(SOURCE, "config", "scenes", "**", "*.yaml"), recursive=True))
     shipped += [os.path.join(SOURCE, "plugins", "template", "scene.yaml")]
@@ -229,6 +284,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         scenes(folder)
         models(folder)
+        refused(folder)
         right(folder)
     finish()
 
