@@ -12,6 +12,7 @@
 namespace hapticd::tune {
 namespace {
 
+constexpr double kUnfelt = 5;  ///< [N/m] 10 mm of it give less than most arms rub
 constexpr double kBuzz = 0.1;  ///< [N] a force step between neighbouring counts that a hand feels
 
 std::string text(double value) {
@@ -43,8 +44,11 @@ void judgeModel(const scene::Scene& scene, size_t index, const scene::Device& de
   };
   const std::string claim = model.name + " pushes with up to " + text(stiffness) + " N/m";
   if (info.max_stiffness > 0 && stiffness > info.max_stiffness)
-    warn(claim + ", and " + device.name + " is stable up to " + text(info.max_stiffness) +
-         " N/m; nearest: " + text(roundedDown(info.max_stiffness)) + " N/m");
+    warn(claim + ", and " + device.name + " is stable up to " + text(info.max_stiffness) + " N/m" +
+         (info.max_stiffness < kUnfelt
+              ? ", as its device.max_stiffness says, which cannot be felt; expected N/m there (1 "
+                "N/mm is 1000 N/m)"
+              : "; nearest: " + text(roundedDown(info.max_stiffness)) + " N/m"));
   if (alone > 0 && stiffness > alone)
     warn(claim + ", and at " + text(scene.servo.rate) + " Hz a felt mass of " + text(info.mass_kg) +
          " kg is stable up to " + text(alone) +

@@ -160,6 +160,9 @@ def refused(folder):
     new = subprocess.run([HAPTICD, "device", "new", "a3", "--no-questions", "--checksum", "crc9"], capture_output=True, text=True, timeout=120, cwd=folder)
     check("a checksum without a name writes nothing", new.returncode == 2 and "--checksum crc9: no checksum has this name" in new.stderr
           and not os.path.exists(os.path.join(folder, "a3.yaml")), new)
+    soft, _ = written(os.path.join(folder, "soft.yaml"), WIRED, {"max_stiffness: 600": "max_stiffness: |0.6"})
+    stiff = subprocess.run([HAPTICD, "check", os.path.join(SOURCE, "config", "scenes", "sphere.yaml"), "--device", soft], capture_output=True, text=True, timeout=120)
+    check("a model is not blamed for an arm in N/mm", "as its device.max_stiffness says" in stiff.stdout and "nearest: 0.6" not in stiff.stdout, stiff.stdout)
     check("a scene tells all of its device", done.returncode == 2 and len(told) == 2 and all("parameters.wire." in line for line in told), done.stdout)
 
 
