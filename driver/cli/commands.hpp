@@ -13,7 +13,7 @@ AddCommand addCheck, addClient, addCompletion, addCtl, addDevice, addDeviceCalib
     addDeviceKinematics, addDeviceNew, addDeviceRecord, addDeviceTwin, addDoctor, addExplain, addExport, addImport, addManual, addPart,
     addPlot, addPlugin, addPluginCheck, addPluginNew, addReplay, addRun, addTop, addTrace, addTune, addView;
 
-/// A command below another one ("device calibrate") comes after it.
+/// A subcommand ("device calibrate") must come after its parent ("device"), because it looks the parent up.
 constexpr AddCommand* kCommands[] = {
     addCheck,
     addClient,

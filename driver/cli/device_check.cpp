@@ -112,7 +112,7 @@ int check(const ExamineArguments& options) {
 void addDeviceCheck(const Command& app, int& exit_code) {
   auto options = std::make_shared<ExamineArguments>();
   const Command command = app.subcommand("device").addSubcommand(
-      "check", "Examine a device module with motors off: kinematics, facts, samples, what read() costs.");
+      "check", "Examine a device module with motors off: kinematics, what open() claims, samples, cost of read().");
   command.addOption("file", options->file, "device file (YAML), or a module (FILE.so) with its defaults")
       .required()
       .existingFile();

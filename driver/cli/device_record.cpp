@@ -76,7 +76,7 @@ int record(const CaptureArguments& options) {
 void addDeviceRecord(const Command& app, int& exit_code) {
   auto options = std::make_shared<CaptureArguments>();
   const Command command = app.subcommand("device").addSubcommand(
-      "record", "Write what an arm sends to a file, byte by byte, with its motors off.");
+      "record", "Record in a file, byte by byte, what an arm sends. Its motors stay off.");
   command.addOption("file", options->file, "device file (YAML)").required();
   command.addOption("-o,--out", options->out, "file to write; - for standard output");
   command.addOption("--for", options->seconds, "how long [s]; Ctrl-C ends it earlier").showDefault().within(0.001, 1e6);

@@ -102,7 +102,7 @@ std::string unitMeant(double number, const std::string& shown, std::string_view 
   if (!unit.empty() && squeezed(rest) == squeezed(unit)) return "; write " + value + ", without the unit";
   for (const Known& known : kUnits)
     if (squeezed(rest) == known.written && unit == known.unit)
-      return "; write " + rounded(number * known.size) + ": " + shown + " are " + rounded(number * known.size) + " " +
+      return "; write " + rounded(number * known.size) + ": " + shown + " is " + rounded(number * known.size) + " " +
              std::string(unit);
   return unit.empty() ? "; write the number alone, in SI units" : "; write the number alone, in " + std::string(unit);
 }

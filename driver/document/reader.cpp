@@ -66,7 +66,7 @@ static std::string inOtherUnits(double value, const Range& range) {
   for (const Slip& slip : kSlips)
     if (const double meant = value * slip.factor;
         std::string_view(range.unit) == slip.unit && meant >= range.min && meant <= range.max)
-      return "; " + numberText(value) + " " + slip.meant + " are " + shortText(meant) + " " + slip.unit;
+      return "; " + numberText(value) + " " + slip.meant + " is " + shortText(meant) + " " + slip.unit;
   return "";
 }
 

@@ -262,8 +262,8 @@ class Reader {
       char text[192];
       std::snprintf(
           text, sizeof text,
-          "expected at most %g N s/m, because the host silences a body that damps more than ten times its parameter "
-          "damping; set this parameter to %g in the scene",
+          "expected at most %g N s/m (ten times the parameter `damping` of the scene, at least 5), or the host may "
+          "switch the body off; lower this value, or set `damping` to %g",
           most_damping_, std::min(number, kMost));
       problems_.add(at, number > kMost ? "expected at most 1e6 N s/m" : text);
     }

@@ -183,7 +183,8 @@ const TracedShape::Search& TracedShape::searchAbout(const Eigen::Vector3d& p, do
   return search;
 }
 
-/// Writes one record per surface, and then rivals: other feet on the same surfaces, as second offers.
+/// Writes one record per surface, then the rivals: feet at other local minima of the distance on the same surfaces.
+/// Returns the number of all records, which may be larger than `cap`.
 int64_t TracedShape::nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const {
   const Eigen::Vector3d p(p_model);
   const Search& search = searchAbout(p, radius);

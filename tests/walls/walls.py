@@ -41,10 +41,16 @@ ONE_PLACE = {"CLI/": "driver/command_line/command_line.cpp", "spdlog/": "driver/
 
 
 def finds(command, header):
-    """Whether a file with this one include has all its headers, and what the compiler said. The preprocessor alone tells."""
-    run = subprocess.run(command + ["-E", "-o", "/dev/null", "-x", "c++", "-"], input=f'#include "{header}"\n',
+    """Tells whether a file with this one include has all its headers, and what the compiler said. The preprocessor alone tells.
+
+    A header that is installed in /usr/local is found from everywhere, so it does not count."""
+    run = subprocess.run(command + ["-E", "-H", "-o", "/dev/null", "-x", "c++", "-"], input=f'#include "{header}"\n',
                          capture_output=True, text=True)
-    return run.returncode == 0, run.stderr
+    place = next((line[2:] for line in run.stderr.splitlines() if line.startswith(". ")), "")
+    if run.returncode == 0 and place.startswith("/usr/"):
+        return False, f"{header}: No such file in the sources"
+    said = "\n".join(line for line in run.stderr.splitlines() if not re.match(r"\.+ |[!x]", line))
+    return run.returncode == 0, said
 
 
 def flags_of(entry):

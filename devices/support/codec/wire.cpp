@@ -169,7 +169,7 @@ void readTimes(const Tree& tree, Wire& wire) {
   if (tree.has("exchange")) wire.exchange = choiceOf(tree.at("exchange"), kExchanges);
   wire.rate = tree.at("rate").number(50, kMaxRate, "Hz");
   if (tree.has("keep_alive")) wire.keep_alive = tree.at("keep_alive").number(1e-4, 1, "s");
-  if (tree.has("watchdog")) wire.watchdog = tree.at("watchdog").number(0, 10, "s (20 ms are 0.02 s)");
+  if (tree.has("watchdog")) wire.watchdog = tree.at("watchdog").number(0, 10, "s (20 ms is 0.02 s)");
   if (wire.watchdog > 0 && wire.keep_alive > wire.watchdog / 2)
     tree.at(tree.has("keep_alive") ? "keep_alive" : "watchdog")
         .fail(

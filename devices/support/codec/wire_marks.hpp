@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The marks of framing are bytes of a report: the codec writes them even if the file has no constant there.
+/// Gives a report constant fields for its framing marks (the start and the end byte), so that the codec writes them
+/// even if the device file has no fields there.
 #pragma once
 #include "codec/tree.hpp"
 #include "codec/wire.hpp"

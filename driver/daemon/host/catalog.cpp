@@ -67,7 +67,7 @@ fs::path executableDir() {
 std::optional<fs::path> shippedFile(const fs::path& relative) {
   std::error_code error;
   for (const fs::path& root :
-       {executableDir() / ".." / "share" / "hapticd", fs::path(HAPTICD_INSTALL_DATA), fs::path(HAPTICD_SOURCE_CONFIG)})
+       {executableDir() / ".." / "share" / "hapticd", fs::path(HAPTICD_SOURCE_CONFIG), fs::path(HAPTICD_INSTALL_DATA)})
     if (fs::exists(root / relative, error)) return (root / relative).lexically_normal();
   return std::nullopt;
 }

@@ -90,8 +90,9 @@ class Catalog {
 std::filesystem::path executableDir();
 
 /// [main] Returns the path of a file of the shipped configuration, such as "devices/simulated-premium15.yaml". It
-/// searches beside the executable's tree, in the installation, and in the sources from which it was built. Returns
-/// nothing if the file is in none of them.
+/// searches beside the executable's tree, in the sources from which it was built, and in the installation: a program in
+/// its build folder uses its own sources even if another version is installed. Returns nothing if the file is in none
+/// of them.
 std::optional<std::filesystem::path> shippedFile(const std::filesystem::path& relative);
 
 }  // namespace hapticd::host

@@ -33,7 +33,9 @@ Registry& registry() {
 /// Returns the entry of a built-in plugin or module. It is an error if it has none of the wanted kind.
 Result<const void*> linked(const void* entry) {
   if (entry == nullptr)
-    return Error{"the built-in class of this name is of the other kind (shape plugin or device module)"};
+    return Error{
+        "this built-in class is of the wrong kind: a shape plugin where a device module is expected, or the reverse"
+        "\n  fix: name a class of the right kind"};
   return entry;
 }
 

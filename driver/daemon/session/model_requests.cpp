@@ -10,8 +10,10 @@
 #include <utility>
 
 #include "document/suggestion.hpp"
+#include "host/catalog.hpp"
 #include "host/file_stamp.hpp"
 #include "host/replaced_library.hpp"
+#include "scene/load.hpp"
 #include "session/foreign_files.hpp"
 #include "session/kept_settings.hpp"
 #include "session/patience.hpp"
@@ -82,9 +84,10 @@ Result<scene::Scene> RequestHandler::loadOwn(const control::Peer& peer) {
 }
 
 /// Loads a scene that a program sent. The daemon may read the files of its own arms for it, because the scene must name
-/// these arms, but shows nothing of their content.
+/// these arms, but shows nothing of their content. A scene that names no arm has the default one, which ships.
 Result<scene::Scene> RequestHandler::loadPassed(const control::Peer& peer, const std::string& file) {
   std::vector<std::string> own;
+  if (const auto usual = host::shippedFile(scene::kDefaultDevice)) own.push_back(usual->string());
   for (const scene::Device& device : runner_.scene().devices) {
     own.push_back(device.file.string());
     for (const scene::Value& value : device.parameters)

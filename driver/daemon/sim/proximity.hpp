@@ -29,7 +29,8 @@ enum class Searching {
 
 class Proximity {
  public:
-  /// [main] @param models in the order of the scene; models that trace themselves are left out of the search
+  /// [main] @param models in the order of the scene. Models without surfaces() find their feet by themselves, so they
+  /// are left out of the search.
   Proximity(const std::vector<host::ShapeInstance*>& models, const std::vector<hsp_pose>& poses, uint32_t probe_count,
             const ProximitySettings& settings, link::Link& link);
 

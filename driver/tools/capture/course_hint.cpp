@@ -41,12 +41,12 @@ std::string flags(const codec::Wire& wire, const DecodedReports& reports) {
   const Field *fault = fieldOf(wire, Role::kFault), *calibrated = fieldOf(wire, Role::kCalibrated);
   if (fault != nullptr && howMany(reports, [](const codec::State& state) { return state.fault; }) == reports.size())
     text += "fault is set in " + all + ", so no torque would go out: " +
-            (fault->inverted ? "is inverted: true of the field right?"
+            (fault->inverted ? "if 0 means that all is well, remove inverted: true"
                              : "if 1 means that all is well, give inverted: true") +
             "\n";
   if (calibrated != nullptr && howMany(reports, [](const codec::State& state) { return state.calibrated; }) == 0)
     text += "calibrated is 0 in " + all + ": no torque goes out before it is 1" +
-            (calibrated->inverted ? "; is inverted: true of the field right?"
+            (calibrated->inverted ? "; if 1 means that the arm knows its zero, remove inverted: true"
                                   : "; if 0 means that the arm knows its zero, give inverted: true") +
             "\n";
   return text;

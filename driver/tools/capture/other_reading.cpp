@@ -90,7 +90,7 @@ std::string wholeRange(const Field& field, const std::vector<double>& positions,
   const Reading other{Reading::Code::kOtherSign, 1, 0};
   const auto as_other = allAs(field, other, positions);
   const bool fits = jumpsOf(field, as_other, kWholeRange / 2) == 0 && !leavesStops(as_other, stops);
-  const std::string wraps = "wraps: true if its numbers continue past their end, as in a counter";
+  const std::string wraps = "wraps: true if its numbers start again at the other end of their range, as in a counter";
   return what + (fits ? "give " + wordsOf(field, other) + ", or " : "give ") + wraps;
 }
 

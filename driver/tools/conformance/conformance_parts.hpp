@@ -35,8 +35,8 @@ std::string placed(const std::string& objection, const Eigen::Vector3d& p);
 /// A smooth closed path through and around the shape, from a corner outside its box and back to it.
 Eigen::Vector3d onPath(const Subject& subject, double part, double phase = 0);
 
-/// Runs along the path, then presses wherever the shape can be touched, and gives every answer to `look`; the first
-/// objection ends the run.
+/// Moves the probe along onPath(), then presses at each place where the shape can be touched. Passes every answer of
+/// the shape to `look`, and stops when `look` returns an objection. Returns the objection, or "" if there is none.
 std::string along(Subject& subject, const std::function<std::string(const Answer&, const Eigen::Vector3d&)>& look,
                   int steps = kConformanceSteps);
 

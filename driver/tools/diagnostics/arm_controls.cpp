@@ -53,11 +53,12 @@ void addTimes(const host::DeviceInstance& device, bool opened, const std::option
   if (opened && (info.capabilities & HDV_C_SIMULATED) != 0) return;
   const double most = rate > 0 ? servo::mostForceAt(kFastServo, rate, info.max_force) : HUGE_VAL;
   to.push_back({"H21", "force that suits its rate", known ? onIf(rate > 0) : ControlState::kUnknown,
-                !known            ? "the arm itself says its rate"
-                : rate <= 0       ? "only the servo's rate counts: give the rate of the arm"
-                : most < HUGE_VAL ? "at most " + numberText(std::round(1e3 * most) * 1e-3) + " N at " +
-                                        numberText(rate) + " Hz; all of its force from 715 Hz on"
-                                  : "all of its force; less if the servo is slower than 358 Hz"});
+                !known      ? "the arm itself says its rate"
+                : rate <= 0 ? "only the servo's rate counts: give the rate of the arm"
+                : most < HUGE_VAL
+                    ? "at most " + numberText(std::round(1e3 * most) * 1e-3) + " N, because it sends only " +
+                          numberText(rate) + " samples a second; from 715 Hz on it may have its full force"
+                    : "all of its force; less if the servo is slower than 358 Hz"});
 }
 
 /// Adds the controls that detect a wrong or old report.

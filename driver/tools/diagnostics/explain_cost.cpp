@@ -181,7 +181,7 @@ class Costs {
     add(name, where(model.place, key), model.plugin, measured_.step_ns[index], shape.report().locked_bytes);
     if ((shape.description().flags & HSP_C_DEFORMS) != 0)
       add(name + ": deformation", where(model.place, key + ".plugin"),
-          "it deforms in its own step; parts at rest are not computed", 0, 0);
+          "part of the step, so its time is in the row of the model itself; parts at rest cost nothing", 0, 0);
     else if (model.kinematic)
       addPath(index);
     else

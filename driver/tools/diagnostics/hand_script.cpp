@@ -60,7 +60,7 @@ std::string wayOf(const HandScript& hand) {
     case Kind::kPath:
       return fmt::format("from t = {:.4g} s", hand.path_fastest_at);
     default:
-      return fmt::format("{:.4g} m in, {:.4g} times a second", hand.rise, hand.rate);
+      return fmt::format("presses {:.4g} m deep, {:.4g} times a second", hand.rise, hand.rate);
   }
 }
 

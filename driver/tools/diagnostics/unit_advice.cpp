@@ -82,10 +82,11 @@ void chainTooLong(const Node* rows, const std::string& file, document::Problems&
       const Node& at = rows->items[row].items[column];
       const double length = std::abs(document::toNumber(at.scalar).value_or(0));
       if (length <= kLong) continue;
-      document::report(warnings, file, at.line, at.column, fmt::format("parameters.arm.dh[{}][{}]", row, column),
-                       fmt::format("{0:g} m as {1} of joint {2} is longer than an arm that a hand leads; expected "
-                                   "metres: {0:g} mm are {3:g} m",
-                                   length, column == 0 ? "a" : "d", row + 1, length / 1000));
+      document::report(
+          warnings, file, at.line, at.column, fmt::format("parameters.arm.dh[{}][{}]", row, column),
+          fmt::format("{0:g} m as {1} of joint {2} is too long for an arm that a hand moves; the value must be "
+                      "in m: {0:g} mm is {3:g} m",
+                      length, column == 0 ? "a" : "d", row + 1, length / 1000));
     }
 }
 

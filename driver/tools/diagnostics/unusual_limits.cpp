@@ -16,7 +16,7 @@ namespace {
 
 using document::Node;
 
-/// One file, and the force that its limits are measured by.
+/// The parsed device file, and the force to which its limits are compared.
 struct Bounds {
   const Node& root;
   const scene::Device& device;
@@ -31,50 +31,57 @@ struct Bounds {
   }
 };
 
-/// Limits that leave nothing of the force, or that no arm comes to.
+/// Warns of limits that leave almost no force, or that no arm ever reaches.
 void judgeDynamics(const Bounds& of) {
-  constexpr double kSlow = 0.2, kHand = 0.1, kLittle = 0.05;  // s; m/s; share of the force
-  constexpr double kStill = 0.2, kFast = 20;                  // m/s: a hand's slow moves; faster than any arm
+  constexpr double kSlow = 0.2;     // [s] a force that rises more slowly does not feel hard
+  constexpr double kHand = 0.1;     // [m/s] a calm hand
+  constexpr double kLittle = 0.05;  // share of the force that cannot be felt
+  constexpr double kStill = 0.2;    // [m/s] a slow move of a hand
+  constexpr double kFast = 20;      // [m/s] faster than any arm
   const scene::Limits& limits = of.device.limits;
   if (limits.slew > 0 && of.force / limits.slew > kSlow)
     of.warn({"limits", "slew"},
-            fmt::format("{0:g} N/s: a force of {1:g} N takes {2:.3g} s to come, so nothing feels hard; expected N/s: "
-                        "{0:g} N/ms are {3:g} N/s",
-                        limits.slew, of.force, of.force / limits.slew, 1000 * limits.slew));
+            fmt::format(
+                "with {0:g} N/s a force of {1:g} N takes {2:.3g} s to rise, so nothing feels hard; the value must be "
+                "in N/s: {0:g} N/ms is {3:g} N/s",
+                limits.slew, of.force, of.force / limits.slew, 1000 * limits.slew));
   if (limits.power > 0 && limits.power < kLittle * of.force * kHand)
     of.warn({"limits", "power"},
-            fmt::format("{:g} W are {:.2g} N at {:g} m/s, which cannot be felt beside limits.force "
-                        "of {:g} N; expected W, such as {:g}",
-                        limits.power, limits.power / kHand, kHand, of.force, of.force));
+            fmt::format(
+                "{:g} W allows {:.2g} N at {:g} m/s, which cannot be felt (limits.force is {:g} N); the value must be "
+                "in W, such as {:g}",
+                limits.power, limits.power / kHand, kHand, of.force, of.force));
   if (limits.impulse > 0 && limits.impulse < kLittle * of.force * 0.1)
-    of.warn({"limits", "impulse"}, fmt::format("{:g} N s within 0.1 s are {:.2g} N, which cannot be felt beside "
-                                               "limits.force of {:g} N; expected N s, such as {:.2g}",
-                                               limits.impulse, limits.impulse / 0.1, of.force, 0.1 * of.force));
+    of.warn({"limits", "impulse"},
+            fmt::format("{:g} N s within 0.1 s is {:.2g} N, which cannot be felt (limits.force is "
+                        "{:g} N); the value must be in N s, such as {:.2g}",
+                        limits.impulse, limits.impulse / 0.1, of.force, 0.1 * of.force));
   const double velocity = limits.velocity.value_or(0);
   if (velocity > 0 && velocity < kStill)
     of.warn({"limits", "velocity"},
-            fmt::format("{:g} m/s: a hand moves at 0.1 to 1 m/s, so its first stroke would be a "
-                        "fault; expected m/s, such as 2",
+            fmt::format("a hand moves at 0.1 to 1 m/s, so with {:g} m/s its first stroke would be a "
+                        "fault; the value must be in m/s, such as 2",
                         velocity));
   if (velocity > kFast)
     of.warn({"limits", "velocity"},
-            fmt::format("{0:g} m/s is faster than any hand or arm, so nothing is ever told of wild "
-                        "encoders; expected m/s: {0:g} mm/s are {1:g} m/s",
+            fmt::format("{0:g} m/s is faster than any hand or arm, so faulty encoders are never "
+                        "noticed; the value must be in m/s: {0:g} mm/s is {1:g} m/s",
                         velocity, velocity / 1000));
 }
 
 void judgeCarried(const Bounds& of) {
-  constexpr double kTimes = 10, kMuch = 50;  // of limits.force; N
+  constexpr double kTimes = 10, kMuch = 50;  // multiple of limits.force; [N]
   const double weight = of.device.limits.weight.value_or(0);
   if (weight > kMuch && weight > kTimes * of.force)
-    of.warn({"limits", "weight"},
-            fmt::format(
-                "{:g} N at the tip may carry the arm's own weight, and shapes push with {:g} N at most: wrong masses "
-                "would throw the arm; expected N, about what it weighs at its tip",
-                weight, of.force));
+    of.warn(
+        {"limits", "weight"},
+        fmt::format(
+            "up to {:g} N at the tip may carry the arm's own weight, but shapes push with {:g} N at most: wrong masses "
+            "would throw the arm; the value must be in N, about the weight of the arm at its tip",
+            weight, of.force));
 }
 
-/// Compliance needs measured torques, and joints that follow references: the wire format says whether the arm has them.
+/// Warns of admittance control on an arm whose wire format has no measured torques or no references for joints.
 void judgeCompliance(const Bounds& of, const codec::Wire& wire) {
   if (!of.device.admittance) return;
   const auto has = [](const codec::Report& report, codec::Role role) {
@@ -84,23 +91,24 @@ void judgeCompliance(const Bounds& of, const codec::Wire& wire) {
   const bool measures = has(wire.input, codec::Role::kTorque), follows = has(wire.output, codec::Role::kReference);
   if (!measures || !follows)
     of.warn({"admittance"},
-            fmt::format("{} has no field {{is: {}}}, so a run refuses it; expected an arm that measures "
-                        "torques and follows references, or no admittance",
-                        measures ? "wire.output" : "wire.input", measures ? "reference" : "torque"));
+            fmt::format(
+                "{} has no field {{is: {}}}, so a run refuses admittance; add this field if the arm measures torques "
+                "and follows references, or remove admittance",
+                measures ? "wire.output" : "wire.input", measures ? "reference" : "torque"));
 }
 
-/// HID devices number all of their reports, or none.
+/// Warns if only one of the two reports has an id, because a HID device numbers all of its reports or none.
 void judgeIds(const Bounds& of, const codec::Wire& wire) {
   if (of.device.module != "usb_hid" || (wire.input.id >= 0) == (wire.output.id >= 0)) return;
   const bool in = wire.input.id >= 0;
-  of.warn(
-      {"parameters", "wire", in ? "input" : "output", "id"},
-      fmt::format("{}, and wire.{} has none: a HID device numbers all of its reports or none; expected an id there, or "
-                  "none here",
-                  in ? wire.input.id : wire.output.id, in ? "output" : "input"));
+  of.warn({"parameters", "wire", in ? "input" : "output", "id"},
+          fmt::format(
+              "is {}, but wire.{} has no id, and a HID device numbers all of its reports or none; add the id there, or "
+              "remove this one",
+              in ? wire.input.id : wire.output.id, in ? "output" : "input"));
 }
 
-/// A clock that stands still for many reports tells nothing of them: its unit is another.
+/// Warns of a clock whose count is longer than the time between reports, because its unit is then probably wrong.
 void judgeClock(const Bounds& of, const codec::Wire& wire) {
   const Node* fields = find(of.root, {"parameters", "wire", "input", "fields"});
   for (size_t i = 0; i < wire.input.fields.size() && fields != nullptr && i < fields->items.size(); ++i) {
@@ -111,13 +119,14 @@ void judgeClock(const Bounds& of, const codec::Wire& wire) {
     document::report(
         of.warnings, of.device.file.string(), at->line, at->column,
         fmt::format("parameters.wire.input.fields[{}].scale", i),
-        fmt::format("one count of the arm's clock is {:g} s, and a report comes every {:g} s; expected s of "
-                    "one count: 1e-6 for microseconds, 0.001 for milliseconds",
-                    field.scale, 1 / wire.rate));
+        fmt::format(
+            "one count of the arm's clock is {:g} s, and a report comes every {:g} s; the value must be the seconds "
+            "of one count: 1e-6 for microseconds, 0.001 for milliseconds",
+            field.scale, 1 / wire.rate));
   }
 }
 
-/// What the joints of a simulated arm rub, weigh and lag, as it is felt at the tip.
+/// Friction, mass and delay of the joints of a simulated arm, as felt at its tip.
 struct Joint {
   const Bounds& of;
   const Eigen::Matrix3Xd& lever;  ///< [m] that the tip moves for each rad
@@ -131,35 +140,33 @@ struct Joint {
     return fallback;
   }
   void judge(Eigen::Index joint) const {
-    constexpr double kHand = 0.1, kHeavy = 20;  // m/s; kg
+    constexpr double kHand = 0.1, kHeavy = 20;  // [m/s]; [kg]
     const double arm = lever.col(joint).norm(), gear = number("joint.gear", joint, 1);
     if (!(arm > 1e-3)) return;
     const double friction = number("joint.friction", joint, 0) / arm;
     const double drag = number("joint.damping", joint, 0) * kHand / (arm * arm);
     const double mass = number("joint.rotor", joint, 0) * gear * gear / (arm * arm);
     if (friction > of.force)
-      of.warn(
-          {"parameters", "joint", "friction"},
-          fmt::format("joint {} rubs with {:.3g} N at the tip, more than the {:g} N that shapes push with: they cannot "
-                      "be felt; expected N m: 5 mN m are 0.005 N m",
-                      joint + 1, friction, of.force));
+      of.warn({"parameters", "joint", "friction"}, fmt::format("joint {} has a friction of {:.3g} N at the tip, more "
+                                                               "than the {:g} N with which shapes push, so they cannot "
+                                                               "be felt; the value must be in N m: 5 mN m is 0.005 N m",
+                                                               joint + 1, friction, of.force));
     if (drag > of.force)
       of.warn({"parameters", "joint", "damping"},
               fmt::format(
-                  "joint {} drags with {:.3g} N at {:g} m/s of the tip, more than the {:g} N that shapes push with; "
-                  "expected N m s/rad, such as 0.005",
+                  "joint {} drags with {:.3g} N at {:g} m/s of the tip, more than the {:g} N with which shapes push; "
+                  "the value must be in N m s/rad, such as 0.005",
                   joint + 1, drag, kHand, of.force));
     if (mass > kHeavy)
-      of.warn(
-          {"parameters", "joint", "rotor"},
-          fmt::format("with joint.gear {:g} the motor of joint {} weighs as much as {:.3g} kg at the tip; expected kg "
-                      "m^2 before the gear: 1 g cm^2 is 1e-7",
-                      gear, joint + 1, mass));
+      of.warn({"parameters", "joint", "rotor"}, fmt::format("with joint.gear {:g} the motor of joint {} weighs as much "
+                                                            "as {:.3g} kg at the tip; the value must be in kg "
+                                                            "m^2 before the gear: 1 g cm^2 is 1e-7",
+                                                            gear, joint + 1, mass));
   }
 };
 
 void judgeTwin(const Bounds& of, const host::DeviceInstance& arm) {
-  constexpr double kTick = 1e-3, kLag = 0.02, kFew = 100;  // s; s; Hz
+  constexpr double kTick = 1e-3, kLag = 0.02, kFew = 100;  // [s]; [s]; [Hz]
   const uint32_t joints = arm.kinematics().joint_count;
   const auto q = restJoints(of.root, joints);
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor> J(6, joints);
@@ -170,16 +177,17 @@ void judgeTwin(const Bounds& of, const host::DeviceInstance& arm) {
   const size_t before = of.warnings.size();
   for (Eigen::Index i = 0; i < lever.cols() && of.warnings.size() == before; ++i) joint.judge(i);
   if (const double step = joint.number("substep", 0, 0); step > kTick)
-    of.warn(
-        {"parameters", "substep"},
-        fmt::format("{0:g} s is longer than a tick, so the arm moves in jumps; expected s: 0.2 ms are 0.0002", step));
+    of.warn({"parameters", "substep"},
+            fmt::format(
+                "{0:g} s is longer than a tick, so the arm moves in jumps; the value must be in s: 0.2 ms is 0.0002 s",
+                step));
   if (const double lag = joint.number("joint.motor_lag", 0, 0); lag > kLag)
     of.warn({"parameters", "joint", "motor_lag"},
-            fmt::format("{0:g} s: the motors push long after they are told; expected s: {0:g} ms are {1:g} s", lag,
+            fmt::format("the motors push {0:g} s after a command; the value must be in s: {0:g} ms is {1:g} s", lag,
                         lag / 1000));
   if (const double rate = joint.number("device.rate", 0, 1000); rate < kFew)
     of.warn({"parameters", "device", "rate"},
-            fmt::format("{0:g} Hz: no hand feels a shape at that rate; expected Hz: {0:g} kHz are {1:g}", rate,
+            fmt::format("no hand feels a shape at {0:g} Hz; the value must be in Hz: {0:g} kHz is {1:g} Hz", rate,
                         rate * 1000));
 }
 

@@ -35,8 +35,8 @@ Result<BezierModel> parseBpt(const std::string& text, const std::string& file);
 /// [main] Turns, scales and centres all points.
 void placeModel(BezierModel& model, const Placement& placement);
 
-/// [main] Does the same for the points of triangles. Only points that are corners of a triangle count for the bounding
-/// box.
+/// [main] Does the same as placeModel() for the points of triangles. Only points that are corners of a triangle count
+/// for the bounding box.
 void placePoints(std::vector<Eigen::Vector3d>& points, const std::vector<std::array<std::uint32_t, 3>>& used,
                  const Placement& placement);
 

@@ -34,7 +34,8 @@ double quantile(std::vector<double>& times, double share) {
   return *at;
 }
 
-/// Passes over the motion once. Appends to `answers` unless it is nullptr.
+/// Runs the scene once over the motion, one tick per sample, and returns the times per tick and the memory. Appends
+/// the answer of each model in each tick to `answers`, unless it is nullptr.
 Result<Cost> pass(const scene::Scene& scene, const Motion& motion, VelocityFrom from, std::vector<Answer>* answers,
                   const host::Services::Log& log) {
   auto world = servo::World::build(scene, {.rate = 1 / motion.period}, log);

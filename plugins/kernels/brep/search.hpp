@@ -73,7 +73,8 @@ class Search {
     /// [m^2] squared distance to a known point of the part: the nearest point is not farther.
     double limit2 = std::numeric_limits<double>::infinity();
     double others2 = std::numeric_limits<double>::infinity();  ///< [m^2] least bound of all elements except the best
-    /// [m^2] least bound of the elements that may have a nearer foot that was not found.
+    /// [m^2] Least squared distance at which an element may have a point that was not found: its search was cut short
+    /// or is not certain. If this is below best.hit.d2, the best foot is not proved to be the nearest.
     double open2 = std::numeric_limits<double>::infinity();
     bool tied = false;  ///< another element is as near as the best one, and neither of them is `first`
     int restarts = 0;   ///< number of further leaves on which Newton's method may start from several places

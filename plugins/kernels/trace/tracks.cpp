@@ -9,9 +9,10 @@ namespace {
 
 using Eigen::Array2d;
 
-/// [m] The distance in a record is measured from the place of the probe when the search began. The first record may be
-/// 10 ms old, which is this distance at 2 m/s. Later records are newer than the results of the search before.
-constexpr double kRecordAge = 0.02;
+/// [m] The distance in a record is that of the probe when the search began. The first record after clear() may be
+/// 10 ms old, and a probe at 2 m/s moves by this distance in that time. For later records the path of the probe since
+/// the results of the search before is used, because they are newer than these.
+constexpr double kWayOfOldRecord = 0.02;
 /// If the (u, v) of a record and of a followed foot differ by less than this share of the range, Newton's method leads
 /// from the record to that foot.
 constexpr double kSameRecord = 0.02;
@@ -205,7 +206,7 @@ void Tracks::clear() noexcept {
   while (!active_.empty()) drop(active_.back());
   way_ = 0;
   told_ = told_before_ = tick_;
-  way_told_ = way_told_before_ = -kRecordAge;
+  way_told_ = way_told_before_ = -kWayOfOldRecord;
 }
 
 void Tracks::countAnew() noexcept {

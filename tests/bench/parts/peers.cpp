@@ -44,7 +44,8 @@ Eigen::Vector3f nearestOfTriangle(const Eigen::Vector3f& p, const Eigen::Vector3
 /// has no better corners than those: all is in single precision.
 class Embree final : public Peer {
  public:
-  Embree(const Points& points, const Triangles& triangles) : triangles_(triangles) {
+  /// @param bounded true to give it the bound that the tick before proves; false for a plain query, as Embree documents
+  Embree(const Points& points, const Triangles& triangles, bool bounded) : triangles_(triangles), bounded_(bounded) {
     device_ = rtcNewDevice(nullptr);
     scene_ = rtcNewScene(device_);
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
@@ -73,14 +74,16 @@ class Embree final : public Peer {
     query.x = static_cast<float>(p.x());
     query.y = static_cast<float>(p.y());
     query.z = static_cast<float>(p.z());
-    query.radius = static_cast<float>(bound);
+    query.radius = bounded_ ? static_cast<float>(bound) : std::numeric_limits<float>::infinity();
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(scene_, &query, &context, &Embree::look, this);
     near = near_.cast<double>();
     return static_cast<double>(std::sqrt(best_));
   }
-  std::string name() const override { return "Embree 3 point query (single)"; }
+  std::string name() const override {
+    return bounded_ ? "Embree 3 point query (single), bounded" : "Embree 3 point query (single)";
+  }
 
  private:
   static bool look(RTCPointQueryFunctionArguments* args) {
@@ -96,6 +99,7 @@ class Embree final : public Peer {
     return true;
   }
   const Triangles& triangles_;
+  const bool bounded_;
   const float* corners_ = nullptr;  ///< of the geometry's buffer
   RTCDevice device_;
   RTCScene scene_;
@@ -168,7 +172,7 @@ class Cgal final : public Peer {
 std::vector<std::unique_ptr<Peer>> makePeers(const Points& points, const Triangles& triangles) {
   std::vector<std::unique_ptr<Peer>> peers;
 #ifdef HAVE_EMBREE
-  peers.push_back(std::make_unique<Embree>(points, triangles));
+  for (const bool bounded : {false, true}) peers.push_back(std::make_unique<Embree>(points, triangles, bounded));
 #endif
 #ifdef HAVE_FCL
   if (triangles.size() <= 200000) peers.push_back(std::make_unique<Fcl>(points, triangles));

@@ -104,7 +104,7 @@ def held(daemon):
         texts = warned(lambda _: h.lead_force(ARM).end())
         check("who begins on an arm that is held is warned", any("held" in t and "hapticd ctl clear" in t for t in texts), texts)
         h.clear()
-        check("the log tells of the hold", daemon.says(ARM, "it is held", "hapticd ctl clear"), daemon.told())
+        check("the log tells of the hold", daemon.says(ARM, "it is held") and daemon.says("hapticd ctl clear"), daemon.told())
         check("and of its end in matching words", daemon.says(ARM, "the hold is over"), daemon.told())
 
 
@@ -189,7 +189,9 @@ def forgotten(daemon):
 def many_files(daemon):
     """A program may have more open files than select() can tell of."""
     limits = resource.getrlimit(resource.RLIMIT_NOFILE)
-    resource.setrlimit(resource.RLIMIT_NOFILE, (min(2048, limits[1]), limits[1]))
+    if limits[1] < 2048:
+        return print("skipped: more files than select() can tell of, because this machine allows fewer (ulimit -Hn)")
+    resource.setrlimit(resource.RLIMIT_NOFILE, (2048, limits[1]))
     files = [os.open(os.devnull, os.O_RDONLY) for _ in range(1100)]
     with daemon.connect() as h:
         check("more files than select() can tell of are no trouble", h.status()["ok"])

@@ -156,7 +156,7 @@ for shape in ("straight", "rubs", "drags", "magnet", "snaps"):
     mine = [(t["name"], t["result"], t["why"]) for t in tests if t["plugin"] == shape and t["result"] in ("fail", "warn")]
     check(f"{shape} passes", {t["plugin"] for t in tests} >= {shape} and not mine, mine)
 over = [(t["name"], t["why"]) for t in tests if t["plugin"] == "overruns" and t["result"] == "fail"]
-check("memory that was overrun is named beside the crash that it caused", over and "first mend eight-probes" in over[0][1] and
+check("memory that was overrun is named beside the crash that it caused", over and "first correct what fails in eight-probes" in over[0][1] and
       over[1][0] == "eight-probes" and "it writes behind its hsp_contact (152 bytes)" in over[1][1], over)
 
 # What is drawn is compared with what is felt.

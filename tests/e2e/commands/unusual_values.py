@@ -156,7 +156,7 @@ MODELS = [
     ("a cube in mm", "nurbs_rigid", cube(half=50).replace("  - name: right", "  |- name: right"), "173 mm is 0.173 m"),
     ("a cube in cm", "nurbs_rigid", cube(half=5).replace("  - name: right", "  |- name: right"), "17.3 m large"),
     ("a face without area", "nurbs_rigid", cube(flat), "no area"),
-    ("a name given twice", "nurbs_rigid", cube(second_right), '"right" is the name of surfaces[0]'),
+    ("a name given twice", "nurbs_rigid", cube(second_right), '"right" is also the name of surfaces[0]'),
     ("a corner mistyped", "nurbs_rigid", cube(mistyped), "their other ends are 5 mm apart"),
     ("a face beside its place", "nurbs_rigid", cube(shifted), "joins none of the 4 surfaces"),
     ("points with u fastest", "nurbs_rigid", bulge(True), "v runs fastest"),

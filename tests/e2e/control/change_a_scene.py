@@ -5,6 +5,7 @@ Usage: change_a_scene.py HAPTICD SOURCE     prints one line per case; exit 1 whe
 """
 import atexit
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -119,6 +120,23 @@ def permission(client, folder):
         check("and gives the permission back", until(lambda: pushes() == 0.7), pushes())
 
 
+def scene_without_an_arm(environment, folder):
+    """A scene that names no arm has the default one, also for a daemon whose arm is another."""
+    shutil.copy(os.path.join(SOURCE, "config", "devices", "simulated-premium15.yaml"), os.path.join(folder, "own-arm.yaml"))
+    with open(os.path.join(folder, "no-arm.yaml"), "w") as file:
+        file.write("hapticd: 1\nmodels:\n" + BALL.format(source=SOURCE, name="plain", x=0.1))
+    with open(os.path.join(folder, "owner.yaml"), "w") as file:
+        file.write("hapticd: 1\ndevice: own-arm.yaml\nmodels: []\n")
+    run = subprocess.Popen([HAPTICD, "run", os.path.join(folder, "owner.yaml"), "--name", "owner"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    atexit.register(run.kill)
+    until(lambda: os.path.exists(os.path.join(folder, "owner.sock")), 30)
+    done = subprocess.run([HAPTICD, "ctl", "--name", "owner", "add", os.path.join(folder, "no-arm.yaml")], env=environment, capture_output=True,
+                          text=True, timeout=60)
+    check("a scene that names no arm can be added", done.returncode == 0, done)
+    run.terminate()
+    run.wait(timeout=30)
+
+
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     environment = dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch)
     run = subprocess.Popen([HAPTICD, "run", write(scratch, "empty", []), "--name", "changed"], env=environment,
@@ -133,4 +151,5 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
         stopped(run, environment, client)
     run.send_signal(signal.SIGTERM)
     check("the run ends in order", run.wait(timeout=30) == 0)
+    scene_without_an_arm(environment, scratch)
 finish()

@@ -95,7 +95,7 @@ def daemon(folder, name, text, port=0, more=""):
         file.write(ARM.format(port=port, more=more))
     environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
     with open(os.path.join(folder, name + ".log"), "w") as log:
-        run = subprocess.Popen([HAPTICD, "run", scene, "--name", name], env=environment, stdout=log, stderr=log)
+        run = subprocess.Popen([HAPTICD, "run", scene, "--name", name, "--allow-non-rt"], env=environment, stdout=log, stderr=log)
     until(lambda: answers(os.path.join(folder, name + ".sock")) or run.poll() is not None, 30)
     return run
 

@@ -120,7 +120,7 @@ with tempfile.TemporaryDirectory() as folder:
         code, out, err = ctl("geometry", "teapot", "--follow")
         check("following what does not deform is refused with its cure", code == 1 and "display_tolerance" in err, err)
         for arguments, why in ((("geometry", "nobody"), "no model"), (("geometry", "plate", "--tolerance", "2"), "from 1e-05"),
-                               (("geometry", "teapot", "--tolerance", "0.00001"), "coarser")):
+                               (("geometry", "teapot", "--tolerance", "0.00001"), "larger")):
             code, out, err = ctl(*arguments)
             check(" ".join(arguments) + " is refused with its reason", code == 1 and why in err, (code, out[:200], err))
         code, out, err = ctl("stop")

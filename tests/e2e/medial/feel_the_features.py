@@ -110,7 +110,7 @@ def undamped():
                                   timeout=60)
             return done.stdout + done.stderr
         warned = " ".join(told("check", 0).split())
-        found = re.search(r"no arm is passive on it; expected a damping of at least ([0-9.]+) N s/m", warned)
+        found = re.search(r"it is not passive on any arm; give it a damping of at least ([0-9.]+) N s/m", warned)
         check("a mass without damping is warned of, with what would do", found, warned)
         enough = found.group(1) if found else "1"
         check("with that damping there is no warning", "undamped" not in told("check", enough), told("check", enough))

@@ -78,7 +78,7 @@ def absent(folder):
     """Windows on which no arm answers."""
     window = folder / "window"
     for what, content, names in (("no window", None, "there is no file"), ("a short window", b"\0" * 10, "ends after"),
-                                 ("an empty window", b"", "reads nothing"),
+                                 ("an empty window", b"", "returns no bytes"),
                                  ("a silent bus", b"\xff" * 65536, "nobody answers"),
                                  ("a board that stands still", b"\0" * 65536, "the motors stay off")):
         window.unlink(missing_ok=True)

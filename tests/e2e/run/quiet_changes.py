@@ -6,7 +6,6 @@ Usage: quiet_changes.py HAPTICD SOURCE_DIR CRASHING.so WITNESS.so     prints one
 """
 import json
 import os
-import resource
 import shutil
 import subprocess
 import sys
@@ -14,11 +13,11 @@ import tempfile
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish, program
+from e2e import can_lock_memory, check, finish, program
 
 HAPTICD, SOURCE, CRASHING, WITNESS = (os.path.abspath(argument) for argument in sys.argv[1:5])
 SCENES = os.path.join(SOURCE, "config", "scenes")
-can_lock = os.geteuid() == 0 or resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] == resource.RLIM_INFINITY
+can_lock = can_lock_memory()
 WARM = 1  # s: the first 200 ticks are not counted
 
 

@@ -9,7 +9,6 @@ import glob
 import json
 import os
 import re
-import resource
 import shutil
 import subprocess
 import sys
@@ -19,12 +18,12 @@ import time
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 sys.path.insert(0, os.path.join(sys.argv[2], "driver", "doors", "client", "python"))
 import hapticd
-from e2e import check, finish
+from e2e import can_lock_memory, check, finish
 
 HAPTICD, SOURCE, WITNESS, SHAPES = sys.argv[1:5]
 SECONDS = 2
 strace = shutil.which("strace")
-can_lock = os.geteuid() == 0 or resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] == resource.RLIM_INFINITY
+can_lock = can_lock_memory()
 
 
 def systemCalls(log):

@@ -43,7 +43,7 @@ def daemon(folder, name, text, **more):
         file.write(text.format(source=SOURCE))
     environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder, **more)
     with open(os.path.join(folder, name + ".log"), "w") as log:
-        run = subprocess.Popen([HAPTICD, "run", scene, "--name", name], env=environment, stdout=log, stderr=log)
+        run = subprocess.Popen([HAPTICD, "run", scene, "--name", name, "--allow-non-rt"], env=environment, stdout=log, stderr=log)
     until(lambda: os.path.exists(os.path.join(folder, name + ".sock")) or run.poll() is not None, 30)
     return run
 

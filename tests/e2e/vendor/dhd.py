@@ -39,7 +39,7 @@ def start(folder, name, library=LIBRARY, index=0, **more):
     environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder,
                        FAKE_DHD_LOG=os.path.join(folder, name + ".calls"), **more)
     with open(os.path.join(folder, name + ".log"), "w") as log:
-        run = subprocess.Popen([HAPTICD, "run", os.path.join(folder, "scene.yaml"), "--name", name], env=environment,
+        run = subprocess.Popen([HAPTICD, "run", os.path.join(folder, "scene.yaml"), "--name", name, "--allow-non-rt"], env=environment,
                                stdout=log, stderr=log)
     until(lambda: os.path.exists(os.path.join(folder, name + ".sock")) or run.poll() is not None, 30)
     return run

@@ -64,7 +64,8 @@ class Claim {
   /// The force may change at once after a live parameter was set. kAsked such changes may come in a row, and then
   /// kAskedPerSecond per second: a program that sets parameters in every tick must not allow a plugin to kick.
   static constexpr double kAsked = 3, kAskedPerSecond = 2;
-  /// [s] a change after a set parameter may be held back for this time without a strike
+  /// [s] After a live parameter was set, a large change of the force is let through slowly. For at most this time,
+  /// holding it back is not counted against the plugin (Guard::strike()).
   static constexpr double kExcused = 1;
   /// [s] After a jump of the probe or a bad sample, the search finds the surface again some ticks later. For this time
   /// the force may come at once, whatever the normal was, and the plugin is not blamed if it is held back.

@@ -291,7 +291,7 @@ TEST(Simulated, SaysWhichListOfAPhantomHasTheWrongLength) {
   both.set("arm.kind", 2);
   both.set("arm.max_torque", std::vector<double>{1}), both.set("joint.max_torque", std::vector<double>{1});
   EXPECT_LT(both.start(), 0);
-  EXPECT_NE(both.said.find("expected one of them"), std::string::npos) << both.said;
+  EXPECT_NE(both.said.find("remove one of the two"), std::string::npos) << both.said;
 }
 
 /// A chain of three joints with sensors and its own position loop.

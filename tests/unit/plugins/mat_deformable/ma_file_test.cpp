@@ -29,11 +29,15 @@ TEST(MaFile, ReadsVerticesEdgesAndTriangles) {
 }
 
 TEST(MaFile, SaysWhichLineIsWrongAndWhatWasExpected) {
-  EXPECT_EQ(complaintOf(""), "body.ma:1: the file is empty, expected the numbers of vertices, edges and triangles");
-  EXPECT_NE(complaintOf("v 0 0 0 1\n").find("body.ma:1: 'v', expected three whole numbers"), std::string::npos);
-  EXPECT_NE(complaintOf("3 0\n").find("body.ma:1: too few numbers, expected three"), std::string::npos);
-  EXPECT_NE(complaintOf("3 -1 0\n").find("body.ma:1: -1 of a kind, expected 0 to 10000000"), std::string::npos);
-  EXPECT_NE(complaintOf("20000000 0 0\n").find("body.ma:1: 20000000 of a kind"), std::string::npos);
+  EXPECT_EQ(complaintOf(""),
+            "body.ma:1: the file is empty; the first line must have the numbers of vertices, edges and triangles");
+  EXPECT_NE(complaintOf("v 0 0 0 1\n").find("body.ma:1: 'v'; the first line must have three whole numbers"),
+            std::string::npos);
+  EXPECT_NE(complaintOf("3 0\n").find("body.ma:1: too few numbers; the first line must have three whole numbers"),
+            std::string::npos);
+  EXPECT_NE(complaintOf("3 -1 0\n").find("body.ma:1: -1 elements of one kind; expected 0 to 10000000"),
+            std::string::npos);
+  EXPECT_NE(complaintOf("20000000 0 0\n").find("body.ma:1: 20000000 elements of one kind"), std::string::npos);
   EXPECT_NE(complaintOf("0 0 0\n").find("body.ma:1: there are no vertices"), std::string::npos);
   EXPECT_NE(complaintOf("1 0 0\nv 0 0 0 -1\n").find("body.ma:2: expected v x y z r"), std::string::npos);
   EXPECT_NE(complaintOf("1 0 0\nv 0 0 nan 1\n").find("body.ma:2: "), std::string::npos);
@@ -44,8 +48,10 @@ TEST(MaFile, SaysWhichLineIsWrongAndWhatWasExpected) {
             std::string::npos);
   EXPECT_NE(complaintOf("3 0 1\nv 0 0 0 1\nv 1 0 0 1\nv 2 0 0 1\nf 0 1 1\n").find("body.ma:5: expected f i j k"),
             std::string::npos);
-  EXPECT_NE(complaintOf("2 0 0\nv 0 0 0 1\n").find("1 vertex in the file, expected 2"), std::string::npos);
-  EXPECT_NE(complaintOf("1 0 0\nv 0 0 0 1\nx 1\n").find("body.ma:3: 'x', expected v, e, f or #"), std::string::npos);
+  EXPECT_NE(complaintOf("2 0 0\nv 0 0 0 1\n").find("1 vertex in the file, but the first line says 2"),
+            std::string::npos);
+  EXPECT_NE(complaintOf("1 0 0\nv 0 0 0 1\nx 1\n").find("body.ma:3: 'x': a line must begin with v, e, f or #"),
+            std::string::npos);
 }
 
 TEST(MaFile, RepeatsNoControlCharactersOfAFile) {

@@ -77,7 +77,7 @@ TEST(Wire, ASwitchIsNoPartOfACounter) {
       R"("output":{"size":2,"fields":[{"is":"torque","joint":1,"at":0,"type":"i16","scale":0.1}]}})";
   const auto at = [&](const char* place) { return std::string(with).replace(with.find("PLACE"), 5, place); };
   EXPECT_EQ(complaint(at("3")), "");
-  EXPECT_NE(complaint(at("2")).find("fields[2].at: takes bits of byte 2, which fields[1] (counter) has already"),
+  EXPECT_NE(complaint(at("2")).find("fields[2].at: takes bits of byte 2, which fields[1] (counter) uses already"),
             std::string::npos)
       << complaint(at("2"));
 }
@@ -236,7 +236,7 @@ TEST(Wire, AllMistakesAreToldAtOnce) {
         "wire.framing.escape.codes[0]: expected a byte", "wire.startup[0].wait: 99", "wire.startup[0]: is empty",
         "wire.endpoints.in: 1", "wire.endpoints: lacks the key \"out\"", "wire.input.id: 0",
         "wire.input.fields[0].joint: 4", "wire.input.fields[0].at: 9", "wire.input.fields[0].type: \"i99\"",
-        "wire.input.fields[1].type: \"u8\", expected u16", "wire.input.fields[1].at: lies inside",
+        "wire.input.fields[1].type: \"u8\", expected u16", "wire.input.fields[1].at: the checksum lies inside",
         "wire.input.fields[1].initial: expected only with", "wire.input.fields[2].is: \"nothing\"",
         "wire.output.fields[0].at: 1", "wire.output.fields[1].bit: 4"})
     EXPECT_NE(said.find(expected), std::string::npos) << expected << "\n  in:\n" << said;
