@@ -190,6 +190,7 @@ void adviseWire(const Node& root, const scene::Device& device, size_t joints, do
   if (!wire || in == nullptr || out == nullptr) return;
   adviseTorques(*out, wire->output, device, warnings);
   adviseGaps(*in, wire->input, device, warnings);
+  if (!wireOf(device, joints)) return;  // a field with a mistake may lie elsewhere
   adviseChecksum(*in, wire->input, "input", device, warnings);
   adviseChecksum(*out, wire->output, "output", device, warnings);
   if (const Node* startup = find(root, {"parameters", "wire", "startup"}))
