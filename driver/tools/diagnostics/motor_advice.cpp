@@ -45,7 +45,7 @@ struct Motors {
 
 /// Warns of values that no motor of an arm for a hand has. @return true if the motor has such a value
 static bool oddMotor(const Motors& motors, size_t i) {
-  constexpr double kStrong = 2, kResists = 200, kReduces = 0.5;  // [N m/A] of direct drives; [ohm]; gears do not reduce
+  constexpr double kStrong = 8, kResists = 200, kReduces = 0.5;  // [N m/A] also of motors with gears; [ohm]; share
   const scene::Motor& motor = motors.device.limits.motors[i];
   const size_t before = motors.warnings.size();
   if (motor.torque_constant > kStrong)
