@@ -2,13 +2,14 @@
 /// `hapticd check`: validates files and prints every problem, warns of what cannot be stable; also prints the JSON
 /// Schema of a format.
 #include <algorithm>
-#include <cstdlib>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
 #include <vector>
 
+#include "cli/check_draft.hpp"
 #include "cli/colour.hpp"
 #include "cli/command.hpp"
 #include "cli/scene_advice.hpp"
@@ -51,124 +52,12 @@ int printSchema(const std::string& format) {
   return kWorked;
 }
 
-/// Returns the scene, with the arm that `run` uses if the scene names none.
-scene::Scene withArm(scene::Scene scene) {
-  if (const auto file = host::shippedFile(scene::kDefaultDevice); scene.devices.empty() && file)
-    if (auto loaded = scene::loadDevice(*file, catalog()); loaded.device) {
-      scene.devices.push_back(*loaded.device);
-      scene.devices.back().chosen_by_default = true;
-    }
-  return scene;
-}
-
-/// What a device file says about its arm, which is not opened; 0 means unknown.
-hdv_info infoOf(const scene::Device& device) {
-  hdv_info info{};
-  info.capabilities = HDV_C_PACING;  // unknown, so there is no warning about it
-  for (const scene::Value& value : device.parameters) {
-    if (value.id == "device.max_stiffness") info.max_stiffness = value.number;
-    if (value.id == "device.mass") info.mass_kg = value.number;
-    if (value.id == "device.max_force") info.max_force = value.number;
-    if (value.id == "device.continuous_force") info.continuous_force = value.number;
-  }
-  return info;
-}
-
-/// Warns of contacts that cannot be stable. Only simulated arms are opened, because `check` touches no hardware. For a
-/// real arm the numbers of its file are used. `run` gives these warnings as well.
-document::Problems unstable(const scene::Scene& scene, const std::vector<double>& stiffness) {
-  document::Problems warnings = tune::fastPaths(scene);
-  for (const scene::Device& device : scene.devices) {
-    hdv_info info = infoOf(device);
-    if (device.module == "simulated") {
-      auto arm = host::DeviceInstance::create(device, nullptr);
-      if (!arm || !(*arm)->open()) continue;
-      info = (*arm)->info();
-    }
-    for (const document::Problems& found :
-         {tune::unstableSettings(scene, device, info, stiffness), stiffTogether(scene, device, info, stiffness),
-          lightAdmittance(scene, device, info)})
-      warnings.insert(warnings.end(), found.begin(), found.end());
-    const bool described = std::any_of(device.parameters.begin(), device.parameters.end(),
-                                       [](const scene::Value& value) { return value.id == "wire"; });
-    if (described && info.max_stiffness <= 0 &&
-        std::any_of(stiffness.begin(), stiffness.end(), [](double k) { return k > 0; }))
-      document::report(
-          warnings, device.place.file.empty() ? document::Place{device.file.string()} : device.place,
-          "parameters.device.max_stiffness",
-          "not given, so it is unknown whether " + device.name +
-              " is stable with these models; give the stiffness that was found stable, and begin with 100 N/m");
-  }
-  return warnings;
-}
-
-/// Warns of a bound for programs (clients.max_force) above the arm's own limit, because it has no effect.
-document::Problems idleBounds(const scene::Scene& scene) {
-  document::Problems warnings;
-  for (const scene::Device& device : scene.devices) {
-    const double bound = device.limits.force > 0 ? device.limits.force : infoOf(device).max_force;
-    if (bound > 0 && scene.clients.max_force > bound)
-      document::report(warnings, document::Place{scene.file.string()}, "clients.max_force",
-                       document::numberText(scene.clients.max_force) + " N, but " + device.name + " gives " +
-                           document::numberText(bound) +
-                           " N at most, so programs get no more; expected this force or less");
-  }
-  return warnings;
-}
-
-/// Warns of models that `run` would leave out because their plugin is in quarantine.
-document::Problems quarantinedModels(const scene::Scene& scene) {
-  document::Problems warnings;
-  const auto dir = watch::stateFolder();
-  if (dir.empty()) return warnings;
-  for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir))
-    for (size_t i = 0; i < scene.models.size(); ++i)
-      if (entry.holds(scene.models[i].plugin, host::identityOnDisk(scene.models[i].library)))
-        document::report(warnings, scene.models[i].place, "models[" + std::to_string(i) + "].plugin",
-                         entry.plugin + " is in quarantine, because it ended an earlier run by " + entry.reason +
-                             "; runs leave " + scene.models[i].name +
-                             " out; once the plugin is repaired: hapticd plugin clear " + entry.plugin);
-  return warnings;
-}
-
 /// What `check` reports about one file.
 struct Verdict {
   std::string file;
   document::Problems problems, warnings;
   bool whole = true;  ///< false if some checks were left out, because something that they need is missing or wrong
 };
-
-/// Returns true if a key such as "models[3].pose" is about one of these models.
-bool isOfThese(const std::string& key, const std::vector<bool>& models) {
-  constexpr std::string_view kModels = "models[";
-  if (key.rfind(kModels, 0) != 0) return false;
-  const size_t index = std::strtoul(key.c_str() + kModels.size(), nullptr, 10);
-  return index < models.size() && models[index];
-}
-
-/// Tries the models without problems in a scene that has problems, so that the user sees all problems at once.
-void tryTheRest(const CheckArguments& options, Verdict& verdict) {
-  const auto draft = scene::sceneDraft(verdict.file, catalog());
-  verdict.whole = !draft && std::none_of(verdict.problems.begin(), verdict.problems.end(),
-                                         [](const document::Problem& problem) { return problem.key.empty(); });
-  if (!draft || options.files_only) return;
-  std::vector<bool> unsound(draft->models.size());
-  for (size_t i = 0; i < unsound.size(); ++i) {
-    std::vector<bool> one(unsound.size());
-    one[i] = true;
-    unsound[i] = std::any_of(verdict.problems.begin(), verdict.problems.end(),
-                             [&](const document::Problem& problem) { return isOfThese(problem.key, one); });
-  }
-  const ModelTrial trial = tryModels(*draft, servo::maxForceOf(withArm(*draft)), unsound);
-  verdict.problems.insert(verdict.problems.end(), trial.problems.begin(), trial.problems.end());
-  document::sortByPlace(verdict.problems);
-  verdict.warnings = trial.warnings;
-  for (const auto& found_by : {&farModels, &softModels})
-    for (const document::Problem& one : found_by(*draft))
-      if (!isOfThese(one.key, unsound)) verdict.warnings.push_back(one);
-  for (const document::Problem& one : unusualValues(*draft, trial.boxes, catalog()))
-    if (!isOfThese(one.key, unsound)) verdict.warnings.push_back(one);
-}
 
 /// Returns true if the same key of the same file has a warning already.
 bool tells(const document::Problems& told, const document::Problem& one) {
@@ -179,7 +68,7 @@ bool tells(const document::Problems& told, const document::Problem& one) {
 
 /// Adds warnings about what is allowed but was hardly meant, or cannot be stable.
 void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckArguments& options, Verdict& verdict) {
-  document::Problems more = unstable(full, trial.stiffness);
+  document::Problems more = unstableContacts(full, trial.stiffness);
   for (const document::Problem& one : lateVelocity(full, trial.needs_velocity)) more.push_back(one);
   for (const auto& found_by : {&farModels, &softModels, &idleBounds, &quarantinedModels, &slowArms, &wideScales})
     for (const document::Problem& one : found_by(full)) more.push_back(one);
@@ -193,20 +82,6 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
       for (const document::Problem& one : adviseDevice(device.file, catalog()))
         if (!tells(more, one)) more.push_back(one);
   verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
-}
-
-/// Adds warnings about unusual values. A value that has a warning already gets no second one.
-void addUnusual(const scene::Scene& scene, const ModelBoxes& boxes, Verdict& verdict) {
-  document::Problems more = unusualValues(scene, boxes, catalog());
-  for (const document::Problem& one : unusualSettings(scene, boxes)) more.push_back(one);
-  const size_t before = verdict.warnings.size();
-  for (const document::Problem& one : more)
-    if (std::none_of(verdict.warnings.begin(), verdict.warnings.begin() + static_cast<std::ptrdiff_t>(before),
-                     [&one](const document::Problem& told) {
-                       return told.key == one.key && told.place.line == one.place.line &&
-                              told.place.column == one.place.column && !told.key.ends_with(".pose");
-                     }))
-      verdict.warnings.push_back(one);
 }
 
 /// Tries the modules of a scene's arms in child processes, before any of them is loaded here, and returns what a run
@@ -227,6 +102,16 @@ document::Problems badModules(const scene::Scene& scene) {
         trial.error.substr(0, trial.error.find('\n')) + "; all of it: hapticd check " + device.file.string());
   }
   return problems;
+}
+
+/// Judges what could be read of a scene that has problems, so that the user sees all problems at once.
+void tryTheRest(const CheckArguments& options, Verdict& verdict) {
+  const auto draft = scene::sceneDraft(verdict.file, catalog());
+  verdict.whole = !draft && std::none_of(verdict.problems.begin(), verdict.problems.end(),
+                                         [](const document::Problem& problem) { return problem.key.empty(); });
+  if (!draft || options.files_only) return;
+  judgeDraft(*draft, verdict.problems, verdict.warnings);
+  document::sortByPlace(verdict.problems);
 }
 
 /// Adds problems that `run` would find when it opens the arms.
@@ -251,12 +136,34 @@ void addOfDevices(Verdict& verdict, bool judged) {
   document::sortByPlace(verdict.problems);
 }
 
-/// Finds the line of each warning that has only a key, and removes warnings that occur twice.
+/// Finds the places of keys in files. Each file is read once.
+class Places {
+ public:
+  std::optional<document::Place> of(const std::string& file, const std::string& key) {
+    document::Problems unread;
+    const auto [found, is_new] = files_.try_emplace(file);
+    if (is_new) found->second = document::parseFile(file, unread);
+    return found->second ? placeOfKey(*found->second, file, key) : std::nullopt;
+  }
+
+ private:
+  std::map<std::string, std::optional<document::Node>> files_;
+};
+
+/// Finds the line of each warning that has only a key, or the pose of a model, and removes warnings that occur twice.
 void placeWarnings(document::Problems& warnings) {
   document::Problems once;
+  Places places;
   for (document::Problem& one : warnings) {
-    if (one.place.line <= 1 && one.place.column <= 1 && !one.key.empty())
-      if (const auto found = placeOfKey(one.place.file, one.key)) one.place = *found;
+    constexpr std::string_view kPosition = ".position";
+    const bool of_pose = one.key.ends_with(".pose") || one.key.ends_with(".pose.position");
+    const bool of_model = one.key.starts_with("models[") && (of_pose || one.key.ends_with("].path"));
+    if ((one.place.line <= 1 && one.place.column <= 1 && !one.key.empty()) || of_model) {
+      auto found = places.of(one.place.file, one.key);
+      if (!found && one.key.ends_with(kPosition))
+        found = places.of(one.place.file, one.key.substr(0, one.key.size() - kPosition.size()));
+      if (found) one.place = *found;
+    }
     if (std::none_of(once.begin(), once.end(), [&one](const document::Problem& told) {
           return told.place.line > 1 && told.key == one.key && told.place.file == one.place.file &&
                  told.place.line == one.place.line && told.place.column == one.place.column && told.what == one.what;
@@ -305,7 +212,7 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   verdict.warnings.insert(verdict.warnings.end(), trial.warnings.begin(), trial.warnings.end());
   verdict.whole = verdict.whole && found.empty();
   if (scene) addWarnings(withArm(*scene), trial, options, verdict);
-  if (scene) addUnusual(withArm(*scene), trial.boxes, verdict);
+  if (scene) addUnusual(withArm(*scene), trial.boxes, {}, verdict.warnings);
   placeWarnings(verdict.warnings);
   return verdict;
 }

@@ -95,7 +95,7 @@ std::optional<Scene> sceneDraft(const std::filesystem::path& file, host::Catalog
   const auto root = parseFile(file, known);
   const Format* format = root ? detail::formatOf(*root) : nullptr;
   if (format == nullptr || format->table != &kSceneTable) return std::nullopt;
-  return detail::loadScene(*root, in, catalog, {.default_device = false, .device_file = {}});
+  return detail::loadScene(*root, in, catalog, {.default_device = true, .device_file = {}});
 }
 
 LoadedDaemon loadDaemon(const std::filesystem::path& file) {

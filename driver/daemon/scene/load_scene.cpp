@@ -26,8 +26,7 @@ class SceneLoader {
     scene_.file = in_.file();
     scene_.servo = text_.servo;
     scene_.models.reserve(text_.models.size());
-    for (size_t i = 0; i < text_.models.size(); ++i)
-      if (text_.models[i].node->isMap()) addModel(text_.models[i], "models[" + std::to_string(i) + "]");
+    for (size_t i = 0; i < text_.models.size(); ++i) addModel(text_.models[i], "models[" + std::to_string(i) + "]");
     if (text_.clients != nullptr) readClients(*text_.clients);
     addDevices(root);
     return std::move(scene_);
@@ -40,6 +39,7 @@ class SceneLoader {
     model.plugin = text.plugin;
     model.pose = text.pose;
     model.place = in_.place(*text.node);
+    if (!text.node->isMap()) return scene_.models.push_back(std::move(model));  // reported; the others keep their index
     checkName(text, key);
     if (const host::ClassInfo* info = pluginOf(text, key)) {
       model.library = info->file;
@@ -133,8 +133,8 @@ class SceneLoader {
       return;
     }
     if (text_.device != nullptr && text_.devices != nullptr)
-      return in_.problem(*text_.device, "device", "both device and devices are given, expected one of them");
-    if (text_.device != nullptr) addNamed(*text_.device, "device");
+      in_.problem(*text_.device, "device", "both device and devices are given, expected one of them");
+    if (text_.device != nullptr && text_.devices == nullptr) addNamed(*text_.device, "device");
     if (text_.devices != nullptr) addList(*text_.devices);
     if (text_.device == nullptr && text_.devices == nullptr && options_.default_device) addDefault(root);
     if (text_.hand != nullptr && !scene_.devices.empty() && !hand_used_)

@@ -5,10 +5,21 @@
 
 namespace hapticd::diagnostics {
 
-const scene::Value* GivenModel::find(std::string_view id) const {
+Eigen::Vector3d GivenModel::gravity() const {
+  unsure_ = unsure_ || unread_.gravity || unread_.hasOwn("pose");
+  return model().pose.orientation.conjugate() * scene_.servo.gravity;
+}
+
+const scene::Value* GivenModel::given(std::string_view id) const {
   for (const scene::Value& value : model().parameters)
     if (value.id == id) return &value;
   return nullptr;
+}
+
+const scene::Value* GivenModel::find(std::string_view id) const {
+  const scene::Value* value = given(id);
+  unsure_ = unsure_ || unread_.ids.contains(id) || (value == nullptr && unread_.any);
+  return value;
 }
 
 double GivenModel::number(std::string_view id) const {
@@ -40,14 +51,15 @@ std::string GivenModel::choice(std::string_view id) const {
 }
 
 void GivenModel::warn(std::initializer_list<std::string_view> ids, const std::string& what) const {
+  if (unsure_) return;
   const std::string key = "models[" + std::to_string(index_) + "].parameters.";
-  const scene::Value* given = nullptr;
+  const scene::Value* at = nullptr;
   for (const std::string_view id : ids)
-    if (given == nullptr) given = find(id);
-  const std::string told = key + (given != nullptr ? given->id : std::string(*ids.begin()));
+    if (at == nullptr) at = given(id);
+  const std::string told = key + (at != nullptr ? at->id : std::string(*ids.begin()));
   for (size_t i = first_; i < warnings_.size(); ++i)
     if (warnings_[i].key == told) return;
-  document::report(warnings_, given != nullptr ? given->place : model().place, told, what);
+  document::report(warnings_, at != nullptr ? at->place : model().place, told, what);
 }
 
 }  // namespace hapticd::diagnostics

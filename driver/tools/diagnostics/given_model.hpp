@@ -9,6 +9,7 @@
 
 #include "description/class_info.hpp"
 #include "description/scene.hpp"
+#include "diagnostics/unread_keys.hpp"
 #include "document/problem.hpp"
 
 namespace hapticd::diagnostics {
@@ -16,13 +17,19 @@ namespace hapticd::diagnostics {
 class GivenModel {
  public:
   /// @param box box around the model in its own frame; nothing if unknown  @param info description of its plugin. Scene
-  /// and info must outlive this object.
+  /// and info must outlive this object.  @param unread what was not read of the model
   GivenModel(const scene::Scene& scene, size_t index, const std::optional<Eigen::AlignedBox3d>& box,
-             const host::ClassInfo& info, document::Problems& warnings)
-      : scene_(scene), index_(index), box_(box), info_(info), warnings_(warnings), first_(warnings.size()) {}
+             const host::ClassInfo& info, document::Problems& warnings, UnreadModel unread)
+      : scene_(scene),
+        index_(index),
+        box_(box),
+        info_(info),
+        unread_(std::move(unread)),
+        warnings_(warnings),
+        first_(warnings.size()) {}
 
   const scene::Model& model() const { return scene_.models[index_]; }
-  const scene::Servo& servo() const { return scene_.servo; }
+  Eigen::Vector3d gravity() const;  ///< [m/s^2] in the model's frame, as the model stands at the start
   const host::ClassInfo& plugin() const { return info_; }
   const std::optional<Eigen::AlignedBox3d>& box() const { return box_; }
   double size() const { return box_ ? box_->diagonal().norm() : 0; }  ///< [m] diagonal of the box; 0 if unknown
@@ -35,15 +42,22 @@ class GivenModel {
   /// Returns the chosen word of an enumeration, or "" if the plugin has no such parameter.
   std::string choice(std::string_view id) const;
 
+  /// Begins another judgement. If a judgement asks for a value that was not read, it cannot warn until the next begins.
+  void begin() const { unsure_ = false; }
+
   /// Adds a warning at the first of these parameters that the file gives; if it gives none, at the model under the name
   /// of the first. Warns only once.
   void warn(std::initializer_list<std::string_view> ids, const std::string& what) const;
 
  private:
+  const scene::Value* given(std::string_view id) const;
+
   const scene::Scene& scene_;
   size_t index_;
   const std::optional<Eigen::AlignedBox3d>& box_;
   const host::ClassInfo& info_;
+  UnreadModel unread_;
+  mutable bool unsure_ = false;  ///< the judgement that is made now asked for a value that was not read
   document::Problems& warnings_;
   size_t first_;  ///< index of the first warning about this model
 };

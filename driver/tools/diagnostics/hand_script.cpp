@@ -92,9 +92,12 @@ void judgeCrawl(const scene::Scene& scene, const scene::Device& device, const Ha
 }
 
 /// Warns of a sweep that was meant in degrees. Returns true if it was, so that the speed needs no warning of its own.
-bool judgeSweep(const scene::Device& device, const HandScript& hand, document::Problems& warnings) {
+bool judgeSweep(const scene::Device& device, const HandScript& hand, const UnreadKeys& unread,
+                document::Problems& warnings) {
   const scene::Value* sweep = givenIn(device.parameters, "hand.sweep");
-  if (hand.kind != Kind::kStroke || sweep == nullptr || hand.sweep <= std::numbers::pi * 1.001) return false;
+  const bool may_stroke = hand.kind == Kind::kStroke || unread.has("hand.script");
+  if (!may_stroke || unread.has("hand.sweep") || sweep == nullptr || hand.sweep <= std::numbers::pi * 1.001)
+    return false;
   const std::string meant = hand.sweep <= 360 ? fmt::format(" ({:.4g} degrees is {:.4g} rad)", hand.sweep,
                                                             hand.sweep * std::numbers::pi / 180)
                                               : "";
@@ -165,10 +168,11 @@ std::optional<HandScript> handScriptOf(const scene::Device& device) {
   return hand;
 }
 
-document::Problems hastyHands(const scene::Scene& scene) {
+document::Problems hastyHands(const scene::Scene& scene, const UnreadKeys& unread) {
   document::Problems warnings;
   for (const scene::Device& device : scene.devices)
-    if (const auto hand = handScriptOf(device); hand && !judgeSweep(device, *hand, warnings)) {
+    if (const auto hand = handScriptOf(device); hand && !judgeSweep(device, *hand, unread, warnings)) {
+      if (unread.has("hand")) continue;
       judgeSpeed(scene, device, *hand, warnings);
       judgeCrawl(scene, device, *hand, warnings);
     }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "description/scene.hpp"
+#include "diagnostics/unread_keys.hpp"
 #include "document/problem.hpp"
 
 namespace hapticd::diagnostics {
@@ -46,6 +47,7 @@ std::optional<HandScript> handScriptOf(const scene::Device& device);
 
 /// [main] Warns of strokes of more than half a turn to either side, which were meant in degrees, of a hand that is
 /// faster than human hands, and of a path so slow that its times were not meant in s.
-document::Problems hastyHands(const scene::Scene& scene);
+/// @param unread keys with problems, on which no judgement depends
+document::Problems hastyHands(const scene::Scene& scene, const UnreadKeys& unread = {});
 
 }  // namespace hapticd::diagnostics

@@ -21,11 +21,9 @@ const document::Node* step(const document::Node& from, const std::string& part) 
 
 }  // namespace
 
-std::optional<document::Place> placeOfKey(const std::filesystem::path& file, const std::string& key) {
-  document::Problems unread;
-  const auto root = document::parseFile(file, unread);
-  if (!root) return std::nullopt;
-  const document::Node* at = &*root;
+std::optional<document::Place> placeOfKey(const document::Node& root, const std::filesystem::path& file,
+                                          const std::string& key) {
+  const document::Node* at = &root;
   for (size_t begin = 0; at != nullptr && begin <= key.size();) {
     const size_t end = std::min(key.find('.', begin), key.size());
     at = step(*at, key.substr(begin, end - begin));
@@ -33,6 +31,12 @@ std::optional<document::Place> placeOfKey(const std::filesystem::path& file, con
   }
   if (at == nullptr) return std::nullopt;
   return document::Place{file.string(), at->line, at->column};
+}
+
+std::optional<document::Place> placeOfKey(const std::filesystem::path& file, const std::string& key) {
+  document::Problems unread;
+  const auto root = document::parseFile(file, unread);
+  return root ? placeOfKey(*root, file, key) : std::nullopt;
 }
 
 }  // namespace hapticd::diagnostics

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "document/node.hpp"
 #include "document/problem.hpp"
 
 namespace hapticd::diagnostics {
@@ -12,5 +13,9 @@ namespace hapticd::diagnostics {
 /// [main] Returns the place of a key such as "servo.velocity.parameter" or "devices[1].mount" in a file; nothing if the
 /// file does not have it.
 std::optional<document::Place> placeOfKey(const std::filesystem::path& file, const std::string& key);
+
+/// [main] Does the same in a file that was read already. @param root its tree
+std::optional<document::Place> placeOfKey(const document::Node& root, const std::filesystem::path& file,
+                                          const std::string& key);
 
 }  // namespace hapticd::diagnostics

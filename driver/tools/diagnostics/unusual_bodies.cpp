@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "diagnostics/given_model.hpp"
@@ -16,15 +17,11 @@ using Eigen::Vector3d;
 
 constexpr double kWeightless = 1e-3;  ///< [m/s^2] of gravity
 
-Vector3d inModel(const GivenModel& given, const Vector3d& in_world) {
-  return given.model().pose.orientation.conjugate() * in_world;
-}
-
 /// Warns of a body that its weight would move too far, because nothing holds it or its tether is too soft.
 void judgeHold(const GivenModel& given) {
   constexpr double kSizes = 2, kUnknownSize = 0.25;  // sizes of the body that it may hang below its place; [m]
   const std::string joint = given.choice("joint");
-  Vector3d pull = inModel(given, given.servo().gravity);
+  Vector3d pull = given.gravity();
   const Vector3d axis = given.vector("axis");
   if (joint == "slider" && axis.norm() > 0) pull = pull.dot(axis) / axis.squaredNorm() * axis;
   if (joint == "hinge" || given.number("gravity") == 0 || pull.norm() < kWeightless) return;
@@ -80,9 +77,11 @@ void judgeJoint(const GivenModel& given) {
 }
 
 void judgeDynamic(const GivenModel& given) {
-  judgeJoint(given);
-  judgeHold(given);
-  judgeCenter(given);
+  for (const auto& judge : {&judgeJoint, &judgeHold, &judgeCenter}) {
+    given.begin();
+    judge(given);
+  }
+  given.begin();
   const scene::Value* inertia = given.find("inertia");
   if (inertia != nullptr && !inertia->numbers.empty())
     judgeInertia(given, *std::max_element(inertia->numbers.begin(), inertia->numbers.end()), given.size());
@@ -106,19 +105,31 @@ double farthestCorner(const Eigen::AlignedBox3d& box, const Vector3d& from) {
   return ((from - box.center()).cwiseAbs() + box.sizes() / 2).norm();
 }
 
-void judgePendulum(const GivenModel& given) {
-  constexpr double kAcross = 0.02, kOutside = 0.5;  // share of gravity across the axis; share of the size
-  const Vector3d gravity = inModel(given, given.servo().gravity), axis = given.vector("axis").stableNormalized();
-  if (gravity.norm() < kWeightless || axis.norm() < 0.5) return;
-  const Vector3d across = gravity - gravity.dot(axis) * axis, pivot = given.vector("pivot");
-  if (across.norm() < kAcross * gravity.norm())
-    return given.warn({"axis"}, "is along gravity, so no weight turns " + given.model().name +
-                                    " back; expected an axis across it, such as [0, 0, 1]");
+/// Returns the direction in which a pendulum hangs: that of gravity across its axis. Along gravity, the axis is wrong,
+/// and the direction is that of gravity. Nothing is returned without weight.
+std::optional<Vector3d> hangingOf(const GivenModel& given) {
+  constexpr double kAcross = 0.02;  // share of gravity
+  const Vector3d gravity = given.gravity(), axis = given.vector("axis").stableNormalized();
+  if (gravity.norm() < kWeightless || axis.norm() < 0.5) return std::nullopt;
+  const Vector3d across = gravity - gravity.dot(axis) * axis;
+  if (across.norm() >= kAcross * gravity.norm()) return across.normalized();
+  given.warn({"axis"}, "is along gravity, so no weight turns " + given.model().name +
+                           " back; expected an axis across it, such as [0, 0, 1]");
+  return gravity.normalized();
+}
+
+void judgePendulumInertia(const GivenModel& given) {
   judgeLeastInertia(given);
-  if (!given.box()) return;
-  if (given.number("inertia") > 0)
-    judgeInertia(given, given.number("inertia"), std::max(given.number("length"), farthestCorner(*given.box(), pivot)));
-  const Vector3d center = pivot + given.number("length") * across.normalized();
+  if (!given.box() || !(given.number("inertia") > 0)) return;
+  const double farthest = farthestCorner(*given.box(), given.vector("pivot"));
+  judgeInertia(given, given.number("inertia"), std::max(given.number("length"), farthest));
+}
+
+void judgeHanging(const GivenModel& given) {
+  constexpr double kOutside = 0.5;  // share of the size
+  const auto hanging = hangingOf(given);
+  if (!hanging || !given.box()) return;
+  const Vector3d center = given.vector("pivot") + given.number("length") * *hanging;
   if (const double away = given.box()->exteriorDistance(center); away > kOutside * given.size())
     given.warn(
         {"pivot", "length"},
@@ -144,9 +155,15 @@ void judgeFirstTouch(const GivenModel& given) {
 }  // namespace
 
 void judgeBody(const GivenModel& given) {
+  given.begin();
   judgeFirstTouch(given);
+  given.begin();
   if (given.choice("motion") == "dynamic" && given.plugin().indexOf("tether") >= 0) judgeDynamic(given);
-  if (given.plugin().id == "org.hapticd.shape.pendulum") judgePendulum(given);
+  if (given.plugin().id != "org.hapticd.shape.pendulum") return;
+  for (const auto& judge : {&judgePendulumInertia, &judgeHanging}) {
+    given.begin();
+    judge(given);
+  }
 }
 
 }  // namespace hapticd::diagnostics

@@ -126,8 +126,9 @@ void judgeForce(const GivenModel& given, const scene::Value& value, const host::
 /// Warns of an end stop that is softer than the surface that presses on it.
 void judgeStop(const GivenModel& given, const scene::Value& value) {
   constexpr double kSoft = 100, kSofter = 0.5;  // [N/m], of the surface
+  if (value.id != "end_stiffness") return;
   const double surface = given.number("stiffness");
-  if (value.id == "end_stiffness" && value.number < std::max(kSoft, kSofter * surface))
+  if (value.number < std::max(kSoft, kSofter * surface))
     given.warn({"end_stiffness"},
                fmt::format("{0:g} N/m is too soft for a stop: 1 mm beyond the travel gives only {1:g} N more, and the "
                            "surface has {2:g} N/m; expected more than the surface, in N/m ({0:g} N/mm is {3:g} N/m)",
@@ -197,8 +198,12 @@ void judgeOne(const GivenModel& given, const scene::Value& value, const host::Pa
 }  // namespace
 
 void judgeQuantities(const GivenModel& given) {
-  for (const scene::Value& value : given.model().parameters)
-    if (value.index < given.plugin().params.size()) judgeOne(given, value, given.plugin().params[value.index]);
+  for (const scene::Value& value : given.model().parameters) {
+    given.begin();
+    if (value.index < given.plugin().params.size() && given.find(value.id) == &value)
+      judgeOne(given, value, given.plugin().params[value.index]);
+  }
+  given.begin();
   const scene::Value* sticks = given.find("friction_static");
   if (sticks != nullptr && sticks->number > 0 && given.plugin().indexOf("friction_dynamic") >= 0 &&
       given.find("friction_dynamic") == nullptr && given.number("friction_dynamic") == 0)

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "diagnostics/given_model.hpp"
@@ -54,27 +55,29 @@ std::vector<std::vector<size_t>> modelsInOnePlace(const scene::Scene& scene) {
   return groups;
 }
 
-document::Problems tellModelsInOnePlace(const scene::Scene& scene) {
-  document::Problems warnings;
-  for (const std::vector<size_t>& group : modelsInOnePlace(scene))
+namespace {
+
+void tellModelsInOnePlace(const scene::Scene& scene, const std::vector<bool>& placed, document::Problems& warnings) {
+  for (std::vector<size_t> group : modelsInOnePlace(scene)) {
+    std::erase_if(group, [&placed](size_t model) { return !placed[model]; });
     for (size_t i = 1; i < group.size(); ++i) {
       const scene::Model &first = scene.models[group[0]], &model = scene.models[group[i]];
       document::report(
-          warnings, model.place, fmt::format("models[{}].pose", group[i]),
+          warnings, model.place, fmt::format("models[{}].{}", group[i], model.kinematic ? "path" : "pose"),
           fmt::format(
               "{} and {} (line {}) have the same geometry in the same place, so a hand feels the sum of both; give "
               "one of them another {}",
               model.name, first.name, first.place.line, model.kinematic ? "path" : "pose"));
     }
-  return warnings;
+  }
 }
 
 /// Warns of a pose beside a path, because the path alone says where the model is.
-void tellIdlePoses(const scene::Scene& scene, document::Problems& warnings) {
+void tellIdlePoses(const scene::Scene& scene, const std::vector<bool>& placed, document::Problems& warnings) {
   for (size_t i = 0; i < scene.models.size(); ++i) {
     const scene::Model& model = scene.models[i];
     const std::string pose = poseText(model.pose);
-    if (model.path.empty() || pose == poseText({}) || pose == poseText(model.path.front().pose)) continue;
+    if (!placed[i] || model.path.empty() || pose == poseText({}) || pose == poseText(model.path.front().pose)) continue;
     const std::string key = fmt::format("models[{}].pose", i);
     document::report(
         warnings, placeOfKey(model.place.file, key).value_or(model.place), key,
@@ -84,17 +87,33 @@ void tellIdlePoses(const scene::Scene& scene, document::Problems& warnings) {
   }
 }
 
-document::Problems unusualValues(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog) {
-  document::Problems warnings = tellModelsInOnePlace(scene);
-  tellIdlePoses(scene, warnings);
+/// Returns true if it is known where the model is, and which of its surfaces are felt.
+bool isPlaced(const UnreadModel& unread) {
+  if (unread.any || unread.hasOwn("pose") || unread.hasOwn("path") || unread.hasOwn("motion")) return false;
+  return std::none_of(unread.ids.begin(), unread.ids.end(), [](const std::string& id) {
+    return id == "geometry" || id == "instance" || id == "sides" || id == "motion";
+  });
+}
+
+}  // namespace
+
+document::Problems unusualValues(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog,
+                                 const UnreadKeys& unread) {
+  document::Problems warnings, of_values;
   const std::optional<Eigen::AlignedBox3d> unknown;
+  std::vector<bool> placed(scene.models.size());
   for (size_t i = 0; i < scene.models.size(); ++i) {
     const auto plugin = catalog.shape(scene.models[i].plugin);
     if (!plugin) continue;
-    const GivenModel given(scene, i, i < boxes.size() ? boxes[i] : unknown, **plugin, warnings);
+    UnreadModel of_model = unread.ofModel(i, **plugin);
+    placed[i] = isPlaced(of_model);
+    const GivenModel given(scene, i, i < boxes.size() ? boxes[i] : unknown, **plugin, of_values, std::move(of_model));
     judgeQuantities(given);
     judgeBody(given);
   }
+  tellModelsInOnePlace(scene, placed, warnings);
+  tellIdlePoses(scene, placed, warnings);
+  warnings.insert(warnings.end(), of_values.begin(), of_values.end());
   return warnings;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 #include "description/scene.hpp"
 #include "diagnostics/model_trial.hpp"
+#include "diagnostics/unread_keys.hpp"
 #include "document/problem.hpp"
 #include "host/catalog.hpp"
 
@@ -14,7 +15,9 @@ class GivenModel;
 /// [main] Warns of each parameter that is beyond what is usual for a quantity of its unit, of bodies that fall or hang
 /// far from their place, and of models that lie in the same place. @param boxes boxes that tryModels() found; if empty,
 /// nothing is compared with the sizes of the models
-document::Problems unusualValues(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog);
+/// @param unread keys with problems; nothing is judged that depends on one of them
+document::Problems unusualValues(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog,
+                                 const UnreadKeys& unread = {});
 
 /// Warns of each parameter by itself, by the unit that its plugin gives for it.
 void judgeQuantities(const GivenModel& given);
@@ -25,6 +28,5 @@ void judgeBody(const GivenModel& given);
 /// [main] Returns the groups of models that have the same geometry in the same place, as a copy whose pose was not
 /// changed. Each group has the indices of its models, in scene order.
 std::vector<std::vector<size_t>> modelsInOnePlace(const scene::Scene& scene);
-document::Problems tellModelsInOnePlace(const scene::Scene& scene);
 
 }  // namespace hapticd::diagnostics

@@ -55,16 +55,19 @@ document::Problems lateVelocity(const scene::Scene& scene, bool needs_velocity) 
   if (!isUsed(scene, needs_velocity) || delay <= kLate) return warnings;
   const bool cut_off = how.estimator == "butterworth";
   const double most = 2 * kLate * scene.servo.rate;
+  const double rate = scene.servo.rate;
   const std::string lags = cut_off ? fmt::format("a cut-off of {:.4g} Hz", how.parameter)
-                                   : fmt::format("{} over {:.4g} samples", how.estimator, how.parameter);
+                           : how.estimator == "kalman"
+                               ? fmt::format("the estimator kalman at {:g} Hz", rate)
+                               : fmt::format("{} over {:.4g} samples at {:g} Hz", how.estimator, how.parameter, rate);
   const std::string mend = cut_off ? "expected 50 Hz or more (only the estimator window takes a number of samples)"
                            : how.estimator == "kalman" ? "expected a higher servo.rate"
                                                        : fmt::format("expected at most {:.0f}", std::floor(most));
   document::report(
       warnings, placeInServo(scene, kParameter), kParameter,
-      fmt::format("{} at {:g} Hz lags by up to {:.3g} ms: damping and friction act after the hand has moved "
-                  "on, and can drive it; {}",
-                  how.estimator == "kalman" ? "the estimator kalman" : lags, scene.servo.rate, delay * 1e3, mend));
+      fmt::format("{} lags by up to {:.3g} ms: damping and friction act after the hand has moved on, and can drive it; "
+                  "{}",
+                  lags, delay * 1e3, mend));
   return warnings;
 }
 

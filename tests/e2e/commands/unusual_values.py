@@ -52,8 +52,8 @@ SCENES = [
     ("a shell that nothing holds", scene(model("sides: both, pop_through: |0.001")), P + "pop_through", "cannot be felt"),
     ("one model in another", scene(model("stiffness: 800"), model("stiffness: 700", name="two").replace("  - n", "  - |n")),
      "models[1].pose", "ball (line 5)"),
-    ("one model in another on its path", scene(moved("pose: {position: [0.3, 0, 0]}"), moved("", "two").replace("  - n", "  - |n")),
-     "models[1].pose", "ball (line 5)"),
+    ("one model in another on its path", scene(moved("pose: {position: [0.3, 0, 0]}"), moved("", "two").replace("path: ", "path: |")),
+     "models[1].path", "ball (line 5)"),
     ("a pose beside a path", scene(moved("pose: |{position: [0.3, 0, 0]}")), "models[0].pose", "has no effect"),
     ("the stiffness of all in one place", scene(*(model("stiffness: 3000", name=f"w{i}") for i in range(6))).replace("stiffness: 3", "stiffness: |3", 1),
      P + "stiffness", "w0 with 5 models in its place pushes with up to 1.8e+04 N/m, and simulated"),
@@ -197,6 +197,46 @@ RIGHT = {
 }
 
 
+# A wrong key hides no judgement of the others. A bar stands before each place, with what is told there.
+LATE = [
+    ("a typo and friction turned round", scene(model("viscocity: 0.5, friction_static: 0.2, friction_dynamic: |0.4")), ["more than friction_static"]),
+    ("a typo and millimetres", scene(model("dampnig: 3, stiffness: |0.8, texture: {amplitude: 0.0001, wavelength: |0.5}")),
+     ["cannot be felt", "0.5 mm is 0.0005 m"]),
+    ("a pose of Euler angles, far away", scene(model("stiffness: 800") + "    pose: {position: |[5, 10, 0], orientation: [0, 90, 0]}\n"),
+     ["where no arm reaches"]),
+    ("a rate in kHz and a radius in mm", scene(model("stiffness: 800"), top="servo: {rate: 1, activation_radius: |100, gravity: |[0, 9.81, 0]}\n"),
+     ["100 mm is 0.1 m", "points up"]),
+    ("a cut-off of three samples", scene(model("damping: 3"), top=f"device: {ARM}\nservo: {{rate: 1, velocity: {{estimator: butterworth, parameter: |3}}}}\n"),
+     ["a cut-off of 3 Hz lags"]),
+    ("programs: seconds, newtons, metres", scene(model("stiffness: 800"), top="clients: {mode: add, answer_time: 0.1, max_force: |85, origin: |[0, 0, 90]}\n"),
+     ["gives 8.5 N at most", "90 mm is 0.09 m"]),
+    ("one arm and a list, of one name", scene(model("stiffness: 800"), top=f"device: {ARM}\ndevices:\n  - {ARM}\n  - |{ARM}\n"), ["another device is named"]),
+    ("one name twice, in one place", scene(model("stiffness: 800"), model("stiffness: 700").replace("  - n", "  - |n")), ["the same geometry"]),
+    ("a hand: a script, and degrees", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{script: strokes, sweep: |52, rise: 8}}\n"), ["52 degrees is"]),
+    ("a hand whose axis is no direction", scene(model("stifness: 800"), top=f"device: {ARM}\nhand: {{radius: 0.046, normal: |[0, 0, 0]}}\n"), ["is zero"]),
+    ("of another plugin, and a model file of another", scene(model("young: 20000", "mat_deformable").replace("  - n", "  - |n")), ["medial: expected"]),
+    ("a body: degrees, grams and a name", body("joint: slide, tether: 20000, mass: |500, spin: |[360, 0, 0]"), ["500 g is 0.5 kg", "360 degrees/s"]),
+    ("a pendulum: an axis along gravity, a pivot below", pendulum("stifness: 900, pivot: |[0, -0.25, 0], length: 0.25, axis: |[0, 1, 0]"),
+     ["expected a pivot above them", "along gravity"]),
+    ("what is stiff beside a typo", scene(model("dampnig: 3, stiffness: |80000")), ["stable up to"]),
+]
+# What follows only from a value that was not read is not told.
+FOLLOWS = [
+    ("a tether misspelt", body("mass: 0.5, tehter: 200"), "nothing holds it"),
+    ("a tether out of range", body("mass: 0.5, tether: -200"), "nothing holds it"),
+    ("gravity misspelt", scene(model("motion: dynamic, mass: 0.5"), top="servo: {gravty: [0, 0, 0]}\n"), "nothing holds it"),
+    ("a friction misspelt", scene(model("friction_statik: 0.5, friction_dynamic: 0.4")), "more than friction_static"),
+    ("a friction of no number", scene(model("friction_static: much, friction_dynamic: 0.4")), "more than friction_static"),
+    ("the other friction misspelt", scene(model("friction_static: 0.5, friction_dynamik: 0.4")), "friction_dynamic is not given"),
+    ("a wall whose scale is wrong", scene(model("stiffness: 800, exponent: 0.25, depth_scale: -1")), "as a blow"),
+    ("a place that is wrong", scene(model("stiffness: 800"), model("stiffness: 800", name="two") + "    pose: {position: [1, 2]}\n"), "the same geometry"),
+    ("a rate that is wrong", scene(model("stiffness: 3000"), top=f"device: {ARM}\nservo: {{rate: 100 Hz}}\n"), "is stable up to"),
+    ("a hand whose length is wrong", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{script: circle, radius: 46, rate: 100}}\n"), "faster than a human"),
+    ("a joint misspelt", body(MASS + "tether: 20, gravity: false, joint: hinges, pivot: [0.05, 0, 0]"), "add joint"),
+    ("a stiffness misspelt", scene(model("axis: [0, 0, -1], stifness: 100, end_stiffness: 800", "push_button", BOX)), "too soft for a stop"),
+]
+
+
 def write(folder, name, text):
     """Writes it without its bar. Returns the file and where the bar stood."""
     file = os.path.join(folder, name)
@@ -252,6 +292,31 @@ def models(folder):
         check(f"{name}: no more than that", sum(word in text for text in texts(told[user])) == 1, texts(told[user]))
 
 
+def places_of_bars(text):
+    lines = text.split("\n")
+    return [(n + 1, at - line[:at].count("|") + 1) for n, line in enumerate(lines) for at, letter in enumerate(line) if letter == "|"]
+
+
+def told_of(folder, name, text):
+    """Everything that is told of a file with problems."""
+    file, *_ = write(folder, name, text)
+    code, out, err = program(HAPTICD, own_state(folder))("check", "--json", file)
+    check(f"{name}: is refused", code == 2, err)
+    told = json.loads(out)["files"][0]
+    return told["problems"] + told["warnings"]
+
+
+def late(folder):
+    for i, (name, text, words) in enumerate(LATE):
+        told = told_of(folder, f"late{i}.yaml", text)
+        for place, word in zip(places_of_bars(text), words, strict=True):
+            check(f"{name}: {word}: told at once, at its place",
+                  any((one["line"], one["column"]) == place and word in one["what"] for one in told), (place, texts(told)))
+    for i, (name, text, word) in enumerate(FOLLOWS):
+        told = told_of(folder, f"follows{i}.yaml", text)
+        check(f"{name}: nothing that only follows", not any(word in one["what"] for one in told), texts(told))
+
+
 def refused(folder):
     """What the host cannot do with a model."""
     for motion, plugin in (("kinematic", "push_button"), ("kinematic", "pendulum"), ("static", "pendulum"), ("dynamic", "mat_deformable")):
@@ -285,6 +350,7 @@ def main():
         scenes(folder)
         models(folder)
         refused(folder)
+        late(folder)
         right(folder)
     finish()
 

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "cli/check_draft.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/scene_advice.hpp"
+#include "diagnostics/device_trial.hpp"
+#include "diagnostics/hand_script.hpp"
+#include "diagnostics/hand_start.hpp"
+#include "diagnostics/key_place.hpp"
+#include "diagnostics/model_trial.hpp"
+#include "diagnostics/slow_arm.hpp"
+#include "diagnostics/unit_advice.hpp"
+#include "diagnostics/velocity_advice.hpp"
+#include "document/node.hpp"
+#include "hapticd/shape.h"
+#include "tune/stability.hpp"
+#include "world/arm_force.hpp"
+
+namespace hapticd::cli {
+
+using namespace diagnostics;
+namespace {
+
+/// Returns the index of the model that a key such as "models[3].pose" is about.
+std::optional<size_t> modelOf(const std::string& key) {
+  constexpr std::string_view kModels = "models[";
+  if (!key.starts_with(kModels)) return std::nullopt;
+  return std::strtoul(key.c_str() + kModels.size(), nullptr, 10);
+}
+
+/// Returns true if the arms are those that the scene names, and nothing is wrong with them.
+bool armsAreRead(const scene::Scene& draft, const document::Problems& problems) {
+  const std::string next = "devices[" + std::to_string(draft.devices.size()) + "]";
+  if (placeOfKey(draft.file, next) || (draft.devices.empty() && placeOfKey(draft.file, "device"))) return false;
+  return std::none_of(problems.begin(), problems.end(), [&draft](const document::Problem& one) {
+    const bool of_arm = one.key.starts_with("device") && one.key.find('.') != std::string::npos;
+    return of_arm || std::any_of(draft.devices.begin(), draft.devices.end(), [&one](const scene::Device& device) {
+             return device.file.string() == one.place.file;
+           });
+  });
+}
+
+/// Judges the models of a draft.
+class Models {
+ public:
+  Models(const scene::Scene& draft, const UnreadKeys& unread) : draft_(draft), left_out_(draft.models.size()) {
+    for (size_t i = 0; i < draft.models.size(); ++i) {
+      const auto plugin = catalog().shape(draft.models[i].plugin);
+      plugins_.push_back(plugin ? *plugin : nullptr);
+      unread_.push_back(plugin ? unread.ofModel(i, **plugin) : UnreadModel{});
+      left_out_[i] = !plugin || lacksNeeded(draft.models[i], **plugin);
+    }
+  }
+
+  /// Sets up all models that can be set up, with the values that were read.
+  ModelTrial attempt(double max_force) const {
+    ModelTrial trial = tryModels(draft_, max_force, left_out_);
+    for (document::Problems* told : {&trial.problems, &trial.warnings})
+      std::erase_if(*told, [this](const document::Problem& one) { return dependsOnUnread(one); });
+    for (size_t i = 0; i < trial.boxes.size(); ++i)
+      if (unread_[i].ids.contains("instance")) trial.boxes[i].reset();
+    for (size_t i = 0; i < trial.stiffness.size(); ++i)
+      if (unread_[i].any || !unread_[i].ids.empty()) trial.stiffness[i] = claimOf(i, trial.stiffness[i]);
+    return trial;
+  }
+
+  /// Returns true if a warning about one value of a model can be trusted.
+  bool isRead(const document::Problem& one) const {
+    const auto model = modelOf(one.key);
+    if (!model || *model >= unread_.size()) return true;
+    constexpr std::string_view kPosition = ".pose.position", kParameters = ".parameters.";
+    if (one.key.ends_with(kPosition)) return !unread_[*model].hasOwn("pose.position");
+    const size_t id = one.key.find(kParameters);
+    const auto& ids = unread_[*model].ids;
+    if (one.key.ends_with("depth_scale") && ids.contains("exponent")) return false;
+    return id == std::string::npos || !ids.contains(one.key.substr(id + kParameters.size()));
+  }
+
+ private:
+  static bool lacksNeeded(const scene::Model& model, const host::ClassInfo& info) {
+    return std::any_of(info.params.begin(), info.params.end(), [&model](const host::ParamInfo& param) {
+      return (param.flags & HSP_P_REQUIRED) != 0 && givenIn(model.parameters, param.id.c_str()) == nullptr;
+    });
+  }
+
+  bool isUnread(size_t model, const std::string& id) const {
+    return unread_[model].ids.contains(id) ||
+           (unread_[model].any && givenIn(draft_.models[model].parameters, id.c_str()) == nullptr);
+  }
+
+  /// Returns the stiffness that a model claims, or 0 if it may come from a value that was not read.
+  double claimOf(size_t model, double claimed) const {
+    for (const char* id : {"stiffness", "exponent", "depth_scale", "dynamics", "contact_ratio", "geometry"})
+      if (isUnread(model, id)) return 0;
+    return host::ships(draft_.models[model].library) ? claimed : 0;
+  }
+
+  /// Returns true if a plugin's message names a parameter that was not read. A message about a file names such
+  /// parameters in backquotes; other words of it are keys of the file.
+  bool dependsOnUnread(const document::Problem& one) const {
+    const auto model = modelOf(one.key);
+    if (!model || *model >= unread_.size() || plugins_[*model] == nullptr || unread_[*model].sound()) return false;
+    const auto& given = draft_.models[*model].parameters;
+    const bool of_file = std::any_of(given.begin(), given.end(), [&one](const scene::Value& value) {
+      return value.kind == HSP_PATH && one.what.find(value.text + ":") != std::string::npos;
+    });
+    const auto& params = plugins_[*model]->params;
+    return std::any_of(params.begin(), params.end(), [&](const host::ParamInfo& param) {
+      return isUnread(*model, param.id) &&
+             (of_file ? one.what.find("`" + param.id + "`") != std::string::npos : hasWord(one.what, param.id));
+    });
+  }
+
+  static bool hasWord(std::string_view text, std::string_view word) {
+    const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    for (size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
+      const size_t end = at + word.size();
+      if ((at == 0 || !letter(text[at - 1])) && (end >= text.size() || !letter(text[end]))) return true;
+    }
+    return false;
+  }
+
+  const scene::Scene& draft_;
+  std::vector<const host::ClassInfo*> plugins_;
+  std::vector<UnreadModel> unread_;
+  std::vector<bool> left_out_;
+};
+
+/// Judges settings that need the arms.
+void judgeArms(const scene::Scene& draft, const UnreadKeys& unread, const ModelTrial& trial,
+               document::Problems& problems, document::Problems& warnings) {
+  const auto add = [](document::Problems& to, const document::Problems& more) {
+    to.insert(to.end(), more.begin(), more.end());
+  };
+  for (const document::Problem& one : hastyHands(draft, unread)) warnings.push_back(one);
+  if (!unread.has("clients.max_force")) add(warnings, idleBounds(draft));
+  if (!unread.has("servo.velocity")) {
+    if (!unread.has("servo.rate") || draft.servo.velocity.estimator == "butterworth")
+      add(warnings, lateVelocity(draft, trial.needs_velocity));
+    if (!unread.has("servo.rate")) add(problems, refusedVelocity(draft, trial.needs_velocity, warnings));
+  }
+  if (!unread.has("servo.rate")) {
+    add(warnings, unstableContacts(draft, trial.stiffness));
+    add(warnings, slowArms(draft));
+  }
+  if (!unread.has("servo") && !unread.has("hand")) add(problems, refusedArms(draft, trial.needs_velocity));
+}
+
+}  // namespace
+
+void judgeDraft(scene::Scene draft, document::Problems& problems, document::Problems& warnings) {
+  const UnreadKeys unread(problems);
+  bool arms = armsAreRead(draft, problems);
+  if (arms) draft = withArm(std::move(draft));
+  arms = arms && std::all_of(draft.devices.begin(), draft.devices.end(),
+                             [](const scene::Device& device) { return tryModule(device).error.empty(); });
+  if (!arms) draft.devices.clear();
+  const Models models(draft, unread);
+  const ModelTrial trial = models.attempt(arms ? servo::maxForceOf(draft) : 0);
+  problems.insert(problems.end(), trial.problems.begin(), trial.problems.end());
+  warnings.insert(warnings.end(), trial.warnings.begin(), trial.warnings.end());
+  for (const auto& found_by : {&farModels, &softModels, &wideScales, &quarantinedModels, &tune::fastPaths})
+    for (const document::Problem& one : found_by(draft))
+      if (models.isRead(one) && !unread.has(one.key)) warnings.push_back(one);
+  document::Problems unparsed;
+  if (const auto root = document::parseFile(draft.file, unparsed)) adviseZeros(*root, draft.file.string(), warnings);
+  if (arms) judgeArms(draft, unread, trial, problems, warnings);
+  addUnusual(draft, trial.boxes, unread, warnings);
+  if (!arms) std::erase_if(warnings, [](const document::Problem& one) { return one.key == "clients.origin"; });
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/unread_keys.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "document/suggestion.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+constexpr std::string_view kModels = "models[", kParameters = "parameters";
+
+/// Returns true if `key` is `whole`, or a part of it, such as "a.b" or "a[1]" of "a".
+bool isPartOf(std::string_view key, std::string_view whole) {
+  return key.starts_with(whole) && (key.size() == whole.size() || key[whole.size()] == '.' || key[whole.size()] == '[');
+}
+
+}  // namespace
+
+UnreadKeys::UnreadKeys(const document::Problems& problems) {
+  for (const document::Problem& one : problems) {
+    if (!one.key.starts_with(kModels)) {
+      keys_.push_back(one.key);
+      // An unknown key of the servo may stand for gravity; a wrong value of another key does not.
+      if (one.key.starts_with("servo.") && one.what.starts_with("unknown key")) keys_.emplace_back("servo.gravity");
+      continue;
+    }
+    char* end = nullptr;
+    const size_t index = std::strtoul(one.key.c_str() + kModels.size(), &end, 10);
+    const std::string_view rest = *end == ']' ? end + 1 : end;
+    of_models_[index].emplace_back(rest.substr(rest.starts_with('.') ? 1 : 0));
+  }
+}
+
+bool UnreadKeys::has(std::string_view key) const {
+  return std::any_of(keys_.begin(), keys_.end(),
+                     [key](const std::string& one) { return isPartOf(one, key) || isPartOf(key, one); });
+}
+
+void UnreadKeys::addOwn(const std::string& key, UnreadModel& model) const {
+  for (const char* own : {"name", "plugin", "pose", "parameters", "motion", "path"})
+    if (isPartOf(key, own)) {
+      model.own.insert(own);
+      if (own == std::string_view("pose") && !key.starts_with("pose.orientation")) model.own.insert("pose.position");
+      model.any = model.any || key == kParameters;
+      return;
+    }
+  model.any = true;  // an unknown key, or the model as a whole
+}
+
+void UnreadKeys::addParameter(const std::string& key, const host::ClassInfo& info, UnreadModel& model) const {
+  const std::string id = key.substr(0, key.find('['));
+  for (const host::ParamInfo& param : info.params)
+    if (isPartOf(param.id, id)) model.ids.insert(param.id);  // itself, or its group
+  if (std::any_of(info.params.begin(), info.params.end(),
+                  [&id](const host::ParamInfo& param) { return isPartOf(param.id, id); }))
+    return;
+  const std::string meant = document::nearest(id, info.paramIds());
+  if (meant.empty())
+    model.any = true;
+  else
+    model.ids.insert(meant);
+}
+
+UnreadModel UnreadKeys::ofModel(size_t index, const host::ClassInfo& info) const {
+  UnreadModel model;
+  model.gravity = has("servo.gravity");
+  const auto found = of_models_.find(index);
+  if (found == of_models_.end()) return model;
+  for (const std::string& key : found->second)
+    if (key.starts_with("parameters."))
+      addParameter(key.substr(kParameters.size() + 1), info, model);
+    else
+      addOwn(key, model);
+  for (const char* both : {"motion", "path"})  // they stand beside the parameters, too
+    if (model.own.contains(both)) model.ids.insert(both);
+  return model;
+}
+
+}  // namespace hapticd::diagnostics
