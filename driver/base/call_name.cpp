@@ -8,7 +8,8 @@ namespace hapticd {
 
 namespace {
 
-/// A list that only grows, at its head, and is never destroyed, because handlers may read it at any moment.
+/// An entry of a linked list. The list only grows, at its head, and is never destroyed, because signal handlers may
+/// read it at any moment.
 struct Known {
   const Owner* owner;
   std::string place;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Files that a client passes to the daemon as open descriptors, together with their names, because the client may have
-/// other rights. While they are in force, a thread reads these files and no others, so that a client cannot use a name
-/// to open a file with the rights of the daemon.
+/// Files that a client passes to the daemon as open descriptors, together with their names, because the client and the
+/// daemon may have different rights. While a Scope object lives, its thread reads these files and no others, so that a
+/// client cannot use a name to open a file with the rights of the daemon.
 #pragma once
 #include <map>
 #include <set>
