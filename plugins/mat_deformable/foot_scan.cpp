@@ -122,7 +122,7 @@ uint32_t FootScan::nextGroup(const Probe& probe, uint32_t first, uint32_t k, uin
   return k;
 }
 
-/// Most samples are ruled out in groups, with floats; the others are examined in double precision.
+/// Rules most samples out in groups, with floats, and examines the others in double precision.
 std::optional<std::array<double, 2>> FootScan::rival(const Vector3d& p, const medial::SkeletonFoot& foot, double width,
                                                      uint32_t& next) const noexcept {
   const auto count = static_cast<uint32_t>(samples_.size()), looks = std::min(kATick, count);

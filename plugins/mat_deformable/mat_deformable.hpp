@@ -73,8 +73,9 @@ class MatDeformable final : public Shape {
         F::real("relaxation.time", &T::relaxation_time_, "s", 1e-4, 100, 0.5,
                 "with dynamics felt: time constant of this relaxation"),
         F::real("shear_offset", &T::shear_offset_, "", 0, 0.5, kUsualShearOffset,
-                "distance of the ends of four springs along the surface, as a share of the parameter range; 0: no such "
-                "springs. They make the body stiffer than its file says; with shear_distance they do not")};
+                "distance from the contact to the ends of four springs along the surface, as a share of the parameter "
+                "range; 0: no such springs. They make the body stiffer than its file says; with shear_distance they do "
+                "not")};
   }
   static constexpr auto contactFields() {  // what else a probe feels
     using T = MatDeformable;
@@ -114,7 +115,8 @@ class MatDeformable final : public Shape {
                 "largest distance of the drawn mesh, which is updated 60 times a second, from the surface; 0: no such "
                 "mesh"),
         F::real("shear_distance", &T::shear_distance_, "m", 0, 1, 0,
-                "distance of the ends of four springs along the surface. They change the direction of the force, but "
+                "distance from the contact to the ends of four springs along the surface. They change the direction of "
+                "the force, but "
                 "not its part along the normal. 0: shear_offset is used for files of format hapticd-model/1, and no "
                 "springs for others"),
         F::real(
@@ -185,7 +187,7 @@ class MatDeformable final : public Shape {
               hsp_contact& contact) noexcept HSP_RT;
   void push(const hsp_probe& probe, const Felt& felt, Track& track, hsp_contact& contact) noexcept HSP_RT;
 
-  double energy() const noexcept HSP_RT;  ///< [J] of the body and its contacts
+  double energy() const noexcept HSP_RT;  ///< [J] energy of the body and its contacts
 
   int64_t nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const;
   hsp_status start(const hsp_near& near) noexcept HSP_RT;
@@ -214,7 +216,7 @@ class MatDeformable final : public Shape {
     uint32_t probe = 0;
     Felt felt;
   };
-  /// has the size of the most contacts of one surface; the first met_.size() are in use
+  /// contacts of this step; there is room for the most contacts of one surface, and the first met_.size() are in use
   std::vector<medial::FeltContact> contacts_;
   std::unique_ptr<medial::FeltPlace> beside_;  ///< place of the rival foot, for the contact that is being handled
   std::vector<Met> met_;                       ///< contacts of this step; has room for all probes

@@ -110,7 +110,7 @@ class SoftBody {
 
   virtual medial::Nodes& nodes() noexcept = 0;  ///< [rt] the moving parts of the body
   virtual const Eigen::AlignedBox3d& bounds() const noexcept = 0;
-  virtual double greatestRadius() const noexcept = 0;     ///< [m] of all spheres
+  virtual double greatestRadius() const noexcept = 0;     ///< [m] greatest radius of all spheres
   virtual double greatestStiffness() const noexcept = 0;  ///< [N/m] no force grows faster with depth
   virtual std::unique_ptr<medial::MovingMesh> contour(double chord_error) const = 0;  ///< [main] a mesh for drawing
   /// [main] Returns a mesh that is fine enough for the body's volume to be right to a thousandth.

@@ -36,7 +36,7 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
             F::real("stiffness", &NurbsRigid::stiffness_, "N/m", 0, 1e5, 800,
                     "k of the contact law (Eq. 4): the force is k x0 at depth x0", HSP_P_LIVE | HSP_P_SAFETY),
             F::real("damping", &NurbsRigid::damping_, "N s/m", 0, 1e3, 0,
-                    "damping of the closing speed; it grows with depth", HSP_P_SAFETY),
+                    "damping against the speed at which the probe goes deeper; it grows with depth", HSP_P_SAFETY),
             F::real("exponent", &NurbsRigid::exponent_, "", 0.25, 3, 1, "n of the contact law (Eq. 4); 1: linear wall",
                     HSP_P_SAFETY),
             F::real("depth_scale", &NurbsRigid::depth_scale_, "m", 1e-6, 1, 1e-3, "x0 of the contact law (Eq. 4)",

@@ -162,8 +162,8 @@ void RigidBody::step(std::span<const Press> presses, double dt) noexcept {
   drift(alone, dt);
 }
 
-/// The second half of a backward Euler step: sets the velocity at the end of the step, and moves the body with this
-/// velocity. So a body that rests on a probe has no velocity.
+/// Makes the second half of a backward Euler step: sets the velocity at the end of the step, and moves the body with
+/// this velocity. So a body that rests on a probe has no velocity.
 void RigidBody::drift(const Vector6d& change, double dt) noexcept {
   if (!change.allFinite()) return step(Vector3d::Zero(), Vector3d::Zero(), dt);
   if (law_.joint == Joint::kHinge) {

@@ -285,7 +285,8 @@ bool FeltSurface::letSleep() noexcept {
   return some;
 }
 
-/// The displacement s(u, v, normal) changes with the foot and with the direction from the foot to the probe.
+/// Returns the gradient of the displacement s(u, v, normal) over the position of the probe. The displacement changes
+/// with the foot and with the direction from the foot to the probe.
 Vector3d FeltSurface::slopeAt(const FeltPlace& place) const noexcept {
   Vector4d here = Vector4d::Zero(), along_u = Vector4d::Zero(), along_v = Vector4d::Zero();
   for (std::size_t i = 0; i < place.count; ++i) {

@@ -76,7 +76,7 @@ class FeltSurface {
   /// [rt] Advances all moving nodes by one tick of dt [s] under all contacts. dt = 0 computes only the present forces.
   void advance(double dt, std::span<FeltContact> contacts) noexcept;
   void reset() noexcept;  ///< [rt] puts all nodes back to rest
-  /// [rt] Kinetic and elastic energy [J] of nodes and contact springs.
+  /// [rt] Returns the kinetic and elastic energy [J] of nodes and contact springs.
   double energy(std::span<const FeltContact> contacts) const noexcept;
   /// [any] Returns the stiffness of the contact spring divided by that of a held press.
   double contactRatio() const noexcept { return ratio_ * (1 + share_); }

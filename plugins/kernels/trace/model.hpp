@@ -47,8 +47,8 @@ struct Found {
 /// thread while a Tracer steps.
 class Model {
  public:
-  /// [m] By how much the difference of two distances can change before the next search: 10 ms at 2 m/s, toward one
-  /// surface and away from the other.
+  /// [m] By how much the difference of two distances can change before the next search, 5 ms later, if the probe moves
+  /// at 2 m/s toward one surface and away from the other: 10 mm each.
   static constexpr double kSoon = 0.02;
   static constexpr int kMaxParts = 8;
 
@@ -61,8 +61,8 @@ class Model {
   /// lower bound of the distance and parameters to start from. Rivals are other local minima of the distance on the
   /// same surfaces, at most kSoon farther than the nearest foot of the part.
   void search(const Eigen::Vector3d& p, double radius, Found& found) const;
-  /// [sim] The same as search(), but without rivals. Writes at most `cap` records. Returns the number of surfaces
-  /// within the radius, which may be larger than `cap`.
+  /// [sim] Makes the same search as search(), but returns no rivals. Writes at most `cap` records. Returns the number
+  /// of surfaces within the radius, which may be larger than `cap`.
   std::int64_t nearby(const Eigen::Vector3d& p, double radius, Near* out, std::size_t cap) const;
 
   /// [any] Number of surfaces in the model file. A surface with creases has several patches.

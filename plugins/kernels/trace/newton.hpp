@@ -43,9 +43,9 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Rounding error of the difference of two points, relative to the size of the coordinates.
 inline constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 
-/// [rt] The parts of newtonFoot() that most ticks do not need. startNewton() prepares quick steps. mayStepAgain()
-/// counts a quick step that found no foot, and returns true if another one makes sense. descend() finds the foot from
-/// any point.
+/// [rt] These functions are the parts of newtonFoot() that most ticks do not need. startNewton() prepares quick steps.
+/// mayStepAgain() counts a quick step that found no foot, and returns true if another one makes sense. descend() finds
+/// the foot from any point.
 void startNewton(const Patch& patch, Iterate& at, LocalFoot& foot) noexcept;
 bool mayStepAgain(const Patch& patch, QuickResult result, Iterate& at, LocalFoot& foot) noexcept;
 void descend(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, double tolerance, int max_evaluations,

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
-constexpr double kSewShare = 1e-5;  // relative to the model's diagonal
+constexpr double kSewShare = 1e-5;  // default tolerance, relative to the model's diagonal
 constexpr int kMaxWarnings = 100;
 
 Array2d cornerUv(const Patch& patch, int corner) {
