@@ -38,8 +38,8 @@ double ofJoint(const std::vector<double>& list, int joint) {
   return list[list.size() == 1 ? 0 : static_cast<size_t>(joint)];
 }
 
-/// Returns true for a chain whose axes are all parallel, because its tip stays in a plane and no force across that
-/// plane can be felt.
+/// Tells whether the arm is a chain whose axes are all parallel. The tip of such a chain stays in a plane, and no force
+/// across the plane can be felt.
 bool isPlanar(const NewDeviceArguments& o) {
   const auto straight = [](double twist) { return std::abs(std::sin(twist)) < 1e-6; };
   return o.kind == "chain" && o.joints > 1 && std::all_of(o.twists.begin(), o.twists.end(), straight);
@@ -65,7 +65,8 @@ std::string wrongIn(const NewDeviceArguments& o) {
   if (!hid && !bulk) return "--bus " + o.bus + ": expected hid or bulk";
   if (o.kind != "phantom" && o.kind != "delta" && o.kind != "chain")
     return "--kind " + o.kind + ": expected phantom, delta or chain";
-  if (o.kind != "chain" && o.joints != 3) return "--joints " + std::to_string(o.joints) + ": a " + o.kind + " has 3";
+  if (o.kind != "chain" && o.joints != 3)
+    return "--joints " + std::to_string(o.joints) + ": a " + o.kind + " has 3 joints";
   if (o.joints < 1 || o.joints > 16) return "--joints " + std::to_string(o.joints) + ": expected 1 to 16";
   if (o.bits < 2 || o.bits > 64) return "--bits " + std::to_string(o.bits) + ": expected 2 to 64";
   const size_t lengths = o.kind == "phantom" ? 2 : o.kind == "delta" ? 8 : static_cast<size_t>(o.joints);
@@ -101,7 +102,7 @@ bool readNumbers(const std::string& text, std::vector<double>& numbers) {
   return true;
 }
 
-/// Asks for what no option gave; an empty answer keeps the present value.
+/// Asks the user for each value that no option gave. An empty answer keeps the present value.
 class Questions {
  public:
   explicit Questions(const Command& command) : command_(command) {}
@@ -121,7 +122,7 @@ class Questions {
     }
   }
 
-  /// Asks for a list, such as 0.21, 0.17; an empty answer keeps the template's.
+  /// Asks for a list, such as 0.21, 0.17. An empty answer keeps the values of the template.
   template <class Wrong>
   void askList(const char* option, const std::string& question, std::vector<double>& list, const Wrong& wrong) {
     if (command_.given(option)) return;
@@ -297,7 +298,8 @@ std::string textOf(const NewDeviceArguments& o) {
                       "in wire from 1\n"
                     : "",
       mountOf(o),
-      o.joints > 3 ? fmt::format("torque: {:.2g}, ", 0.1 * o.force) : "");  // [N m] this force at a handle of 0.1 m
+      // [N m] torque of the largest force at a lever of 0.1 m.
+      o.joints > 3 ? fmt::format("torque: {:.2g}, ", 0.1 * o.force) : "");
 }
 
 bool usableDeviceName(const std::string& name) {

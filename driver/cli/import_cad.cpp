@@ -66,9 +66,11 @@ Result<pid_t> start(std::vector<std::string> words) {
   return child;
 }
 
-/// Waits for the child and ends it when its time is up. @return its status; `late` if it was ended
+/// Waits for the child and ends it when its time is up. @return the status of the child. Sets `late` if the child was
+/// ended
 int wait(pid_t child, double seconds, bool& late) {
-  const int handle = static_cast<int>(syscall(SYS_pidfd_open, child, 0));  // glibc 2.36's header lacks extern "C"
+  // A direct system call, because the header of glibc 2.36 lacks extern "C".
+  const int handle = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
   pollfd ended{handle, POLLIN, 0};
   const int timeout_ms = static_cast<int>(std::min(1000 * seconds, 2e9));
   late = handle >= 0 && poll(&ended, 1, timeout_ms) == 0;
