@@ -41,8 +41,9 @@ class Server {
   };
 
   static constexpr size_t kMaxClients = 32;
-  static constexpr size_t kMaxStanding = 16;  ///< clients without a place: only their urgent requests are answered
-  static constexpr size_t kMaxStaying = 24;   ///< most clients with Standing::stays, so that others find places
+  /// most clients that wait for a place; meanwhile only their urgent requests are answered
+  static constexpr size_t kMaxStanding = 16;
+  static constexpr size_t kMaxStaying = 24;  ///< most clients with Standing::stays, so that others find places
   static constexpr Nanoseconds kNewsPeriod = 20'000'000;
   static constexpr size_t kMaxWaiting = 1 << 20;       ///< [bytes] kept for a client that does not read
   static constexpr Nanoseconds kIdle = 2'000'000'000;  ///< [ns] a client idle for longer is dropped if another waits

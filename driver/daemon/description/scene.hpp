@@ -83,7 +83,8 @@ struct Limits {
   std::vector<Motor> motors;  ///< in the order of the joints; if empty, their heat is not modelled
 };
 
-/// Compliance control: measured joint torque drives a virtual mass and damper, rendered as positions.
+/// Compliance control: the measured joint torques move a virtual mass with a damper, and the arm's position loop
+/// follows it.
 struct Admittance {
   double mass = 1, damping = 10;  ///< [kg], [N s/m] of the virtual mass and damper
 };

@@ -53,7 +53,9 @@ class ContactStatistics {
   /// [rt] Adds a tick of contact in which the force pulled the probe deeper in.
   void addPull(double force_n) noexcept HSP_RT { pulls_.add(force_n); }
 
-  /// [rt] Adds a tick with a foot point: whether it is proved to be the nearest one. Not called in ticks without one.
+  /// [rt] Adds a tick that has a foot point. @param held true if a contact is held at this point, although another
+  /// point is nearer @param degraded true if it is not proved to be the nearest point and no contact is held at it;
+  /// `held` is then ignored
   void addFoot(bool held, bool degraded) noexcept HSP_RT {
     ++(degraded ? degraded_feet_ : held ? held_feet_ : nearest_feet_);
   }

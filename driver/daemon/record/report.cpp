@@ -115,7 +115,7 @@ std::string deepText(const ModelReport& model) {
 /// Warns of a model that does more work on the hand than the hand did on it, and so pushes the hand. Small differences
 /// are not reported: contacts are sampled, and a model may be switched off and on.
 std::string energyText(const ModelReport& model) {
-  constexpr double kTold = 2e-3, kShare = 0.1;  // [J]
+  constexpr double kTold = 2e-3, kShare = 0.1;  // [J], and share of the hand's work: less is not reported
   const double net = model.given_j - model.taken_j;
   if (model.moves || !(net > std::max(kTold, kShare * model.taken_j))) return "";
   return fmt::format(

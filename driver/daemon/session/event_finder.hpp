@@ -21,8 +21,9 @@ class EventFinder {
  public:
   /// [s] the probe must be outside this long before another touch is reported
   static constexpr double kFreeFor = 0.05;
-  static constexpr double kRefusedPeriod = 1.0;  ///< [s] between two reports about refused records of a leader
-  static constexpr size_t kMost = 64;            ///< most events of one tick; more are dropped
+  /// [s] least time between two reports about refused records of a leader
+  static constexpr double kRefusedPeriod = 1.0;
+  static constexpr size_t kMost = 64;  ///< most events of one tick; more are dropped
 
   /// [main] @param places most models that the run can have @param arms number of arms
   EventFinder(size_t places, size_t arms) : models_(places), arms_(arms) {}

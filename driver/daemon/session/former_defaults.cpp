@@ -13,7 +13,7 @@ struct FormerDefault {
   const char* plugin_id;
   const char* version;  ///< the last version that had this default
   const char* id;
-  uint32_t index;  ///< of the parameter, in the plugin's table
+  uint32_t index;  ///< index of the parameter in the plugin's table
   double value;
 };
 

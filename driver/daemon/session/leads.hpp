@@ -92,7 +92,7 @@ class Leads {
   uint32_t last_place_ = 0;
   std::vector<Lead> leads_;
   std::map<pid_t, std::string> programs_;            ///< names of the newest programs
-  std::vector<std::unique_ptr<SealedMemory>> kept_;  ///< of leads that the servo may still read
+  std::vector<std::unique_ptr<SealedMemory>> kept_;  ///< memory of ended leads that the servo may still read
 };
 
 }  // namespace hapticd::servo

@@ -18,7 +18,8 @@ class PusherLog {
  public:
   /// [s] a longer silence is reported in the log; shorter ones are only counted
   static constexpr double kSilent = 0.2;
-  static constexpr double kRefusedPeriod = 1.0;  ///< [s] between two reports about refused answers of a program
+  /// [s] least time between two reports about refused answers of a program
+  static constexpr double kRefusedPeriod = 1.0;
 
   /// A message for the log. @param level HSP_LOG_INFO, ...
   struct Message {

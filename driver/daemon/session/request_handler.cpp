@@ -224,7 +224,8 @@ Result<void> RequestHandler::able(const std::string& model, bool enabled) {
 
 /// Enables a model. If a tip is inside, the model is not felt until the tip has left; the answer says so.
 Result<std::string> RequestHandler::enable(const std::string& model) {
-  constexpr double kMet = 0.02;  // [s] enough, because an unfelt model is still traced
+  // [s] in this time the model is surely stepped once, because an unfelt model is still traced
+  constexpr double kMet = 0.02;
   if (auto done = able(model, true); !done) return Error{done.error()};
   nlohmann::ordered_json json = {{"ok", true}};
   const auto place = placeOf(model);

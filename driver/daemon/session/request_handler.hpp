@@ -24,7 +24,7 @@ class RequestHandler {
  public:
   /// Loads a scene file with everything it names.
   using LoadScene = std::function<Result<scene::Scene>(const std::string& file)>;
-  /// Returns warnings about the models in a scene. @param stiffness [N/m] claim of each model
+  /// Returns warnings about the models in a scene. @param stiffness [N/m] stiffness that each model claims
   using Advise =
       std::function<std::vector<std::string>(const scene::Scene& models, const std::vector<double>& stiffness)>;
 
@@ -108,11 +108,11 @@ class RequestHandler {
   LoadScene load_;
   Advise advise_;
   std::string name_, socket_;
-  std::vector<double> came_stiffness_;  ///< [N/m] claims of the models of the last request
+  std::vector<double> came_stiffness_;  ///< [N/m] stiffness that each model of the last request claims
   host::Services::Log log_;
   std::string dump_folder_, scene_file_;
   std::vector<ModelPlace> places_;
-  std::vector<std::unique_ptr<ModelState>> prepared_;  ///< given to the servo, which has not taken them yet
+  std::vector<std::unique_ptr<ModelState>> prepared_;  ///< models given to the servo, which has not taken them yet
   uint64_t given_ = 0;
   Leads leads_;
   std::map<uint64_t, uint64_t> listeners_;  ///< subscribers: number of the next event, by peer

@@ -27,7 +27,7 @@ class ProximityThread;
 namespace hapticd::servo {
 
 struct RunOptions {
-  double rate = 1000;              ///< [Hz] of the servo
+  double rate = 1000;              ///< [Hz] rate of the servo
   std::optional<double> duration;  ///< [s] length of the run; without it, until stop()
   bool virtual_time = false;
   std::optional<int> cpu;  ///< processor for the servo thread

@@ -51,7 +51,7 @@ class Proximity {
  private:
   mutable std::mutex mutex_;  ///< models come and leave between two searches
   struct Model {
-    uint32_t index;  ///< of the model in the scene; UINT32_MAX: it has left
+    uint32_t index;  ///< number of the model in the scene; UINT32_MAX: it has left
     const host::ShapeInstance* shape;
     uint32_t surfaces;                 ///< number of its surfaces
     uint64_t bytes;                    ///< locked memory of the shape

@@ -15,7 +15,7 @@ namespace hapticd::watch {
 class EndWatch {
  public:
   static constexpr Nanoseconds kLookEvery = 50'000'000;
-  static constexpr Nanoseconds kEndWithin = 900'000'000;  ///< [ns] longest time without a tick once it must end
+  static constexpr Nanoseconds kEndWithin = 900'000'000;  ///< [ns] longest time without a tick once the run must end
 
   /// [ns] longest processor time of a tick. No useful shape takes this long, and processor time does not grow on a busy
   /// machine.

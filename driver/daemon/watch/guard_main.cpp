@@ -23,7 +23,7 @@ namespace hapticd::watch {
 namespace {
 
 constexpr Nanoseconds kLook = 1'000'000, kOnTime = 2 * kLook;
-constexpr Nanoseconds kKillAfter = 1'000'000'000;  ///< [ns] without a tick: then it kills the daemon
+constexpr Nanoseconds kKillAfter = 1'000'000'000;  ///< [ns] after this time without a tick, the guard kills the daemon
 constexpr unsigned kUsbTimeout = 100;              ///< [ms] timeout of a USB transfer
 constexpr size_t kMostArms = 16;
 

@@ -42,7 +42,8 @@ void Watchdog::watchEnd() noexcept {
   if (servo_.stopAsked() != 0 && ++checks_since_stop_ == kEndWithin / kCheckEvery && late_) late_();
 }
 
-/// @param overdue time since the tick began, or should have begun @param seen time since the last look that counts
+/// Judges one look at a phase, and returns true if it cut the motors. @param overdue [ns] time since the tick began, or
+/// should have begun @param seen [ns] time before this look that counts
 bool Watchdog::judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcept {
   if (!(phase == phase_)) {  // the first look at this phase
     phase_ = phase;

@@ -10,12 +10,13 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr double kCalmFor = 0.5;           ///< [s] for which a device must be well before its force comes back
-constexpr double kCalmTravel = 0.02;       ///< [m] largest motion of the tip in that time, if a force waits for it
-constexpr double kStaleAfter = 0.05;       ///< [s] without a new sample: the position is too old for a force
+constexpr double kCalmFor = 0.5;      ///< [s] a device must be well for this time before its force comes back
+constexpr double kCalmTravel = 0.02;  ///< [m] largest motion of the tip in that time, if a force waits for it
+constexpr double kStaleAfter = 0.05;  ///< [s] after this time without a new sample, the position is too old for a force
 constexpr double kPeriodsTrusted = 2.001;  ///< periods without a new sample until the force fades: one may be late
 constexpr double kTrustFades = 2e-3;       ///< [s] duration of this fade
-constexpr double kPairWithin = 2e-3;       ///< [s] how much closer two samples may arrive than they were measured
+constexpr double kPairWithin = 2e-3;       ///< [s] least time that counts between two samples, because they may arrive
+                                           ///< closer together than they were measured
 
 }  // namespace
 

@@ -57,11 +57,11 @@ struct ModelState {
   bool always = false;           ///< stepped in every tick, because it traces itself or moves by itself
   bool moves = false;            ///< true if its pose may change
   hsp_status status = HSP_OK;
-  hsp_status failed_status = HSP_OK;  ///< the first status not allowed by the ABI that step() returned
+  hsp_status failed_status = HSP_OK;  ///< the first status that step() returned and that the ABI does not allow
   Pull pull;                          ///< the pull for which it was silenced, or the largest jump of its force
   Guard guard;
   ClaimBounds claims;         ///< how fast its force may change
-  bool overran = false;       ///< its last step took too long, and was counted as a strike
+  bool overran = false;       ///< its last step took too long, and was counted against it (Guard::strike())
   bool overran_then = false;  ///< replay: it overran in this tick of the recorded run
   uint64_t step_ns = 0;       ///< time of the last step; 0 if not measured
   bool cpu_timed = false;     ///< step_ns is CPU time of the thread, without interruptions
@@ -89,7 +89,7 @@ struct Uses {
   bool exchange = true;  ///< true if an arm has a passivity controller
   /// [N] Largest force that each arm lets through, by probe; 0 or missing: unknown.
   std::vector<double> max_force = {};
-  std::vector<double> max_torque = {};  ///< [N m] the same for torques
+  std::vector<double> max_torque = {};  ///< [N m] largest torque that each arm lets through, by probe
 };
 
 class Core {

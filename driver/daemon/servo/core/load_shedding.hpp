@@ -37,11 +37,12 @@ struct Load {
 /// counted costs instead of measured ones.
 class LoadShedding {
  public:
-  static constexpr size_t kMostChanges = 4;     ///< changes in one tick
-  static constexpr double kComfort = 0.8;       ///< accuracy is raised only below this share of the budget
-  static constexpr uint32_t kLasting = 20;      ///< [ticks] of overload in a row before a shape in contact is lowered
-  static constexpr uint32_t kPatience = 200;    ///< [ticks] of low load before accuracy is raised
-  static constexpr uint32_t kLongest = 20'000;  ///< [ticks] longest such wait, after raises that were too much
+  static constexpr size_t kMostChanges = 4;   ///< most changes in one tick
+  static constexpr double kComfort = 0.8;     ///< accuracy is raised only below this share of the budget
+  static constexpr uint32_t kLasting = 20;    ///< [ticks] of overload in a row before a shape in contact is lowered
+  static constexpr uint32_t kPatience = 200;  ///< [ticks] of low load before accuracy is raised
+  /// [ticks] longest wait before accuracy is raised; the wait doubles after each raise that was too much
+  static constexpr uint32_t kLongest = 20'000;
 
   struct Change {
     uint32_t model = 0, level = 0;

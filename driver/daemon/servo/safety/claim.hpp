@@ -47,11 +47,11 @@ class Claim {
   static constexpr double kMargin = 10;
   static constexpr double kStep = 2;          ///< [N] a force may always jump by this much, as for a click
   static constexpr double kUnclaimed = 2000;  ///< [N/m] stiffness that is assumed if none is claimed
-  /// [N s/m] allowed to every shape, because friction and inertia act like damping
+  /// [N s/m] damping that every shape may have without a claim, because friction and inertia act like damping
   static constexpr double kDamping = 100;
   static constexpr double kDrift = 100;   ///< [N/s] a force may always change at this rate
   static constexpr double kOwnSpeed = 5;  ///< [m/s] highest speed that is believed of a shape that moves itself
-  static constexpr double kOwnTurn = 50;  ///< [rad/s] the same for its turning
+  static constexpr double kOwnTurn = 50;  ///< [rad/s] highest angular velocity that is believed of such a shape
   /// The force changes at once if a surface is newly found under the probe, or if the foot goes over an edge. kPasses
   /// such changes may come in a row, and then kPassesPerSecond per second.
   static constexpr double kPasses = 3, kPassesPerSecond = 20;
@@ -75,7 +75,7 @@ class Claim {
   /// @param dt [s] since the last step  @param held becomes true if the force was held back
   Eigen::Vector3d judge(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
-  /// [rt] Does the same for the torque of `step`. Call it before judge(), because judge() stores the place of the
+  /// [rt] Like judge(), but for the torque of `step`. Call it before judge(), because judge() stores the place of the
   /// probe.
   Eigen::Vector3d judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
@@ -122,11 +122,11 @@ class Claim {
   Eigen::Vector4d orientation_ = Eigen::Vector4d::UnitW();
 };
 
-/// A pull by a surface that claims to push only.
+/// A pull by a surface that claims to push only, or the largest jump of a model's force.
 struct Pull {
   double t = -1;      ///< [s] time since the start of the run; negative: unknown
   double depth = -1;  ///< [m] as the shape reported it; negative: unknown or outside
-  double force = 0;   ///< [N] with which it pulled
+  double force = 0;   ///< [N] force with which it pulled, or size of the jump
 };
 
 /// [rt] True if the force of a contact pulls the probe deeper in, or from outside toward the surface, by more than

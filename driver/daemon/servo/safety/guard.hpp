@@ -27,7 +27,7 @@ class Guard {
   /// [s] The force of a failed shape is zero after this time. Until then a tip that nobody holds gains energy, see
   /// Limiter::kFaultRamp.
   static constexpr double kFadeOut = 0.002;
-  static constexpr double kLeave = 0.02;  ///< [s] the same for a model that is disabled on request
+  static constexpr double kLeave = 0.02;  ///< [s] time in which the force ends if the model is disabled on request
   /// [s] duration of a fade-in, so that a surface that is found again does not kick
   static constexpr double kFadeIn = 0.05;
   /// [s] Duration of the fade-in of a model that is added during a run and pushes without a surface: no hand can be

@@ -90,7 +90,7 @@ void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position,
   last_torque_ = torque;
 }
 
-/// [s] Duration of the ramp after a fault; longer for a planned end.
+/// Returns the duration [s] of the ramp to zero after a fault; it is longer for a planned end.
 double Limiter::faultRamp() const noexcept HSP_RT {
   return fault() == Fault::kStopped ? limits_.ramp_out : std::min(limits_.ramp_out, kFaultRamp);
 }
@@ -136,7 +136,7 @@ void Limiter::limitImpulse(Vector3d& force, double dt) noexcept HSP_RT {
   // integrator holds at the end plus what leaked meanwhile, so at most twice its largest value. So half the limit as
   // the largest value bounds every window, wherever it begins. The cap falls as the integrator fills, so that a held
   // force settles at size / window without a step.
-  constexpr double kApproach = 0.01;  // [s]
+  constexpr double kApproach = 0.01;  // [s] the impulse that is left may be used up in this time
   const double size = limits_.impulse / 2, booked = std::min(impulse_, size);
   const double most = (size - booked) / std::max(kApproach, dt) + booked / kImpulseWindow;
   if (cap(force, most)) count(Limit::kImpulse);

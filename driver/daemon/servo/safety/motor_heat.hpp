@@ -30,7 +30,8 @@ class MotorHeat {
   /// True if a winding is more than 5 K beyond its limit. Then something other than forces heats it, such as gravity
   /// compensation.
   bool overheated() const noexcept { return overheated_; }
-  double winding(size_t joint) const noexcept { return bodies_[joint].winding; }  ///< [degC] of one motor's winding
+  /// [degC] temperature of one motor's winding
+  double winding(size_t joint) const noexcept { return bodies_[joint].winding; }
 
  private:
   struct Bodies {

@@ -11,7 +11,7 @@ class History {
  public:
   explicit History(int capacity) : samples_(static_cast<size_t>(capacity)) {}  ///< [main] allocates
 
-  /// [rt] @param dt [s] since the last sample
+  /// [rt] Adds a position. @param dt [s] since the last one
   void push(const Eigen::Vector3d& position, double dt) noexcept {
     newest_ = newest_ == 0 ? samples_.size() - 1 : newest_ - 1;
     samples_[newest_] = {position, dt};

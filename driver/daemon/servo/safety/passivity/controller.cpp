@@ -10,11 +10,11 @@ namespace {
 
 constexpr double kSmoothing = 2.5e-3;  ///< [s] time constant of each of two stages that smooth the velocity: one
                                        ///< encoder count in a tick is not yet motion
-constexpr double kRepayment = 5e-3;    ///< [s] in which the damping must pay an energy debt back
+constexpr double kRepayment = 5e-3;    ///< [s] time in which the damping must pay an energy debt back
 constexpr double kRise = 5e-3;         ///< [s] rise time of the damping while there is a debt
 /// [s] fall time of the damping once it is paid: longer than one period of a vibration that a hand feels
 constexpr double kFall = 0.1;
-constexpr double kMemory = 0.1;  ///< [s] for which a debt is remembered after the contact
+constexpr double kMemory = 0.1;  ///< [s] time for which a debt is remembered after the contact
 
 // These hold while a program pushes:
 constexpr double kSteady = 0.1;  ///< [s] changes of force slower than this may give energy
