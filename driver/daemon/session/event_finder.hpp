@@ -40,7 +40,7 @@ class EventFinder {
  private:
   /// The state of a model one tick ago.
   struct ModelNote {
-    std::array<double, link::kMaxProbes> touched = never();  ///< [s] by probe: time when it was last inside
+    std::array<double, link::kMaxProbes> touched = never();  ///< [s] time when each probe was last inside
     uint32_t level = 0;
     Trouble trouble = Trouble::kNone;
     bool leaving = false;

@@ -28,7 +28,7 @@ class Leads {
     Order::Led led = Order::Led::kModel;
     uint32_t index = 0;  ///< number of the model or the arm
     std::string name;    ///< such as "model door", for messages
-    uint32_t place = 0;  ///< for a force: the program's place on the arm, chosen by begin()
+    uint32_t place = 0;  ///< the program's place on the arm if it leads a force; begin() chooses it
   };
 
   /// A program that pushes on an arm.

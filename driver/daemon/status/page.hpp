@@ -112,12 +112,12 @@ struct Page {
     Slot<ModelNow> now;
     SharedHistogram step_us;
   } model[kMaxModels];
-  double answer_time = 0;  ///< [s] how long in a tick the servo waits for programs' answers
+  double answer_time = 0;  ///< [s] longest time in a tick for which the servo waits for programs' answers
   struct {
     Slot<Pusher> who;
     Slot<PusherNow> now;
   } pusher[kMaxArms * kPushersOfArm];  ///< places of arm i begin at i * kPushersOfArm
-  Slot<ModelFeet> feet[kMaxModels];    ///< by the place of a model
+  Slot<ModelFeet> feet[kMaxModels];    ///< feet of each model, by its place
 };
 
 }  // namespace hapticd::status

@@ -31,7 +31,7 @@ struct ArmOptions {
   double rate = 1000;                        ///< [Hz] rate of the servo
   bool needs_velocity = false;               ///< true if the velocity of the tip must be estimated
   const host::Playback* playback = nullptr;  ///< replay: samples from a recording, instead of the hardware
-  scene::Clients clients = {};               ///< whether and how hard programs may push on it
+  scene::Clients clients = {};               ///< settings for programs that push on the arm
   bool found_pressed = false;     ///< for old recordings: a hold button that was down before the run enables forces
   bool full_when_slow = false;    ///< for old recordings: a slow real arm pushes with its full force
   bool former_passivity = false;  ///< for old recordings: a program's steady push counts as created energy
@@ -93,8 +93,8 @@ class Arm {
   const Limiter& limiter() const noexcept { return limiter_; }
   const Eigen::Vector3d& force() const noexcept { return force_; }  ///< [N] world frame, as sent to the device
   const Probe& probe() const noexcept { return probe_; }
-  const hdv_sample& sample() const noexcept { return sample_; }     ///< as the last read() got it
-  const hdv_command& command() const noexcept { return command_; }  ///< as the last write() sent it
+  const hdv_sample& sample() const noexcept { return sample_; }     ///< sample that the last read() got
+  const hdv_command& command() const noexcept { return command_; }  ///< command that the last write() sent
   const MotorHeat& heat() const noexcept { return heat_; }
   LedHand& hand() noexcept { return hand_; }  ///< the hand that holds a simulated arm
   const LedHand& hand() const noexcept { return hand_; }

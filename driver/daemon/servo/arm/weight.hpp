@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The torques that carry the arm's own weight. They come from the masses in a device file, which may be wrong. So
-/// these torques are ramped like every force, and the force at the tip that they correspond to is never more than
-/// limits.weight.
+/// these torques are ramped like every force, and they never correspond to a force of more than limits.weight at the
+/// tip.
 #pragma once
 #include <array>
 

@@ -68,7 +68,7 @@ struct ModelState {
   // Its accuracy: reduced while ticks take too long, see load_shedding.hpp.
   uint32_t level = 0, coarsest = 0;  ///< Accuracy level now, and the coarsest one so far
   uint64_t finer_ns = 0;             ///< time of a step before the level was last lowered
-  double rested = 0;                 ///< [s] since its last step
+  double rested = 0;                 ///< [s] time since its last step
   uint64_t degraded_ticks = 0;
   double degraded_residual = 0;  ///< [m] largest error that a degraded answer reported
   LedPose lead;                  ///< a leader's motion of a kinematic model; it overrides glide and path
@@ -79,8 +79,8 @@ struct CoreSettings {
   double max_probe_speed = 20;  ///< [m/s] a faster probe is treated as a jump
   uint32_t spare_models = 0;    ///< empty places for models that are added during the run
   bool measure = false;         ///< measure the time of each step
-  double evaluation_ns = 0;     ///< if > 0, a step costs its evaluations times this, not its real time
-  bool former_claims = false;   ///< for old recordings: torques and steps after a set parameter are not bounded
+  double evaluation_ns = 0;    ///< [ns] if > 0, the cost of a step is its evaluations times this, not its measured time
+  bool former_claims = false;  ///< for old recordings: torques and steps after a set parameter are not bounded
 };
 
 /// Which results of a tick the arms use; set before the first tick. Other results are not computed.
@@ -198,8 +198,8 @@ class Core {
   // Bounded, so that many records at once do not make a tick late: the rest waits for the next tick.
   std::array<link::ActivationRecord, 1024> received_;
   size_t received_count_ = 0;
-  std::vector<Vector3d> last_position_;               // at the last good sample, by probe
-  std::vector<Eigen::Quaterniond> last_orientation_;  // the same
+  std::vector<Vector3d> last_position_;               // position at the last good sample, by probe
+  std::vector<Eigen::Quaterniond> last_orientation_;  // orientation at the last good sample, by probe
   std::vector<uint8_t> jumped_, seen_;
   std::vector<Vector3d> forces_, torques_;
   std::vector<passivity::Exchange> exchanges_;

@@ -64,7 +64,7 @@ struct Bounds {
 struct Motion {
   Vector3d velocity;   ///< now
   Vector3d of_target;  ///< mean velocity of the target over this tick
-  Vector3d error;      ///< from the pose now to the target after this tick
+  Vector3d error;      ///< difference from the pose now to the target after this tick
 };
 
 /// True if the pose has reached a resting target, so that the motion can end. An exponential approach never ends.

@@ -14,9 +14,9 @@ namespace hapticd::servo {
 /// from a curved surface a first-order step loses the foot, and the probe would seem to be inside.
 struct Accuracy {
   static constexpr uint32_t kCoarsest = 3;
-  /// at the coarsest level, a shape out of reach answers in one of this many ticks
+  /// At the coarsest level, a shape that no probe can reach soon answers only once in this many ticks.
   static constexpr uint32_t kTurns = 4;
-  uint32_t max_iterations = 0, order = 0;  ///< as in hsp_step
+  uint32_t max_iterations = 0, order = 0;  ///< see hsp_step
 
   static constexpr Accuracy of(uint32_t level) noexcept {
     constexpr Accuracy kLevels[kCoarsest + 1] = {{0, 0}, {4, 0}, {2, 0}, {1, 0}};
@@ -37,10 +37,11 @@ struct Load {
 /// counted costs instead of measured ones.
 class LoadShedding {
  public:
-  static constexpr size_t kMostChanges = 4;   ///< most changes in one tick
-  static constexpr double kComfort = 0.8;     ///< accuracy is raised only below this share of the budget
-  static constexpr uint32_t kLasting = 20;    ///< [ticks] of overload in a row before a shape in contact is lowered
-  static constexpr uint32_t kPatience = 200;  ///< [ticks] of low load before accuracy is raised
+  static constexpr size_t kMostChanges = 4;  ///< most changes in one tick
+  static constexpr double kComfort = 0.8;    ///< accuracy is raised only below this share of the budget
+  /// [ticks] so many ticks of overload lower the accuracy of a shape in contact
+  static constexpr uint32_t kLasting = 20;
+  static constexpr uint32_t kPatience = 200;  ///< [ticks] so many ticks of low load in a row raise the accuracy
   /// [ticks] longest wait before accuracy is raised; the wait doubles after each raise that was too much
   static constexpr uint32_t kLongest = 20'000;
 

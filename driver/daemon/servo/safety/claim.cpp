@@ -36,7 +36,7 @@ Vector3d Claim::judge(const ClaimStep& step, const ClaimBounds& bounds, double d
   finds_anew_ -= dt;
   held = false;
   Vector3d from = let;
-  double follows = 1;  // share of the change by which explained_ follows
+  double follows = 1;  // share of the change by which explained_ moves toward the new force
   if (known_ && (step.in & (HSP_IN_JUMP | HSP_IN_INVALID)) == 0) {
     const double turned = step.turn != nullptr ? turn(explained_, *step.turn, bounds, dt) : 0;
     from = nearestPart(explained_, let);
@@ -61,7 +61,7 @@ bool Claim::surelyExplained(double square, const ClaimStep& step, const ClaimBou
 }
 
 /// Moves `let` back toward `from` until the change fits `room`. @return the share of the change by which the explained
-/// force follows
+/// force moves toward the new one
 double Claim::holdBack(Vector3d& let, const Vector3d& from, const Vector3d& change, const Room& room,
                        const ClaimStep& step, double dt, bool& held) noexcept HSP_RT {
   const double size = change.norm(), most = room.moved + room.jump, follows = room.moved + room.drift;
@@ -142,7 +142,7 @@ Vector3d Claim::judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, do
   if (const double size = let.norm(); step.max_torque > 0 && size > step.max_torque) let *= step.max_torque / size;
   held = false;
   Vector3d from = let;
-  double follows = 1;  // share of the change by which explained_torque_ follows
+  double follows = 1;  // share of the change by which explained_torque_ moves toward the new torque
   if (torque_known_ && (step.in & (HSP_IN_JUMP | HSP_IN_INVALID)) == 0) {
     const double turned = step.turn != nullptr ? turn(explained_torque_, *step.turn, bounds, dt) : 0;
     from = nearestPart(explained_torque_, let);

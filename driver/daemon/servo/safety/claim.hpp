@@ -21,7 +21,7 @@ struct ClaimBounds {
 /// One answer of a shape to one probe, in the world frame unless a comment says otherwise. `normal` is only used if a
 /// surface is traced; `p_world` and `origin` are only used if the shape moves itself.
 struct ClaimStep {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< [N] on the probe
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< [N] force on the probe
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< outward unit normal, if a surface is traced
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();   ///< [m] position of the probe
   Eigen::Vector3d p_model = Eigen::Vector3d::Zero();   ///< [m] the probe in the frame of the model, after the step
@@ -32,7 +32,7 @@ struct ClaimStep {
   double max_force = 0;
   uint32_t in = 0, out = 0;  ///< HSP_IN_*, HSP_OUT_*
   // Only judgeTorque() uses these.
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m] on the probe
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m] torque on the probe
   /// Orientation x y z w of the probe in the world; constant if the shape does not use the orientation.
   Eigen::Vector4d orientation = Eigen::Vector4d::UnitW();
   /// [N m] largest torque that the arm lets through, 0: unknown; larger ones are reduced to it first
@@ -110,9 +110,9 @@ class Claim {
 
   bool known_ = false, traced_ = false;
   bool torque_known_ = false;
-  bool asked_ = false, jumps_ = false;  // in this step: a parameter was set; a jump is allowed
+  bool asked_ = false, jumps_ = false;  // a parameter was set before this step; this step may jump
   double passes_ = kPasses, asked_passes_ = kAsked;
-  double excused_ = 0, finds_anew_ = 0;  // [s] how long excused(), and kFindsAnew, still hold
+  double excused_ = 0, finds_anew_ = 0;  // [s] remaining times of excused() and of kFindsAnew
   /// [N] The force that motion explains, world frame. The force that passes is at most one jump away from it.
   Eigen::Vector3d explained_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_world_ = Eigen::Vector3d::Zero(), p_model_ = Eigen::Vector3d::Zero();
@@ -125,7 +125,7 @@ class Claim {
 /// A pull by a surface that claims to push only, or the largest jump of a model's force.
 struct Pull {
   double t = -1;      ///< [s] time since the start of the run; negative: unknown
-  double depth = -1;  ///< [m] as the shape reported it; negative: unknown or outside
+  double depth = -1;  ///< [m] depth that the shape reported; negative: unknown or outside
   double force = 0;   ///< [N] force with which it pulled, or size of the jump
 };
 

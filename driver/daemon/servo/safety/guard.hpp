@@ -57,7 +57,7 @@ class Guard {
   Trouble trouble() const noexcept { return trouble_; }  ///< the trouble that quarantined it, else the last one
 
  private:
-  static constexpr int kForgivenAfter = 100;  ///< [ticks] in which one strike is forgiven
+  static constexpr int kForgivenAfter = 100;  ///< [ticks] after this many ticks one strike is forgiven
   int strikes_ = 0;
   // starts at 1, because the first contact begins with zero force anyway (Eq. 4 of Thompson et al. 1999)
   double gain_ = 1;

@@ -89,8 +89,8 @@ class Limiter {
   bool enabled() const noexcept { return enabled_; }  ///< true if there is no enable switch, or it enables forces
   /// true if the enable switch was down at the start and has not been released since
   bool foundPressed() const noexcept { return found_pressed_; }
-  double rampOut() const noexcept { return limits_.ramp_out; }  ///< [s] from full force to zero, at a planned end
-  const Clips& clips() const noexcept { return clips_; }        ///< [main] after the run
+  double rampOut() const noexcept { return limits_.ramp_out; }  ///< [s] time from full force to zero, at a planned end
+  const Clips& clips() const noexcept { return clips_; }        ///< [main] only after the run
   double maxForce() const noexcept { return max_force_; }       ///< [N] 0: no limit
   double maxTorque() const noexcept { return limits_.torque; }  ///< [N m] 0: no limit
   /// [rt] Returns the share of a full force that the ramps allow in this tick, 0 to 1. Call it after apply().

@@ -19,7 +19,7 @@ class History {
   }
   /// [rt] Returns a position; age 0 is the newest.
   const Eigen::Vector3d& position(int age) const noexcept { return at(age).position; }
-  double step(int age) const noexcept { return at(age).dt; }  ///< [rt] [s] from the sample before to sample `age`
+  double step(int age) const noexcept { return at(age).dt; }  ///< [rt] [s] time from the sample before to sample `age`
   int count() const noexcept { return count_; }
   void clear() noexcept { count_ = 0; }
 
