@@ -18,10 +18,11 @@ constexpr double kAside = 0.87;
 constexpr double kFarAside = 0.7;  ///< samples with a smaller cosine certainly belong to another place
 constexpr double kParting = 0.05;  ///< [rad] feet whose directions differ by less are at one place
 constexpr double kParted = 0.15;   ///< [rad] feet whose directions differ by more are at two places
-/// share of the radius by which a foot between samples may be nearer than the samples
+/// share of the radius by which a foot between two samples may be nearer than these samples
 constexpr double kMayBeNearer = 0.1;
 constexpr uint32_t kGroup = 8;  ///< number of samples that are ruled out together; kATick is a multiple of it
-/// factor that turns a missed condition into a large negative depth, while a narrow miss stays possible
+/// A condition that a sample misses is multiplied by this. So a sample that clearly misses it gets a large negative
+/// depth, and one that misses it only by rounding stays possible.
 constexpr float kSteep = 1e6F;
 constexpr float kRounding = 2e-5F;  ///< share of size_; more than the rounding error of floats
 

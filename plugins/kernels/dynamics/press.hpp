@@ -15,7 +15,7 @@ struct Pressing {
   Eigen::Vector3d normal{0, 0, 1};  ///< outward unit normal of the surface
   Eigen::Vector3d along{0, 0, 0};   ///< friction force on the probe, along the surface [N]
   contact::WallLaw law;
-  /// [m] > 0 inside; if it is just below 0, a contact that begins within the step is predicted
+  /// [m] depth of the probe, > 0 inside; if it is just below 0, a contact that begins within the step is predicted
   double depth = 0;
   double along_limit = 0;      ///< [N] greatest friction force
   double along_stiffness = 0;  ///< [N/m] stiffness of the friction while the probe sticks

@@ -56,7 +56,7 @@ RigidBody::RigidBody(const RigidBodyLaw& law, const Vector3d& position, const Qu
   const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(law.inertia);
   principal_ = solver.eigenvalues();
   Matrix3d axes = solver.eigenvectors();
-  if (law.inertia.isDiagonal(0)) {  // keep the order of the axes in which the user gave the moments
+  if (law.inertia.isDiagonal(0)) {  // this keeps the order of the axes in which the user gave the moments
     principal_ = law.inertia.diagonal();
     axes.setIdentity();
   }
@@ -205,7 +205,7 @@ void RigidBody::spin(double dt) noexcept {
   for (int i = 0; i < steps; ++i) {
     turn_.turnBody(top_.bodyTurn(turn_.quaternion().conjugate() * l_, dt / steps));
   }
-  turn_.turnWorld(dt * top_.worldRate() * l_);  // does not change the momentum as seen from the body
+  turn_.turnWorld(dt * top_.worldRate() * l_);  // this turn does not change the momentum as seen from the body
 }
 
 /// Applies angular drag: the momentum about each principal axis decays separately.

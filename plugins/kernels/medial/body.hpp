@@ -58,7 +58,8 @@ struct BodyForce {
 /// The result of the test that the force grows with depth at every examined place.
 struct MonotonicityReport {
   double slope = 1;  ///< least slope of the force, divided by the stiffness of the normal spring at the same place
-  /// at that place: rest length over least length of the worst spring; the greatest allowed value of `ratio`
+  /// ratio: rest length over least length of the worst spring at that place; limit: the greatest allowed value of
+  /// `ratio`
   double ratio = 1, limit = 1;
   double u = 0, v = 0;  ///< parameters of that place
   bool holds() const noexcept { return slope > 0; }
@@ -105,7 +106,7 @@ class Body {
     std::size_t count = 0;
   };
   /// [any] True if the springs along the surface only turn the force. If false, they add to the normal spring, as in
-  /// the paper.
+  /// Corso et al. 2002.
   bool turns() const noexcept { return options_.shear_distance > 0; }
   /// Returns the differences of the parameter to a neighbour along u (index 0) and v (index 1); 0 if there is no
   /// neighbour.

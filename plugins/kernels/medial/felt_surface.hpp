@@ -31,7 +31,7 @@ struct FeltPlace {
   std::array<PlaceNode, kMost> nodes;
   std::size_t count = 0;
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< outward, unit
-  double stiffness = 0;                               ///< [N/m] for a held press here
+  double stiffness = 0;                               ///< [N/m] stiffness that a held press feels here
   /// [1/m] gradients of the foot's u and v over the probe's position
   Eigen::Vector3d toward_u{0, 0, 0}, toward_v{0, 0, 0};
   Eigen::Vector3d tangent_u{0, 0, 0}, tangent_v{0, 0, 0};  ///< [m] tangents of the skeleton along u and v

@@ -104,7 +104,7 @@ class Nodes {
 };
 
 inline constexpr int kMaxContacts = 16;  ///< most contacts of one body in one tick
-/// number of passes over several contacts; after each pass the contour is nearer to the probes
+/// Number of passes over several contacts. After each pass the contour is nearer to the probes.
 inline constexpr int kSweeps = 8;
 
 }  // namespace hapticd::medial

@@ -56,7 +56,7 @@ struct NewtonOptions {
 /// The control points that a deformation moves, with knots and degrees. A curve has one row, of degree 0.
 struct ControlGrid {
   std::array<int, 2> count{0, 0}, degree{0, 0};
-  /// greville: the parameter at which each control point acts (Greville abscissa)
+  /// greville: the parameter at which each control point acts most (its Greville abscissa)
   std::array<std::vector<double>, 2> knots, greville;
   std::vector<Eigen::Vector3d> points;  ///< [m]
 };

@@ -15,7 +15,7 @@ struct Powers {
 };
 
 /// Applies Horner's rule to `count` coefficients, of which coefficient(0) is the constant one. The
-/// derivatives are computed in the same loop, one step behind.
+/// same loop computes the derivatives, one step behind.
 template <int kOrder, class Coefficient>
 inline Row horner(int count, V4 x, Coefficient coefficient) {
   Row row{coefficient(count - 1), splat(0), splat(0)};

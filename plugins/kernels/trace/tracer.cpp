@@ -270,7 +270,7 @@ void Tracer::crossSeams(int track, const Vector3d& p, const TraceOptions& option
 /// from its own foot. This is so if its own foot is farther from the probe, far from `there`, and was not refined in
 /// this tick.
 bool Tracer::isFarther(int patch, const Array2d& uv, const LocalFoot& there, const Vector3d& p) const noexcept {
-  constexpr double kAway = 0.05;  // relative to the range of the parameters
+  constexpr double kAway = 0.05;  // difference of parameters, relative to their range
   const Track& t = tracks_[patch];
   if (t.tick == tracks_.tick() || t.held) return false;
   if (t.at.known == Iterate::Known::kParameters)
