@@ -64,7 +64,7 @@ struct FeltContact {
 
 class FeltSurface {
  public:
-  /// [main] Takes the materials.
+  /// [main] Prepares the steps of all materials.
   /// @param tissue one per node, or one for all
   /// @param compliance one per node; with it the displacement of most places is nearly right even without `scale`
   /// @param ratio see elementOf()

@@ -118,7 +118,7 @@ int Tracer::refine(int track, const Vector3d& p, const TraceOptions& options) no
   return note(track);
 }
 
-/// True if the nearest foot is the foot of this tick, and the state of the contact does not change.
+/// True if the state of the contact does not change, so that the nearest foot is the result of this tick.
 inline bool Tracer::goesOn(const Vector3d& p, const Vector3d& last, const TraceOptions& options) noexcept {
   Contact& contact = contacts_[0];
   const LocalFoot& foot = tracks_[nearest_].foot;
