@@ -42,7 +42,7 @@ void validate(const RigidBodyLaw& law) {
   if (!law.center.allFinite()) throw std::invalid_argument("center: must be three finite numbers");
   principalMoments(law.inertia);
   if (!(law.damping >= 0) || !(law.angular_damping >= 0) || !(law.tether >= 0))
-    throw std::invalid_argument("damping, angular damping and tether must be 0 or more");
+    throw std::invalid_argument("drag, angular_drag and tether must be 0 or more");
   if (law.joint != Joint::kFree && !(law.axis.norm() > 0))
     throw std::invalid_argument("axis: all three numbers are 0, so it has no direction; give one such as [0, 1, 0]");
 }

@@ -229,7 +229,8 @@ void Sewing::reportTJunctions() {
       const double there = nearestFraction(other, open[j]->side, middle, 0.5);
       if ((pointOnSide(other, open[j]->side, there) - middle).norm() <= tolerance_)
         model_.warnings_.push_back("T-junction: " + describe(open[i]->patch, open[i]->side) + " covers a part of " +
-                                   describe(open[j]->patch, open[j]->side) + "; both sides are left open");
+                                   describe(open[j]->patch, open[j]->side) +
+                                   "; both sides are left open; to join them, split the longer one there");
     }
 }
 
