@@ -26,7 +26,7 @@ _MOST_LINE = 1 << 24
 
 
 def _in_memory(folder: str) -> bool:
-    """True if the folder is on a file system in memory, as the daemon requires for its folder."""
+    """Tells whether the folder is on a file system in memory, as the daemon requires for its runtime folder."""
     try:
         with open("/proc/self/mountinfo", encoding="utf-8") as mounts:
             best, kind = "", ""
@@ -55,7 +55,7 @@ def runtime_folder(name: str) -> str:
                 return folder
         except OSError:
             continue
-    raise HapticdError(f"no daemon named {name} shows itself in {', '.join(folders)}\n"
+    raise HapticdError(f"there is no socket of a daemon named {name} in {', '.join(folders)}\n"
                        "  fix: start one with hapticd run, or name it: hapticd.connect(NAME)")
 
 
@@ -69,8 +69,8 @@ class _Line:
         except OSError as error:
             self._socket.close()
             raise HapticdError(f"no daemon answers at {file}: {error.strerror}") from None
-        self._begun = b""  # the beginning of a line whose end has not come yet
-        self._begun_with: list[int] = []  # the descriptors that came with it
+        self._begun = b""  # the beginning of a line that is not yet complete
+        self._begun_with: list[int] = []  # the descriptors that came with this beginning
         self._lines: deque[tuple[bytes, list[int]]] = deque()
         self._descriptors: list[int] = []  # descriptors of the last line that was returned
 
@@ -91,7 +91,7 @@ class _Line:
             if self._socket.fileno() < 0:
                 return None
             left = None if end is None else max(end - time.monotonic(), 0)
-            ready = select.poll()  # select.select() takes no descriptor beyond 1023
+            ready = select.poll()  # select.select() cannot wait for a descriptor above 1023
             ready.register(self._socket, select.POLLIN)
             if not ready.poll(None if left is None else math.ceil(left * 1e3)):
                 return None
@@ -114,7 +114,7 @@ class _Line:
             raise HapticdError("the daemon is gone")
         *whole, rest = data.split(b"\n")
         for number, part in enumerate(whole):
-            # a descriptor comes with the first byte of its line, and nothing behind that message with it
+            # A descriptor arrives with the first byte of its line, so it belongs to the last line of this message.
             last = not rest and number + 1 == len(whole)
             self._lines.append((self._begun + part, self._begun_with + (list(fds) if last else [])))
             self._begun, self._begun_with = b"", []
@@ -123,7 +123,7 @@ class _Line:
             self._begun_with += fds
 
     def ended(self) -> bool:
-        """True if the other end is closed. The kernel reports this at once, even if the process was killed."""
+        """Tells whether the other end is closed. The kernel reports this at once, even if the process was killed."""
         if self._socket.fileno() < 0:
             return False
         socket_ = select.poll()
@@ -133,7 +133,7 @@ class _Line:
     def descriptor(self) -> int:
         """Returns the descriptor that came with the last line."""
         if not self._descriptors:
-            raise HapticdError("the daemon sent no memory along with its answer")
+            raise HapticdError("the daemon sent no memory with its answer")
         return self._descriptors.pop(0)
 
     def _forget(self) -> None:
@@ -238,12 +238,12 @@ class Client:
                 time.sleep(pause)
 
     def alive(self) -> bool:
-        """True if the daemon runs: it holds the lock on its name."""
+        """Tells whether the daemon runs: a running daemon holds the lock on its name."""
         try:
             with open(self._base + ".lock", "rb") as lock:
                 fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
                 return False
-        except PermissionError:  # the lock of another user: only the socket tells
+        except PermissionError:  # the lock belongs to another user, so only the socket shows whether the daemon runs
             return os.path.exists(self._base + ".sock")
         except BlockingIOError:
             return True
@@ -258,11 +258,11 @@ class Client:
             return None
 
     def ended(self) -> bool:
-        """True if the daemon of this client has ended, even if another daemon has its name now."""
+        """Tells whether the daemon of this client has ended, even if another daemon has its name now."""
         return self._line.ended() and (self._file_of_box() != self._box_file or not self.alive())
 
     def died(self) -> bool:
-        """True if the daemon ended without removing its files: it was killed, or it crashed."""
+        """Tells whether the daemon ended without removing its files, because it was killed or crashed."""
         return self.ended() and os.path.exists(self._base + ".sock")
 
     def _gone(self) -> str:
@@ -314,7 +314,7 @@ class Client:
         return self.ask(do="snapshot")
 
     def hold(self, device: Optional[str] = None) -> None:
-        """Ramps the force of a device out until it is cleared. Without a name, of all devices."""
+        """Ramps the force of a device out until the hold is cleared. Without a name, it does so for all devices."""
         self.ask(do="hold", **({"device": device} if device else {}))
 
     def clear(self, device: Optional[str] = None) -> None:
@@ -348,7 +348,7 @@ class Client:
             raise
         except HapticdError:
             if not self._line.ended():
-                self._line.say({"do": "unlead", **target})  # the lead may have begun: ends it
+                self._line.say({"do": "unlead", **target})  # the lead may have begun, so it is ended
             raise
 
     def lead_force(self, device: str) -> ForceLead:
