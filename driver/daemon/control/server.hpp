@@ -45,9 +45,10 @@ class Server {
   static constexpr size_t kMaxStanding = 16;
   static constexpr size_t kMaxStaying = 24;  ///< most clients with Standing::stays, so that others find places
   static constexpr Nanoseconds kNewsPeriod = 20'000'000;
-  static constexpr size_t kMaxWaiting = 1 << 20;       ///< [bytes] kept for a client that does not read
+  static constexpr size_t kMaxWaiting = 1 << 20;       ///< [bytes] most that is kept for a client that does not read
   static constexpr Nanoseconds kIdle = 2'000'000'000;  ///< [ns] a client idle for longer is dropped if another waits
-  static constexpr Nanoseconds kPatience = 10'000'000'000;  ///< [ns] time to send the rest of a line, or to read
+  /// [ns] longest time for a client to send the rest of a line, or to read its answers
+  static constexpr Nanoseconds kPatience = 10'000'000'000;
 
   /// [main] Binds the socket; its owner and its group may connect. An old socket that no process serves is replaced. It
   /// is an error if a process serves it. @param group group of the socket; "" takes the group of the process

@@ -74,7 +74,7 @@ class EventFinder {
   size_t count_ = 0, leaving_ = 0;
 };
 
-/// [main] Returns why the target of a lead was refused, for such an event; "" for other events.
+/// [main] Returns why the target of a lead was refused, for an event HAPTICD_REFUSED; "" for other events.
 const char* whyRefused(const hapticd_event& event);
 
 /// [main] Returns the name of an event in JSON, such as "click"; "" if there is no such event.

@@ -48,7 +48,8 @@ Result<hsp_mesh> cut(const host::ShapeInstance& shape, double& tolerance) {
   if (!(tolerance > 0) && shape.contour() == nullptr) tolerance = size > 0 ? kChordShare * size : kDefaultChord;
   hsp_mesh mesh{};
   if (shape.tessellate(tolerance, mesh) < 0)
-    return Error{fmt::format("the model cannot be cut into triangles within {:g} m", tolerance)};
+    return Error{
+        fmt::format("the plugin of the model gives no valid triangles for a chord error of {:g} m", tolerance)};
   return mesh;
 }
 

@@ -62,7 +62,8 @@ class Leads {
 
   /// [main] Returns the process that leads a model or a hand, if there is one.
   std::optional<pid_t> leader(Order::Led led, uint32_t index) const;
-  /// [main] Returns the name of a process that led or pushed; "?" if none had this number.
+  /// [main] Returns the name of a process that led or pushed; "?" if none had this number, or if its name was
+  /// forgotten.
   std::string program(pid_t pid) const;
   /// [main] Returns the programs that push on an arm.
   std::vector<Pusher> pushers(uint32_t arm) const;

@@ -26,7 +26,7 @@ class PusherLog {
     int32_t level;
     std::string text;
   };
-  /// How a program stops pushing.
+  /// How a program stops pushing: by a request, or because its connection ended.
   enum class End { kUnlead, kLeft };
 
   /// [any] Called when a program begins to push. @param place less than ClientForces::kMost

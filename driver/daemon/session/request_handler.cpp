@@ -45,7 +45,8 @@ std::string expectedOf(const hsp_param& param) {
   return "one of " + document::listed(words, 40);
 }
 
-/// Returns the number of a word of the parameter, or nothing if there is no such word.
+/// Returns the number that a word of a choice or switch stands for, such as 1 for "on"; nothing if there is no such
+/// word.
 std::optional<double> numberOf(const hsp_param& param, const std::string& word) {
   for (uint32_t i = 0; param.kind == HSP_ENUM && i < param.choice_count; ++i)
     if (word == host::textOf(param.choices[i])) return i;

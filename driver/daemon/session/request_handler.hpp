@@ -36,20 +36,21 @@ class RequestHandler {
   /// [main] Called before the first request: sets the function for warnings about added models; empty for no warnings.
   void adviseBy(Advise advise) { advise_ = std::move(advise); }
 
-  /// [any] One thread at a time. Answers a request (one line of JSON) with one line of JSON. @param files descriptors
-  /// that came with the line
+  /// [any] Only one thread at a time may call this. Answers a request (one line of JSON) with one line of JSON.
+  /// @param files descriptors that came with the line
   control::Reply answer(const control::Peer& peer, const std::string& line, std::vector<Descriptor> files = {});
-  /// [any] Any thread, at any time. Carries out a request to hold arms or to end the run at once, without waiting for
-  /// other requests. @return the answer, or nothing if the line is not such a request
+  /// [any] Any thread may call this at any time. Carries out a request to hold arms or to end the run at once, without
+  /// waiting for other requests. @return the answer, or nothing if the line is not such a request
   std::optional<control::Reply> urgent(const control::Peer& peer, const std::string& line);
-  /// [any] The thread of answer(). Returns what depends on the peer's connection.
+  /// [any] Called from the thread of answer(). Returns what depends on the peer's connection.
   control::Standing standing(const control::Peer& peer) const { return {stays(peer), listeners_.count(peer.id) > 0}; }
-  /// [any] The thread of answer(). Returns new events for a subscriber, one line each; "" if there are none.
+  /// [any] Called from the thread of answer(). Returns new events for a subscriber, one line each; "" if there are
+  /// none.
   std::string news(const control::Peer& peer);
-  /// [any] The thread of answer(). Called when a connection is gone: ends what depended on it.
+  /// [any] Called from the thread of answer() when a connection is gone: ends what depended on it.
   void left(const control::Peer& peer);
 
-  /// [any] The thread of answer(). Writes the black box to a file. @return the name of the file
+  /// [any] Called from the thread of answer(). Writes the black box to a file. @return the name of the file
   Result<std::string> dump(const std::string& why);
 
  private:

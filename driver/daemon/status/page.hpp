@@ -66,7 +66,7 @@ struct ArmNow {
 };
 
 struct ModelNow {
-  double depth = 0, force = 0, gain = 0;  ///< [m] NaN if not traced; [N]; factor of its force, 0 to 1
+  double depth = 0, force = 0, gain = 0;  ///< [m] depth, NaN if not traced; [N] force; factor of the force, 0 to 1
   uint64_t tick = 0;                      ///< tick in which it was last stepped
   int32_t status = 0;
   uint32_t iterations = 0;

@@ -26,11 +26,11 @@ class Watchdog {
   static constexpr Nanoseconds kStuckSimulated = 60'000'000;
   /// [ns] longest delay of the next tick. In a virtual machine it is longer, because the host pauses single processors.
   static constexpr Nanoseconds kMissedAfter = 2'500'000, kMissedInVirtualMachine = 50'000'000;
-  static constexpr Nanoseconds kHungAfter = 500'000'000;  ///< [ns] a tick that takes longer never returns
-  /// [ns] a tick of a simulation that takes longer never returns. In less time the servo may only have had no
+  static constexpr Nanoseconds kHungAfter = 500'000'000;  ///< [ns] a tick that takes longer counts as hanging
+  /// [ns] a tick of a simulation that takes longer counts as hanging. In less time the servo may only have had no
   /// processor, which is not a module's fault. But a simulation that has used kHungAfter of processor time hangs.
   static constexpr Nanoseconds kHungSimulated = 5'000'000'000;
-  static constexpr Nanoseconds kEndWithin = 900'000'000;       ///< [ns] time to end, after the end was asked for
+  static constexpr Nanoseconds kEndWithin = 900'000'000;  ///< [ns] longest time for the end, after it was asked for
   static constexpr Nanoseconds kSimulatedPause = 200'000'000;  ///< [ns] a busy machine may pause a simulation this long
 
   /// [main] @param hung ends the process @param missed_after [ns] longest delay of the start of a tick

@@ -15,7 +15,7 @@ namespace hapticd::servo {
 
 class ClientForces {
  public:
-  static constexpr uint32_t kMost = 8;  ///< programs that can push on one arm at a time
+  static constexpr uint32_t kMost = 8;  ///< most programs that can push on one arm at a time
   /// [s] a program's force ramps out from this time after its last answer
   static constexpr double kSilentAfter = 3e-3;
   /// [s] time from full force to none: the force is zero 20 ms after the last answer

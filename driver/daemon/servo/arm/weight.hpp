@@ -14,7 +14,8 @@ class Weight {
  public:
   using Torques = std::array<double, HDV_MAX_JOINTS>;  ///< [N m], or [N] for a sliding joint
 
-  /// [main] @param max_force [N] of the arm, used if limits.weight is not given; 0: unknown, so there is no bound
+  /// [main] @param max_force [N] largest force of the arm, used if limits.weight is not given; 0: unknown, so there is
+  /// no bound
   Weight(const scene::Limits& limits, double max_force);
 
   /// [rt] Sets whether the weight is carried at all: if nothing in the scene can be felt, the motors stay off.

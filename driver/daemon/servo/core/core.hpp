@@ -54,8 +54,8 @@ struct ModelState {
   std::array<hsp_change, 8> changes{};  ///< values of live parameters for the next step
   uint32_t change_count = 0;
   uint32_t active_surfaces = 0;  ///< traced surfaces, all probes together
-  bool always = false;           ///< stepped in every tick, because it traces itself or moves by itself
-  bool moves = false;            ///< true if its pose may change
+  bool always = false;  ///< stepped in every tick, because it finds its foot points by itself, or moves by itself
+  bool moves = false;   ///< true if its pose may change
   hsp_status status = HSP_OK;
   hsp_status failed_status = HSP_OK;  ///< the first status that step() returned and that the ABI does not allow
   Pull pull;                          ///< the pull for which it was silenced, or the largest jump of its force
@@ -127,7 +127,7 @@ class Core {
   /// Sums of the forces [N] and torques [N m] of all models on a probe, world frame.
   const Vector3d& force(uint32_t probe) const noexcept { return forces_[probe]; }
   const Vector3d& torque(uint32_t probe) const noexcept { return torques_[probe]; }
-  /// Energy that moving models gave to a probe since the last tick, and that its contacts can still give back.
+  /// Energy that moving models gave to a probe since the last tick, and energy that its contacts can still give back.
   const passivity::Exchange& exchange(uint32_t probe) const noexcept { return exchanges_[probe]; }
   std::span<const ModelState> models() const noexcept { return models_; }
   const Contact& contact(uint32_t model, uint32_t probe) const noexcept {

@@ -49,8 +49,8 @@ Quaterniond turnBy(const Vector3d& rotation) noexcept HSP_RT {
   return turn;
 }
 
-/// Returns how far [s at full twist] a target has moved on, `age` [s] after the time of its record. This is less than
-/// `age` once the twist fades.
+/// Returns for how many seconds at its full twist a target has moved on, `age` [s] after the time of its record. This
+/// is less than `age` once the twist fades.
 double reachOf(double age) noexcept HSP_RT {
   const double fading = std::clamp(age - Follow::kTwistHolds, 0.0, Follow::kTwistFades);
   return std::min(age, Follow::kTwistHolds) + fading * (1 - 0.5 * fading / Follow::kTwistFades);

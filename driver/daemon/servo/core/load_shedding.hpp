@@ -10,8 +10,8 @@
 
 namespace hapticd::servo {
 
-/// How exactly a shape must answer. Level 0: as its parameters say. No level uses a first-order method, because far
-/// from a curved surface a first-order step loses the foot, and the probe would seem to be inside.
+/// How exactly a shape must answer. At level 0 it answers as its parameters say. No level uses a first-order method,
+/// because far from a curved surface a first-order step loses the foot, and the probe would seem to be inside.
 struct Accuracy {
   static constexpr uint32_t kCoarsest = 3;
   /// At the coarsest level, a shape that no probe can reach soon answers only once in this many ticks.
@@ -49,7 +49,8 @@ class LoadShedding {
     uint32_t model = 0, level = 0;
   };
 
-  /// [rt] @param loads costs of the shapes that were stepped @param budget_ns time for all shapes together
+  /// [rt] Returns the changes of accuracy for the next tick. @param loads costs of the shapes that were stepped
+  /// @param budget_ns time for all shapes together
   std::span<const Change> judge(std::span<const Load> loads, uint64_t budget_ns) noexcept HSP_RT;
 
  private:

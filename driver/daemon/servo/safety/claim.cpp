@@ -161,8 +161,9 @@ Vector3d Claim::judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, do
 /// Returns by how much [rad] the probe turned in the frame of the model since the last step. It is never overestimated.
 /// A turn that the shape itself reports does not count here: explained() covers the motion of its surface.
 double Claim::angle(const ClaimStep& step, const ClaimBounds& bounds) const noexcept HSP_RT {
-  constexpr double kOfChord = 2.3;    // angle of up to half a turn, per distance between two quaternions
-  constexpr double kOfMatrix = 0.72;  // small angle, per distance between two matrices
+  // [rad] an angle of up to half a turn, divided by the distance between the quaternions
+  constexpr double kOfChord = 2.3;
+  constexpr double kOfMatrix = 0.72;  // [rad] a small angle, divided by the distance between the rotation matrices
   const double chord = std::min((step.orientation - orientation_).norm(), (step.orientation + orientation_).norm());
   const bool carried = step.turn != nullptr && !bounds.moves_itself;
   return kOfChord * chord + (carried ? kOfMatrix * (*step.turn - Eigen::Matrix3d::Identity()).norm() : 0);

@@ -41,7 +41,7 @@ class Guard {
   Trouble enter(Trouble trouble) noexcept HSP_RT;
 
   /// [rt] Notes that one step took too long, or that one force was beyond the claim. This becomes a trouble if it
-  /// happens `strikes` times within a hundred ticks, or for long more often than once in a hundred ticks.
+  /// happens `strikes` times within a hundred ticks, or, over a longer time, more often than once in a hundred ticks.
   Trouble strike(Trouble trouble, int strikes) noexcept HSP_RT;
 
   /// [rt] Returns the factor for the force of this tick. @param good true if the step succeeded @param wanted true if

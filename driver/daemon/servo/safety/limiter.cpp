@@ -122,7 +122,7 @@ void Limiter::limit(Vector3d& force, Vector3d& torque, const Vector3d& position,
   const double window = std::max(dt, kSlewWindow);
   if (limits_.slew > 0 && limitSlew(force, slow_force_, limits_.slew * window)) count(Limit::kSlew);
   if (limits_.torque_slew > 0 && limitSlew(torque, slow_torque_, limits_.torque_slew * window)) count(Limit::kSlew);
-  if (limits_.power > 0) limitPower(force);  // after slew, which may turn the force to where the hand does not move
+  if (limits_.power > 0) limitPower(force);  // after the slew limit, which may turn the force
 }
 
 void Limiter::limitPower(Vector3d& force) noexcept HSP_RT {

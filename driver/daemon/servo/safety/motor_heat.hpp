@@ -20,7 +20,7 @@ class MotorHeat {
   bool empty() const noexcept { return count_ == 0; }
   size_t count() const noexcept { return count_; }  ///< number of joints whose motors are modelled
 
-  /// [rt] Calculates the heat of torques [N m] at the joints that are held for dt [s].
+  /// [rt] Calculates how torques [N m] at the joints, held for dt [s], heat the motors.
   void heat(const double* torque, double dt) noexcept HSP_RT;
 
   /// Returns the share of every force that the hottest motor allows: 1 while it is cool, 0 at its limit.

@@ -24,8 +24,8 @@ inline Result<VelocityEstimator> makeEstimator(const scene::Velocity& how, doubl
   }
 }
 
-/// Estimates the velocity, and restarts after a gap or a jump: a difference across one would give a wrong velocity, and
-/// a damper would push with it for as long as the estimator remembers.
+/// Estimates the velocity, and restarts after a gap or a jump: a difference across it would give a wrong velocity, with
+/// which a damper would push for as long as the estimator remembers it.
 class ProbeVelocity {
  public:
   explicit ProbeVelocity(const VelocityEstimator& estimator) : estimator_(estimator) {}
