@@ -157,7 +157,8 @@ void addClient(const Command& app, int& exit_code) {
   const Command command = app.addSubcommand("client", "Run an OpenHaptics (HDAPI) program on a daemon's arm.");
   command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
   command.addOption("--scene", options->scene, "scene for the daemon that this command starts if none runs");
-  command.addFlag("--env", options->env, "print the environment that the program needs, for a shell");
+  command.addFlag("--env", options->env,
+                  "print the environment variables that the program needs, as commands of a shell");
   command.takesForeignCommandLine();  // the options after PROGRAM belong to that program
   command.footer(
       "The program uses hapticd's libHD.so and connects to the daemon of --name. If no such daemon runs, this command\n"

@@ -105,10 +105,11 @@ int importCad(const CadImport& options) {
   const int status = wait(*child, options.time_s, late);
   if (late || (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL)))
     return fail(kBadInput, options.file + ": was not read within " + whole(options.time_s) +
-                               " s, nothing was written\n  fix: --time SECONDS for a large file");
+                               " s, nothing was written\n  fix: for a large file, give more time: --time SECONDS");
   if (WIFSIGNALED(status))
-    return fail(kBadInput, options.file + ": Open CASCADE broke off while reading it (" + strsignal(WTERMSIG(status)) +
-                               "), nothing was written: the file is damaged, or its shapes are\n  fix: open and save "
+    return fail(kBadInput, options.file + ": Open CASCADE crashed or was stopped while reading it (" +
+                               strsignal(WTERMSIG(status)) +
+                               "), nothing was written: the file or one of its shapes is damaged\n  fix: open and save "
                                "it in a CAD program");
   return WEXITSTATUS(status);
 }

@@ -213,7 +213,7 @@ class Client:
         return self._box.streams
 
     def rows(self, stream: str = "ticks", last: int = 1000) -> Any:
-        """The newest rows of a stream, oldest first: a numpy structured array. Raises HapticdError if the daemon has
+        """Returns the newest rows of a stream, oldest first, as a numpy structured array. Raises HapticdError if the daemon has
         ended, because its rows are old then (`streams[stream].last(last)` still reads them)."""
         self._check()
         return self._box.streams[stream].last(last)
@@ -267,7 +267,7 @@ class Client:
 
     def _gone(self) -> str:
         return (f"the daemon is gone: {self.name} " + ("was killed, or it crashed" if self.died() else "has ended")
-                + "\n  fix: start it again with hapticd run, then connect anew")
+                + "\n  fix: start it again with hapticd run, then connect again")
 
     def _check(self) -> None:
         if self.ended():
@@ -306,11 +306,11 @@ class Client:
         return Named("model", {facts["name"]: Model(self, facts) for facts in self.ask(do="list")["models"]})
 
     def status(self) -> dict[str, Any]:
-        """The daemon's status: time, missed ticks, devices with their faults, models that are not felt."""
+        """Returns the daemon's status: time, missed ticks, devices with their faults, models that are not felt."""
         return self.ask(do="status")
 
     def snapshot(self) -> dict[str, Any]:
-        """A point at which to begin to read: the next row of each stream, every model with its pose, every device."""
+        """Returns a point at which to begin to read: the next row of each stream, every model with its pose, every device."""
         return self.ask(do="snapshot")
 
     def hold(self, device: Optional[str] = None) -> None:
@@ -322,9 +322,9 @@ class Client:
         self.ask(do="clear", **({"device": device} if device else {}))
 
     def events(self, timeout: Optional[float] = None) -> "Events":
-        """Events from now on, as an iterator over dicts with `event`, `tick`, `t` and further keys of the event. It ends
-        with the daemon, or if no event came for `timeout` seconds. It raises HapticdError if the daemon was killed or
-        crashed. It uses a separate connection."""
+        """Returns the events from now on, as an iterator over dicts with `event`, `tick`, `t` and further keys of the
+        event. It ends with the daemon, or if no event came for `timeout` seconds. It raises HapticdError if the
+        daemon was killed or crashed. It uses a separate connection."""
         return Events(_Line(self._base + ".sock"), self.timeout, timeout, self.died)
 
     # ---- leads
@@ -364,7 +364,7 @@ class Client:
         """Returns why the leads of this connection have no effect any more, or "" if they have."""
         if not self._line.ended():
             return ""
-        return self._gone() if self.ended() else "the daemon ended the connection, and with it this lead; connect anew"
+        return self._gone() if self.ended() else "the daemon closed the connection, which ended this lead; connect again"
 
     def _lost(self) -> str:
         """Returns why no answer can come on this connection, or "" if one may still come."""
@@ -373,8 +373,8 @@ class Client:
         time.sleep(0.02)  # a daemon that ends closes its connections first
         if self.ended() or not os.path.exists(self._base + ".sock"):
             return self._gone()
-        return ("the daemon ended this connection, because others waited for its place while it was silent\n"
-                "  fix: connect anew")
+        return ("the daemon closed this connection, because it was silent and other programs needed its place\n"
+                "  fix: connect again")
 
     def _no_force(self, device: str) -> str:
         """[any thread] Returns the daemon's reason why an arm gets no force now, or "" if it gets its force."""
@@ -421,7 +421,7 @@ class Client:
 
     @property
     def devices(self) -> list[str]:
-        """Names of the arms, in the order of the columns arm0_, arm1_, ..."""
+        """The names of the arms, in the order of the columns arm0_, arm1_, ..."""
         return [d["name"] for d in self.about["devices"]]
 
     def wait(self, tick: int, timeout: float = 1.0) -> bool:
