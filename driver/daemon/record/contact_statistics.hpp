@@ -67,9 +67,8 @@ class ContactStatistics {
   const Pushes& pulls() const noexcept { return pulls_; }          ///< pulls into the surface, in contact
   uint64_t nearestFeet() const noexcept { return nearest_feet_; }  ///< ticks with a foot proved to be the nearest
   uint64_t heldFeet() const noexcept { return held_feet_; }        ///< ticks of a held contact; another point is nearer
-  uint64_t degradedFeet() const noexcept {
-    return degraded_feet_;
-  }                                                    ///< ticks with a degraded answer: the foot is not proved
+  /// ticks with a degraded answer, so that the foot is not proved to be the nearest
+  uint64_t degradedFeet() const noexcept { return degraded_feet_; }
   double meanDepth() const noexcept { return mean_; }  ///< [m]
   double stdDepth() const noexcept { return ticks_ > 1 ? std::sqrt(spread_ / static_cast<double>(ticks_ - 1)) : 0; }
   double maxDepth() const noexcept { return max_depth_; }
