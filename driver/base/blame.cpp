@@ -13,7 +13,8 @@ namespace {
 
 thread_local bool t_works = false;
 
-/// For each worker, a pointer to the variable that names the owner of the code it runs; nullptr if there is no worker.
+/// For each worker, a pointer to the variable that names the owner of the code that the worker runs; nullptr if no
+/// thread is this worker.
 std::atomic<std::atomic<const Owner*>*> workers[kWorkerCount];
 
 struct Code {

@@ -21,7 +21,7 @@ std::atomic<const Known*> newest{nullptr};
 
 void keepPlace(const Owner* owner, const std::string& place) {
   static std::mutex mutex;
-  static auto& last = *new std::unordered_map<const Owner*, const Known*>;  // for a fast search
+  static auto& last = *new std::unordered_map<const Owner*, const Known*>;  // newest entry of each owner
   const std::lock_guard lock(mutex);
   const Known*& known = last[owner];
   if ((known != nullptr ? known->place : "") == place) return;

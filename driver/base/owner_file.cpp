@@ -19,7 +19,7 @@ struct FileOfOwner {
 };
 std::atomic<const FileOfOwner*> newest_file{nullptr};
 
-/// True if a later entry of the same module replaces this entry.
+/// Tells whether a later entry of the same module replaces this entry.
 bool isRepeated(const FileOfOwner* entry) noexcept {
   for (const FileOfOwner* later = newest_file.load(); later != entry; later = later->next)
     if (later->foreign && later->owner->module == entry->owner->module) return true;
@@ -30,7 +30,7 @@ bool isRepeated(const FileOfOwner* entry) noexcept {
 
 void keepFile(const Owner* owner, const std::string& identity, bool foreign) {
   static std::mutex mutex;
-  static auto& last = *new std::unordered_map<const Owner*, const FileOfOwner*>;  // for a fast search
+  static auto& last = *new std::unordered_map<const Owner*, const FileOfOwner*>;  // newest entry of each owner
   const std::lock_guard lock(mutex);
   const FileOfOwner*& kept = last[owner];
   if ((kept != nullptr ? kept->identity : "") == identity) return;

@@ -169,7 +169,8 @@ int kinematics(const KinematicsArguments& options) {
   auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
   if (!device) return fail(kFailed, device.error());
   const Inputs inputs{{options.joints, "the file of joints"}, {options.file, "the device file"}};
-  const OutputKind kind{"a table of this command (CSV)", {"q1,"}, kTipColumns};  // for any number of joints
+  // Such tables have any number of joints.
+  const OutputKind kind{"a table of this command (CSV)", {"q1,"}, kTipColumns};
   if (const std::string wrong = whyNotWritten(options.out, kind, inputs); !wrong.empty()) return fail(kBadInput, wrong);
   auto rows = readRows(options.joints, (*device)->kinematics().joint_count);
   if (!rows) return fail(kBadInput, rows.error());
