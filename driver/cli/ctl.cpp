@@ -223,7 +223,8 @@ void addFeatureRequest(const Command& ctl, const std::shared_ptr<CtlArguments>& 
   feature.addOption("number", options->number, "feature of a trace or recording, counted from 0").required();
 }
 
-/// Prints what happened, one line of JSON each; with `follow` also what happens from now on, until the daemon ends.
+/// Prints the events so far, one line of JSON each. With `follow` it also prints the events from now on, until the
+/// daemon ends.
 int showEvents(const CtlArguments& options) {
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());

@@ -16,7 +16,7 @@ struct Frame {
   hapticd_state state{};
   double velocity[3] = {}, angular[3] = {};
   double force[3] = {}, torque[3] = {};  ///< [N], [N m]
-  double joint_torque[6] = {};  ///< [N m] of turret, thigh, shin, three of the gimbal; added to force and torque
+  double joint_torque[6] = {};  ///< [N m] of turret, thigh, shin, gimbal; converted and added to force and torque
 };
 
 /// Bounds that the library checks. The daemon's limits do not depend on them.

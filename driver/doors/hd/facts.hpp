@@ -16,8 +16,9 @@ struct Facts {
   int joints = 3, input_dof = 3, output_dof = 3;
   double max_force = 0, continuous_force = 0;  ///< [N]
   double max_stiffness = 0, max_damping = 0;   ///< [N/mm], [N s/mm]
-  double workspace[6] = {}, usable[6] = {};    ///< [mm] least x y z, then greatest x y z; HDAPI axes
-  double tabletop = 0;                         ///< [mm] height of the workspace's middle above the table
+  /// [mm] least x, y, z, then greatest x, y, z, in the axes of the programs.
+  double workspace[6] = {}, usable[6] = {};
+  double tabletop = 0;     ///< [mm] height of the workspace's middle above the table
   int enable_button = -1;  ///< number of the enable button, needed for any force; -1 if there is none
   bool pushable = false;   ///< true if the scene lets programs push
   struct Motor {

@@ -13,7 +13,7 @@ namespace hapticd::hd {
 
 namespace {
 
-constexpr size_t kTurnJoints = 3;  // the first three joints carry the tip, the next three turn it
+constexpr size_t kTurnJoints = 3;  // the first three joints move the tip, the next three rotate it
 
 void copy(const double* from, int count, double factor, double* out) {
   for (int i = 0; i < count; ++i) out[i] = factor * from[i];

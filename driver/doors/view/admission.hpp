@@ -21,7 +21,7 @@ enum class Subprotocol { kNone, kHapticd, kFoxglove };
 /// The decision about a request.
 struct Admission {
   unsigned status = 200;     ///< HTTP status: 200, 400, 401 no token, 403 foreign origin, 421 foreign host
-  bool give_cookie = false;  ///< the token was in the URL; the answer sets the cookie, which is used from now on
+  bool give_cookie = false;  ///< true if the token was in the URL: the answer sets the cookie, which then replaces it
   Subprotocol protocol = Subprotocol::kNone;
   std::string protocol_name;  ///< name of the protocol in the answer
   std::string why;            ///< reason of a refusal

@@ -71,7 +71,8 @@ class Heart {
   }
 
  private:
-  static constexpr unsigned kLook = 64;  ///< beats between two checks for the daemon's end: about one second
+  /// Number of ticks between two checks whether the daemon has ended: about one second.
+  static constexpr unsigned kLook = 64;
   boost::asio::io_context& io_;
   boost::asio::steady_timer timer_;
   Stage& stage_;
