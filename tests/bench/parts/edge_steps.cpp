@@ -72,8 +72,12 @@ std::optional<Crossing> crossingAt(const Model& model, const brep::Placement& pl
   const spline::SurfacePoint on_one = pointOf(model, one, t), on_other = pointOf(model, other, t);
   const double gap = std::max({(on_one.S - on_other.S).norm(), (on_one.S - C.C).norm(), (on_other.S - C.C).norm()});
   const double bend = std::max(bendInward(on_one, normal), bendInward(on_other, normal));
-  return Crossing{place.rotation * C.C + place.position, place.rotation * normal, place.rotation * across,
-                  angleBetween(first, second), gap, bend};
+  return Crossing{place.rotation * C.C + place.position,
+                  place.rotation * normal,
+                  place.rotation * across,
+                  angleBetween(first, second),
+                  gap,
+                  bend};
 }
 
 /// What the largest step of a stroke has over the steps beside it, which are the turn of the faces. Below 0: the probe
@@ -125,12 +129,15 @@ void measureEdgeSteps(const Model& model) {
         largest = std::max(largest, step);
         above += step > at->allowed() + kMore;
         worst = std::max(worst, step - at->allowed());
-        if (getenv("SHOW") && step > at->allowed() + kMore) std::printf("edge %u share %g step %.3g dihedral %.3g gap %.3g m tol %.3g bend %.3g\n", e, share, step, at->dihedral, at->gap, edge.tolerance, at->bend);
+        if (getenv("SHOW") && step > at->allowed() + kMore)
+          std::printf("edge %u share %g step %.3g dihedral %.3g gap %.3g m tol %.3g bend %.3g\n", e, share, step,
+                      at->dihedral, at->gap, edge.tolerance, at->bend);
       }
     }
   }
   std::printf(
-      "  smooth edges: %ld crossings %.1f mm deep (%ld left out); the direction steps by at most %.2g rad; by more than "
+      "  smooth edges: %ld crossings %.1f mm deep (%ld left out); the direction steps by at most %.2g rad; by more "
+      "than "
       "the dihedral angle + 1e-6 rad %ld times,\n    by more than that angle, the faces' bend and the gap between them "
       "explain %ld times, by at most %.2g rad\n",
       crossings, kPress * 1e3, left_out, largest, above_angle, above, worst);

@@ -90,8 +90,8 @@ Handle(Geom_Circle) circle(double x, double y, double radius) {
   return new Geom_Circle(gp_Ax2(gp_Pnt(x, y, 0), gp_Dir(0, 0, 1)), radius);
 }
 
-/// A plate of 100 mm, 5 mm thick below z = 5; 58 x 57 holes (in tests/run long, else 24 x 23) of 0.6 mm, 1.6 mm apart: what is quadratic in the loops of
-/// a face takes minutes here.
+/// A plate of 100 mm, 5 mm thick below z = 5; 58 x 57 holes (in tests/run long, else 24 x 23) of 0.6 mm, 1.6 mm apart:
+/// what is quadratic in the loops of a face takes minutes here.
 TopoDS_Shape plateWithHoles() {
   BRepBuilderAPI_MakeFace face(gp_Pln(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), 0, 100, 0, 100);
   const int columns = hapticd::support::kLong ? 58 : 24, rows = columns - 1;

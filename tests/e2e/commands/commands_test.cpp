@@ -92,7 +92,8 @@ TEST_F(Commands, CheckPassesOnWhatAPluginWarnsOf) {
   const Outcome outcome =
       run("check " + scene, "HAPTICD_PLUGIN_PATH=" HAPTICD_BINARY_DIR "/" HAPTICD_MODULES "/plugins");
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_TRUE(has(outcome.text, scene + ":3:62: models[0].parameters.pop_through: warning: has no effect")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, scene + ":3:62: models[0].parameters.pop_through: warning: has no effect"))
+      << outcome.text;
 }
 
 TEST_F(Commands, SchemasAreJsonWithThePluginsParameters) {
@@ -113,8 +114,7 @@ TEST_F(Commands, ThousandsOfModelsAreReadInOneGo) {
   EXPECT_EQ(run("check -q " + put("many.yaml", text)).exit_code, 0);
   const Outcome refused = run("check " + put("wrong.yaml", text + "  - {name: m0, plugin: test_shape}\n"));
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_TRUE(
-      has(refused.text, "wrong.yaml:2003:12: models[2000].name: \"m0\" is the name of another model (line 3)"));
+  EXPECT_TRUE(has(refused.text, "wrong.yaml:2003:12: models[2000].name: \"m0\" is the name of another model (line 3)"));
 }
 
 TEST_F(Commands, ThousandsOfModelsOfAnUnknownPluginGiveShortMessages) {

@@ -111,10 +111,9 @@ struct Slow : hapticd::Shape {
 /// Crashes in one of its functions; or answers surfaces that it does not have.
 struct Broken : hapticd::Shape {
   int where, surfaces, steps = 0;
-  static constexpr const char* kWheres[] = {"nowhere",    "set_up",        "reset",       "stored",
-                                            "search",     "start_tracing", "lies",        "thread",
-                                            "taken_down", "destroyed",     "set_up_exit", "set_up_loop",
-                                            "tears"};
+  static constexpr const char* kWheres[] = {"nowhere",       "set_up",      "reset",  "stored",     "search",
+                                            "start_tracing", "lies",        "thread", "taken_down", "destroyed",
+                                            "set_up_exit",   "set_up_loop", "tears"};
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.broken", "broken", "1.0.0", "MIT", "Crashes."};
   static constexpr auto fields() {
     using F = Fields<Broken>;
