@@ -36,8 +36,9 @@ std::string endingOf(const std::string& file) {
 std::string foreignFile(std::string_view text, const std::string& file) {
   const std::string ending = endingOf(file);
   if (ending == ".hpart")
-    return "a part, expected YAML; hapticd part info " + file +
-           " shows its contents; use it as the geometry of nurbs_rigid; the geometry of a soft body is a .ma file";
+    return "a part, expected YAML: use it as the geometry of nurbs_rigid (for a soft body use a .ma file); to see its "
+           "contents, run: hapticd part info " +
+           file;
   const auto is = [&](const Kind& kind) {
     return ending == kind.ending || (!kind.begins.empty() && text.substr(0, kind.begins.size()) == kind.begins);
   };

@@ -157,7 +157,7 @@ void MatDeformable::describeDynamics(const MedialFile& file) const {
   const bool by_file = dynamics_ == kAsFile, without = geometry_.ends_with(".ma");
   std::string text = "dynamics: ";
   text += dynamics == kFelt   ? "felt: the force includes mass, damping and relaxation of the body"
-          : dynamics == kSeen ? "seen: the body swings in the drawing, but the force is that of a body at rest"
+          : dynamics == kSeen ? "seen: the body swings when it is drawn, but the hand feels a body at rest"
                               : "off: the body follows the probe at once, and the force is that of a body at rest";
   if (by_file)
     text += without ? " (the default for .ma files; with dynamics: felt the hand feels it)"

@@ -165,7 +165,8 @@ void Server::seat(Nanoseconds now) {
   }
 }
 
-/// Ends the client that has been silent for the longest time.
+/// Ends the connection of one of the clients that have a place (`seated`) or that wait for one (not `seated`). Prefers
+/// one that may not stay silent (Standing::stays), then one without a request in work, then the longest silent one.
 void Server::makeRoom(bool seated) {
   const auto rank = [&](const Client& c) {
     return std::tuple(c.seated != seated || c.fd < 0, c.standing.stays, c.asked, c.heard);

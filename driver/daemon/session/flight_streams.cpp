@@ -164,7 +164,8 @@ RowLayout pushColumns() {
   vector(layout, "f", "N", "force that the program wants, before its bound and its ramp, world frame");
   vector(layout, "t", "N m", "torque that the program wants, before its ramp, world frame");
   layout.add("woke_ns", ColumnType::kCount, "ns", "CLOCK_MONOTONIC time when the program woke, 0: unknown");
-  layout.add("written_ns", ColumnType::kCount, "ns", "CLOCK_MONOTONIC time when the program wrote, 0: unknown");
+  layout.add("written_ns", ColumnType::kCount, "ns",
+             "CLOCK_MONOTONIC time when the program wrote this answer, 0: unknown");
   return layout;
 }
 

@@ -60,10 +60,10 @@ class Leads {
   /// [main] Ends all leads of a peer whose connection is gone.
   void left(const control::Peer& peer);
 
-  /// [main] Returns the process that leads a model or a hand, if there is one.
+  /// [main] Returns the process that has a lead of this model, or of this arm's hand or force, if there is one.
   std::optional<pid_t> leader(Order::Led led, uint32_t index) const;
-  /// [main] Returns the name of a process that led or pushed; "?" if none had this number, or if its name was
-  /// forgotten.
+  /// [main] Returns the name of the program that led or pushed as process `pid`; "?" if there was none, or if its name
+  /// was forgotten.
   std::string program(pid_t pid) const;
   /// [main] Returns the programs that push on an arm.
   std::vector<Pusher> pushers(uint32_t arm) const;

@@ -225,7 +225,8 @@ Result<void> RequestHandler::able(const std::string& model, bool enabled) {
 
 /// Enables a model. If a tip is inside, the model is not felt until the tip has left; the answer says so.
 Result<std::string> RequestHandler::enable(const std::string& model) {
-  // [s] in this time the model is surely stepped once, because an unfelt model is still traced
+  // [s] Time in which the servo has surely stepped the model once. This can be short because a disabled model is still
+  // traced; only its force is off.
   constexpr double kMet = 0.02;
   if (auto done = able(model, true); !done) return Error{done.error()};
   nlohmann::ordered_json json = {{"ok", true}};

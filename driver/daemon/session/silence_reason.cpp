@@ -19,10 +19,10 @@ std::string placeOf(const Pull& pull) {
   return text;
 }
 
-/// Describes a jump, such as ", the largest by 5.85 N at 2.134 s at a depth of 3.9 mm", as far as it is known.
+/// Describes a jump, such as "; the largest jump was 5.85 N at 2.134 s at a depth of 3.9 mm", as far as it is known.
 std::string sizeOf(const Pull& jump) {
   if (!(jump.force > 0)) return "";
-  std::string text = fmt::format(", the largest by {:.3g} N", jump.force);
+  std::string text = fmt::format("; the largest jump was {:.3g} N", jump.force);
   if (jump.t >= 0) text += fmt::format(" at {:.3f} s", jump.t);
   if (jump.depth >= 0) text += fmt::format(" at a depth of {:.3g} mm", jump.depth * 1e3);
   return text;

@@ -25,7 +25,7 @@ struct QuarantinedPlugin {
 /// XDG_STATE_HOME/hapticd, or ~/.local/state/hapticd; empty if the environment names none of them.
 std::filesystem::path stateFolder();
 
-/// [main] Returns the same folder, and creates it if it is missing; empty if it cannot be written.
+/// [main] Returns stateFolder(), and creates it if it is missing; empty if it cannot be written.
 std::filesystem::path stateDir();
 
 /// [main] Returns the list, oldest first, with each file once.

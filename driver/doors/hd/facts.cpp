@@ -38,7 +38,8 @@ const Known& knownAs(const std::string& product) {
   return found != std::end(kKnown) ? *found : kOther;
 }
 
-/// Sets the workspace to a box around the place where the arm stands. The largest workspace is a quarter larger.
+/// Sets the usable workspace to a box around the place where the arm stands, and the largest workspace to a box with
+/// the same middle whose sides are a quarter longer.
 void readWorkspace(const Known& known, const Json& mount, Facts& facts) {
   constexpr double kBeyondUsable = 1.25;
   double place[3];

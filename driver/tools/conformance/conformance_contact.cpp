@@ -164,8 +164,8 @@ double stiffnessAt(Subject& subject, const Place& place, double claimed) {
 std::string besideClaim(double claimed, double measured) {
   return (claimed > 0 ? "it claims " + text(claimed) + " N/m" : std::string("it claims no stiffness")) +
          ", but its force grows by " + text(measured) +
-         " N/m; expected report.max_stiffness of at least that in activate(), or, where the force vibrates or snaps, "
-         "hapticd::reportJumps(report, NEWTONS) there";
+         " N/m; set report.max_stiffness in activate() to at least this value; if the force is meant to vibrate or "
+         "snap, call hapticd::reportJumps(report, NEWTONS) in activate() instead";
 }
 
 double middleOf(std::vector<double> sorted) {

@@ -25,7 +25,8 @@ ControlState onIf(bool has) {
   return has ? ControlState::kOn : ControlState::kOff;
 }
 
-/// Returns the control for a limit of the device file. @param without text if the limit is not given
+/// Returns the control (safety measure) for a limit of the device file. It is off if the limit is not given.
+/// @param without its text in that case
 Control bound(const char* hazards, const char* name, double value, const char* unit, const std::string& without) {
   return {hazards, name, onIf(value > 0), value > 0 ? numberText(value) + " " + unit : without};
 }

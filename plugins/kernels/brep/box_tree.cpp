@@ -174,7 +174,8 @@ void BoxTree::build(std::span<const AlignedBox3d> boxes, int row) {
   }
   if (boxes.empty()) return;
   origin_ = bounds_.center();
-  // The rounding of a probe up to twice the extent away is less than this. For probes farther away see kBoundShare.
+  // Rounding a probe to single precision moves it by less than this if it is no farther from the origin than twice the
+  // diagonal of the bounds. For probes farther away see kBoundShare.
   margin_ = static_cast<float>(bounds_.diagonal().norm() * std::ldexp(1.0, -21));
   Builder builder{*this, boxes, static_cast<std::size_t>(std::clamp(row, 1, kMaxRow))};
   builder.build(builder.rangeOf(0, boxes.size()), 0);

@@ -24,9 +24,10 @@ struct MeshBodyData {
   std::vector<double> mass;
 };
 
-/// How a medial mesh gives way: its nodes are the vertices. A contact moves the corners of the element that holds its
-/// foot, and rings of neighbours round them. The weights start as those of the corners, and are spread evenly along the
-/// edges once per ring. So they do not jump while the contact slides from one element to the next.
+/// How a medial mesh yields to contacts: its nodes are the vertices. A contact moves the corners of the element that
+/// holds its foot, and rings of neighbours round them. How far each vertex moves is its weight: at first only the
+/// corners have weights; then, once per ring, every vertex gives a part of its weight to its neighbours in equal parts.
+/// So the weights do not jump while the contact slides from one element to the next.
 class MeshDeformation : public Nodes {
  public:
   /// [main] @throws std::invalid_argument if a material is impossible.

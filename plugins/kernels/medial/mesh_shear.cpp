@@ -11,7 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// most nodes of the tree that are visited for one neighbour; near the surface some tens suffice
+/// The search for one neighbour ends after visiting this many nodes of the mesh's search tree. Near the surface some
+/// tens of nodes suffice.
 constexpr int kMostVisits = 400;
 /// If the sine of the angle between an axis of the model frame and the normal is below this, the axis has no direction
 /// along the surface.

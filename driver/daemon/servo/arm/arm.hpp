@@ -71,10 +71,13 @@ class Arm {
 
   /// The moment of a tick at which the servo finds that its motors were cut. A replay must find it at the same moment.
   enum class CutFound : uint8_t { kNo, kInWrite, kInRead };
-  /// [rt] Returns the moment at which a cut was found since the last call, or kNo.
+  /// [rt] Returns the moment of a tick at which the servo found that the motors were cut, or kNo if it has found no cut
+  /// since the last call.
   CutFound takeCutFound() noexcept HSP_RT { return std::exchange(cut_found_, CutFound::kNo); }
-  double cutAfter() const noexcept { return cut_after_.load(); }  ///< [s] how long the servo was stuck at the cut
-  /// [rt] Called before a tick of a replay: this tick finds the cut, as the same tick of the recorded run did.
+  /// [s] how long the servo had been stuck when the motors were cut
+  double cutAfter() const noexcept { return cut_after_.load(); }
+  /// [rt] Called before a tick of a replay in which the servo must find that the motors were cut, because it found that
+  /// in the same tick of the recorded run.
   void cutAsThen(CutFound when, double after) noexcept HSP_RT;
 
   const hdv_info& info() const { return device_->info(); }
