@@ -16,7 +16,7 @@ namespace {
 constexpr size_t kReads = 4;                     ///< number of read transfers that wait for the device at any time
 constexpr size_t kBuffer = 512;                  ///< [bytes] size of a transfer: one high-speed packet
 constexpr Nanoseconds kWriteHangs = 15'000'000;  ///< [ns] a device that takes no command in this time has stalled
-constexpr unsigned kControlTimeout = 1000;       ///< [ms]
+constexpr unsigned kControlTimeout = 1000;       ///< [ms] longest time of a control transfer
 constexpr Nanoseconds kCancelled = 500'000'000;  ///< [ns] longest wait; the kernel returns cancelled transfers earlier
 
 std::string idText(const Address& address) {

@@ -140,7 +140,7 @@ bool Chain::gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointV
   ChainFrames at;
   frames(q, at);
   tau.setZero(count_);
-  // From the tip to the base: everything that joint i carries acts like one mass at one point.
+  // The loop runs from the tip to the base. Everything that joint i carries acts like one mass at one point.
   double mass = 0;
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   for (int i = count_ - 1; i >= 0; --i) {

@@ -132,7 +132,7 @@ bool Delta::gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointV
   tau = -(geometry.platform_mass + 1.5 * geometry.rod_mass) * J.transpose() * g_arm;
   for (int i = 0; i < 3; ++i) {
     const auto n = static_cast<size_t>(i);
-    // the upper arm's centre of mass is at half its length, and half of the rods' mass is at its end
+    // The upper arm's centre of mass is at half its length, and half of the rods' mass is at its end.
     const double moment = geometry.a * (0.5 * geometry.arm_mass + 0.5 * geometry.rod_mass);
     const Eigen::Vector3d tangent(-std::sin(q[i]) * cos_[n], -std::sin(q[i]) * sin_[n], std::cos(q[i]));
     tau[i] -= moment * tangent.dot(g_arm);

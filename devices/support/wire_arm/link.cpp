@@ -9,8 +9,8 @@ namespace hapticd::wire_arm {
 namespace {
 
 constexpr Nanoseconds kMillisecond = 1'000'000;
-constexpr Nanoseconds kSearchPause = 100 * kMillisecond;
-constexpr Nanoseconds kFirstReport = 1000 * kMillisecond;
+constexpr Nanoseconds kSearchPause = 100 * kMillisecond;   ///< time between two searches for a lost device
+constexpr Nanoseconds kFirstReport = 1000 * kMillisecond;  ///< longest wait for the first report
 constexpr Nanoseconds kOld = 5 * kMillisecond;  ///< reports that waited in the kernel arrive within this time
 constexpr int kMostReportsAtOnce = 64;          ///< number of reports that the kernel keeps for a hidraw device
 constexpr int kAbove = 1;                       ///< added to the servo's priority, because a late sample is useless

@@ -21,7 +21,7 @@ inline constexpr const char* kLoaders[] = {"none", "falcon"};
 
 /// The values of the parameters. The device class of each such arm derives from this class.
 struct Parameters : MechanismParameters {
-  std::string id, serial, wire, instructions, firmware;  // id, serial, interface, firmware and loader: only for USB
+  std::string id, serial, wire, instructions, firmware;  // only USB has id, serial, interface, firmware, loader
   int interface = -1, method = 0, loader = 0;
   std::vector<double> pose, max_torque;
   double max_force = 0, continuous_force = 0, max_stiffness = 0, mass = 0, damping = 0;
