@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The device module `haply_service`: an Inverse3 behind Haply's Inverse Service. The messages are those of the
-/// service's public documentation (docs.haply.co, "WebSocket protocol" and "Basis permutation" of 3.5). They have
-/// metres and newtons, with x to the right, y away from the user, z up.
+/// service's public documentation (docs.haply.co, "WebSocket protocol" and "Basis permutation" of 3.5). Their units are
+/// metres and newtons; their x points to the right, y away from the user, z up.
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -19,9 +19,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kPatienceMs = 500;  ///< longest time until an answer; the service answers each message once
+constexpr int kPatienceMs = 500;  ///< [ms] longest wait for an answer; the service sends one answer to each message
 
-/// Reads a vector if the message has it. Components that are left out keep their values.
+/// Reads a vector with the components x, y and z. Returns false, and leaves all of `v` unchanged, if a component is
+/// missing or is not a finite number.
 bool readVector(const Json& json, double v[3]) {
   const char* axes[] = {"x", "y", "z"};
   double read[3];
@@ -66,7 +67,8 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
         F::real("force", &HaplyArm::force, "N", 0.1, 100, 5, "Largest force."),
         F::real("reach", &HaplyArm::reach, "m", 0.01, 2, 0.3,
                 "Largest distance of the tip from the origin, on each axis."),
-        F::integer("rate", &HaplyArm::rate, "Hz", 100, 8000, 2000, "Most exchanges with the service per second."),
+        F::integer("rate", &HaplyArm::rate, "Hz", 100, 8000, 2000,
+                   "Largest number of exchanges with the service per second."),
     };
   }
 
@@ -130,7 +132,8 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
     return all.empty() ? "none" : all;
   }
 
-  /// Returns a message with this force [N], which is given in the daemon's axes.
+  /// Returns the message that sets the force.
+  /// @param wanted force [N] in the daemon's axes: x right, y up, z toward the user
   std::string command(const double wanted[3]) {
     Json message = {
         {"inverse3",
@@ -142,7 +145,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
     return message.dump();
   }
 
-  /// The thread that waits for the service. A lost arm stays lost until the next start.
+  /// Runs in the thread that waits for the service. If the arm is lost, it stays lost until the next start().
   void run() {
     (void)os::setFifo(os::kServoPriority + 1);  // this thread waits for the service, so that the servo need not
     const auto period = std::chrono::nanoseconds(kNanosecondsPerSecond) / rate;
@@ -180,7 +183,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
     ++seen.sequence;
   }
 
-  /// Returns the buttons of the first handle in the message.
+  /// Returns one bit for each pressed button (a, b, c) of the first handle in the message, or 0 if it has no handle.
   static uint32_t buttonsOf(const Json& message) {
     const char* names[] = {"a", "b", "c"};
     for (const char* kind : {"wireless_verse_grip", "verse_grip"})

@@ -17,7 +17,7 @@ namespace {
 class Random {
  public:
   explicit Random(uint64_t seed) : state_(seed) {}
-  double uniform() {  ///< [0, 1)
+  double uniform() {  ///< returns a number in [0, 1)
     uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;

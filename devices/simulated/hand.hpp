@@ -13,7 +13,7 @@ namespace hapticd::simulated {
 
 enum class Script { kHold, kStroke, kPress, kTap, kCircle, kPath, kNone, kGuided };
 
-/// Lengths in m, device frame.
+/// The settings of the hand, as the parameters hand.* give them. Positions are in the device frame.
 struct HandSettings {
   Script script = Script::kStroke;
   double mass = 0.2, stiffness = 500, damping = 5;    ///< [kg], [N/m], [N s/m]
@@ -29,14 +29,14 @@ struct HandSettings {
 
 struct HandTarget {
   Eigen::Vector3d position = Eigen::Vector3d::Zero(), velocity = Eigen::Vector3d::Zero();  ///< [m], [m/s]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N] sum of tremor and wander
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N] tremor, wander, and the force of a guided hand
 };
 
 /// A narrow-band random force of given rms: a sum of sinusoids with random frequencies and phases, drawn once.
 class Unrest {
  public:
   Unrest(double rms, double low_hz, double high_hz, uint64_t seed);
-  Eigen::Vector3d at(double t) const noexcept;  ///< [rt] [N]
+  Eigen::Vector3d at(double t) const noexcept;  ///< [rt] force [N] at time t [s]
 
  private:
   static constexpr size_t kTones = 4;

@@ -17,8 +17,8 @@ class HandPath {
   /// [main] Reads the same columns from a text. Messages call the text `name`.
   static HandPath parse(const std::string& text, const std::string& name);
 
-  /// [rt] Position and velocity at time `t`. The path is straight between two rows; before the first row and after the
-  /// last row the hand rests at that row.
+  /// [rt] Computes position and velocity at time `t` [s]. The path is straight between two rows; before the first row
+  /// and after the last row the hand rests at that row.
   void at(double t, Eigen::Vector3d& position, Eigen::Vector3d& velocity) const noexcept;
   bool empty() const noexcept { return times_.empty(); }
 

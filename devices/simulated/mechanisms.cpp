@@ -17,7 +17,7 @@ void PhantomMechanism::evaluate(const Vector& q, const Vector& qd) noexcept {
   J = arm_.positionJacobian(at);
   bias += arm_.weight(at, gravity_);
   if (hand_mass_ <= 0) return;
-  // (dJ/dt) qd: the tip's acceleration when no joint accelerates
+  // `swing` is (dJ/dt) qd, the tip's acceleration when no joint accelerates.
   const double l1 = arm_.geometry().l1, l2 = arm_.geometry().l2;
   const auto [s1, c1, s2, c2, s3, c3] = at;
   const double r = l1 * c2 + l2 * s3, r_rate = -l1 * s2 * qd[1] + l2 * c3 * qd[2];

@@ -54,7 +54,7 @@ struct ParameterTable {
         F::real("device.max_stiffness", &T::max_stiffness, "N/m", 0, 1e6, 3500,
                 "Largest stable stiffness that the arm reports."),
         F::real("device.mass", &T::felt_mass, "kg", 0, 1000, 0.075, "Mass felt at the tip that the arm reports."),
-        F::integer("delay", &T::delay, "", 0, kMaxDelay, 0, "Delay of the commands, in number of reads."),
+        F::integer("delay", &T::delay, "", 0, kMaxDelay, 0, "Delay of the commands, as a number of servo ticks."),
         F::real("substep", &T::substep, "s", 1e-6, 1e-2, 2e-4, "Longest step of the integration.", HSP_P_ACCURACY),
         F::integer("seed", &T::seed, "", 0, 1000000000, 1,
                    "Seed of tremor and noise: the same seed gives the same numbers.")};
@@ -104,16 +104,18 @@ struct ParameterTable {
                 "than the object's radius."),
         F::real("hand.sweep", &T::sweep, "rad", 0, 100, 0.9, "Angle of a stroke to either side."),
         F::real("hand.rise", &T::rise, "m", 0, 1, 0.008,
-                "stroke: height of the rise along the axis. press, tap: depth that the hand goes further in than "
+                "stroke: height of the rise along the axis. press, tap: depth to which the hand moves inwards from "
                 "hand.radius."),
         F::real("hand.rate", &T::hand_rate, "Hz", 0, 100, 0.3, "Strokes, presses, taps or circles per second."),
-        F::real("hand.approach", &T::approach, "m", 0, 1, 0.02, "Distance from the script at which the hand starts."),
+        F::real("hand.approach", &T::approach, "m", 0, 1, 0.02,
+                "The hand starts at this distance, along hand.normal, from the first point of its script."),
         F::real("hand.lead_in", &T::lead_in, "s", 0.001, 100, 0.5,
-                "Time that the hand takes from there to the script."),
+                "Time that the hand takes to come in by the distance hand.approach."),
         F::real("hand.tremor", &T::tremor, "N", 0, 100, 0.05, "Tremor of 8 to 12 Hz: rms force in each direction."),
         F::real("hand.wander", &T::wander, "N", 0, 100, 0.1,
                 "Slow unrest of 0.2 to 1 Hz: rms force in each direction."),
-        F::path("hand.path", &T::path, "CSV file t,x,y,z (s, m, device frame) for script path.")};
+        F::path("hand.path", &T::path,
+                "CSV file with the columns t,x,y,z (s, m, device frame), for hand.script: path.")};
   }
 };
 

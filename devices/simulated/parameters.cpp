@@ -16,10 +16,10 @@ using Eigen::Vector3d;
 /// Published figures of the Premium 1.5: gear ratios of its capstans, RE25 motors and HEDM-5500 encoders.
 const Vector3d kPremiumGear(13.3, 11.2, 11.2);
 constexpr double kPremiumCounts = 4096;     ///< counts per motor turn: 1024 lines with four edges each
-constexpr double kPremiumStall = 0.129;     ///< [N m] at the motor
-constexpr double kPremiumRotor = 1.08e-6;   ///< [kg m^2]
-constexpr double kPremiumDamping = 0.0005;  ///< [N m s/rad]
-constexpr double kPremiumFriction = 0.01;   ///< [N m]
+constexpr double kPremiumStall = 0.129;     ///< [N m] stall torque of the motor
+constexpr double kPremiumRotor = 1.08e-6;   ///< [kg m^2] inertia of the rotor
+constexpr double kPremiumDamping = 0.0005;  ///< [N m s/rad] viscous friction of a joint
+constexpr double kPremiumFriction = 0.01;   ///< [N m] Coulomb friction of a joint
 
 Vector3d vector(const std::array<double, 3>& from) {
   return {from[0], from[1], from[2]};
@@ -59,7 +59,8 @@ Eigen::Quaterniond baseOrientation(const std::vector<double>& q) {
 kinematics::ChainGeometry chainOf(const Parameters& p) {
   kinematics::ChainGeometry geometry;
   kinematics::Complaints wrong;
-  geometry.base.position = vector(p.base_position) + vector(p.origin);  // files of real chains use origin
+  // Device files of real chains have arm.origin instead of arm.base_position.
+  geometry.base.position = vector(p.base_position) + vector(p.origin);
   wrong.attempt([&] { geometry.base.orientation = baseOrientation(p.base_orientation); });
   geometry.tool.position = vector(p.tool_position);
   const size_t count = p.dh.size() / 4;
@@ -131,7 +132,7 @@ HandSettings handOf(const Parameters& p) {
 
 namespace {
 
-/// Returns a PHANToM with the lengths and joint limits of the file.
+/// Returns a PHANToM with the lengths and joint limits of the device file.
 kinematics::Phantom makePhantom(const Parameters& p) {
   kinematics::Phantom arm(phantomOf(p));
   if (p.arm() == Kind::kPremium15 || p.limits.empty()) return arm;
@@ -162,7 +163,7 @@ kinematics::PhantomInertia inertiaOf(const Parameters& p, const JointVector& rot
 
 }  // namespace
 
-/// Refuses lists that would be ignored, because the arm has fixed values of its own.
+/// Refuses lists that this kind of arm would ignore, because it has its values from another list or has fixed ones.
 static void refuseIdle(const Parameters& p, kinematics::Complaints& wrong) {
   if (p.arm() == Kind::kChain && !p.lengths.empty())
     wrong.add("arm.lengths: a chain has its lengths in arm.dh; remove arm.lengths");
@@ -186,7 +187,8 @@ std::unique_ptr<kinematics::Arm> makeArm(const Parameters& p) {
       arm = std::make_unique<kinematics::Phantom>(makePhantom(p));
   });
   const int joints = p.arm() == Kind::kChain ? static_cast<int>(p.dh.size() / 4) : kOfPhantom;
-  if (!wrong.none() && joints > 0) wrong.attempt([&] { (void)jointsOf(p, joints); });  // open() finds it otherwise
+  // If nothing is wrong so far, open() reports what is wrong with the joints.
+  if (!wrong.none() && joints > 0) wrong.attempt([&] { (void)jointsOf(p, joints); });
   wrong.check();
   return arm;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The parameters of a simulated arm as the device file gives them, and functions that make settings and models of
+/// The parameters of a simulated arm as the device file gives them, and functions that make settings and models from
 /// them.
 #pragma once
 #include <array>

@@ -39,7 +39,7 @@ class Plant {
 
 /// A simulated arm with one kind of mechanism. A class Mechanism has the types Vector (n) and Matrix (n x n), and
 ///   void evaluate(q, qd)                      computes the members below
-///   Matrix M; Vector bias;                    mass matrix with the hand's mass; torques of velocity and weight
+///   Matrix M; Vector bias;                    mass matrix with the hand's mass; Coriolis and weight torques
 ///   TipJacobian J; Eigen::Vector3d tip;       Jacobian (3 x n) and position of the point that the hand holds
 ///   template <class Add> void stops(q, Add)   calls Add(row, excess) if row * q exceeds a limit by excess
 template <class Mechanism>

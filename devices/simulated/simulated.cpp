@@ -16,7 +16,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMaxSubsteps = 5000;  ///< most substeps in one read (1 s at the default substep); a longer gap is cut
+/// Most substeps in one read (1 s at the default substep). The rest of a longer gap is left out.
+constexpr int kMaxSubsteps = 5000;
 
 class SimulatedArm : public Device, public Parameters {
  public:
@@ -136,16 +137,15 @@ class SimulatedArm : public Device, public Parameters {
     const SimulatedArm& arm = self(device);
     if (arm.sequence_ == 0) return std::min(until_ns, arm.now_ns_);
     const auto period = static_cast<uint64_t>(std::llround(1e9 / arm.rate));
-    const uint64_t samples =
-        (arm.now_ns_ - arm.start_ns_) / period + 1;  // from the start: a late read does not delay the next
+    // Samples are counted from the start, so that a late read does not delay the next sample.
+    const uint64_t samples = (arm.now_ns_ - arm.start_ns_) / period + 1;
     return std::min(until_ns, arm.start_ns_ + samples * period);
   }
   static constexpr hdv_ext_pace kPace = {sizeof(hdv_ext_pace), 0, &nextSample};
   static constexpr hdv_ext_cut kCut = {sizeof(hdv_ext_cut), 0, &cut};
   static constexpr hdv_ext_hand kHand = {sizeof(hdv_ext_hand), 0, &guide, &truth, &guided};
 
-  /// Fills in what the arm says about itself. Numbers that it does not publish follow from its kinematics at the
-  /// neutral pose.
+  /// Fills in the description of the arm. Its resolution and damping follow from its kinematics at the neutral pose.
   void describe(hdv_info& info) const {
     const int count = arm_->jointCount();
     info.joint_count = static_cast<uint32_t>(count);

@@ -21,7 +21,7 @@ class Board {
   static constexpr double kHandDamping = 4;      ///< [N s/m]
   static constexpr double kSubstep = 1e-4;       ///< [s]
   static constexpr int kMaxSubsteps = 10000;     ///< most substeps in one call; the rest of a longer gap is left out
-  static constexpr double kTop = 0.08, kBottom = 0.04, kStroke = 2;  ///< [m], [m], [s] motion of the hand
+  static constexpr double kTop = 0.08, kBottom = 0.04, kStroke = 2;  ///< [m], [m] range of the hand; [s] its period
 
   /// [main] Begins with the carriage at rest in the hand at time `now_ns`. @param gravity [m/s^2]
   void start(uint64_t now_ns, double mass, const Vec3& gravity) {

@@ -20,7 +20,7 @@ namespace template_arm {
 template <class T>
 class Newest {
  public:
-  /// [rt]
+  /// [rt] Passes a value to the other thread.
   void put(const T& value) noexcept {
     values_[writers_] = value;
     writers_ = between_.exchange(static_cast<uint8_t>(writers_ | kNew), std::memory_order_acq_rel) & kWhich;
@@ -84,11 +84,12 @@ class IoThread {
     thread_.join();
     port_.send({});
   }
-  /// [rt] For read(). @return false if no newer report has come
+  /// [rt] To be called in read(): returns the newest report. @return false if no newer report has come
   bool newest(Report& report) noexcept { return reports_.take(report); }
-  /// [rt] For write(). The order has the time that write() was given.
+  /// [rt] To be called in write(): passes an order to the thread. Its time_ns is the time that write() was given.
   void leave(const Order& order) noexcept { orders_.put(order); }
-  /// [any] For hdv.cut/1, with `free` true. A write() with HDV_OFF calls it with `free` false.
+  /// [any] While `free` is true, only "off" is sent. hdv.cut/1 calls it with true, and a write() with HDV_OFF with
+  /// false.
   void cut(bool free) noexcept { cut_.store(free, std::memory_order_relaxed); }
 
   /// [io] One round takes a report if one comes, and always sends a command. So the motors of an arm that falls silent

@@ -15,9 +15,9 @@ namespace {
 
 constexpr size_t kReads = 4;                     ///< number of read transfers that wait for the device at any time
 constexpr size_t kBuffer = 512;                  ///< [bytes] size of a transfer: one high-speed packet
-constexpr Nanoseconds kWriteHangs = 15'000'000;  ///< [ns] a command that is not taken in this time counts as a stall
-constexpr unsigned kControlTimeout = 1000;       ///< [ms]
-constexpr Nanoseconds kCancelled = 500'000'000;  ///< [ns] bound; the kernel returns a cancelled transfer earlier
+constexpr Nanoseconds kWriteHangs = 15'000'000;  ///< [ns] a device that takes no command in this time has stalled
+constexpr unsigned kControlTimeout = 1000;       ///< [ms] longest time of a control transfer
+constexpr Nanoseconds kCancelled = 500'000'000;  ///< [ns] longest wait; the kernel returns cancelled transfers earlier
 
 std::string idText(const Address& address) {
   char text[16];
@@ -61,7 +61,9 @@ class BulkTransport final : public Transport {
   }
 
   Result<Identity> open(const Address& address, const codec::Wire& wire) override {
-    if (context_ == nullptr) return Error{"libusb cannot be started\n  the arm stays off\n  fix: hapticd doctor"};
+    if (context_ == nullptr)
+      return Error{
+          "libusb cannot be started\n  the arm stays off\n  fix: run hapticd doctor, which says what is missing"};
     Identity identity;
     std::string trouble;
     libusb_device** all = nullptr;
@@ -164,7 +166,7 @@ class BulkTransport final : public Transport {
     }
     const std::string serial = text(about.iSerialNumber);
     if (!address.serial.empty() && serial != address.serial) {
-      trouble = "not found: another one has the serial number " + serial;
+      trouble = "not found: another device with this id has the serial number " + serial;
       libusb_close(handle_);
       handle_ = nullptr;
       return;
@@ -202,7 +204,7 @@ class BulkTransport final : public Transport {
            "it in again; hapticd doctor says what is missing";
   }
 
-  /// True for an interrupt endpoint, according to the descriptors of the device.
+  /// Tells whether the descriptors of the device describe this endpoint as an interrupt endpoint.
   bool isInterrupt(uint8_t endpoint) {
     libusb_config_descriptor* config = nullptr;
     bool interrupt = false;

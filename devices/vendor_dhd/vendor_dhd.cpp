@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The device module `vendor_dhd`: an arm behind its vendor's DHD library. Names, arguments and frames of the library's
-/// functions are those of the vendor's public documentation: metres and newtons; x to the user, y to the right, z up.
+/// functions are those of the vendor's public documentation. Its units are metres and newtons; x points to the user, y
+/// to the right, z up.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -44,7 +45,8 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
         F::real("force", &DhdArm::force, "N", 0.1, 100, 5, "Largest force."),
         F::real("reach", &DhdArm::reach, "m", 0.01, 2, 0.3,
                 "Largest distance of the tip from the origin, on each axis."),
-        F::integer("rate", &DhdArm::rate, "Hz", 100, 8000, 2000, "Most exchanges with the library per second."),
+        F::integer("rate", &DhdArm::rate, "Hz", 100, 8000, 2000,
+                   "Largest number of exchanges with the library per second."),
     };
   }
 
@@ -109,7 +111,8 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
     loaded_.find(dhd_.last_error, "dhdErrorGetLastStr", kExpected);
   }
 
-  /// The thread that calls the library, which may block. A lost arm stays lost until the next start.
+  /// Runs in the thread that calls the library, because a call may block. If the arm is lost, it stays lost until the
+  /// next start().
   void run() {
     (void)os::setFifo(os::kServoPriority + 1);  // this thread waits for the hardware, so that the servo need not
     const auto period = std::chrono::nanoseconds(kNanosecondsPerSecond) / rate;

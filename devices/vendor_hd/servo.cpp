@@ -72,7 +72,8 @@ void Servo::look(Seen& seen) {
   if (ticks_++ % kEvery == 0) seen.calibrated = vendor_.check_calibration() == HD_CALIBRATION_OK;
 }
 
-/// A lost arm stays lost, because the library may report old positions for ever.
+/// Takes the library's errors. A lost arm stays lost until the next start, because the library may report old positions
+/// for ever. A fault stays as well.
 void Servo::notice(Seen& seen) {
   constexpr int kMost = 64;
   for (int i = 0; i < kMost; ++i) {

@@ -13,7 +13,7 @@ class Servo {
  public:
   Servo(const VendorLibrary& vendor, vendor_arm::Exchange& exchange) : vendor_(vendor), exchange_(exchange) {}
 
-  /// [main] Switches the forces on and schedules the callback. False if the vendor's library refuses.
+  /// [main] Switches the forces on and schedules the callback. Returns false if the vendor's library refuses.
   bool start(HHD device);
   void stop();  ///< [main] switches the force off and ends the callback
 

@@ -12,8 +12,8 @@ namespace {
 using wire_arm::Status;
 constexpr int kTries = 3;  ///< attempts to read a block while the board writes it
 
-/// True if all bytes are 0xff, as a bus reads them if no board answers: all lines stay high, and vme_user reports no
-/// error.
+/// Tells whether all bytes are 0xff. This happens if no board answers: all lines of the bus stay high, and vme_user
+/// reports no error.
 bool nobody(std::span<const uint8_t> bytes) noexcept {
   return std::all_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte == 0xff; });
 }
@@ -48,7 +48,7 @@ void Mailbox::findNumbers(const codec::Report& report) {
     if (first_.bytes == 0 || number.at < first_.at) first_ = number;
     if (last_.bytes == 0 || number.at > last_.at) last_ = number;
   }
-  if (first_.bytes != last_.bytes) first_ = last_;  // then the codec compares the two numbers
+  if (first_.bytes != last_.bytes) first_ = last_;  // the codec compares two numbers of different sizes
   block_bytes_ = report.size;
 }
 
@@ -63,7 +63,7 @@ Result<wire_arm::Identity> Mailbox::open(const wire_arm::Address&, const codec::
   if (got == 0) wrong = "is not there: the window returns no bytes";
   if (got > 0 && got < static_cast<long>(block_bytes_)) wrong = "ends after " + std::to_string(got) + " bytes";
   if (got == static_cast<long>(block_bytes_) && nobody({block.data(), block_bytes_}))
-    wrong = "reads ff everywhere: nobody answers on the bus";
+    wrong = "reads 0xff in every byte: no board answers on the bus";
   if (!wrong.empty()) {
     window_.close();
     return Error{

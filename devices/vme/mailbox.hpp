@@ -23,7 +23,7 @@ class Mailbox final : public wire_arm::Transport {
 
   Result<wire_arm::Identity> open(const wire_arm::Address& address, const codec::Wire& wire) override;
   void close() noexcept override { window_.close(); }
-  /// Waits at most until the next poll, so that a command never waits for a state.
+  /// Waits at most until the next poll, so that a command never waits for the next state block.
   wire_arm::Status receive(std::span<uint8_t> to, size_t& size, Nanoseconds wait) noexcept override;
   wire_arm::Status send(std::span<const uint8_t> bytes) noexcept override;
   /// Gives access to the command block through another descriptor of the same window.

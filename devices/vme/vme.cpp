@@ -39,8 +39,8 @@ class VmeArm final : public wire_arm::Arm<VmeArm> {
     return join(bus(), wire_arm::ParameterTable<VmeArm>::device(), wire_arm::ParameterTable<VmeArm>::arm());
   }
 
-  /// The address of the device is its window; the USB keys are not used. Throws std::invalid_argument if a number is
-  /// wrong.
+  /// Checks the numbers of the window. Returns an empty address, because the window identifies the device; the USB keys
+  /// are not used. Throws std::invalid_argument if a number is wrong.
   wire_arm::Address address() const {
     if (auto fits = check(place(), format()); !fits) throw std::invalid_argument(fits.error());
     return {};

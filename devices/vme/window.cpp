@@ -40,7 +40,8 @@ std::string reasonOf(int error) {
   if (error == EINVAL)
     return "the bridge does not know this space, cycle or width, or the base is not a multiple of 64 KiB";
   if (error == EFAULT) return "the window ends beyond the address space";
-  if (error == EBUSY || error == ENOMEM) return "the bridge has no room for the window: another one may use the place";
+  if (error == EBUSY || error == ENOMEM)
+    return "the bridge has no room for the window: another window may use this place";
   return std::strerror(error);
 }
 

@@ -22,7 +22,8 @@ Result<void> check(const Place& place);
 /// [any] Describes a place for messages, such as "A24 0x100000 (64 KiB, D16)".
 std::string describe(const Place& place);
 
-/// Called from [main] or from one I/O thread, never at once, because every function is a system call.
+/// A window that a program has opened. [main] or one I/O thread may call its functions, but never both at once. The
+/// servo thread may not, because each function makes a system call.
 class Window {
  public:
   Window() = default;
@@ -34,11 +35,11 @@ class Window {
   Result<void> open(const Place& place);
   void close() noexcept;
   bool isOpen() const noexcept { return fd_ >= 0; }
-  /// True if a plain file is used instead of a bus.
+  /// Tells whether a plain file is used instead of a bus.
   bool isFile() const noexcept { return file_; }
 
-  /// Returns the number of transferred bytes, which is smaller at the end of the window, 0 if no window is set, or -1
-  /// with errno.
+  /// Returns the number of transferred bytes, which is smaller than wanted at the end of the window, 0 if no window is
+  /// set, or -1 with errno.
   long read(uint64_t offset, std::span<uint8_t> to) noexcept;
   long write(uint64_t offset, std::span<const uint8_t> bytes) noexcept;
 

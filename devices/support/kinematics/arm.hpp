@@ -36,18 +36,20 @@ class Arm {
   virtual int jointCount() const noexcept = 0;                    ///< [any]
   const JointLimits& limits() const noexcept { return limits_; }  ///< [any]
 
-  /// [any] Pose of the tip. False if the mechanism cannot have these joints (a delta that does not close).
+  /// [any] Computes the pose of the tip. Returns false if the mechanism cannot have these joint positions, for example
+  /// if the arms of a delta do not meet.
   virtual bool forward(const JointVector& q, Pose& tip) const noexcept = 0;
 
-  /// [any] The Jacobian J(q) of the pose that forward() gives. False in the same cases, and if J does not exist.
+  /// [any] Computes the Jacobian J(q) of the pose that forward() gives. Returns false if forward() does, or if J does
+  /// not exist.
   virtual bool jacobian(const JointVector& q, Jacobian& J) const noexcept = 0;
 
-  /// [any] Torques that hold the arm still under gravity [m/s^2].
+  /// [any] Computes the torques that hold the arm still under gravity [m/s^2]. Returns false if forward() does.
   virtual bool gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept = 0;
 
-  /// [any] Joints that bring the tip to a position [m]. The search starts from the given q; of several solutions it
-  /// finds the one nearest to q. False, with q unchanged, if the position is out of reach or needs joints beyond their
-  /// limits.
+  /// [any] Computes the joint positions that bring the tip to a position [m]. The search starts from the given q; of
+  /// several solutions it finds the one nearest to q. Returns false, with q unchanged, if the position is out of reach
+  /// or needs joints beyond their limits.
   virtual bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept = 0;
 
   /// [any] The pose in the middle of the workspace.
@@ -57,14 +59,14 @@ class Arm {
   /// last link ends at the tip. An empty list means that the arm cannot be drawn.
   virtual std::span<const int32_t> parents() const noexcept { return {}; }
   virtual Eigen::Vector3d base() const noexcept { return Eigen::Vector3d::Zero(); }  ///< [m] start of the first link
-  /// [any] The far end of each link and the orientation of its body. False in the same cases as forward().
+  /// [any] Computes the far end of each link and the orientation of its body. Returns false if forward() does.
   virtual bool links(const JointVector& /*q*/, std::span<Pose> /*ends*/) const noexcept { return false; }
 
-  /// [main] Sets the joint limits of one arm, which must lie within the limits of its mechanism. Throws
-  /// std::invalid_argument with a message for the user.
+  /// [main] Replaces the joint limits of the mechanism by those of one arm. Throws std::invalid_argument with a message
+  /// for the user if a row is missing or in the wrong order; does not check that the new limits are narrower.
   void narrow(const JointLimits& limits);
 
-  /// [any] True if q is within the limits, including limits that couple several joints.
+  /// [any] Tells whether q is within the limits, including limits that couple several joints.
   virtual bool allowed(const JointVector& q) const noexcept;
 
  protected:

@@ -14,11 +14,11 @@ namespace {
 
 constexpr int kInverseSteps = 200;  ///< most iterations; away from joint limits, damped least squares needs 5 to 30
 constexpr double kInverseTolerance = 1e-14;  ///< [m] a smaller error ends the search (rounding at 1 m is 1e-16)
-constexpr int kInverseStarts = 10;
-constexpr double kAcceptedError = 1e-12;  ///< [m] largest error of a solution
+constexpr int kInverseStarts = 10;           ///< number of poses from which the search starts before it gives up
+constexpr double kAcceptedError = 1e-12;     ///< [m] largest error of a solution
 
-/// Returns cos and sin of a link twist. Tables write a right angle as 1.5708 or pi / 2; it is made exact, because
-/// cos(pi/2) = 6e-17 would tilt the axis.
+/// Computes cos and sin of a link twist. For a multiple of pi/2 they are exactly 0, 1 or -1, because the rounded
+/// cos(pi/2) = 6e-17 would tilt the axis. An angle such as 1.5708, written with few digits, is not corrected.
 void exactTwist(double alpha, double& cosine, double& sine) {
   const double turns = alpha / (M_PI / 2), whole = std::round(turns);
   if (std::abs(turns - whole) > 1e-12) {
@@ -140,7 +140,7 @@ bool Chain::gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointV
   ChainFrames at;
   frames(q, at);
   tau.setZero(count_);
-  // From the tip to the base: everything that joint i carries acts like one mass at one point.
+  // The loop runs from the tip to the base. Everything that joint i carries acts like one mass at one point.
   double mass = 0;
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   for (int i = count_ - 1; i >= 0; --i) {
@@ -159,8 +159,8 @@ JointVector Chain::neutral() const noexcept {
 
 JointVector Chain::stepTowards(const Jacobian& J, const Eigen::Vector3d& error, double lambda,
                                const JointVector& q) const noexcept {
-  // A joint at its limit that the step would move further is left out of the step. If it were only clamped afterwards,
-  // the other joints would not reach the point, although they can reach it without this joint.
+  // A joint at its limit that the step would move beyond the limit is left out of the step. If it were only clamped
+  // afterwards, the other joints would not reach the point, although they can reach it without this joint.
   Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMaxJoints> free = J.topRows<3>();
   JointVector trial = q;
   for (int round = 0; round <= count_; ++round) {

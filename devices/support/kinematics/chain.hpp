@@ -41,7 +41,7 @@ class Chain : public Arm {
   bool forward(const JointVector& q, Pose& tip) const noexcept override;
   bool jacobian(const JointVector& q, Jacobian& J) const noexcept override;
   bool gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept override;
-  /// Considers only the position of the tip. Redundant joints stay near their start and away from their limits.
+  /// Considers only the position of the tip. Redundant joints stay near their start, within their limits.
   bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept override;
   JointVector neutral() const noexcept override;
   std::span<const int32_t> parents() const noexcept override;  ///< one link per joint frame, and one for the tool

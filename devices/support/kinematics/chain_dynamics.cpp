@@ -50,7 +50,7 @@ void chainDynamics(const Chain& chain, const ChainFrames& at, const JointVector&
   const auto count = static_cast<size_t>(chain.jointCount());
   std::array<Twist, kMaxJoints> axes, forces;
   std::array<Body, kMaxJoints> bodies;
-  Twist v, a;  // of the current link: velocity, and acceleration for joint accelerations of zero
+  Twist v, a;  // velocity of the current link, and its acceleration if no joint accelerates
   for (size_t i = 0; i < count; ++i) {
     const ChainLink& link = chain.links()[i];
     axes[i] = axisOf(chain, at, i);

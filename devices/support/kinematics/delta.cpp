@@ -9,9 +9,9 @@ namespace hapticd::kinematics {
 namespace {
 
 constexpr int kMaxNewton = 40;
-constexpr double kClosed = 1e-15;    ///< [m^2] a smaller residual of the closure ends the search; it is rounding error
-constexpr double kAccepted = 1e-13;  ///< [m^2] largest residual of a solution
-constexpr double kLargestStep = 0.03;  ///< [m] keeps Newton's method on the side of the base where the platform is
+constexpr double kClosed = 1e-15;      ///< [m^2] the search ends below this residual of the closure: it is rounding
+constexpr double kAccepted = 1e-13;    ///< [m^2] largest residual of a solution
+constexpr double kLargestStep = 0.03;  ///< [m] longest step; keeps Newton's method on the platform's side of the base
 
 }  // namespace
 
@@ -20,7 +20,7 @@ Delta::Delta(const DeltaGeometry& geometry)
   if (!(geometry.a > 0 && geometry.b > 0))
     throw std::invalid_argument("delta: arm lengths a and b must be more than 0 m");
   if (!(geometry.theta_min < geometry.theta_max))
-    throw std::invalid_argument("delta: angle limits must have the smaller one first");
+    throw std::invalid_argument("delta: the angle limits are in the wrong order; expected the smaller angle first");
   for (size_t i = 0; i < 3; ++i) {
     cos_[i] = std::cos(geometry.phi[i]);
     sin_[i] = std::sin(geometry.phi[i]);
@@ -132,7 +132,7 @@ bool Delta::gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointV
   tau = -(geometry.platform_mass + 1.5 * geometry.rod_mass) * J.transpose() * g_arm;
   for (int i = 0; i < 3; ++i) {
     const auto n = static_cast<size_t>(i);
-    // the upper arm's centre of mass is at half its length, and half of the rods' mass is at its end
+    // The upper arm's centre of mass is at half its length, and half of the rods' mass is at its end.
     const double moment = geometry.a * (0.5 * geometry.arm_mass + 0.5 * geometry.rod_mass);
     const Eigen::Vector3d tangent(-std::sin(q[i]) * cos_[n], -std::sin(q[i]) * sin_[n], std::cos(q[i]));
     tau[i] -= moment * tangent.dot(g_arm);

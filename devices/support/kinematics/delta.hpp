@@ -29,7 +29,7 @@ class Delta : public Arm {
   explicit Delta(const DeltaGeometry& geometry = {});
 
   int jointCount() const noexcept override { return 3; }
-  /// Newton's method from the middle of the workspace. False if the three parallelograms cannot meet.
+  /// Uses Newton's method from the middle of the workspace. Returns false if the three parallelograms cannot meet.
   bool forward(const JointVector& q, Pose& tip) const noexcept override;
   bool jacobian(const JointVector& q, Jacobian& J) const noexcept override;
   /// Counts half of each rod pair's mass to its upper arm, and the other half to the platform.
@@ -55,7 +55,7 @@ class Delta : public Arm {
   Eigen::Matrix3d R_device_arm_;
   std::array<double, 3> cos_{}, sin_{};
   JointVector neutral_;
-  Eigen::Vector3d middle_;  ///< [m] where forward() starts
+  Eigen::Vector3d middle_;  ///< [m] position from which the search of forward() starts
 };
 
 }  // namespace hapticd::kinematics

@@ -21,7 +21,7 @@ struct Extension {
         sizeof(hdv_ext_kinematics), static_cast<uint32_t>(arm.jointCount()), &forward, &jacobian, &gravity, &inverse};
   }
 
-  /// Returns link_count 0 if the arm cannot be drawn.
+  /// Returns the extension hdv.links/1. Its link_count is 0 if the arm cannot be drawn.
   static hdv_ext_links linksOf(const Arm& arm) {
     const auto parents = arm.parents();
     const Eigen::Vector3d base = arm.base();

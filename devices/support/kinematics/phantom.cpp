@@ -9,7 +9,7 @@ namespace hapticd::kinematics {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kOpening = 55 * kDegree, kClosing = 65 * kDegree;
+constexpr double kOpening = 55 * kDegree, kClosing = 65 * kDegree;  ///< [rad] limits of q3 - q2 and of q2 - q3
 
 /// Returns the Jacobian of the point that is a c2 + b s3 away from the axis and a s2 - b c3 above the shoulder, turned
 /// by q1. With a and b the link lengths this point is the tip; with the first moments it is the (weighted) centre of

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The PHANToM class of arms: a base that turns and a parallelogram whose links are driven from the base, so that both
-/// link angles are absolute (measured against the horizontal), not relative to one another.
+/// link angles are absolute, not relative to one another: q2 is measured from the horizontal, q3 from the downward
+/// vertical.
 #pragma once
 #include <vector>
 
@@ -10,12 +11,12 @@ namespace hapticd::kinematics {
 
 /// Published numbers of the Premium 1.5 (Cavusoglu, Feygin & Tendick 2002): lengths in m, masses in kg.
 struct PhantomGeometry {
-  double l1 = 0.215;                                            ///< upper arm
-  double l2 = 0.170;                                            ///< forearm
-  double l3 = 0.0325;                                           ///< short side of the parallelogram
-  double l5 = -0.0368;                                          ///< counterweight of the upper arm
-  double l6 = 0.0527;                                           ///< counterweight of the forearm
-  double ma = 0.0202, mc = 0.0249, mbe = 0.2359, mdf = 0.1906;  ///< forearm, parallel link, the driven pairs
+  double l1 = 0.215;    ///< upper arm
+  double l2 = 0.170;    ///< forearm
+  double l3 = 0.0325;   ///< short side of the parallelogram
+  double l5 = -0.0368;  ///< shoulder to centre of mass of mbe, along the upper arm
+  double l6 = 0.0527;   ///< shoulder to centre of mass of mdf, against the forearm
+  double ma = 0.0202, mc = 0.0249, mbe = 0.2359, mdf = 0.1906;  ///< as in PhantomInertia: a, c, be, df
   Eigen::Vector3d origin{0, 0, 0};                              ///< [m] tip of the neutral pose, device frame
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// An arm behind a vendor's library. Its joints are the coordinates of its tip, and the library carries its weight.
+/// Base class of the arms behind a vendor's library. The joints of such an arm are the coordinates of its tip, and the
+/// library compensates its weight.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,8 @@
 
 namespace hapticd::vendor_arm {
 
-/// Base class of the modules. A derived class Arm has `fields()` and `start()`, fills `reach` and calls describe().
+/// A derived class Arm defines `fields()`, `open()` and `start()`, has a parameter for `reach`, and calls describe() in
+/// open().
 template <class Arm>
 class CartesianArm : public Device {
  public:

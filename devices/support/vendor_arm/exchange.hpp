@@ -15,9 +15,10 @@
 
 namespace hapticd::vendor_arm {
 
+/// The newest values that the vendor's library has given.
 struct Seen {
-  uint64_t time_ns = 0,
-           sequence = 0;    ///< CLOCK_MONOTONIC; number of the position; 0: none
+  /// time_ns: CLOCK_MONOTONIC when the position was read. sequence: number of the position; 0 if none has come.
+  uint64_t time_ns = 0, sequence = 0;
   double position[3] = {};  ///< [m]
   uint32_t buttons = 0;
   bool calibrated = false, fault = false, lost = false;
@@ -26,6 +27,7 @@ struct Seen {
 class Exchange {
  public:
   /// [main] Goes back to the beginning: no position has come, and no force is wanted.
+  /// @param max_force [N] largest force
   void reset(double max_force) {
     max_force_ = max_force;
     cut_ = lost_ = false;
@@ -52,8 +54,8 @@ class Exchange {
     seen_.publish();
     ok_ = !seen.lost && !seen.fault;
   }
-  /// The force to apply now [N], at most max_force. It is zero while a cut holds, while the arm is lost or has a fault,
-  /// and if the servo has sent no command for 20 ms.
+  /// Writes the force to apply now [N] to `out`. It is at most max_force. It is zero while a cut holds, while the arm
+  /// is lost or has a fault, and if the servo has sent no command for 20 ms.
   void force(double out[3]) noexcept {
     constexpr uint64_t kOldNs = 20'000'000;
     wanted_.update();
@@ -101,7 +103,7 @@ class Exchange {
   TripleBuffer<Seen> seen_;
   TripleBuffer<Wanted> wanted_;
   std::atomic<bool> cut_{false}, lost_{false};
-  bool ok_ = true;  ///< arm is neither lost nor at fault; used only by the thread that calls the library
+  bool ok_ = true;  ///< the arm is neither lost nor at fault; used only by the thread that calls the library
   double max_force_ = 0;
 };
 

@@ -26,8 +26,8 @@
 
 namespace hapticd::wire_arm {
 
-/// Base class. A derived class T adds kInfo, fields() and `std::unique_ptr<Transport> makeTransport() const`, and may
-/// replace address().
+/// The base class of these devices. A derived class T adds kInfo, fields() and `std::unique_ptr<Transport>
+/// makeTransport() const`, and may replace address().
 template <class T>
 class Arm : public Device, public Parameters {
  public:
@@ -69,7 +69,7 @@ class Arm : public Device, public Parameters {
     to.buttons = sample_.buttons;
     to.flags = (sample_.calibrated ? uint32_t{HDV_S_CALIBRATED} : 0u) | (velocity_ ? uint32_t{HDV_S_VELOCITY} : 0u) |
                (torque_ ? uint32_t{HDV_S_TORQUE} : 0u);
-    // For kStale it sets no flag: the host itself sees that no new sequence number comes. The motors are off by then,
+    // For kStale no flag is set: the host itself sees that no new sequence number comes. The motors are off by then,
     // and after a short silence the torque ramps in again.
     if (sample_.trouble == Trouble::kUnplugged || sample_.trouble == Trouble::kAbsent)
       to.flags |= HDV_S_LOST;
@@ -305,7 +305,7 @@ class Arm : public Device, public Parameters {
     link_->calibrateByDevice(false);
     if (sample_.calibrated) return HSP_OK;
     detail::logError(host(),
-                     "found no zero within 30 s\n  it stays without force\n  fix: move every joint over its whole "
+                     "found no zero within 30 s\n  the arm stays without force\n  fix: move every joint over its whole "
                      "range, then try again");
     return HSP_E_IO;
   }

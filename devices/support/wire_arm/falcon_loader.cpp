@@ -11,10 +11,10 @@
 namespace hapticd::wire_arm {
 namespace {
 
-constexpr size_t kLargestFirmware = 1u << 20;
+constexpr size_t kLargestFirmware = 1u << 20;  ///< [bytes]
 constexpr size_t kPacket = 64, kHeader = 2;  ///< [bytes] FTDI's chips begin each packet with two bytes of modem status
-constexpr Nanoseconds kAnswer = 20'000'000, kRunning = 50'000'000;
-constexpr int kHelloTries = 100;
+constexpr Nanoseconds kAnswer = 20'000'000, kRunning = 50'000'000;  ///< longest waits for an answer, for a report
+constexpr int kHelloTries = 100;                                    ///< most tries of the first two messages
 
 /// Requests of FTDI's chips: 0 resets, 1 sets the modem lines, 3 sets the baud rate, 4 sets the format of a byte, 9
 /// sets the latency timer.
@@ -44,12 +44,12 @@ class Loader {
     step.request_type = kVendorOut, step.request = request, step.value = value;
     return transport_.control(step) == Status::kOk;
   }
-  bool slow() {  // 9600 8N1 (divisor 0x4138), RTS low, DTR low and then high
+  bool slow() {  // resets the chip, then sets 9600 8N1 (divisor 0x4138), RTS low, DTR low and then high
     return set(kReset, 0) && set(kReset, 1) && set(kReset, 2) && set(kLatency, 16) && set(kBaud, 0x4138) &&
            set(kDataFormat, 8) && set(kLines, 0x0200) && set(kLines, 0x0100) && set(kLines, 0x0101);
   }
   bool hello() { return answers({0x0a, 0x43, 0x0d}, {0x0a, 0x44, 0x2c, 0x0d}, kHelloTries); }
-  bool fast() { return set(kLines, 0x0100) && set(kBaud, 0x15); }  // 140000 baud
+  bool fast() { return set(kLines, 0x0100) && set(kBaud, 0x15); }  // sets 140000 baud
 
   /// Sends the bytes again and again until the expected answer comes.
   bool answers(const std::vector<uint8_t>& bytes, const std::vector<uint8_t>& expected, int tries) {
@@ -91,7 +91,7 @@ class Loader {
   const std::vector<uint8_t>& firmware_;
 };
 
-/// True if the loaded firmware answers a command with reports.
+/// Tells whether firmware runs in the Falcon: it then answers commands with reports.
 bool alreadyRuns(Transport& transport, const codec::Wire& wire) {
   std::array<uint8_t, codec::kMaxReportBytes> command{}, got{};
   const size_t bytes = codec::encode(wire.output, codec::Order{}, command);

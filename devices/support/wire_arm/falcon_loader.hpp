@@ -9,7 +9,7 @@
 namespace hapticd::wire_arm {
 
 inline constexpr int kFalconTries = 20;     ///< most tries of the whole upload
-inline constexpr size_t kFalconChunk = 62;  ///< [bytes] of firmware per USB packet
+inline constexpr size_t kFalconChunk = 62;  ///< number of firmware bytes in a USB packet
 
 /// [main] Reads a firmware image. The image belongs to the maker of the arm, so hapticd does not include it.
 Result<std::vector<uint8_t>> readFalconFirmware(const std::string& file);

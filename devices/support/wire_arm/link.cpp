@@ -9,11 +9,11 @@ namespace hapticd::wire_arm {
 namespace {
 
 constexpr Nanoseconds kMillisecond = 1'000'000;
-constexpr Nanoseconds kSearchPause = 100 * kMillisecond;
-constexpr Nanoseconds kFirstReport = 1000 * kMillisecond;
+constexpr Nanoseconds kSearchPause = 100 * kMillisecond;   ///< time between two searches for a lost device
+constexpr Nanoseconds kFirstReport = 1000 * kMillisecond;  ///< longest wait for the first report
 constexpr Nanoseconds kOld = 5 * kMillisecond;  ///< reports that waited in the kernel arrive within this time
 constexpr int kMostReportsAtOnce = 64;          ///< number of reports that the kernel keeps for a hidraw device
-constexpr int kAbove = 1;                       ///< priority above the servo's, because a late sample is useless
+constexpr int kAbove = 1;                       ///< added to the servo's priority, because a late sample is useless
 
 void pause(Nanoseconds time) noexcept {
   RealClock clock(0);
@@ -262,8 +262,8 @@ void Link::receive(Nanoseconds wait) noexcept {
   if (fresh) tellServo();
 }
 
-/// If the samples pace the servo, the servo answers each sample at once. So this function waits for the wish instead of
-/// the next report. Reports that come meanwhile wait in the kernel.
+/// Publishes the newest sample. If the samples pace the servo, the servo answers each sample at once. So this function
+/// waits for the wish instead of the next report. Reports that come meanwhile wait in the kernel.
 void Link::tellServo() noexcept {
   const uint32_t known = wished_.strikes();
   publish();
@@ -305,8 +305,8 @@ void Link::lose(Trouble trouble) noexcept {
   publish();
 }
 
-/// Tries at once after the arm was lost, then ten times a second. If a device opens and fails again and again, this
-/// thread must still sleep, because its priority is above the servo's.
+/// Tries to open the lost arm again: at once, then ten times a second. If a device opens and fails again and again,
+/// this thread must still sleep, because its priority is above the servo's.
 void Link::lookForIt() noexcept {
   while (monotonicNow() < tried_at_ + kSearchPause && !stop_) pause(10 * kMillisecond);
   if (stop_) return;

@@ -28,8 +28,10 @@ struct LinkSettings {
   Address address;
   SessionSettings session;
   std::function<void(int level, const std::string&)> log;  ///< [any thread] shows a message to the user
-  std::function<Zero(const Identity&)> zero;        ///< I/O thread: returns the offsets of an earlier calibration
-  std::function<Result<void>(Transport&)> prepare;  ///< for a firmware upload, after wire.startup; may be empty
+  /// [main] or I/O thread: returns the offsets of an earlier calibration.
+  std::function<Zero(const Identity&)> zero;
+  /// [main] or I/O thread: uploads firmware after wire.startup. May be empty.
+  std::function<Result<void>(Transport&)> prepare;
 };
 
 class Link {
@@ -43,8 +45,8 @@ class Link {
   Result<Identity> open();
   /// [main] Starts the thread and waits for the first report.
   Result<void> start();
-  /// [main] If open but not started: keeps the motors off and passes every transfer to `take`, until `take` ends the
-  /// capture.
+  /// [main] Captures the transfers of a device that is open but not started. Keeps the motors off and passes every
+  /// transfer to `take`, until `take` returns a number other than 0.
   Result<void> capture(hdv_take_transfer take, void* who);
   /// [main] Switches the motors off and joins the thread.
   void stop();
@@ -60,13 +62,14 @@ class Link {
   /// [rt] Gives the newest wish to the I/O thread.
   void write(const Wish& wish) noexcept HSP_RT;
 
-  /// [any] Switches the motors off until endCut(), whatever the wishes say. Async-signal-safe. It takes effect with the
-  /// next report at the latest.
+  /// [any] Switches the motors off until endCut(), whatever the wishes say. Async-signal-safe. The I/O thread tells
+  /// the arm with its next command, about one period of wire.rate later at most.
   void cut() noexcept;
-  /// [any] False while a cut is still to be sent to the arm; true if there is no cut or no arm. Async-signal-safe.
+  /// [any] Returns false while a cut must still be sent to the arm; true if there is no cut or no arm.
+  /// Async-signal-safe.
   bool cutLeft() const noexcept { return !cut_.load() || cut_left_.load(); }
-  /// [any] Fills in how another process can switch the motors off. False if no report has come yet (it may be a wrong
-  /// device), or if another process cannot reach the device.
+  /// [any] Fills in how another process can switch the motors off. Returns false if no report has come yet (it may be a
+  /// wrong device), or if another process cannot reach the device.
   bool silence(hdv_silence& how) const;
   /// [rt] Ends a cut: the next wish counts again.
   void endCut() noexcept HSP_RT { cut_.store(false, std::memory_order_relaxed); }
@@ -106,12 +109,12 @@ class Link {
   os::Thread thread_;
   std::atomic<bool> cut_{false}, cut_left_{false};  ///< the watchdog or a crash cut the motors; this cut was sent
   bool cut_sent_ = false;
-  hdv_silence silence_{};  ///< how to reach the device that was opened last
-  Descriptor way_in_;
+  hdv_silence silence_{};              ///< how to reach the device that was opened last
+  Descriptor way_in_;                  ///< the descriptor in silence_; empty if another process cannot reach the device
   std::atomic<bool> reported_{false};  ///< a report came since the device was opened
   std::atomic<bool> paced_{false};     ///< the samples of the arm pace the servo
   std::atomic<bool> stop_{false}, calibrate_{false}, zero_wanted_{false}, zero_done_{false};
-  mutable std::mutex mutex_;  ///< guards identity_ and pose_; the servo thread never takes it
+  mutable std::mutex mutex_;  ///< guards identity_, pose_, silence_ and way_in_; the servo thread never takes it
   Identity identity_;
   JointArray pose_{}, offset_{};
   bool open_ = false, answered_ = false;

@@ -75,7 +75,8 @@ std::unique_ptr<kinematics::Arm> chain(const MechanismParameters& p) {
   g.tool.position = Vector3d(p.tool_position[0], p.tool_position[1], p.tool_position[2]);
   const size_t count = p.dh.size() / 4, all = count + static_cast<size_t>(p.others);
   if (count == 0) throw std::invalid_argument("arm.dh: empty, expected a row [a, alpha, d, theta] for each joint");
-  wrong.attempt([&] { needRows(p.limits, 2, all, "arm.limits", "one for each row of arm.dh and of arm.others"); });
+  wrong.attempt(
+      [&] { needRows(p.limits, 2, all, "arm.limits", "one for each row of arm.dh and each joint of arm.others"); });
   wrong.attempt([&] { needRows(p.masses, 1, count, "arm.masses", "one for each row of arm.dh"); });
   wrong.attempt([&] { needRows(p.centers, 3, count, "arm.centers", "one for each row of arm.dh"); });
   wrong.attempt([&] { needOrder(p.limits); });

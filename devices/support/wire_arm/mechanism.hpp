@@ -23,7 +23,7 @@ struct MechanismParameters {
 /// unknown.
 size_t jointsOf(const MechanismParameters& p);
 
-/// [main] Throws std::invalid_argument with a message for the user.
+/// [main] Makes the kinematics. Throws std::invalid_argument with a message for the user.
 std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p);
 
 }  // namespace hapticd::wire_arm

@@ -19,9 +19,9 @@ inline constexpr const char* kKinds[] = {"phantom", "delta", "chain"};
 inline constexpr const char* kMethods[] = {"none", "device", "pose"};
 inline constexpr const char* kLoaders[] = {"none", "falcon"};
 
-/// The values of the parameters. The device class of each such arm derives from it.
+/// The values of the parameters. The device class of each such arm derives from this class.
 struct Parameters : MechanismParameters {
-  std::string id, serial, wire, instructions, firmware;  // id, serial, interface, firmware and loader: only for USB
+  std::string id, serial, wire, instructions, firmware;  // only USB has id, serial, interface, firmware, loader
   int interface = -1, method = 0, loader = 0;
   std::vector<double> pose, max_torque;
   double max_force = 0, continuous_force = 0, max_stiffness = 0, mass = 0, damping = 0;
@@ -44,9 +44,10 @@ struct ParameterTable {
         F::text("usb.serial", &T::serial, "",
                 "Serial number of the device. Without it, the first such device that is free is used."),
         F::integer("usb.interface", &T::interface, "", -1, 255, -1,
-                   "Number of the USB interface; -1 means any interface for HID, and 0 for bulk."),
-        F::choice("loader", &T::loader, kLoaders, 0,
-                  "How the firmware is loaded into the device; falcon: with Novint's protocol."),
+                   "Number of the USB interface; -1 means any interface for HID, and interface 0 for bulk."),
+        F::choice(
+            "loader", &T::loader, kLoaders, 0,
+            "How the firmware is loaded into the device. none: it is not loaded. falcon: with Novint's protocol."),
         F::path("firmware", &T::firmware, "File with the firmware for the loader. hapticd does not include it.")};
   }
   static constexpr auto device() {
@@ -105,13 +106,14 @@ struct ParameterTable {
         F::real("health.recovery", &T::recovery, "s", 0.02, 10, 0.2,
                 "Time without an error after which a trouble is over."),
         F::real("health.ramp", &T::ramp, "s", 0, 10, 0.25,
-                "Time in which the torque then rises from zero to its full value."),
+                "Time in which the torque rises from zero to its full value after a trouble is over."),
         F::real("health.max_speed", &T::max_speed, "rad/s", 1, 1e4, 100,
                 "Largest speed of a joint; a faster change counts as a jump of its encoder.")};
   }
 };
 
-/// Reads the usb keys; usb.id, such as "1234:0006", gives two numbers. Throws std::invalid_argument.
+/// Returns the address that the usb keys give; usb.id, such as "1234:0006", gives two numbers. Throws
+/// std::invalid_argument.
 inline Address addressOf(const Parameters& p) {
   Address address;
   unsigned vendor = 0, product = 0;

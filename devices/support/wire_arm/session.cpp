@@ -24,7 +24,8 @@ const char* describe(Trouble trouble) noexcept {
     case Trouble::kBusError:
       return "transfers on the bus fail; check the cable, the hub or the rack";
     case Trouble::kFirmware:
-      return "the firmware has another version than the device file; load that version, or correct the device file";
+      return "the firmware has another version than the device file expects; load that version, or correct the device "
+             "file";
     case Trouble::kShort:
       return "reports have a wrong size; the device file does not fit this device";
     case Trouble::kCorrupt:
@@ -38,7 +39,7 @@ const char* describe(Trouble trouble) noexcept {
     case Trouble::kHardware:
       return "the hardware reports a fault; switch it off and on";
     case Trouble::kAbsent:
-      return "nobody answers on the bus; switch the rack on, or correct the address in the device file";
+      return "no board answers on the bus; switch the rack on, or correct the address in the device file";
     case Trouble::kTorn:
       return "reports are never complete; the board stopped while it wrote one: reset it";
     case Trouble::kReset:
@@ -67,7 +68,7 @@ void Session::attach(Nanoseconds now, const JointArray& zero, bool calibrated) n
   attached_at_ = sent_;
   good_at_ = now;
   last_bad_ = codec::Verdict::kGood;
-  // The arm is not healthy yet: as any trouble, this one ends after some time of good reports.
+  // The arm does not count as healthy yet. It begins with a trouble, which ends after some time of good reports.
   raise(now, sample_.trouble == Trouble::kNone ? Trouble::kStale : sample_.trouble);
 }
 
@@ -125,13 +126,15 @@ void Session::recover(Nanoseconds now) noexcept {
   if (sample_.sequence == 0 || seconds(trouble_at_, now) >= settings_.health.recovery) sample_.trouble = Trouble::kNone;
 }
 
-/// True if this is the same report again: its counter is the same or, without a counter, its clock has not advanced.
+/// Tells whether the arm sent the same report again: its counter is the same or, without a counter, its clock has not
+/// advanced.
 bool Session::again() const noexcept {
   if (state_.has_sequence) return state_.sequence == last_sequence_;
   return state_.has_clock && clock_tells_ && state_.clock == last_clock_;
 }
 
-/// Forgets the positions and the calibration if the board has restarted, because it now counts from another position.
+/// Tells whether the board has restarted. If so, forgets the positions and the calibration, because the board now
+/// counts from another position.
 bool Session::startedAnew(Nanoseconds now) noexcept {
   const bool anew = state_.has_starts && have_raw_ && state_.starts != last_starts_;
   last_starts_ = state_.starts;
@@ -142,7 +145,8 @@ bool Session::startedAnew(Nanoseconds now) noexcept {
   return true;
 }
 
-/// Unwraps positions. False if one of them jumped.
+/// Adds full turns to positions that wrap. Returns false if a joint jumped, or if the arm is not trusted again since a
+/// jump.
 bool Session::follow(Nanoseconds now, const codec::State& state) noexcept {
   const double period = std::max(seconds(good_at_, now), 0.5 / wire_.rate);
   const double most = settings_.health.max_speed * std::max(period, 1 / wire_.rate);
@@ -162,7 +166,7 @@ bool Session::follow(Nanoseconds now, const codec::State& state) noexcept {
   raw_ = next;
   have_raw_ = true;
   if (sample_.trouble != Trouble::kJump) return true;
-  // An arm that finds its own zero is trusted again after some time.
+  // An arm with absolute encoders, or one that finds its own zero, is trusted again after some time.
   const bool absolute = settings_.calibration != Calibration::kPose;
   if (!absolute || seconds(trouble_at_, now) < settings_.health.recovery) {
     good_at_ = now;

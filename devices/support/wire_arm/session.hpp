@@ -17,7 +17,7 @@ namespace hapticd::wire_arm {
 
 using JointArray = std::array<double, codec::kMaxJoints>;
 
-/// Bounds beyond which an arm counts as unhealthy.
+/// Bounds beyond which an arm counts as unhealthy, and the times of its recovery.
 struct HealthLimits {
   double stale = 0.015;       ///< [s] longest time without a good report
   double host_silent = 0.02;  ///< [s] longest time without a command of the host; then the motors go off
@@ -67,20 +67,23 @@ class Session {
   void attach(Nanoseconds now, const JointArray& zero, bool calibrated) noexcept;
   /// [any] To be called when the transport failed.
   void lose(Nanoseconds now, Trouble trouble) noexcept;
-  /// [any] Takes one transfer. True if there is a new sample.
+  /// [any] Takes one transfer. Returns true if sample() has changed: a new report came, or a trouble began.
   bool receive(Nanoseconds now, std::span<const uint8_t> bytes) noexcept;
-  /// [any] Checks the time since the last report. True if the trouble changed.
+  /// [any] Checks the time since the last good report, and the rate of the reports. Returns true if the trouble
+  /// changed.
   bool watch(Nanoseconds now) noexcept;
 
-  /// [any] Writes the bytes of the next command. It has torques only if the arm is healthy and the wish is new.
+  /// [any] Writes the next command to `bytes` and returns its number of bytes. The command has torques only if the arm
+  /// is healthy and the wish is not older than HealthLimits::host_silent.
   size_t command(Nanoseconds now, const Wish& wish, std::span<uint8_t> bytes) noexcept;
 
   const Sample& sample() const noexcept { return sample_; }
   Trouble trouble() const noexcept { return sample_.trouble; }
-  /// calibrateByDevice() tells the arm to find its zero; calibrateAt() takes the present positions as `pose`.
+  /// While `wanted` is true, the commands tell the arm to find its zero.
   void calibrateByDevice(bool wanted) noexcept { calibrate_ = wanted; }
+  /// Sets the offsets [rad or m] that are added to positions. The arm counts as calibrated from now on.
   void setZero(const JointArray& zero) noexcept;
-  /// Positions as the arm sends them, without the zero offsets.
+  /// Returns the positions without the zero offsets. Positions that wrap have their full turns added.
   const JointArray& raw() const noexcept { return raw_; }
   uint64_t badReports() const noexcept { return bad_reports_; }
 

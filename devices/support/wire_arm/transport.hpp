@@ -36,21 +36,23 @@ struct Identity {
   std::string epoch;  ///< changes each time the device is plugged in
 };
 
-/// Called from [main] or from the I/O thread, but never from both at once.
+/// The connection to one device. Its functions are called from [main] or from the I/O thread, but never from both at
+/// once.
 class Transport {
  public:
   virtual ~Transport() = default;
   /// Finds and opens the device. The error says which device was searched for and what to do.
   virtual Result<Identity> open(const Address& address, const codec::Wire& wire) = 0;
   virtual void close() noexcept = 0;
-  /// Receives the next report or packet. @param size becomes the number of bytes in `to` @param wait longest time
+  /// Receives the next report or packet. @param size becomes the number of bytes in `to`
+  /// @param wait longest time to wait
   virtual Status receive(std::span<uint8_t> to, size_t& size, Nanoseconds wait) noexcept = 0;
   virtual Status send(std::span<const uint8_t> bytes) noexcept = 0;
   /// Sends a control request without data (USB set-up packets of a start-up sequence).
   virtual Status control(const codec::StartStep& step) noexcept = 0;
-  /// While the device is open, opens another way to it, for a process that outlives this one. Fills in everything
-  /// except the bytes; `size` becomes the number of zeros to put before a report.
-  /// @return a new descriptor, or an empty one if there is no other way
+  /// Opens the device a second time while it is open, for a process that switches the motors off if this process ends.
+  /// Fills in everything except the bytes; `size` becomes the number of zeros to put before a report.
+  /// @return a new descriptor, or an empty one if the device cannot be opened twice
   virtual Descriptor wayIn(hdv_silence&) noexcept { return {}; }
 };
 

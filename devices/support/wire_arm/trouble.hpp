@@ -10,15 +10,15 @@ enum class Trouble : uint8_t {
   kUnplugged,  ///< the device left the bus
   kStalled,    ///< an endpoint refuses transfers
   kBusError,   ///< transfers fail for another reason
-  kFirmware,   ///< reports have another firmware version than the device file
+  kFirmware,   ///< reports name another firmware version than the device file
   kShort,      ///< reports have a wrong size
   kCorrupt,    ///< reports have wrong marks, checksums or numbers
   kStale,      ///< no report came, or the same one came again and again
   kSlow,       ///< fewer reports come than the device file says
-  kJump,       ///< a joint moved further than any hand moves it
+  kJump,       ///< a joint moved faster than HealthLimits::max_speed, so its encoder lost counts
   kHardware,   ///< the device reports a fault
   kAbsent,     ///< no board answers on the bus
-  kTorn,       ///< reports are never complete
+  kTorn,       ///< every report is incomplete, because the board stopped while it wrote one
   kReset,      ///< the device restarted and forgot its positions
 };
 

@@ -115,7 +115,8 @@ Result<void> report(const MedialImport& options, const MedialOptions& settings, 
       1e3 * there->most, 1e3 * there->mean, 1e3 * back, 1e3 * samples.spacing);
   const double reached = std::fmax(there->most, beyond);
   if (reached > settings.tolerance)
-    std::fprintf(stderr, "warning: the body is within %.3g mm of the surface, but --tolerance asks for %.3g mm: %s\n",
+    std::fprintf(stderr,
+                 "warning: the body and the surface differ by up to %.3g mm, but --tolerance allows only %.3g mm: %s\n",
                  1e3 * reached, 1e3 * settings.tolerance,
                  static_cast<int>(axis.spheres.size()) >= settings.most_spheres
                      ? "more --spheres may help"

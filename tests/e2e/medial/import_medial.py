@@ -223,7 +223,7 @@ def recoverEllipsoid(folder):
         check("it is within the tolerance, without a warning", parts == 1 and there <= 5e-4 and "warning" not in text, text)
     code, text = hapticd("import", "--medial", mesh, "--tolerance", "0.00001", out)
     check("more than can be reached is warned of with both figures", code == 0 and
-          "warning: the body is within 0." in text and "--tolerance asks for 0.01 mm" in text, text)
+          "warning: the body and the surface differ by up to 0." in text and "--tolerance allows only 0.01 mm" in text, text)
 
 
 def recoverCube(folder):

@@ -79,7 +79,7 @@ def absent(folder):
     window = folder / "window"
     for what, content, names in (("no window", None, "there is no file"), ("a short window", b"\0" * 10, "ends after"),
                                  ("an empty window", b"", "returns no bytes"),
-                                 ("a silent bus", b"\xff" * 65536, "nobody answers"),
+                                 ("a silent bus", b"\xff" * 65536, "no board answers"),
                                  ("a board that stands still", b"\0" * 65536, "the motors stay off")):
         window.unlink(missing_ok=True)
         if content is not None:

@@ -117,7 +117,7 @@ def main():
             faults = report["faults"]
             if done.returncode != 0:
                 return done.stdout + done.stderr, report
-            if len(faults) != 1 or "nobody answers on the bus" not in faults[0] or "came back" not in faults[0]:
+            if len(faults) != 1 or "no board answers on the bus" not in faults[0] or "came back" not in faults[0]:
                 return f"faults {faults}", report
             return "", report
 

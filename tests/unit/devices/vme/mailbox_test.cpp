@@ -93,7 +93,7 @@ TEST_F(MailboxTest, ABusOfAllOnesIsNobody) {
   file.write(0, ones);
   const auto nobody = mailbox.open({}, wire);
   ASSERT_FALSE(nobody);
-  EXPECT_NE(nobody.error().find("nobody answers"), std::string::npos) << nobody.error();
+  EXPECT_NE(nobody.error().find("no board answers"), std::string::npos) << nobody.error();
   file.write(0, block(1, 1));
   ASSERT_TRUE(mailbox.open({}, wire));
   file.write(0, ones);
