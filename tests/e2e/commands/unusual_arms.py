@@ -233,6 +233,14 @@ def strict(folder):
     with open(named, "w") as out:
         out.write(own.replace(device[0], f"device: {file}") if device else own + f"device: {file}\n")
     done = subprocess.run([HAPTICD, "check", named], capture_output=True, text=True, timeout=120)
+    both, place2 = written(os.path.join(folder, "both.yaml"), PREMIUM, {"force: 8.5": "force: 8.5, " + MOTORS.replace("0.0259", "|25.9", 1).rstrip(", ")})
+    for i, change in enumerate((lambda text: text, lambda text: text.replace("radius:", "radios:"))):
+        other = os.path.join(folder, f"other{i}.yaml")
+        with open(other, "w") as out:
+            out.write(change(own.replace(device[0], f"device: {both}")))
+        told = subprocess.run([HAPTICD, "check", other], capture_output=True, text=True, timeout=120)
+        check(f"a scene {'with' if i else 'without'} mistakes tells those of its device", told.returncode == 2 * i and ("radios" in told.stdout) == bool(i)
+              and f"{os.path.realpath(both)}{place2[len(both):]}: limits.motors[0].torque_constant: warning" in told.stdout, told.stdout)
     check("a fault that the hand meets is told", f"{os.path.realpath(file)}{place[len(file):]}: limits.velocity: warning: the tip of" in done.stdout, done.stdout)
 
 
