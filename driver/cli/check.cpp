@@ -77,7 +77,7 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
   if (!options.files_only && verdict.problems.empty())  // these run the scene
     for (const auto& found_by : {&unreachableRows, &adviseHands})
       for (const document::Problem& one : found_by(full)) more.push_back(one);
-  if (!options.device.empty())  // what the module's own check says
+  if (!options.files_only || !options.device.empty())  // what the check of the device file itself says
     for (const scene::Device& device : full.devices)
       for (const document::Problem& one : adviseDevice(device.file, catalog()))
         if (!tells(more, one)) more.push_back(one);
@@ -121,17 +121,21 @@ void addRefusals(const scene::Scene& full, bool needs_velocity, Verdict& verdict
     verdict.problems.insert(verdict.problems.end(), problems.begin(), problems.end());
 }
 
-/// If a device file that a scene names has problems, its module is asked for the rest of them, so that the user sees
-/// all at once. @param judged true for a device of the command line, whose values are judged too
-void addOfDevices(Verdict& verdict, bool judged) {
+/// Asks the modules of the device files that a scene with problems names for the rest of their problems, and judges
+/// their values, so that the user sees all at once. @param named the scene's own devices are used, and no other
+void addOfDevices(Verdict& verdict, bool named) {
   std::set<std::string> others;
   for (const document::Problem& one : verdict.problems)
     if (one.place.file != verdict.file) others.insert(one.place.file);
+  if (const auto draft = scene::sceneDraft(verdict.file, catalog()); draft && named)
+    for (const scene::Device& device : draft->devices) others.insert(device.file.string());
   for (const std::string& file : others) {
-    for (const document::Problem& one : tryDevice(file, catalog(), verdict.problems)) verdict.problems.push_back(one);
-    if (!judged) continue;
-    for (const document::Problem& one : adviseDevice(file, catalog(), verdict.problems))
-      verdict.warnings.push_back(one);
+    document::Problems known;
+    for (const document::Problem& one : verdict.problems)
+      if (one.place.file == file) known.push_back(one);
+    for (const document::Problem& one : tryDevice(file, catalog(), known))
+      known.push_back(one), verdict.problems.push_back(one);
+    for (const document::Problem& one : adviseDevice(file, catalog(), known)) verdict.warnings.push_back(one);
   }
   document::sortByPlace(verdict.problems);
 }
@@ -183,7 +187,7 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
     found = std::move(other.problems);
     verdict.whole = found.empty();
     if (!scene) {
-      addOfDevices(verdict, true);
+      addOfDevices(verdict, false);
       return verdict;
     }
   }
@@ -198,7 +202,7 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   if (scene && !options.files_only) addRefusals(withArm(*scene), trial.needs_velocity, verdict);
   if (!scene && !found.empty()) {
     tryTheRest(options, verdict);
-    if (!options.files_only) addOfDevices(verdict, false);
+    if (!options.files_only) addOfDevices(verdict, true);
   }
   if (!scene) {
     const document::Problems more = tryDevice(file, catalog(), found, &verdict.warnings);

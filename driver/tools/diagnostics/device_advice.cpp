@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "diagnostics/arm_table.hpp"
+#include "diagnostics/device_trial.hpp"
 #include "diagnostics/limit_advice.hpp"
 #include "diagnostics/motor_advice.hpp"
 #include "diagnostics/node_path.hpp"
@@ -195,7 +196,8 @@ document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog
   adviseUnits(*root, file.string(), warnings);
   adviseTable(*root, file.string(), warnings);
   std::unique_ptr<host::DeviceInstance> arm;
-  if (kinematicsKnown(known))
+  // A module that was not tried because of other problems may crash, so it is tried in a child process first.
+  if (kinematicsKnown(known) && (known.empty() || tryModule(*device).error.empty()))
     if (auto made = host::DeviceInstance::create(*device, nullptr)) arm = std::move(*made);
   if (arm)
     judgeWhole(*root, *device, *arm, warnings);

@@ -182,14 +182,14 @@ struct Joint {
 /// Warns of a delay with which contacts swing up. A spring that answers late is stable only while its stiffness is less
 /// than the damping over the time that it is late, and only the hand damps a simulated arm.
 void judgeDelay(const Bounds& of) {
-  constexpr double kRate = 1000, kHold = 0.5, kSoft = 1000;  // [Hz] of a servo; [ticks]; [N/m] less than most models
+  constexpr double kRate = 1000, kHold = 0.5, kSoft = 800;  // [Hz] of a servo; [ticks]; [N/m] as most models
   const double late = of.number("delay", 0), damping = of.number("hand.damping", 5);
   const double stable = damping * kRate / (late + kHold);
   if (!(late > 1) || !(stable < kSoft)) return;
   of.warn({"parameters", "delay"},
           fmt::format(
               "{0:g} reads are {0:g} ms at 1000 Hz: with hand.damping {1:g} N s/m, models that are stiffer than about "
-              "{2:.3g} N/m bounce; the value must be a number of reads, such as 1",
+              "{2:.3g} N/m may bounce; the value must be a number of reads, such as 1",
               late, damping, stable));
 }
 

@@ -148,7 +148,7 @@ CASES += [
     (WIRED, {"force: 2, ": "force: 2, " + MOTORS.replace("ratio: 12", "ratio: |0.0833", 1)}, "limits.motors[0].ratio", "12 if it was turned round"),
     (PREMIUM, {"force: 8.5": "force: 8.5, " + MOTORS.replace("2.3", "|2300", 1).rstrip(", ")}, "limits.motors[0].resistance", "2300 mohm is 2.3 ohm"),
     (WIRED, {"force: 2, ": "force: 2, " + MOTORS.replace("ratio: 12", "ratio: 12, housing_time: |10", 1)}, "limits.motors[0].housing_time", "10 min is 600 s"),
-    (TWIN, {"hand:": "  delay: |16\nhand:"}, "parameters.delay", "stiffer than about 303 N/m bounce"),
+    (TWIN, {"hand:": "  delay: |16\nhand:"}, "parameters.delay", "stiffer than about 303 N/m may bounce"),
 ]
 BIG = {SENT.format(n + 1, 2 * n): SENT.format(n + 1, 2 * n).replace("i16", "i16, endian: big") for n in range(3)}
 # What is unusual and right: nothing is told of it.
@@ -233,6 +233,14 @@ def strict(folder):
     with open(named, "w") as out:
         out.write(own.replace(device[0], f"device: {file}") if device else own + f"device: {file}\n")
     done = subprocess.run([HAPTICD, "check", named], capture_output=True, text=True, timeout=120)
+    both, place2 = written(os.path.join(folder, "both.yaml"), PREMIUM, {"force: 8.5": "force: 8.5, " + MOTORS.replace("0.0259", "|25.9", 1).rstrip(", ")})
+    for i, change in enumerate((lambda text: text, lambda text: text.replace("radius:", "radios:"))):
+        other = os.path.join(folder, f"other{i}.yaml")
+        with open(other, "w") as out:
+            out.write(change(own.replace(device[0], f"device: {both}")))
+        told = subprocess.run([HAPTICD, "check", other], capture_output=True, text=True, timeout=120)
+        check(f"a scene {'with' if i else 'without'} mistakes tells those of its device", told.returncode == 2 * i and ("radios" in told.stdout) == bool(i)
+              and f"{os.path.realpath(both)}{place2[len(both):]}: limits.motors[0].torque_constant: warning" in told.stdout, told.stdout)
     check("a fault that the hand meets is told", f"{os.path.realpath(file)}{place[len(file):]}: limits.velocity: warning: the tip of" in done.stdout, done.stdout)
 
 

@@ -110,7 +110,7 @@ warned("is below 0", arm(LENGTHS="-0.2, 0.17"))
 warned("offset_degrees: 50", arm(OFFSET="50"))
 warned("90 m about the origin bounds nothing, because the tip is never farther", arm(LIMITS="{force: 2, workspace: 90}"))
 motors = "{force: 2, motors: [" + ", ".join(["{torque_constant: KT, resistance: 2, ratio: GEAR}"] * 3) + "]}"
-warned("never noticed", arm(LIMITS=motors.replace("KT", "30").replace("GEAR", "11")))
+warned("30 mN m/A is 0.03 N m/A", arm(LIMITS=motors.replace("KT", "30").replace("GEAR", "11")))
 warned("always too much", arm(LIMITS=motors.replace("KT", "0.03").replace("GEAR", "1")))
 code, out, err = run("check", arm(LIMITS=motors.replace("KT", "0.03").replace("GEAR", "11")))
 check("right motors are not warned of", "limits.motors" not in out.decode() + err, out.decode() + err)
