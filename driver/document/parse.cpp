@@ -167,10 +167,10 @@ class Builder final : public YAML::EventHandler {
   size_t nodes_ = 0, most_nodes_;
 };
 
-/// Returns the offset of the first byte that is not valid UTF-8, or npos. Overlong forms are accepted, because nothing
-/// here decodes them.
-size_t firstBadByte(const std::string& text) {
-  for (size_t i = 0; i < text.size();) {
+/// Returns the offset of the first byte at or after `from` that is not valid UTF-8, or npos. Overlong forms are
+/// accepted, because nothing here decodes them.
+size_t firstBadByte(const std::string& text, size_t from = 0) {
+  for (size_t i = from; i < text.size();) {
     const auto c = static_cast<unsigned char>(text[i]);
     const size_t length = c < 0x80                ? 1
                           : c >= 0xC2 && c < 0xE0 ? 2
@@ -184,6 +184,17 @@ size_t firstBadByte(const std::string& text) {
     i += length;
   }
   return std::string::npos;
+}
+
+/// Returns a text of Latin-1 with question marks for its letters that are not ASCII, so that the rest can be read; ""
+/// for any other text.
+std::string withoutLatin(std::string text) {
+  constexpr unsigned char kFirstLetter = 0xA0;  // of Latin-1
+  for (size_t bad = firstBadByte(text); bad != std::string::npos; bad = firstBadByte(text, bad)) {
+    if (static_cast<unsigned char>(text[bad]) < kFirstLetter) return "";
+    text[bad] = '?';
+  }
+  return text;
 }
 
 Place placeOf(const std::string& text, size_t offset, const std::string& file) {
@@ -208,6 +219,7 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
     report(problems, placeOf(text, bad, file), "",
            "a byte that is not text (code " + std::to_string(static_cast<unsigned char>(text[bad])) +
                "), expected YAML in UTF-8");
+    if (const std::string readable = withoutLatin(text); !readable.empty()) return parseText(readable, file, problems);
     return std::nullopt;
   }
   Builder builder(file, maxNodes(text.size()), problems);
@@ -234,7 +246,10 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
   } catch (const Refused& refused) {
     report(problems, placeOf(refused.mark, file), "", refused.what);
   } catch (const YAML::Exception& error) {
-    problems.push_back(slipIn(text, placeOf(error.mark, file), error.msg));
+    const Place place = placeOf(error.mark, file);
+    problems.push_back(slipIn(text, place, error.msg));
+    if (const std::string meant = withAliasMeant(text, place, error.msg); !meant.empty())
+      return parseText(meant, file, problems);
   } catch (const std::exception& error) {
     report(problems, file, 1, 1, "", std::string("not YAML: ") + error.what());
   }

@@ -6,15 +6,16 @@
 #include <vector>
 
 #include "medial_file.hpp"
+#include "traced_shape/document.hpp"
 
 namespace hapticd {
 
 /// [main] Finds numbers in a wrong unit, such as grams for kilograms, millimetres for metres, or megapascals for
 /// pascals.
-/// @param medial the tree from which the body was read
+/// @param root the tree from which the body was read  @param problems of the file; keys with one are not judged
 /// @param text of the file, to find the lines
 /// @return warnings of the form `file:line:column: key: what`
-std::vector<std::string> adviseMedial(const MedialFile& file, const nlohmann::json& medial, const std::string& text,
-                                      const std::string& name);
+std::vector<std::string> adviseMedial(const MedialFile& file, const nlohmann::json& root, const Problems& problems,
+                                      const std::string& text, const std::string& name);
 
 }  // namespace hapticd

@@ -28,6 +28,7 @@ class GivenModel {
         warnings_(warnings),
         first_(warnings.size()) {}
 
+  const scene::Scene& scene() const { return scene_; }
   const scene::Model& model() const { return scene_.models[index_]; }
   Eigen::Vector3d gravity() const;  ///< [m/s^2] in the model's frame, as the model stands at the start
   const host::ClassInfo& plugin() const { return info_; }
