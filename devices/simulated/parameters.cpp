@@ -2,7 +2,10 @@
 #include "simulated/parameters.hpp"
 
 #include <stdexcept>
+#include <string>
+#include <utility>
 
+#include "kinematics/complaints.hpp"
 #include "simulated/mechanisms.hpp"
 
 namespace hapticd::simulated {
@@ -55,12 +58,18 @@ Eigen::Quaterniond baseOrientation(const std::vector<double>& q) {
 
 kinematics::ChainGeometry chainOf(const Parameters& p) {
   kinematics::ChainGeometry geometry;
+  kinematics::Complaints wrong;
   geometry.base.position = vector(p.base_position) + vector(p.origin);  // files of real chains use origin
-  geometry.base.orientation = baseOrientation(p.base_orientation);
+  wrong.attempt([&] { geometry.base.orientation = baseOrientation(p.base_orientation); });
   geometry.tool.position = vector(p.tool_position);
   const size_t count = p.dh.size() / 4;
   if (count == 0)
     throw std::invalid_argument("arm.dh is empty; expected a row a, alpha, d, theta for each joint of a chain");
+  wrong.attempt([&] { (void)rowOf(p.limits, 2, 0, count, "arm.limits"); });
+  wrong.attempt([&] { (void)rowOf(p.masses, 1, 0, count, "arm.masses"); });
+  wrong.attempt([&] { (void)rowOf(p.centers, 3, 0, count, "arm.centers"); });
+  wrong.attempt([&] { (void)rowOf(p.inertias, 3, 0, count, "arm.inertias"); });
+  wrong.check();
   for (size_t i = 0; i < count; ++i) {
     kinematics::ChainLink link;
     link.a = p.dh[4 * i], link.alpha = p.dh[4 * i + 1], link.d = p.dh[4 * i + 2], link.theta = p.dh[4 * i + 3];
@@ -153,14 +162,33 @@ kinematics::PhantomInertia inertiaOf(const Parameters& p, const JointVector& rot
 
 }  // namespace
 
+/// Refuses lists that would be ignored, because the arm has fixed values of its own.
+static void refuseIdle(const Parameters& p, kinematics::Complaints& wrong) {
+  if (p.arm() == Kind::kChain && !p.lengths.empty())
+    wrong.add("arm.lengths: a chain has its lengths in arm.dh; remove arm.lengths");
+  if (p.arm() != Kind::kPremium15) return;
+  for (const auto& [list, name] : {std::pair{&p.lengths, "lengths"}, std::pair{&p.masses, "masses"},
+                                   std::pair{&p.inertias, "inertias"}, std::pair{&p.limits, "limits"}})
+    if (!list->empty())
+      wrong.add(std::string("arm.") + name + ": a premium15 has fixed " + name +
+                "; expected arm.kind phantom, or no arm." + name);
+}
+
 std::unique_ptr<kinematics::Arm> makeArm(const Parameters& p) {
-  if (!p.lengths.empty() && p.arm() != Kind::kPhantom)
-    throw std::invalid_argument(
-        p.arm() == Kind::kChain
-            ? "arm.lengths: a chain has its lengths in arm.dh; remove arm.lengths"
-            : "arm.lengths: a premium15 has fixed lengths; expected arm.kind phantom, or no arm.lengths");
-  if (p.arm() == Kind::kChain) return std::make_unique<kinematics::Chain>(chainOf(p));
-  return std::make_unique<kinematics::Phantom>(makePhantom(p));
+  constexpr int kOfPhantom = 3;
+  kinematics::Complaints wrong;
+  std::unique_ptr<kinematics::Arm> arm;
+  refuseIdle(p, wrong);
+  wrong.attempt([&] {
+    if (p.arm() == Kind::kChain)
+      arm = std::make_unique<kinematics::Chain>(chainOf(p));
+    else
+      arm = std::make_unique<kinematics::Phantom>(makePhantom(p));
+  });
+  const int joints = p.arm() == Kind::kChain ? static_cast<int>(p.dh.size() / 4) : kOfPhantom;
+  if (!wrong.none() && joints > 0) wrong.attempt([&] { (void)jointsOf(p, joints); });  // open() finds it otherwise
+  wrong.check();
+  return arm;
 }
 
 std::unique_ptr<Plant> makePlant(const Parameters& p, const JointSettings& joints, const Vector3d& gravity) {

@@ -59,6 +59,13 @@ struct Verdict {
   bool whole = true;  ///< false if some checks were left out, because something that they need is missing or wrong
 };
 
+/// Returns true if the same key of the same file has a warning already.
+bool tells(const document::Problems& told, const document::Problem& one) {
+  return std::any_of(told.begin(), told.end(), [&one](const document::Problem& known) {
+    return known.key == one.key && known.place.file == one.place.file && known.place.line == one.place.line;
+  });
+}
+
 /// Adds warnings about what is allowed but was hardly meant, or cannot be stable.
 void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckArguments& options, Verdict& verdict) {
   document::Problems more = unstableContacts(full, trial.stiffness);
@@ -73,7 +80,8 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
       more.insert(more.end(), found.begin(), found.end());
   if (!options.device.empty())  // what the module's own check says
     for (const scene::Device& device : full.devices)
-      for (const document::Problem& one : adviseDevice(device.file, catalog())) more.push_back(one);
+      for (const document::Problem& one : adviseDevice(device.file, catalog()))
+        if (!tells(more, one)) more.push_back(one);
   verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
 }
 
@@ -115,13 +123,17 @@ void addRefusals(const scene::Scene& full, bool needs_velocity, Verdict& verdict
 }
 
 /// If a device file that a scene names has problems, its module is asked for the rest of them, so that the user sees
-/// all at once.
-void addOfDevices(Verdict& verdict) {
+/// all at once. @param judged true for a device of the command line, whose values are judged too
+void addOfDevices(Verdict& verdict, bool judged) {
   std::set<std::string> others;
   for (const document::Problem& one : verdict.problems)
     if (one.place.file != verdict.file) others.insert(one.place.file);
-  for (const std::string& file : others)
+  for (const std::string& file : others) {
     for (const document::Problem& one : tryDevice(file, catalog(), verdict.problems)) verdict.problems.push_back(one);
+    if (!judged) continue;
+    for (const document::Problem& one : adviseDevice(file, catalog(), verdict.problems))
+      verdict.warnings.push_back(one);
+  }
   document::sortByPlace(verdict.problems);
 }
 
@@ -172,7 +184,7 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
     found = std::move(other.problems);
     verdict.whole = found.empty();
     if (!scene) {
-      addOfDevices(verdict);
+      addOfDevices(verdict, true);
       return verdict;
     }
   }
@@ -187,13 +199,13 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   if (scene && !options.files_only) addRefusals(withArm(*scene), trial.needs_velocity, verdict);
   if (!scene && !found.empty()) {
     tryTheRest(options, verdict);
-    if (!options.files_only) addOfDevices(verdict);
+    if (!options.files_only) addOfDevices(verdict, false);
   }
   if (!scene) {
     const document::Problems more = tryDevice(file, catalog(), found, &verdict.warnings);
     found.insert(found.end(), more.begin(), more.end());
+    for (const document::Problem& one : adviseDevice(file, catalog(), found)) verdict.warnings.push_back(one);
     if (found.empty()) {
-      for (const document::Problem& one : adviseDevice(file, catalog())) verdict.warnings.push_back(one);
       if (!options.files_only) found = refusedAlone(file, catalog(), verdict.warnings);
     }
     document::sortByPlace(found);

@@ -35,7 +35,7 @@ target_compile_options(hapticd_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow $<$<BOOL:${HAPTICD_WERROR}>:-Werror>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # g++ 12 sees overlaps in std::string operator+ that are not there (GCC 105651)
   # in a unity build every file is included: its anonymous namespace is none of a header
-  $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
+  $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<COMPILE_LANG_AND_ID:CXX,GNU>>:-Wno-subobject-linkage>
   # g++ collects garbage from 512 MB on, not from 128: a sixth of its time was that
   $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288>
   # errno and traps are never read from mathematics here; both keep sqrt and fma out of line.

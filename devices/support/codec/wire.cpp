@@ -177,10 +177,8 @@ void readTimes(const Tree& tree, Wire& wire) {
             "between commands");
 }
 
-}  // namespace
-
-Wire readWire(const std::string& json, size_t joints) {
-  const Document document(json, "wire");
+/// Reads the whole description. What is wrong in it has been noted, and has its default.
+Wire readAll(const Document& document, size_t joints) {
   const Tree tree = document.root();
   Wire wire;
   tree.only(kWireKeys);
@@ -209,7 +207,22 @@ Wire readWire(const std::string& json, size_t joints) {
   if (wire.framing.escape.used && wire.output.bytes() > kMaxReportBytes / 2)
     tree.at("output").at("size").fail("with framing.escape, a report may have at most half of " +
                                       std::to_string(kMaxReportBytes) + " bytes, because escapes can double its size");
+  return wire;
+}
+
+}  // namespace
+
+Wire readWire(const std::string& json, size_t joints) {
+  const Document document(json, "wire");
+  Wire wire = readAll(document, joints);
   document.check();
+  return wire;
+}
+
+Wire draftOfWire(const std::string& json, size_t joints) {
+  const Document document(json, "wire");
+  Wire wire = readAll(document, joints);
+  wire.startup.clear();
   return wire;
 }
 

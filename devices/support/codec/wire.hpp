@@ -103,4 +103,9 @@ struct Wire {
 /// report and a torque field in the output report
 Wire readWire(const std::string& json, size_t joints);
 
+/// [main] Reads as much of such a text as is right, so that a check can judge the rest of a description with mistakes.
+/// Fields come in the order of the text, and what is wrong in one has its default. It is not for encoding or decoding,
+/// because its fields may lie outside of their report, and it has no startup steps. Throws only if the text is no JSON.
+Wire draftOfWire(const std::string& json, size_t joints);
+
 }  // namespace hapticd::codec

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "kinematics/complaints.hpp"
+
 namespace hapticd::kinematics {
 
 void Arm::narrow(const JointLimits& limits) {
@@ -16,10 +18,12 @@ void Arm::narrow(const JointLimits& limits) {
   if (limits.min.size() != jointCount())
     throw std::invalid_argument("arm.limits: " + std::to_string(limits.min.size()) + " rows, expected " +
                                 std::to_string(jointCount()) + ": one for each joint");
+  Complaints wrong;
   for (Eigen::Index i = 0; i < limits.min.size(); ++i)
     if (!(limits.min[i] <= limits.max[i]))
-      throw std::invalid_argument("arm.limits[" + std::to_string(i) + "]: [" + text(limits.min[i]) + ", " +
-                                  text(limits.max[i]) + "], expected the smaller number first");
+      wrong.add("arm.limits[" + std::to_string(i) + "]: [" + text(limits.min[i]) + ", " + text(limits.max[i]) +
+                "], expected the smaller number first");
+  wrong.check();
   limits_ = limits;
 }
 

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "kinematics/complaints.hpp"
+
 namespace hapticd::kinematics {
 namespace {
 
@@ -57,8 +59,10 @@ Chain::Chain(const ChainGeometry& geometry)
                                 std::to_string(kMaxJoints));
   limits_.min.resize(count_);
   limits_.max.resize(count_);
+  Complaints wrong;
+  for (size_t i = 0; i < geometry.links.size(); ++i) wrong.attempt([&] { check(geometry.links[i], i); });
+  wrong.check();
   for (size_t i = 0; i < geometry.links.size(); ++i) {
-    check(geometry.links[i], i);
     links_[i] = geometry.links[i];
     exactTwist(links_[i].alpha, cos_alpha_[i], sin_alpha_[i]);
     limits_.min[static_cast<int>(i)] = links_[i].min;

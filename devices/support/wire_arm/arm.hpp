@@ -16,6 +16,7 @@
 #include "hapticd/device_pace.h"
 #include "hapticd/device_silence.h"
 #include "hapticd/device_trouble.h"
+#include "kinematics/complaints.hpp"
 #include "kinematics/extension.hpp"
 #include "wire_arm/calibration.hpp"
 #include "wire_arm/falcon_loader.hpp"
@@ -162,25 +163,18 @@ class Arm : public Device, public Parameters {
   /// Makes everything that depends only on the parameters. Throws std::invalid_argument with all problems, one per
   /// line.
   void prepare() {
-    std::string wrong;
-    const auto attempt = [&wrong](const auto& part) {
-      try {
-        part();
-      } catch (const std::invalid_argument& e) {
-        wrong += (wrong.empty() ? "" : "\n") + std::string(e.what());
-      }
-    };
-    joints_ = 0;  // stays 0 (unknown) if the mechanism is wrong
-    attempt([&] { arm_ = makeMechanism(*this), joints_ = joints(); });
+    kinematics::Complaints wrong;
+    joints_ = jointsOf(*this);  // also if the mechanism is wrong otherwise
+    wrong.attempt([&] { arm_ = makeMechanism(*this); });
     bool wire_known = false;
-    attempt([&] { wire_ = codec::readWire(wire, joints_), wire_known = true; });
-    attempt([&] { (void)static_cast<const T*>(this)->address(); });
-    attempt([&] { checkCount("arm.max_torque", max_torque.size(), true); });
+    wrong.attempt([&] { wire_ = codec::readWire(wire, joints_), wire_known = true; });
+    wrong.attempt([&] { (void)static_cast<const T*>(this)->address(); });
+    wrong.attempt([&] { checkCount("arm.max_torque", max_torque.size(), true); });
     if (method == static_cast<int>(Calibration::kPose))
-      attempt([&] { checkCount("calibration.pose", pose.size(), false); });
-    if (wire_known) attempt([&] { takeWire(); });
-    attempt([&] { takeFirmware(); });
-    if (!wrong.empty()) throw std::invalid_argument(wrong);
+      wrong.attempt([&] { checkCount("calibration.pose", pose.size(), false); });
+    if (wire_known) wrong.attempt([&] { takeWire(); });
+    wrong.attempt([&] { takeFirmware(); });
+    wrong.check();
     for (size_t i = 0; i < joints_; ++i) limit_[i] = max_torque[max_torque.size() == 1 ? 0 : i];
     takeLimits();
   }

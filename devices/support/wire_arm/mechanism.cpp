@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "wire_arm/mechanism.hpp"
 
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 
 #include "kinematics/carried_bodies.hpp"
 #include "kinematics/chain.hpp"
+#include "kinematics/complaints.hpp"
 #include "kinematics/delta.hpp"
 #include "kinematics/list_into.hpp"
 #include "kinematics/phantom.hpp"
@@ -36,10 +38,12 @@ std::unique_ptr<kinematics::Arm> phantom(const MechanismParameters& p) {
 
 std::unique_ptr<kinematics::Arm> delta(const MechanismParameters& p) {
   kinematics::DeltaGeometry g;
-  assign(p.lengths, "arm.lengths", g.a, g.b, g.c, g.d, g.e, g.f, g.r, g.s);
-  assign(p.masses, "arm.masses", g.arm_mass, g.rod_mass, g.platform_mass);
-  assign(p.angles, "arm.angles", g.phi[0], g.phi[1], g.phi[2]);
-  g.base = baseOf(p);
+  kinematics::Complaints wrong;
+  wrong.attempt([&] { assign(p.lengths, "arm.lengths", g.a, g.b, g.c, g.d, g.e, g.f, g.r, g.s); });
+  wrong.attempt([&] { assign(p.masses, "arm.masses", g.arm_mass, g.rod_mass, g.platform_mass); });
+  wrong.attempt([&] { assign(p.angles, "arm.angles", g.phi[0], g.phi[1], g.phi[2]); });
+  wrong.attempt([&] { g.base = baseOf(p); });
+  wrong.check();
   return std::make_unique<kinematics::Delta>(g);
 }
 
@@ -51,15 +55,31 @@ void needRows(const std::vector<double>& list, size_t columns, size_t rows, cons
                               ", expected " + std::to_string(rows) + ": " + why);
 }
 
+/// Refuses rows of limits that begin with the larger number.
+void needOrder(const std::vector<double>& limits) {
+  kinematics::Complaints wrong;
+  for (size_t i = 0; i + 1 < limits.size(); i += 2) {
+    if (limits[i] <= limits[i + 1]) continue;
+    char text[120];
+    std::snprintf(text, sizeof text, "arm.limits[%zu]: %g to %g, expected the smaller one first", i / 2, limits[i],
+                  limits[i + 1]);
+    wrong.add(text);
+  }
+  wrong.check();
+}
+
 std::unique_ptr<kinematics::Arm> chain(const MechanismParameters& p) {
   kinematics::ChainGeometry g;
-  g.base = baseOf(p);
+  kinematics::Complaints wrong;
+  wrong.attempt([&] { g.base = baseOf(p); });
   g.tool.position = Vector3d(p.tool_position[0], p.tool_position[1], p.tool_position[2]);
   const size_t count = p.dh.size() / 4, all = count + static_cast<size_t>(p.others);
   if (count == 0) throw std::invalid_argument("arm.dh: empty, expected a row [a, alpha, d, theta] for each joint");
-  needRows(p.limits, 2, all, "arm.limits", "one for each row of arm.dh and of arm.others");
-  needRows(p.masses, 1, count, "arm.masses", "one for each row of arm.dh");
-  needRows(p.centers, 3, count, "arm.centers", "one for each row of arm.dh");
+  wrong.attempt([&] { needRows(p.limits, 2, all, "arm.limits", "one for each row of arm.dh and of arm.others"); });
+  wrong.attempt([&] { needRows(p.masses, 1, count, "arm.masses", "one for each row of arm.dh"); });
+  wrong.attempt([&] { needRows(p.centers, 3, count, "arm.centers", "one for each row of arm.dh"); });
+  wrong.attempt([&] { needOrder(p.limits); });
+  wrong.check();
   for (size_t i = 0; i < count; ++i) {
     kinematics::ChainLink link;
     link.a = p.dh[4 * i], link.alpha = p.dh[4 * i + 1], link.d = p.dh[4 * i + 2], link.theta = p.dh[4 * i + 3];
@@ -93,11 +113,20 @@ std::unique_ptr<kinematics::Arm> mechanism(const MechanismParameters& p) {
 
 }  // namespace
 
+size_t jointsOf(const MechanismParameters& p) {
+  constexpr size_t kOfOthers = 3;  // phantom and delta
+  if (static_cast<Kind>(p.kind) != Kind::kChain) return kOfOthers;
+  return p.dh.empty() ? 0 : p.dh.size() / 4 + static_cast<size_t>(p.others);
+}
+
 std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p) {
-  auto arm = mechanism(p);
-  if (p.limits.empty() || static_cast<Kind>(p.kind) == Kind::kChain) return arm;
+  if (p.limits.empty() || static_cast<Kind>(p.kind) == Kind::kChain) return mechanism(p);
+  kinematics::Complaints wrong;
+  std::unique_ptr<kinematics::Arm> arm;
+  wrong.attempt([&] { arm = mechanism(p); });
+  wrong.attempt([&] { needRows(p.limits, 2, jointsOf(p), "arm.limits", "one for each joint"); });
+  wrong.check();
   const auto rows = static_cast<Eigen::Index>(p.limits.size() / 2);
-  needRows(p.limits, 2, static_cast<size_t>(arm->jointCount()), "arm.limits", "one for each joint");
   kinematics::JointLimits limits{kinematics::JointVector(rows), kinematics::JointVector(rows)};
   for (Eigen::Index i = 0; i < rows; ++i) {
     limits.min[i] = p.limits[static_cast<size_t>(2 * i)];

@@ -9,8 +9,9 @@
 
 namespace hapticd::scene {
 
-/// [main] Returns the device with those parameters that are right; nothing if the file is not a device file, or if its
-/// module is unknown.
+/// [main] Returns the device with those parameters that are right, and with numbers that are out of range at the
+/// nearest one in it; nothing if the file is not a device file, or if its module is unknown. A misspelt name of a
+/// module stands for the nearest one.
 std::optional<Device> deviceDraft(const std::filesystem::path& file, host::Catalog& catalog);
 
 /// [main] Returns the scene with everything that is right, also in models with a problem; nothing if the file is not a

@@ -101,7 +101,10 @@ std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceRefer
   auto found = catalog.device(text.module);
   if (!found) {
     in.problem(*root.find("module"), "module", found.error());
-    return std::nullopt;
+    const std::string meant = nearest(text.module, catalog.names(host::Kind::kDevice));
+    if (!meant.empty()) found = catalog.device(meant);  // to find the other problems, too
+    if (!found) return std::nullopt;
+    device.module = meant;
   }
   const host::ClassInfo& info = **found;
   device.library = info.file;

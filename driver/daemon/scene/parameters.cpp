@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "scene/parameters.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "document/meant.hpp"
 #include "document/suggestion.hpp"
 #include "hapticd/abi.h"
@@ -41,6 +44,13 @@ std::string countText(const host::ParamInfo& p) {
 }
 
 }  // namespace
+
+/// Returns the number in the range that is nearest to what was given, for drafts of files with problems; 0 for what is
+/// no number.
+static double heldIn(const Node& node, const Range& range) {
+  const auto given = node.isScalar() ? toNumber(node.scalar) : std::nullopt;
+  return std::clamp(given && std::isfinite(*given) ? *given : 0.0, range.min, range.max);
+}
 
 void ParameterReader::overrideFrom(Reader& in) {
   in_ = &in;
@@ -142,8 +152,8 @@ bool ParameterReader::readValue(const Node& node, const std::string& key, const 
       in_->problem(node, key, "has a kind that this hapticd does not know; install a newer hapticd");
       return false;
   }
-  value.number = number.value_or(0);
-  return number.has_value();
+  value.number = number.value_or(heldIn(node, range));
+  return number || ((param.kind == HSP_REAL || param.kind == HSP_INT) && node.isScalar() && toNumber(node.scalar));
 }
 
 bool ParameterReader::readPath(const Node& node, const std::string& key, Value& value) {
@@ -170,11 +180,13 @@ static std::vector<std::string> unitsOf(const host::ParamInfo& param) {
 
 bool ParameterReader::readArray(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value) {
   const size_t before = in_->problems().size();
+  bool shaped = true;  // a list of right shape with wrong numbers is kept for drafts, so that its length can be judged
   const std::vector<std::string> units = unitsOf(param);
   const auto add = [&](const Node& item, const std::string& path, size_t column) {
-    if (in_->problems().size() - before >= kShownProblems) return;
     const Range of_column{param.min, param.max, units[column % units.size()].c_str()};
-    if (const auto number = in_->number(item, path, of_column)) value.numbers.push_back(*number);
+    const bool shown = in_->problems().size() - before < kShownProblems;
+    const auto number = shown ? in_->number(item, path, of_column) : std::nullopt;
+    value.numbers.push_back(number.value_or(heldIn(item, of_column)));
   };
   if (node.isScalar()) {
     add(node, key, 0);
@@ -182,19 +194,21 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
     for (size_t i = 0; i < node.items.size(); ++i) {
       const Node& item = node.items[i];
       const std::string path = key + "[" + std::to_string(i) + "]";
-      if (item.isSequence() && param.columns > 1 && item.items.size() != param.columns)
+      if (item.isSequence() && param.columns > 1 && item.items.size() != param.columns) {
+        shaped = false;
         in_->problem(item, path,
                      "it has " + std::to_string(item.items.size()) + (item.items.size() == 1 ? " number" : " numbers") +
                          ", expected " + std::to_string(param.columns));
-      else if (item.isSequence())
+      } else if (item.isSequence())
         for (size_t j = 0; j < item.items.size(); ++j) add(item.items[j], path + "[" + std::to_string(j) + "]", j);
       else
         add(item, path, i);
     }
   } else {
+    shaped = false;
     in_->problem(node, key, describe(node) + ", expected a list of " + countText(param));
   }
-  if (in_->problems().size() != before) return false;
+  if (!shaped || (node.isScalar() && in_->problems().size() != before)) return false;
   const size_t count = value.numbers.size();
   const bool ragged = param.columns > 1 && count % param.columns != 0;
   if (!ragged && count >= param.min_count && count <= param.max_count) return true;

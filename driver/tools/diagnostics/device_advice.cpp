@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "diagnostics/arm_table.hpp"
 #include "diagnostics/limit_advice.hpp"
 #include "diagnostics/motor_advice.hpp"
 #include "diagnostics/node_path.hpp"
@@ -22,6 +24,7 @@
 #include "document/node.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
+#include "scene/device_draft.hpp"
 #include "scene/load.hpp"
 
 namespace hapticd::diagnostics {
@@ -81,7 +84,7 @@ void poseBeyondStops(const Node& root, const scene::Device& device, document::Pr
   for (size_t i = 0; i < pose->items.size(); ++i) {
     const double angle = document::toNumber(pose->items[i].scalar).value_or(0);
     const double low = limits->numbers[2 * i], high = limits->numbers[2 * i + 1], room = 0.05 * (high - low);
-    if (angle >= low - room && angle <= high + room) continue;
+    if (high < low || (angle >= low - room && angle <= high + room)) continue;
     document::report(warnings, device.file.string(), pose->items[i].line, pose->items[i].column,
                      fmt::format("parameters.calibration.pose[{}]", i),
                      fmt::format("{:g} rad is beyond arm.limits of joint {}, {:g} to {:g} rad: the arm cannot be held "
@@ -107,29 +110,99 @@ void restOutsideWorkspace(const Node& root, const scene::Device& device, const h
                                radius, tip.x(), tip.y(), tip.z(), tip.norm()));
 }
 
+bool isBelow(const std::string& key, const std::string& above) {
+  return key.starts_with(above) && (key.size() == above.size() || key[above.size()] == '.' || key[above.size()] == '[');
+}
+
+/// Returns true if the geometry of the arm can be trusted, and its module does not crash.
+bool kinematicsKnown(const document::Problems& known) {
+  return std::none_of(known.begin(), known.end(), [](const document::Problem& one) {
+    return one.key == "module" || one.key == "parameters" ||
+           (isBelow(one.key, "parameters.arm") && !isBelow(one.key, "parameters.arm.max_torque"));
+  });
+}
+
+/// Returns the number of joints that a file describes; 0 if it is unknown.
+size_t jointsIn(const Node& root) {
+  constexpr size_t kOfOthers = 3;
+  const Node *kind = find(root, {"parameters", "arm", "kind"}), *rows = find(root, {"parameters", "arm", "dh"}),
+             *others = find(root, {"parameters", "arm", "others"});
+  if (kind == nullptr) return 0;
+  if (kind->scalar == "phantom" || kind->scalar == "premium15" || kind->scalar == "delta") return kOfOthers;
+  if (kind->scalar != "chain" || rows == nullptr) return 0;
+  const double more = others != nullptr ? document::toNumber(others->scalar).value_or(0) : 0;
+  return std::min<size_t>(rows->items.size() + static_cast<size_t>(std::clamp(more, 0.0, 16.0)), HDV_MAX_JOINTS);
+}
+
+/// Judges everything, with the arm that the file describes.
+void judgeWhole(const Node& root, const scene::Device& device, host::DeviceInstance& arm,
+                document::Problems& warnings) {
+  const size_t joints = arm.kinematics().joint_count;
+  adviseLimits(root, device, arm, warnings);
+  adviseSafety(root, device, arm, warnings);
+  restOutsideWorkspace(root, device, arm, warnings);
+  poseBeyondStops(root, device, warnings);
+  adviseWire(root, device, joints, warnings);
+  adviseTravel(root, device, joints, &arm, warnings);
+  adviseMotors(root, device, joints, warnings);
+  unusualFields(root, device, joints, &arm, warnings);
+  unusualLimits(root, device, &arm, warnings);
+  unusualArm(root, device, &arm, warnings);
+}
+
+/// Judges single values of a file with mistakes, without its arm.
+void judgeParts(const Node& root, const scene::Device& device, document::Problems& warnings) {
+  const size_t joints = jointsIn(root);
+  poseBeyondStops(root, device, warnings);
+  if (joints > 0) {
+    adviseWire(root, device, joints, warnings);
+    adviseTravel(root, device, joints, nullptr, warnings);
+    unusualFields(root, device, joints, nullptr, warnings);
+  }
+  adviseMotors(root, device, joints, warnings);
+  unusualLimits(root, device, nullptr, warnings);
+  unusualArm(root, device, nullptr, warnings);
+}
+
+/// Returns the part of a file that is judged together with a key: a field of a report, and the lengths of an arm.
+std::string partOf(const std::string& key) {
+  const size_t fields = key.find(".fields["), end = fields == std::string::npos ? fields : key.find(']', fields);
+  if (end != std::string::npos) return key.substr(0, end + 1);
+  return isBelow(key, "parameters.arm.lengths") ? "parameters.arm.lengths" : key;
+}
+
+/// Removes warnings about a key that is wrong anyway, or about what is in it or around it.
+void dropKnown(const document::Problems& known, document::Problems& warnings) {
+  std::erase_if(warnings, [&known](const document::Problem& warning) {
+    return std::any_of(known.begin(), known.end(), [&warning](const document::Problem& one) {
+      const std::string part = partOf(one.key);
+      return !part.empty() && part != "parameters" && (isBelow(warning.key, part) || isBelow(part, warning.key));
+    });
+  });
+}
+
 }  // namespace
 
-document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog& catalog) {
-  document::Problems warnings, known;
-  const scene::LoadedDevice loaded = scene::loadDevice(file, catalog);
-  const auto root = loaded.device ? document::parseFile(file, known) : std::nullopt;
+document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog& catalog,
+                                const document::Problems& known) {
+  document::Problems warnings, unread;
+  const auto device = known.empty() ? scene::loadDevice(file, catalog).device : scene::deviceDraft(file, catalog);
+  const auto root = device ? document::parseFile(file, unread) : std::nullopt;
   if (!root) return warnings;
   countsWithoutScale(*root, file.string(), warnings);
   massesOfAnotherArm(*root, file.string(), warnings);
   massesAtTheEnds(*root, file.string(), warnings);
   adviseUnits(*root, file.string(), warnings);
-  if (const auto arm = host::DeviceInstance::create(*loaded.device, nullptr)) {
-    adviseLimits(*root, *loaded.device, **arm, warnings);
-    adviseSafety(*root, *loaded.device, **arm, warnings);
-    restOutsideWorkspace(*root, *loaded.device, **arm, warnings);
-    poseBeyondStops(*root, *loaded.device, warnings);
-    adviseWire(*root, *loaded.device, (*arm)->kinematics().joint_count, warnings);
-    adviseTravel(*root, *loaded.device, **arm, warnings);
-    adviseMotors(*root, *loaded.device, (*arm)->kinematics().joint_count, warnings);
-    unusualFields(*root, *loaded.device, **arm, warnings);
-    unusualLimits(*root, *loaded.device, **arm, warnings);
-    unusualArm(*root, *loaded.device, **arm, warnings);
-  }
+  adviseTable(*root, file.string(), warnings);
+  std::unique_ptr<host::DeviceInstance> arm;
+  if (kinematicsKnown(known))
+    if (auto made = host::DeviceInstance::create(*device, nullptr)) arm = std::move(*made);
+  if (arm)
+    judgeWhole(*root, *device, *arm, warnings);
+  else
+    judgeParts(*root, *device, warnings);
+  adviseWeights(*root, file.string(), warnings);
+  dropKnown(known, warnings);
   document::sortByPlace(warnings);
   return warnings;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnostics/arm_table.hpp"
 #include "diagnostics/enable_button.hpp"
 #include "document/node.hpp"
 #include "host/call_trail.hpp"
@@ -115,6 +116,8 @@ std::string madeInChild(const scene::Device& device, host::Trail& trail) {
 /// Of an arm that a file describes, what its kinematics lack is in the file; else in the module.
 static void placeDoubt(const std::string& doubt, const Node& root, const std::string& file,
                        document::Problems& warnings) {
+  if (const auto stuck = stuckJoint(root, file); stuck && doubt.find("inverse()") != std::string::npos)
+    return warnings.push_back(*stuck);
   const Node* parameters = root.find("parameters");
   const Node* arm = parameters != nullptr && parameters->isMap() ? parameters->find("arm") : nullptr;
   const Node* centers = arm != nullptr && arm->isMap() ? arm->find("centers") : nullptr;
@@ -156,7 +159,7 @@ document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& c
   else if (!trial.error.empty() && known.empty())
     placeAtModule(trial.error, *root, file.string(), problems);
   for (const std::string& doubt : trial.doubts)
-    if (warnings != nullptr) placeDoubt(doubt, *root, file.string(), *warnings);
+    if (warnings != nullptr && known.empty()) placeDoubt(doubt, *root, file.string(), *warnings);
   document::sortByPlace(problems);
   return problems;
 }

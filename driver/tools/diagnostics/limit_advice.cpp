@@ -62,10 +62,14 @@ void motorsBeyondAll(const Node& root, const scene::Device& device, double reach
   constexpr double kMost = 1000, kTimes = 100;  // [N]; factor of limits.force
   const Node* at = find(root, {"parameters", "arm", "max_torque"});
   if (at == nullptr || reach < kMost || reach < kTimes * device.limits.force) return;
+  const scene::Value* torques = valueOf(device, {"arm.max_torque"});
+  double most = 600;  // [N mm] as an example
+  if (torques != nullptr && !torques->numbers.empty())
+    most = *std::max_element(torques->numbers.begin(), torques->numbers.end());
   document::report(warnings, device.file.string(), at->line, at->column, "parameters.arm.max_torque",
                    fmt::format("these torques give {:.3g} N at the tip, but limits.force allows only {:g} N; torques "
-                               "must be in N m, here and in the scales of the torques: 600 N mm is 0.6 N m",
-                               reach, device.limits.force));
+                               "must be in N m, here and in the scales of the torques: {:g} N mm is {:g} N m",
+                               reach, device.limits.force, most, most / 1000));
 }
 
 /// Moves joints between their stops: those of a simulated chain to the middle, where it begins, and others to the

@@ -134,15 +134,17 @@ void narrowWorkspace(const Node& root, const scene::Device& device, const host::
 
 }  // namespace
 
-void adviseTravel(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
+void adviseTravel(const Node& root, const scene::Device& device, size_t joints, const host::DeviceInstance* arm,
                   document::Problems& warnings) {
-  workspaceBeyondReach(root, device, arm, warnings);
-  const size_t joints = arm.kinematics().joint_count;
-  const auto wire = wireOf(device, joints);
+  if (arm != nullptr) workspaceBeyondReach(root, device, *arm, warnings);
+  const auto wire = arm != nullptr ? wireOf(device, joints) : wireDraftOf(device, joints);
   const Node* fields = find(root, {"parameters", "wire", "input", "fields"});
   if (!wire || fields == nullptr) return;
   const std::vector<double> limits = limitsOf(device);
-  if (limits.size() != 2 * joints) return narrowWorkspace(root, device, arm, *wire, warnings);
+  if (limits.size() != 2 * joints) {
+    if (arm != nullptr) narrowWorkspace(root, device, *arm, *wire, warnings);
+    return;
+  }
   for (size_t i = 0; i < wire->input.fields.size() && i < fields->items.size(); ++i) {
     const Field& field = wire->input.fields[i];
     const auto said = sayable(field);

@@ -9,8 +9,8 @@ namespace hapticd::diagnostics {
 
 /// [main] Warns of positions whose type cannot express all of `arm.limits`, and of a `limits.workspace` that is far
 /// larger than the region that these positions let the tip reach. In both cases the scale is too small or the type too
-/// narrow.
-void adviseTravel(const document::Node& root, const scene::Device& device, const host::DeviceInstance& arm,
-                  document::Problems& warnings);
+/// narrow. @param arm is nullptr if the file has mistakes, so that only single fields are judged
+void adviseTravel(const document::Node& root, const scene::Device& device, size_t joints,
+                  const host::DeviceInstance* arm, document::Problems& warnings);
 
 }  // namespace hapticd::diagnostics

@@ -40,9 +40,9 @@ double claimed(const scene::Device& device, const char* id) {
   return 0;
 }
 
-hdv_info infoOf(const scene::Device& device, host::DeviceInstance& arm) {
+hdv_info infoOf(const scene::Device& device, host::DeviceInstance* arm) {
   hdv_info info{};
-  if (device.module == "simulated" && arm.open()) return arm.info();
+  if (device.module == "simulated" && arm != nullptr && arm->open()) return arm->info();
   info.max_force = claimed(device, "device.max_force");
   info.continuous_force = claimed(device, "device.continuous_force");
   info.max_stiffness = claimed(device, "device.max_stiffness");
@@ -168,14 +168,14 @@ void judgeLengths(const Told& told) {
 
 }  // namespace
 
-void unusualArm(const Node& root, const scene::Device& device, host::DeviceInstance& arm,
+void unusualArm(const Node& root, const scene::Device& device, host::DeviceInstance* arm,
                 document::Problems& warnings) {
   const Told told{root, device, infoOf(device, arm), warnings};
   judgeForces(told);
   judgeStiffness(told);
   judgeMass(told);
-  judgeWeight(told, arm);
-  judgeCounts(told);
+  if (arm != nullptr) judgeWeight(told, *arm);
+  if (arm != nullptr) judgeCounts(told);
   judgeLengths(told);
 }
 

@@ -8,19 +8,22 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of such numbers, each at its key. @param arm is opened if it is simulated, which touches no hardware
-void unusualArm(const document::Node& root, const scene::Device& device, host::DeviceInstance& arm,
+/// [main] Warns of such numbers, each at its key. @param arm is opened if it is simulated, which touches no hardware;
+/// it is nullptr if the file has mistakes, so that only single values are judged
+void unusualArm(const document::Node& root, const scene::Device& device, host::DeviceInstance* arm,
                 document::Problems& warnings);
 
 /// [main] Warns of a field of the wire format that differs from the same field of the other joints in byte order, in
 /// sign, or by powers of ten in scale; and of positions of which one count moves the tip so far that a hand feels the
 /// step.
-void unusualFields(const document::Node& root, const scene::Device& device, const host::DeviceInstance& arm,
-                   document::Problems& warnings);
+/// @param arm is nullptr if the file has mistakes, so that only single fields are judged
+void unusualFields(const document::Node& root, const scene::Device& device, size_t joints,
+                   const host::DeviceInstance* arm, document::Problems& warnings);
 
 /// [main] Warns of limits that leave nothing to feel or bound nothing, of what the wire format has no fields for, and
 /// of joints of simulated arms that rub, weigh or lag more than shapes push.
-void unusualLimits(const document::Node& root, const scene::Device& device, const host::DeviceInstance& arm,
+/// @param arm is nullptr if the file has mistakes, so that only single values are judged
+void unusualLimits(const document::Node& root, const scene::Device& device, const host::DeviceInstance* arm,
                    document::Problems& warnings);
 
 }  // namespace hapticd::diagnostics

@@ -44,6 +44,14 @@ struct Side {
                   [this](size_t i) { return report.fields[i].bits <= 8 || codec::isText(report.fields[i].type); });
     return found;
   }
+  /// Returns all fields of more than one byte, of any kind: in a report with both orders, somebody chose them.
+  std::vector<size_t> ordered() const {
+    std::vector<size_t> found;
+    for (size_t i = 0; i < count(); ++i)
+      if (report.fields[i].bits > 8 && !codec::isText(report.fields[i].type) && report.fields[i].role != Role::kButton)
+        found.push_back(i);
+    return found;
+  }
   /// Returns the fields of these kinds, for all joints.
   std::vector<size_t> of(std::initializer_list<Role> roles) const {
     std::vector<size_t> found;
@@ -77,8 +85,8 @@ void mixedOrder(const Side& side) {
 
 /// Warns if the output has another byte order than the input.
 void otherOrderOut(const Side& in, const Side& out) {
-  const std::vector<size_t> read = in.wide(), sent = out.wide();
-  if (read.empty() || sent.empty()) return;
+  const std::vector<size_t> read = in.ordered(), sent = out.wide();
+  if (in.wide().empty() || sent.empty()) return;
   const bool big = out.report.fields[sent[0]].big_endian;
   for (const auto& [side, fields, order] : {std::tuple(&in, &read, !big), std::tuple(&out, &sent, big)})
     for (const size_t i : *fields)
@@ -159,6 +167,21 @@ void coarseCounts(const Node& root, const Side& side, const host::DeviceInstance
   }
 }
 
+/// Warns if one count is a large angle, of an arm whose lengths are unknown.
+void coarseAngles(const Side& side) {
+  constexpr double kLarge = 0.02;  // [rad] 4 mm at a link of 0.2 m
+  for (const size_t i : side.of({Role::kPosition})) {
+    const Field& field = side.report.fields[i];
+    if (field.type == codec::Type::kFloat || !(std::abs(field.scale) > kLarge) ||
+        side.fields.items[i].find("scale") == nullptr)
+      continue;
+    side.warn(i, "scale",
+              fmt::format("one count of joint {} is {:.3g} rad, or {:.3g} degrees; the value must be in rad per count; "
+                          "if it is in degrees, write scale_degrees: {:g}",
+                          field.index + 1, field.scale, field.scale * 180 / M_PI, field.scale));
+  }
+}
+
 /// Warns if the joints have another order in the output than in the input, because most boards use one order, and
 /// forces at the wrong joints may pull the hand in.
 void crossedJoints(const Side& in, const Side& out) {
@@ -235,27 +258,30 @@ void idleOffset(const Side& side) {
 
 }  // namespace
 
-void unusualFields(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
+void unusualFields(const Node& root, const scene::Device& device, size_t joints, const host::DeviceInstance* arm,
                    document::Problems& warnings) {
   const Node* in = find(root, {"parameters", "wire", "input", "fields"});
   const Node* out = find(root, {"parameters", "wire", "output", "fields"});
-  const size_t joints = arm.kinematics().joint_count;
-  const auto wire = wireOf(device, joints);
+  const auto wire = arm != nullptr ? wireOf(device, joints) : wireDraftOf(device, joints);
   if (!wire || in == nullptr || out == nullptr) return;
   const Side input{"input", wire->input, *in, device, warnings}, output{"output", wire->output, *out, device, warnings};
   const Node* kind = find(root, {"parameters", "arm", "kind"});
   const bool alike = kind != nullptr && kind->scalar != "chain";
-  coarseCounts(root, input, arm);
+  if (arm != nullptr)
+    coarseCounts(root, input, *arm);
+  else
+    coarseAngles(input);
+  for (const Side* side : {&input, &output}) polynomialBackwards(*side);
+  idleOffset(input);
+  if (!wireOf(device, joints)) return;  // fields are compared with each other only if all of them are right
   for (const Side* side : {&input, &output}) {
     mixedOrder(*side);
     mixedSigns(*side, side == &input ? Role::kPosition : Role::kTorque);
     if (alike) muchCoarser(*side, side == &input ? Role::kPosition : Role::kTorque, motorsOf(device, joints));
     twice(*side);
-    polynomialBackwards(*side);
   }
   otherOrderOut(input, output);
   crossedJoints(input, output);
-  idleOffset(input);
 }
 
 }  // namespace hapticd::diagnostics

@@ -23,6 +23,14 @@ struct Bounds {
   double force;  ///< [N]
   document::Problems& warnings;
 
+  double number(const char* id, double fallback) const {
+    for (const scene::Value& value : device.parameters)
+      if (value.id == id) return value.number;
+    return fallback;
+  }
+  bool knows(const std::string& key) const {
+    return std::any_of(warnings.begin(), warnings.end(), [&](const auto& one) { return one.key == key; });
+  }
   void warn(std::initializer_list<const char*> path, const std::string& what) const {
     const Node* at = find(root, path);
     std::string key;
@@ -38,6 +46,7 @@ void judgeDynamics(const Bounds& of) {
   constexpr double kLittle = 0.05;  // share of the force that cannot be felt
   constexpr double kStill = 0.2;    // [m/s] a slow move of a hand
   constexpr double kFast = 20;      // [m/s] faster than any arm
+  constexpr double kSmall = 0.02;   // [m] less than a finger moves
   const scene::Limits& limits = of.device.limits;
   if (limits.slew > 0 && of.force / limits.slew > kSlow)
     of.warn({"limits", "slew"},
@@ -56,6 +65,11 @@ void judgeDynamics(const Bounds& of) {
             fmt::format("{:g} N s within 0.1 s is {:.2g} N, which cannot be felt (limits.force is "
                         "{:g} N); the value must be in N s, such as {:.2g}",
                         limits.impulse, limits.impulse / 0.1, of.force, 0.1 * of.force));
+  if (limits.workspace > 0 && limits.workspace < kSmall && !of.knows("limits.workspace"))
+    of.warn({"limits", "workspace"},
+            fmt::format("forces end {0:g} m from the origin of the arm's frame, and a hand is beyond that at once; the "
+                        "value must be the radius of the workspace in m, such as 0.15",
+                        limits.workspace));
   const double velocity = limits.velocity.value_or(0);
   if (velocity > 0 && velocity < kStill)
     of.warn({"limits", "velocity"},
@@ -165,8 +179,22 @@ struct Joint {
   }
 };
 
+/// Warns of a delay with which contacts swing up. A spring that answers late is stable only while its stiffness is less
+/// than the damping over the time that it is late, and only the hand damps a simulated arm.
+void judgeDelay(const Bounds& of) {
+  constexpr double kRate = 1000, kHold = 0.5, kSoft = 1000;  // [Hz] of a servo; [ticks]; [N/m] less than most models
+  const double late = of.number("delay", 0), damping = of.number("hand.damping", 5);
+  const double stable = damping * kRate / (late + kHold);
+  if (!(late > 1) || !(stable < kSoft)) return;
+  of.warn({"parameters", "delay"},
+          fmt::format(
+              "{0:g} reads are {0:g} ms at 1000 Hz: with hand.damping {1:g} N s/m, models that are stiffer than about "
+              "{2:.3g} N/m bounce; the value must be a number of reads, such as 1",
+              late, damping, stable));
+}
+
+/// Warns of joints that rub, weigh or drag more than shapes push.
 void judgeTwin(const Bounds& of, const host::DeviceInstance& arm) {
-  constexpr double kTick = 1e-3, kLag = 0.02, kFew = 100;  // [s]; [s]; [Hz]
   const uint32_t joints = arm.kinematics().joint_count;
   const auto q = restJoints(of.root, joints);
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor> J(6, joints);
@@ -176,24 +204,30 @@ void judgeTwin(const Bounds& of, const host::DeviceInstance& arm) {
   const Joint joint{of, lever};
   const size_t before = of.warnings.size();
   for (Eigen::Index i = 0; i < lever.cols() && of.warnings.size() == before; ++i) joint.judge(i);
-  if (const double step = joint.number("substep", 0, 0); step > kTick)
+}
+
+/// Warns of times and rates of a simulated arm with which nothing can be felt.
+void judgeRates(const Bounds& of) {
+  constexpr double kTick = 1e-3, kLag = 0.02, kFew = 100;  // [s]; [s]; [Hz]
+  if (const double step = of.number("substep", 0); step > kTick)
     of.warn({"parameters", "substep"},
             fmt::format(
                 "{0:g} s is longer than a tick, so the arm moves in jumps; the value must be in s: 0.2 ms is 0.0002 s",
                 step));
-  if (const double lag = joint.number("joint.motor_lag", 0, 0); lag > kLag)
+  if (const double lag = of.number("joint.motor_lag", 0); lag > kLag)
     of.warn({"parameters", "joint", "motor_lag"},
             fmt::format("the motors push {0:g} s after a command; the value must be in s: {0:g} ms is {1:g} s", lag,
                         lag / 1000));
-  if (const double rate = joint.number("device.rate", 0, 1000); rate < kFew)
+  if (const double rate = of.number("device.rate", 1000); rate < kFew)
     of.warn({"parameters", "device", "rate"},
             fmt::format("no hand feels a shape at {0:g} Hz; the value must be in Hz: {0:g} kHz is {1:g} Hz", rate,
                         rate * 1000));
+  judgeDelay(of);
 }
 
 }  // namespace
 
-void unusualLimits(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
+void unusualLimits(const Node& root, const scene::Device& device, const host::DeviceInstance* arm,
                    document::Problems& warnings) {
   double force = device.limits.force;
   for (const scene::Value& value : device.parameters)
@@ -203,8 +237,10 @@ void unusualLimits(const Node& root, const scene::Device& device, const host::De
   const Bounds bounds{root, device, force, warnings};
   judgeDynamics(bounds);
   judgeCarried(bounds);
-  if (device.module == "simulated") judgeTwin(bounds, arm);
-  const auto wire = wireOf(device, arm.kinematics().joint_count);
+  if (device.module == "simulated") judgeRates(bounds);
+  if (arm == nullptr) return;
+  if (device.module == "simulated") judgeTwin(bounds, *arm);
+  const auto wire = wireOf(device, arm->kinematics().joint_count);
   if (!wire) return;
   judgeCompliance(bounds, *wire);
   judgeIds(bounds, *wire);

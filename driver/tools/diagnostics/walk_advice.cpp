@@ -77,9 +77,51 @@ void tellUnfelt(const scene::Model& model, size_t index, const WalkedModel& seen
                   model.name, seen.depth * 1e3, seen.force, mend));
 }
 
+/// Returns what to do about a limit that takes almost all of the force.
+std::string cureOf(const std::string& limit) {
+  if (limit == "workspace")
+    return "expected the radius in m that the tip may be away from the arm's origin, such as 0.15";
+  if (limit == "slew") return "the value must be in N/s, such as 2000";
+  if (limit == "impulse")
+    return "the value must be in N s within 0.1 s; a lasting force is cut to five times this number, in N";
+  if (limit == "power") return "the value must be in W, such as 5";
+  if (limit == "motors")
+    return "torque_constant must be in N m/A, resistance in ohm, and ratio joint torque over motor torque";
+  return "expected a larger value";
+}
+
 /// Returns the limit that cuts most often.
 size_t strictest(const WalkedArm& seen) {
   return static_cast<size_t>(std::max_element(seen.limits.begin(), seen.limits.end()) - seen.limits.begin());
+}
+
+/// Warns at a limit of the device file that is so strict that no scene helps. @return false if it is not
+bool tellOwnLimit(const scene::Device& device, const WalkedArm& seen, const std::string& limit,
+                  document::Problems& warnings) {
+  constexpr double kMostly = 0.5;  // share of the ticks with a force
+  const double share = static_cast<double>(seen.cut) / static_cast<double>(seen.contact);
+  if (limit == "force" || limit == "torque" || limit == "motors (torque)" || share < kMostly) return false;
+  const std::string name = limit.substr(0, limit.find(' '));  // "motors (heat)" is limits.motors
+  const auto place = placeOfKey(device.file, "limits." + name);
+  if (!place) return false;
+  document::report(warnings, *place, "limits." + name,
+                   fmt::format("this limit cuts the force of {} in {:.0f} % of the ticks with a force, although models "
+                               "ask for no more than {:.3g} N, so little is felt; {}",
+                               device.name, 100 * share, seen.asked, cureOf(name)));
+  return true;
+}
+
+/// Warns of a limit of speed that the hand exceeds, because the forces end then for the rest of the run. @return false
+/// if it did not
+bool tellFault(const scene::Device& device, const servo::Limiter& limiter, document::Problems& warnings) {
+  if (limiter.fault() != servo::Fault::kTooFast) return false;
+  const auto place = placeOfKey(device.file, "limits.velocity");
+  document::report(
+      warnings, place.value_or(document::Place{device.file.string(), 1, 1}), "limits.velocity",
+      fmt::format("the tip of {} moves at {:.3g} m/s in this scene, which is a fault that ends its forces; expected "
+                  "more than the hand moves at, such as 2 m/s, or a slower hand (hand.rate, hand.lead_in)",
+                  device.name, limiter.measured()));
+  return true;
 }
 
 void tellCut(const scene::Scene& scene, const scene::Device& device, const HandScript& hand, const WalkedArm& seen,
@@ -91,6 +133,8 @@ void tellCut(const scene::Scene& scene, const scene::Device& device, const HandS
                                : keyOfHand(scene, device, {"hand.radius", "hand.path", "hand.script"});
   if (seen.depth < kDeep && stiffness != nullptr)
     key = {stiffness->place, fmt::format("models[{}].parameters.stiffness", seen.deepest)};
+  const std::string limit = servo::nameOf(static_cast<servo::Limit>(strictest(seen)));
+  if (tellOwnLimit(device, seen, limit, warnings)) return;
   const std::string most =
       limiter.maxForce() > 0 ? fmt::format(", but only {:.3g} N are allowed", limiter.maxForce()) : "";
   document::report(
@@ -99,8 +143,7 @@ void tellCut(const scene::Scene& scene, const scene::Device& device, const HandS
           "the hand of {} is up to {:.3g} mm deep in {} and asks for up to {:.3g} N{}: limits.{} cuts the force in "
           "{:.0f} % of the ticks with a force; expected a hand that presses less (hand.radius, hand.rise in m) or "
           "less stiffness",
-          device.name, seen.depth * 1e3, model.name, seen.asked, most,
-          servo::nameOf(static_cast<servo::Limit>(strictest(seen))),
+          device.name, seen.depth * 1e3, model.name, seen.asked, most, limit,
           100 * static_cast<double>(seen.cut) / static_cast<double>(seen.contact)));
 }
 
@@ -111,6 +154,7 @@ void judgeArm(const scene::Scene& scene, uint32_t index, const Walk& walk, const
   const WalkedArm& seen = walk.arms[index];
   const auto hand = handScriptOf(scene.devices[index]);
   if (!hand || !hand->goes()) return;
+  if (tellFault(scene.devices[index], walk.limiters[index], warnings)) return;
   if (!seen.touched) {
     if (walk.whole && std::isfinite(seen.away) && !strayed(seen.nearest))
       tellAway(scene, index, *hand, seen, world, warnings);

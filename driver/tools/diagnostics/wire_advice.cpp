@@ -96,7 +96,7 @@ std::vector<size_t> uncovered(const codec::Report& report) {
   std::vector<bool> covered(report.size);
   bool any = false;
   for (const Field& field : report.fields)
-    if (field.role == Role::kChecksum && field.to <= report.size)
+    if (field.role == Role::kChecksum && field.from < field.to && field.to <= report.size)
       any = true, std::fill(covered.begin() + field.from, covered.begin() + field.to, true);
   constexpr Role kIdle[] = {Role::kChecksum, Role::kConstant, Role::kFirmware,
                             Role::kSequence, Role::kStarts,   Role::kTime};
@@ -186,10 +186,11 @@ void adviseStartup(const Node& steps, const codec::Wire& wire, const scene::Devi
 void adviseWire(const Node& root, const scene::Device& device, size_t joints, document::Problems& warnings) {
   const Node* in = find(root, {"parameters", "wire", "input", "fields"});
   const Node* out = find(root, {"parameters", "wire", "output", "fields"});
-  const auto wire = wireOf(device, joints);
+  const auto wire = wireDraftOf(device, joints);
   if (!wire || in == nullptr || out == nullptr) return;
   adviseTorques(*out, wire->output, device, warnings);
   adviseGaps(*in, wire->input, device, warnings);
+  if (!wireOf(device, joints)) return;  // a field with a mistake may lie elsewhere
   adviseChecksum(*in, wire->input, "input", device, warnings);
   adviseChecksum(*out, wire->output, "output", device, warnings);
   if (const Node* startup = find(root, {"parameters", "wire", "startup"}))

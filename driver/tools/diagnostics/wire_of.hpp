@@ -20,4 +20,16 @@ inline std::optional<codec::Wire> wireOf(const scene::Device& device, size_t joi
   return std::nullopt;
 }
 
+/// [main] Returns the wire format of a device, or what is right in one with mistakes, for checks of single fields only.
+inline std::optional<codec::Wire> wireDraftOf(const scene::Device& device, size_t joints) {
+  if (auto right = wireOf(device, joints)) return right;
+  try {
+    for (const scene::Value& value : device.parameters)
+      if (value.id == "wire") return codec::draftOfWire(value.text, joints);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
 }  // namespace hapticd::diagnostics

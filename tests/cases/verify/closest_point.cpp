@@ -11,10 +11,6 @@ namespace {
 using Eigen::Vector3d;
 using spline::SurfaceData;
 
-Vector3d vector(const Json& v) {
-  return {number(v[0]), number(v[1]), number(v[2])};
-}
-
 /// Homogeneous control point: position and weight.
 struct Weighted {
   double x, y, w;

@@ -5,10 +5,6 @@
 namespace hapticd::verify {
 namespace {
 
-Eigen::Vector3d vector(const Json& v) {
-  return {number(v[0]), number(v[1]), number(v[2])};
-}
-
 void matDistance(const Case& c, Check& check) {
   const Json& in = c.input;
   const Eigen::Vector3d q = vector(in["Q"]);

@@ -7,10 +7,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-Vector3d vector(const Json& v) {
-  return {number(v[0]), number(v[1]), number(v[2])};
-}
-
 void movingFrame(const Case& c, Check& check) {
   const Eigen::Quaterniond q(Eigen::AngleAxisd(number(c.input["angle"]), vector(c.input["axis"]).normalized()));
   const Vector3d origin = vector(c.input["translation"]);

@@ -15,10 +15,6 @@ constexpr double kSecondRelative = 1e-7;
 /// A tangent that is zero, beside one that is not, may keep the rounding of its terms.
 constexpr double kRounding = 1e-15;
 
-Vector3d vector(const Json& v) {
-  return {number(v[0]), number(v[1]), number(v[2])};
-}
-
 spline::SurfaceData readSurface(const Json& in) {
   spline::SurfaceData data;
   data.degree = {in["degree_u"].get<int>(), in["degree_v"].get<int>()};

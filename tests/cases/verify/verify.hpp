@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Truth cases: a family of cases is a function that computes each with the production kernels and checks the answers.
 #pragma once
+#include <Eigen/Core>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -33,6 +34,10 @@ inline long double truth(const Json& value) {
 /// A tolerance or other number that may be written as a string.
 inline double number(const Json& value) {
   return static_cast<double>(truth(value));
+}
+
+inline Eigen::Vector3d vector(const Json& value) {
+  return {number(value[0]), number(value[1]), number(value[2])};
 }
 
 /// Gathers the comparisons of one case.

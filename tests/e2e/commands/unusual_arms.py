@@ -129,15 +129,111 @@ CASES = [
     (PREMIUM, {"  seed: 1": "  joint: {gear: 0.1, counts: |4}"}, "parameters.joint.counts", "one count moves the tip by"),
 ]
 
+MOTOR = "{torque_constant: 0.0259, resistance: 2.3, ratio: 12}"
+MOTORS = f"motors: [{MOTOR}, {MOTOR}, {MOTOR}], "
+ROWS = """      - [0, 1.5707963, 0, 0]
+      - [0.22, 0, 0, 0]
+      - [0.2, 0, 0, 0]
+"""
+CASES += [
+    (CHAIN, {ROWS: """      - [0, 0.15, 0, 1.5707963]
+      - |[0, 0, 0.22, 0]
+      - [0, 0, 0.2, 0]
+"""}, "parameters.arm.dh[1]", "theta, d, a, alpha: expected [0.22, 0, 0, 0] here"),
+    (CHAIN, {"- [0, 1.5707963, 0, 0]": "- [|1.5707963, 0.01, 0, 0]"}, "parameters.arm.dh[0][0]", "a quarter of a turn in rad"),
+    (CHAIN, {"    dh:": "    lengths: |[0.2, 0.2]\n    dh:"}, "parameters.arm.lengths", "a chain has no lengths"),
+    (WIRED, {"[[-1.2, 1.2]": "[|[0, 0]"}, "parameters.arm.limits[0]", "joint 1 cannot move"),
+    (WIRED, {"workspace: 0.3": "workspace: |0.01"}, "limits.workspace", "a hand is beyond that at once"),
+    (WIRED, {"force: 2, ": "force: 2, " + MOTORS.replace("0.0259", "|25.9", 1)}, "limits.motors[0].torque_constant", "25.9 mN m/A is 0.0259 N m/A"),
+    (WIRED, {"force: 2, ": "force: 2, " + MOTORS.replace("ratio: 12", "ratio: |0.0833", 1)}, "limits.motors[0].ratio", "12 if it was turned round"),
+    (PREMIUM, {"force: 8.5": "force: 8.5, " + MOTORS.replace("2.3", "|2300", 1).rstrip(", ")}, "limits.motors[0].resistance", "2300 mohm is 2.3 ohm"),
+    (WIRED, {"force: 2, ": "force: 2, " + MOTORS.replace("ratio: 12", "ratio: 12, housing_time: |10", 1)}, "limits.motors[0].housing_time", "10 min is 600 s"),
+    (TWIN, {"hand:": "  delay: |16\nhand:"}, "parameters.delay", "stiffer than about 303 N/m bounce"),
+]
+BIG = {SENT.format(n + 1, 2 * n): SENT.format(n + 1, 2 * n).replace("i16", "i16, endian: big") for n in range(3)}
+# What is unusual and right: nothing is told of it.
+RIGHT = [
+    (WIRED, BIG | {"{is: checksum, at: 10, type: u16,": "{is: checksum, at: 10, type: u16, endian: big,"}),
+    (WIRED, {"force: 2, ": "force: 2, " + MOTORS}),
+    (WIRED, {"workspace: 0.3": "workspace: 0.1"}),
+    (TWIN, {"hand:": "  delay: 1\nhand:"}),
+    (CHAIN, {"- [0.22, 0, 0, 0]": "- [0.22, 0, 0.03, 0]", "[0.2, 0, 0, 0]": "[0.2, 3.1415927, 0, 0]"}),
+]
+
 # What no run could begin with is an error of the device file alone.
 REFUSED = [
     (TWIN, {"    masses": "    max_torque: |[0.5, 0.4]\n    masses"}, "parameters.arm.max_torque", "2 numbers, expected 1 or 3"),
     (TWIN, {"rate: 1,": "rate: 1, axis: |[0, 0, 0],"}, "hand.axis", "expected a direction"),
     (TWIN, {"center: [0, 0, -0.09]": "center: |[0, 0, -0.9]"}, "hand", "which the arm cannot reach"),
     (TWIN, {"kind: phantom": "kind: premium15", "lengths: [": "lengths: |["}, "parameters.arm.lengths", "expected arm.kind phantom"),
+    (TWIN, {"kind: phantom": "kind: premium15", "    lengths: [0.21, 0.17, 0, 0, 0]\n": "", "masses: [": "masses: |["}, "parameters.arm.masses",
+     "a premium15 has fixed masses"),
     (TWIN, {"{force: 2}": "{force: 2, enable: {button: |1}}"}, "limits.enable.button", "the device has 0 buttons"),
     (WIRED, {"lengths: [0.21": "lengths: [|205"}, "parameters.arm.lengths[0]", "205 mm is 0.205 m\n"),
 ]
+
+TWIN_CHAIN = TWIN[:TWIN.index("    kind")] + "    kind: chain\n    dh:\n" + ROWS + "hand: {script: none}\n"
+# Several mistakes in one file, all of them told at once: a mistake in one key stops no judgement of another.
+TOGETHER = [
+    (TWIN, {"[0.21, 0.17,": "[210, 170,", "[0.03, 0, 0.05, 0]": "[30, 0, 50, 0]\n    max_torque: [500, 400, 400]"},
+     {"arm.lengths[0]": "210 mm is 0.21 m", "arm.masses": "50 g is 0.05 kg", "arm.max_torque": "500 N mm is 0.5 N m"}),
+    (TWIN_CHAIN, {"    dh:": "    limits: [[-1, 1], [-1, 1]]\n    masses: [1]\n    base_orientation: [0.7, 0.7, 0.7, 0]\n    base_position: [-30, 0, 0]\n    dh:"},
+     {"arm.limits": "2 rows, expected 3", "arm.masses": "1 rows, expected 3", "arm.base_orientation": "expected a unit quaternion",
+      "arm.base_position[0]": "-30 mm is -0.03 m"}),
+    (TWIN_CHAIN, {ROWS: "      - [0, 0.15, 0, 90]\n      - [0, 0, 0.22, 0]\n      - [0, 0, 0.2, 0]\n"},
+     {"arm.dh[0][3]": "90 degrees is 1.57", "arm.dh[1]": "theta, d, a, alpha"}),
+    (WIRED, {"from: 0, to: 10}": "from: 0, to: 12}", SECOND: SECOND.replace("9.6e-5", "9.2e-2"), FIRST_OUT: FIRST_OUT.replace("i16", "u16"),
+             SENT.format(2, 2): SENT.format(2, 2).replace("2.0e-5", "2.0e-2")},
+     {"wire.input.fields[5].at": "inside the bytes that it covers", "wire.input.fields[2].scale": "scale_degrees: 0.092",
+      "wire.output.fields[0].type": "expected both signs", "wire.output.fields[1].scale": "0.02 N mm is 2e-05 N m"}),
+    (WIRED, {"usb_hid": "usb-hid", "1209:0a0a": "0x1209:0x0a0a", "pose: [0, 0, 0]": "pose: [0, 45, 30]"},
+     {"module": "did you mean", "usb.id": "", "calibration.pose": "45 degrees is 0.7854 rad"}),
+    (WIRED, {"force: 2, ": "force: 40, slew: 2, ramp_in: 250, velocity: 0.02, ", "workspace: 0.3": "workspace: 0.01"},
+     {"limits.ramp_in": "250 ms is 0.25 s", "limits.slew": "2 N/ms is 2000 N/s", "limits.velocity": "its first stroke would be a fault",
+      "limits.workspace": "a hand is beyond that at once", "limits.force": "N"}),
+    (WIRED, {"[0.21, 0.17": "[0.21, 17", "method: pose": "method: device", "max_stiffness: 600": "max_stiffness: 0.6", "mass: 0.2": "mass: 100"},
+     {"arm.lengths[1]": "17 mm is 0.017 m", "calibration.method": "no field of wire.input", "device.max_stiffness": "0.6 N/mm is 600 N/m",
+      "device.mass": "100 g is 0.1 kg"}),
+    (CHAIN, {"1.5707963": "90", "[-0.3, 0.9], [-1, 1]": "[0.9, -0.3]", "max_torque: [0.6]": "max_torque: [0.6, 0.6]"},
+     {"arm.dh[0][1]": "90 degrees is 1.57", "arm.limits": "2 rows, expected 3", "arm.limits[1]": "the smaller one first",
+      "arm.max_torque": "2 numbers, expected 1 or 3"}),
+    (WIRED, {"crc16-modbus, from: 0, to: 10": "crc-16, from: 0, to: 10", SECOND: SECOND.replace("9.6e-5", "1.6e-5")},
+     {"wire.input.fields[5].method": "did you mean", "wire.input.fields[2].scale": "arm.limits of joint 2 go from"}),
+    (WIRED, {"[0, 0, 0.09]}": "[0, 0, 0.09], orientation: [0, 180, 0, 0]}", "pose: [0, 0, 0]": "pose: [0, 1.57, 1.57]"},
+     {"mount.orientation": "expected a unit quaternion", "calibration.pose[1]": "beyond arm.limits of joint 2"}),
+]
+
+
+def together(folder):
+    files = []
+    for i, (text, changes, _) in enumerate(TOGETHER):
+        file, _ = written(os.path.join(folder, f"together{i}.yaml"), text + "|", changes)
+        files.append(file)
+    done = subprocess.run([HAPTICD, "check", "--json", *files], capture_output=True, text=True, timeout=300)
+    told = {one["file"]: one for one in json.loads(done.stdout)["files"]}
+    for file, (_, _, wanted) in zip(files, TOGETHER):
+        all_told = {w["key"]: w["what"] for w in told[file]["problems"] + told[file]["warnings"]}
+        for key, word in wanted.items():
+            found = all_told.get(key, all_told.get("parameters." + key))
+            check(f"{os.path.basename(file)} tells {key} at once", found is not None and word in found, all_told)
+
+
+def strict(folder):
+    """A limit that leaves nothing to feel is told at the device file, not at a model."""
+    scene = os.path.join(SOURCE, "config", "scenes", "sphere.yaml")
+    file, place = written(os.path.join(folder, "near.yaml"), PREMIUM, {"force: 8.5": "force: 8.5, impulse: |0.002"})
+    done = subprocess.run([HAPTICD, "check", scene, "--device", file], capture_output=True, text=True, timeout=120)
+    check("a limit that cuts all is told where it stands", f"{place}: limits.impulse: warning: this limit cuts the force" in done.stdout
+          and "stiffness" not in done.stdout, done.stdout)
+    file, place = written(os.path.join(folder, "slow.yaml"), PREMIUM, {"force: 8.5": "force: 8.5, velocity: |0.02"})
+    with open(scene) as text:
+        own = text.read().replace("../", f"{SOURCE}/config/")
+    device = [line for line in own.splitlines() if line.startswith("device:")]
+    named = os.path.join(folder, "slow_scene.yaml")
+    with open(named, "w") as out:
+        out.write(own.replace(device[0], f"device: {file}") if device else own + f"device: {file}\n")
+    done = subprocess.run([HAPTICD, "check", named], capture_output=True, text=True, timeout=120)
+    check("a fault that the hand meets is told", f"{os.path.realpath(file)}{place[len(file):]}: limits.velocity: warning: the tip of" in done.stdout, done.stdout)
 
 
 def refused(folder):
@@ -190,10 +286,9 @@ def main():
             file, place = written(os.path.join(folder, f"arm{i}.yaml"), text, changes)
             placed.append((file, place, key, word))
         usual = []
-        for i, text in enumerate((WIRED, TWIN, PREMIUM, CHAIN)):
+        for i, (text, changes) in enumerate([(one, {}) for one in (WIRED, TWIN, PREMIUM, CHAIN)] + RIGHT):
             usual.append(os.path.join(folder, f"usual{i}.yaml"))
-            with open(usual[-1], "w") as out:
-                out.write(text)
+            written(usual[-1], text + "|", changes)
         ships = right()
         done = subprocess.run([HAPTICD, "check", "--json", *(one[0] for one in placed), *usual, *ships], capture_output=True, text=True, timeout=300)
         told = {one["file"]: one for one in json.loads(done.stdout)["files"]}
@@ -205,6 +300,8 @@ def main():
             odd = [w["what"] for w in told[file]["warnings"] if "sustains" not in w["what"]]
             check(f"{os.path.basename(file)} is as it should be", told[file]["ok"] and not odd, odd)
         refused(folder)
+        together(folder)
+        strict(folder)
     finish()
 
 

@@ -204,7 +204,7 @@ with tempfile.TemporaryDirectory() as folder:
         return [i + 1 for i, line in enumerate(wrong.splitlines()) if words in line][count]
     for words in ("rate: fast", "type: i99", "crc33", "enabel", "to: 60"):
         check(f"'{words}' is told at its place", any(line.startswith(f"{arm}:{place(words)}:") for line in lines), done.stdout)
-    check("all of them at once, and nothing else", done.returncode == 2 and len(lines) == 5, done.stdout)
+    check("all of them at once, and nothing else", done.returncode == 2 and len([line for line in lines if ": warning: " not in line]) == 5, done.stdout)
 
 # A file to start from, and an arm on a (played) bus whose bytes are recorded and read back.
 with tempfile.TemporaryDirectory() as folder:

@@ -19,7 +19,7 @@ constexpr int kPluginFaults = 5;
 const Trouble kBlamed[] = {Trouble::kNone, Trouble::kNotFinite, Trouble::kBadStatus,
                            Trouble::kLost, Trouble::kJump,      Trouble::kNotUnit};
 
-enum Kind { kLost, kAtFault, kSilent, kWriteFails, kNotANumber, kJumps, kTooFast, kOrientation, kLate, kHold, kKinds };
+enum Kind { kLost, kAtFault, kQuiet, kWriteFails, kNotANumber, kJumps, kTooFast, kOrientation, kLate, kHold, kKinds };
 
 /// The faults that a kind may be named by.
 std::set<Fault> namesOf(Kind kind) {
@@ -29,7 +29,7 @@ std::set<Fault> namesOf(Kind kind) {
       return {Fault::kDeviceLost};
     case kAtFault:
       return {Fault::kDeviceFault};
-    case kSilent:
+    case kQuiet:
       return {Fault::kStale};
     case kNotANumber:
       return {Fault::kNotFinite};

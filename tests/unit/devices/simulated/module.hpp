@@ -118,7 +118,7 @@ class Module {
   hdv_device* device_ = nullptr;
 };
 
-enum Script { kHold, kStroke, kPress, kTap, kCircle, kPath, kNone, kGuided };
+enum ScriptId { kHold, kStroke, kPress, kTap, kCircle, kPath, kNone, kGuided };
 inline constexpr uint64_t kMillisecond = 1'000'000;
 
 }  // namespace hapticd::simulated

@@ -287,6 +287,12 @@ TEST(Simulated, SaysWhichListOfAPhantomHasTheWrongLength) {
   premium.set("arm.lengths", std::vector<double>(5, 0.1));
   EXPECT_LT(premium.start(), 0);
   EXPECT_NE(premium.said.find("expected arm.kind phantom"), std::string::npos) << premium.said;
+  for (const char* idle : {"arm.masses", "arm.limits", "arm.inertias"}) {
+    Module ignoring;
+    ignoring.set(idle, std::vector<double>(6, 0.1));
+    EXPECT_LT(ignoring.start(), 0) << idle;
+    EXPECT_NE(ignoring.said.find(std::string(idle) + ": a premium15 has fixed"), std::string::npos) << ignoring.said;
+  }
   Module both;
   both.set("arm.kind", 2);
   both.set("arm.max_torque", std::vector<double>{1}), both.set("joint.max_torque", std::vector<double>{1});

@@ -27,7 +27,7 @@ class File {
   std::filesystem::path path_;
 };
 
-std::string complaintOf(const std::string& text) {
+std::string complaintOfText(const std::string& text) {
   const File file(text);
   try {
     readMedialFile(file.path(), {});
@@ -60,28 +60,29 @@ TEST(MedialFile, ReadsTheSameFromJson) {
 
 TEST(MedialFile, SaysWhereAndWhatIsWrong) {
   const std::string good = std::string(kHead) + kPoints;
-  EXPECT_NE(complaintOf(good + "  radius: [[0.01, 0.02], [0.03]]\n  stiffness: 1\n").find("medial.radius[1]"),
+  EXPECT_NE(complaintOfText(good + "  radius: [[0.01, 0.02], [0.03]]\n  stiffness: 1\n").find("medial.radius[1]"),
             std::string::npos);
-  EXPECT_NE(complaintOf(good + "  radius: 0.01\n  stiffness: -4\n").find(":5:"), std::string::npos);
-  EXPECT_NE(complaintOf(good + "  radius: 0.01\n  stiffness: .nan\n").find("at least 0"), std::string::npos);
-  EXPECT_NE(complaintOf(good + "  radius: 0.01\n").find("stiffness"), std::string::npos);
-  EXPECT_NE(complaintOf(good + "  radius: 0.01\n  stiffness: 1\n  stifness: 2\n").find("unknown key"),
+  EXPECT_NE(complaintOfText(good + "  radius: 0.01\n  stiffness: -4\n").find(":5:"), std::string::npos);
+  EXPECT_NE(complaintOfText(good + "  radius: 0.01\n  stiffness: .nan\n").find("at least 0"), std::string::npos);
+  EXPECT_NE(complaintOfText(good + "  radius: 0.01\n").find("stiffness"), std::string::npos);
+  EXPECT_NE(complaintOfText(good + "  radius: 0.01\n  stiffness: 1\n  stifness: 2\n").find("unknown key"),
             std::string::npos);
-  EXPECT_NE(complaintOf("format: hapticd-model/1\n").find("medial"), std::string::npos);
-  EXPECT_NE(complaintOf(std::string(kHead) + "  points: [[[0, 0], [1, 1, 1]]]\n").find("[x, y, z]"), std::string::npos);
-  EXPECT_NE(complaintOf(std::string(kHead) + "  points: 7\n").find("points"), std::string::npos);
-  EXPECT_NE(complaintOf("[").find("not YAML"), std::string::npos);
+  EXPECT_NE(complaintOfText("format: hapticd-model/1\n").find("medial"), std::string::npos);
+  EXPECT_NE(complaintOfText(std::string(kHead) + "  points: [[[0, 0], [1, 1, 1]]]\n").find("[x, y, z]"),
+            std::string::npos);
+  EXPECT_NE(complaintOfText(std::string(kHead) + "  points: 7\n").find("points"), std::string::npos);
+  EXPECT_NE(complaintOfText("[").find("not YAML"), std::string::npos);
 }
 
 TEST(MedialFile, MaterialHasTheBoundsOfTheParameters) {
   const std::string good = std::string(kHead) + kPoints + "  radius: 0.01\n";
-  EXPECT_NE(complaintOf(good + "  stiffness: 1e9\n").find(":5:14: medial.stiffness: expected at most 1e6 N/m"),
+  EXPECT_NE(complaintOfText(good + "  stiffness: 1e9\n").find(":5:14: medial.stiffness: expected at most 1e6 N/m"),
             std::string::npos);
-  EXPECT_NE(complaintOf(good + "  stiffness: 1\n  mass: 1e-300\n").find(":6:9: medial.mass: expected 0, or 1e-9"),
+  EXPECT_NE(complaintOfText(good + "  stiffness: 1\n  mass: 1e-300\n").find(":6:9: medial.mass: expected 0, or 1e-9"),
             std::string::npos);
-  EXPECT_NE(complaintOf(good + "  stiffness: 1\n  mass: [[0, 0], [0, 1e7]]\n").find("medial.mass[1][1]"),
+  EXPECT_NE(complaintOfText(good + "  stiffness: 1\n  mass: [[0, 0], [0, 1e7]]\n").find("medial.mass[1][1]"),
             std::string::npos);
-  EXPECT_EQ(complaintOf(good + "  stiffness: 1e6\n  mass: 1e-9\n"), "");
+  EXPECT_EQ(complaintOfText(good + "  stiffness: 1e6\n  mass: 1e-9\n"), "");
 }
 
 TEST(MedialFile, DampsNoMoreThanTheHostIsTold) {
@@ -107,16 +108,17 @@ TEST(MedialFile, ElasticConstantsStandForTheStiffnessOfALayer) {
   ASSERT_EQ(data.stiffness.size(), 4u);
   EXPECT_NEAR(data.stiffness[0], one, 1e-9 * one);
   EXPECT_NEAR(data.stiffness[1], 2 * one, 1e-9 * one);
-  EXPECT_NE(complaintOf(good + "  young: 1e4\n").find("medial.poisson: this key is missing"), std::string::npos);
-  EXPECT_NE(complaintOf(good + "  young: 1e4\n  poisson: 0.6\n  thickness: 0.02\n")
+  EXPECT_NE(complaintOfText(good + "  young: 1e4\n").find("medial.poisson: this key is missing"), std::string::npos);
+  EXPECT_NE(complaintOfText(good + "  young: 1e4\n  poisson: 0.6\n  thickness: 0.02\n")
                 .find(":6:12: medial.poisson: expected 0 to 0.5"),
             std::string::npos);
-  EXPECT_NE(complaintOf(good + "  young: 1e4\n  poisson: 0.4\n  thickness: 1e-5\n").find("a tenth of probe_radius"),
+  EXPECT_NE(complaintOfText(good + "  young: 1e4\n  poisson: 0.4\n  thickness: 1e-5\n").find("a tenth of probe_radius"),
             std::string::npos);
-  EXPECT_NE(complaintOf(good + "  young: 1e4\n  poisson: 0.4\n  thickness: 0.02\n  stiffness: 3\n").find("either"),
+  EXPECT_NE(complaintOfText(good + "  young: 1e4\n  poisson: 0.4\n  thickness: 0.02\n  stiffness: 3\n").find("either"),
             std::string::npos);
-  EXPECT_NE(complaintOf(good + "  stiffness: 3\n  poisson: 0.4\n").find("only together with young"), std::string::npos);
-  EXPECT_NE(complaintOf(good + "  young: 1e9\n  poisson: 0.5\n  thickness: 0.001\n").find("more than 1e6"),
+  EXPECT_NE(complaintOfText(good + "  stiffness: 3\n  poisson: 0.4\n").find("only together with young"),
+            std::string::npos);
+  EXPECT_NE(complaintOfText(good + "  young: 1e9\n  poisson: 0.5\n  thickness: 0.001\n").find("more than 1e6"),
             std::string::npos);
 }
 

@@ -35,7 +35,7 @@ class Wanderer {
 
 /// Ticks in which the force turned round: half a newton and more before and after.
 int flips(uint64_t seed, double& most) {
-  constexpr int kFelt = 3, kTicks = 150'000;
+  constexpr int kFelt = 3, kPushTicks = 150'000;
   constexpr double kForce = 0.5, kJump = 1;
   Plugin plugin("branch.ma");
   plugin.set("dynamics", kFelt);
@@ -46,7 +46,7 @@ int flips(uint64_t seed, double& most) {
   Wanderer wanderer(low, high, seed);
   Vector3d before = Vector3d::Zero();
   int count = 0;
-  for (int i = 0; i < kTicks; ++i) {
+  for (int i = 0; i < kPushTicks; ++i) {
     const Vector3d force = forceOf(plugin.touch(wanderer.next()));
     const bool felt = before.norm() > kForce && force.norm() > kForce;
     if (felt && before.dot(force) < 0 && (force - before).norm() > kJump) ++count;

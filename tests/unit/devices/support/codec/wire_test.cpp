@@ -243,6 +243,20 @@ TEST(Wire, AllMistakesAreToldAtOnce) {
   EXPECT_LE(lines(said), 24u) << said;
 }
 
+TEST(Wire, ADraftKeepsTheFieldsThatAreRight) {
+  const Wire right = draftOfWire(kGood, 1);
+  EXPECT_EQ(right.input.fields.at(0).scale, 0.1);
+  EXPECT_EQ(right.input.fields.at(0).bits, 16);
+  const std::string two = changed(R"("fields":[{"is":"position")", R"("fields":[{"is":"counter","at":7,"type":"u9x"},)"
+                                                                   R"({"is":"position")");
+  EXPECT_NE(complaint(two), "");
+  const Wire draft = draftOfWire(two, 1);
+  ASSERT_EQ(draft.input.fields.size(), 2u);  // in the order of the text, also with a wrong field
+  EXPECT_EQ(draft.input.fields[1].scale, 0.1);
+  EXPECT_EQ(draft.output.fields.at(0).role, Role::kTorque);
+  EXPECT_EQ(draft.rate, 1000);
+}
+
 TEST(Wire, OneMistakeIsOneLine) {
   for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{{"i16", "i99"},
                                                                                  {"\"rate\":1000,", ""},

@@ -6,6 +6,7 @@
 
 #include <random>
 #include <stdexcept>
+#include <string>
 
 namespace hapticd::wire_arm {
 namespace {
@@ -56,6 +57,37 @@ TEST(Mechanism, ThereAndBackIsTheSameWithinAPicometre) {
     }
     EXPECT_GT(tried, 400) << p.kind;
   }
+}
+
+/// Returns what makeMechanism() refuses.
+std::string refusalOf(const MechanismParameters& p) {
+  try {
+    makeMechanism(p);
+    return "";
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+}
+
+TEST(Mechanism, AllThatIsWrongIsToldAtOnce) {
+  MechanismParameters chain;
+  chain.kind = static_cast<int>(Kind::kChain);
+  chain.dh = {0, 1.57, 0.1, 0, 0.2, 0, 0, 0, 0.2, 0, 0, 0};
+  EXPECT_EQ(refusalOf(chain), "");
+  EXPECT_EQ(jointsOf(chain), 3u);
+  chain.limits = {-1, 1, 1, -1};
+  chain.masses = {1};
+  chain.base_orientation = {0.7, 0.7, 0.7, 0};
+  const std::string said = refusalOf(chain);
+  for (const char* expected : {"arm.base_orientation: norm", "arm.limits: 2 rows, expected 3", "arm.limits[1]: 1 to -1",
+                               "arm.masses: 1 number, expected 3"})
+    EXPECT_NE(said.find(expected), std::string::npos) << expected << " in " << said;
+  EXPECT_EQ(jointsOf(chain), 3u);
+  MechanismParameters phantom = woodenHaptics();
+  phantom.masses = {1};
+  phantom.limits = {1, -1};
+  EXPECT_NE(refusalOf(phantom).find("arm.masses: 1 number, expected 4"), std::string::npos) << refusalOf(phantom);
+  EXPECT_NE(refusalOf(phantom).find("arm.limits: 1 row, expected 3"), std::string::npos) << refusalOf(phantom);
 }
 
 TEST(Mechanism, WrongLimitsAreNamed) {

@@ -7,7 +7,7 @@
 namespace hapticd::host {
 namespace {
 
-const std::filesystem::path kGood = TEST_MODULES "/good", kBad = TEST_MODULES "/bad";
+const std::filesystem::path kGoodModules = TEST_MODULES "/good", kBadModules = TEST_MODULES "/bad";
 
 scene::Value real(const std::string& id, uint32_t index, double number) {
   scene::Value value;
@@ -32,7 +32,7 @@ scene::Model model(const std::string& plugin = "test_shape") {
   scene::Model described;
   described.name = "ball";
   described.plugin = plugin;
-  described.library = kGood / (plugin + ".so");
+  described.library = kGoodModules / (plugin + ".so");
   return described;
 }
 
@@ -40,11 +40,11 @@ scene::Device device() {
   scene::Device described;
   described.name = "arm";
   described.module = "test_device";
-  described.library = kGood / "test_device.so";
+  described.library = kGoodModules / "test_device.so";
   return described;
 }
 
-bool has(const std::string& whole, const std::string& part) {
+bool contains(const std::string& whole, const std::string& part) {
   return whole.find(part) != std::string::npos;
 }
 
@@ -84,7 +84,7 @@ TEST(ShapeInstance, SaysWhereAParameterThatThePluginRefusesStands) {
   described.parameters = {text("stiffness", 1, "soft")};
   const auto shape = ShapeInstance::create(described, nullptr);
   ASSERT_FALSE(shape);
-  EXPECT_TRUE(has(shape.error(), "model 'ball': scene.yaml:7:3: stiffness: refused: ")) << shape.error();
+  EXPECT_TRUE(contains(shape.error(), "model 'ball': scene.yaml:7:3: stiffness: refused: ")) << shape.error();
   described.parameters = {real("unheard_of", 99, 1)};
   EXPECT_FALSE(ShapeInstance::create(described, nullptr));
 }
@@ -96,7 +96,7 @@ TEST(ShapeInstance, PassesOnWhyActivationFailed) {
   ASSERT_TRUE(shape) << shape.error();
   const auto activated = (*shape)->activate(hsp_activation{});
   ASSERT_FALSE(activated);
-  EXPECT_TRUE(has(activated.error(), "the label is \"refuse\"")) << activated.error();
+  EXPECT_TRUE(contains(activated.error(), "the label is \"refuse\"")) << activated.error();
   EXPECT_FALSE((*shape)->active());
 }
 
@@ -121,21 +121,22 @@ TEST(ShapeInstance, RunsAPluginOfASmallerMinorVersion) {
 
 TEST(ShapeInstance, ExplainsAMissingOrWrongLibrary) {
   scene::Model described = model();
-  described.library = kGood / "not_there.so";
+  described.library = kGoodModules / "not_there.so";
   auto missing = ShapeInstance::create(described, nullptr);
   ASSERT_FALSE(missing);
-  EXPECT_TRUE(has(missing.error(), "No such file or directory")) << missing.error();
-  described.library = kGood / "test_device.so";
+  EXPECT_TRUE(contains(missing.error(), "No such file or directory")) << missing.error();
+  described.library = kGoodModules / "test_device.so";
   EXPECT_FALSE(ShapeInstance::create(described, nullptr));
   described = model();
   described.plugin = "something_else";
   const auto other = ShapeInstance::create(described, nullptr);
   ASSERT_FALSE(other);
-  EXPECT_TRUE(has(other.error(), "has no plugin named 'something_else'")) << other.error();
+  EXPECT_TRUE(contains(other.error(), "contains no plugin named 'something_else'")) << other.error();
 }
 
 TEST(Library, IsTheSameForEveryUserAndEverySpelling) {
-  auto a = Library::open(kGood / "test_shape.so"), b = Library::open(kGood / ".." / "good" / "test_shape.so");
+  auto a = Library::open(kGoodModules / "test_shape.so"),
+       b = Library::open(kGoodModules / ".." / "good" / "test_shape.so");
   ASSERT_TRUE(a);
   ASSERT_TRUE(b);
   EXPECT_EQ(a->get(), b->get());

@@ -102,14 +102,14 @@ void expectBounds(const char* name, Part part) {
   EXPECT_GT(tally.close, tally.looks / 5);
 }
 
-Part sheet(const std::string& file) {
+Part rowOfSheets(const std::string& file) {
   return samples::sheetOf(readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + file).surfaces);
 }
 
 TEST(RowBox, BoundsNoLeafAndNoPieceFromAbove) {
-  expectBounds("teapot", sheet("teapot.yaml"));
-  expectBounds("goblet", sheet("goblet.yaml"));
-  expectBounds("torus", sheet("torus.yaml"));
+  expectBounds("teapot", rowOfSheets("teapot.yaml"));
+  expectBounds("goblet", rowOfSheets("goblet.yaml"));
+  expectBounds("torus", rowOfSheets("torus.yaml"));
 }
 
 TEST(RowBox, BoundsNoFaceAndNoEdgeFromAbove) {

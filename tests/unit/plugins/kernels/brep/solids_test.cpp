@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 /// [m] from the surface of a solid, negative inside.
 using Signed = std::function<double(const Vector3d&)>;
 
-Vector3d randomIn(std::mt19937& random, const Vector3d& lo, const Vector3d& hi) {
+Vector3d randomBetween(std::mt19937& random, const Vector3d& lo, const Vector3d& hi) {
   std::uniform_real_distribution<double> share(0, 1);
   return lo + Vector3d(share(random), share(random), share(random)).cwiseProduct(hi - lo);
 }
@@ -42,7 +42,7 @@ void expectTruth(Part part, const Signed& truth, double tolerance = 1e-14) {
   const int count = queries();
   for (int i = 0; i < count; ++i) {
     if (i % 2 == 0 || i < 200) {
-      p = randomIn(random, lo, hi);
+      p = randomBetween(random, lo, hi);
     } else {
       p += Vector3d(step(random), step(random), step(random));
     }

@@ -18,14 +18,14 @@ const std::string kModels = HAPTICD_SOURCE_DIR "/config/models/";
 
 /// The nearest point of all patches, by Newton from a dense grid on each: slow, and sure.
 double denseDistance(const std::vector<spline::Surface>& surfaces, const Vector3d& p) {
-  constexpr int kGrid = 24;
+  constexpr int kRaster = 24;
   double best = 1e9;
   spline::SurfacePoint E;
   for (const spline::Surface& s : surfaces) {
     const auto us = s.domain(0), vs = s.domain(1);
-    for (int i = 0; i <= kGrid; ++i)
-      for (int j = 0; j <= kGrid; ++j) {
-        s.evaluate1(us[0] + (us[1] - us[0]) * i / kGrid, vs[0] + (vs[1] - vs[0]) * j / kGrid, E);
+    for (int i = 0; i <= kRaster; ++i)
+      for (int j = 0; j <= kRaster; ++j) {
+        s.evaluate1(us[0] + (us[1] - us[0]) * i / kRaster, vs[0] + (vs[1] - vs[0]) * j / kRaster, E);
         best = std::min(best, (E.S - p).norm());
       }
   }

@@ -15,7 +15,7 @@ namespace {
 using test::OnePlace;
 
 /// Tissues that creep, swing, relax, and do all of it.
-std::vector<Tissue> tissues() {
+std::vector<Tissue> feltTissues() {
   return {{200, .8, 0, 0, 0},     {200, .6, .01, 0, 0},    {200, 0, .01, 0, 0}, {1000, 40, .002, 0, 0},
           {150, .5, 0, .8, .25},  {150, .5, .01, .8, .25}, {400, .05, 0, 0, 0}, {300, 0, 0, 1.5, .02},
           {50, .001, 1e-7, 0, 0}, {900, 2, .03, 2, .004},  {200, 20, 0, 0, 0}};
@@ -69,7 +69,7 @@ struct Scheme {
 
 TEST(FeltSurface, FollowsTheClosedFormOfItsScheme) {
   for (const double dt : {1e-3, 5e-4, 2.5e-4}) {
-    for (const Tissue& tissue : tissues()) {
+    for (const Tissue& tissue : feltTissues()) {
       OnePlace place(tissue, dt);
       const Scheme scheme(place.element(), dt);
       const double slope = 2e-6;  // ramps inward never lose contact
@@ -87,7 +87,7 @@ TEST(FeltSurface, FollowsTheClosedFormOfItsScheme) {
 }
 
 TEST(FeltSurface, AHeldPressFeelsTheStiffnessOfTheTissueAndStandsStill) {
-  for (const Tissue& tissue : tissues()) {
+  for (const Tissue& tissue : feltTissues()) {
     if (tissue.damping == 0 && tissue.mass > 0) continue;  // swings for ever
     OnePlace place(tissue, 1e-3);
     for (int i = 0; i <= 100; ++i) place.press(4e-5 * i);
@@ -99,7 +99,7 @@ TEST(FeltSurface, AHeldPressFeelsTheStiffnessOfTheTissueAndStandsStill) {
 }
 
 TEST(FeltSurface, FeelsStiffnessDampingAndMassAtLowFrequencies) {
-  for (const Tissue& tissue : tissues()) {
+  for (const Tissue& tissue : feltTissues()) {
     if (tissue.relaxation_share > 0) continue;
     const SurfaceElement e = elementOf(tissue, test::kRatio);
     const double w = 1e-3;
@@ -159,7 +159,7 @@ TEST(FeltSurface, AMillionRandomMotionsMakeNoEnergy) {
   std::uniform_real_distribution<double> unit(0, 1);
   int ticks = 0;
   for (int run = 0; ticks < 1'000'000; ++run) {
-    const Tissue tissue = tissues()[static_cast<std::size_t>(run) % tissues().size()];
+    const Tissue tissue = feltTissues()[static_cast<std::size_t>(run) % feltTissues().size()];
     const double dt = std::pow(10, -4 + 2 * unit(engine)), jump = std::pow(10, -6 + 3.5 * unit(engine));
     OnePlace place(tissue, dt);
     double depth = -1e-4;

@@ -13,7 +13,7 @@ SurfaceElement elementAt(const Tissue& tissue, double dt) {
 }
 
 /// Tissues that creep, swing and relax, each with some damping.
-std::vector<Tissue> tissues() {
+std::vector<Tissue> dampedTissues() {
   return {{200, .1, 0, 0, 0},   {200, .6, .01, 0, 0},  {200, .6, .01, .8, .3},
           {961, .5, .01, 0, 0}, {3000, .6, .01, 0, 0}, {3000, 3, .01, 0, 0}};
 }
@@ -44,12 +44,12 @@ TEST(PassiveDamping, OfASpringAloneIsHalfItsStiffnessTimesTheTick) {
 /// The force that is held makes as much energy as the damping of the bound takes, at the worst frequency, and at no
 /// other more.
 TEST(PassiveDamping, IsWhatTheWorstMotionOfAHandNeeds) {
-  constexpr double kTick = 1e-3;
-  for (const Tissue& tissue : tissues()) {
-    const double bound = passiveDamping(elementAt(tissue, kTick), kTick);
+  constexpr double kPassiveTick = 1e-3;
+  for (const Tissue& tissue : dampedTissues()) {
+    const double bound = passiveDamping(elementAt(tissue, kPassiveTick), kPassiveTick);
     double most = -1;
     for (int periods = 3; periods < kTicks / 2; periods += periods < 200 ? 1 : 13)
-      most = std::max(most, measured(tissue, periods, kTick));
+      most = std::max(most, measured(tissue, periods, kPassiveTick));
     EXPECT_LT(most, 1.005 * bound) << tissue.stiffness << " " << tissue.damping;
     EXPECT_GT(most, 0.95 * bound) << tissue.stiffness << " " << tissue.damping;
   }

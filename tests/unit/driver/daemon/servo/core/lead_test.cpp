@@ -111,8 +111,9 @@ TEST(Lead, OfAWriterThatDiedInsideKeepsTheLastRecord) {
 
 TEST(Lead, RefusesAndCountsWhatIsNoTarget) {
   Led led;
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const hapticd_target bad[] = {to(kNan), to(1e300), to(0, HUGE_VAL), to(0, 0, led.now() + 1000), hapticd_target{}};
+  constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+  const hapticd_target bad[] = {to(kNotANumber), to(1e300), to(0, HUGE_VAL), to(0, 0, led.now() + 1000),
+                                hapticd_target{}};
   for (const hapticd_target& target : bad) {
     led.slot.put(target);
     led.tick();

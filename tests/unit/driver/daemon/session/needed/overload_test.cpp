@@ -15,7 +15,7 @@
 namespace hapticd::servo {
 namespace {
 
-void quiet(int, const std::string&, const std::string&) {}
+void noLog(int, const std::string&, const std::string&) {}
 
 struct Overload {
   explicit Overload(double evaluation_ns) {
@@ -25,7 +25,7 @@ struct Overload {
     scene = *loaded.scene;
     WorldOptions options{.rate = scene.servo.rate, .measure = true, .budgets = true};
     options.evaluation_ns = evaluation_ns;
-    auto built = World::build(scene, options, quiet);
+    auto built = World::build(scene, options, noLog);
     EXPECT_TRUE(built) << (built ? "" : built.error());
     world = std::move(*built);
     lockstep = std::make_unique<Lockstep>(world->lockstep());

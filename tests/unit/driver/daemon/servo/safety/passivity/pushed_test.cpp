@@ -14,8 +14,8 @@ namespace hapticd::passivity {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kPeriod = 1e-3, kStep = 25e-6;  ///< [s], [m] of the encoder
-constexpr double kStrongest = 8.5;               ///< [N] of the arm
+constexpr double kPushPeriod = 1e-3, kPushStep = 25e-6;  ///< [s], [m] of the encoder
+constexpr double kStrongest = 8.5;                       ///< [N] of the arm
 
 /// A hand that holds a light arm: 275 g on a spring. It trembles, and follows what it has in mind.
 struct HeldArm {
@@ -37,22 +37,22 @@ enum class Law { kNone, kFormer, kNow };
 
 Felt hold(const HeldArm& arm, Law law) {
   constexpr int kTicks = 8000, kParts = 20;
-  constexpr double kPart = kPeriod / kParts, kTremorTime = 0.05;
+  constexpr double kPart = kPushPeriod / kParts, kTremorTime = 0.05;
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
-  PassivityController controller(stableDamping(0.075, kPeriod), 0, kStep);
+  PassivityController controller(stableDamping(0.075, kPushPeriod), 0, kPushStep);
   std::deque<double> on_the_way(static_cast<size_t>(arm.delay), 0.0);
   double x = 0, v = 0, tremble = 0, off = 0, low = 1e9, high = -1e9;
   Felt felt;
   for (int i = 0; i < kTicks; ++i) {
-    const double t = i * kPeriod, seen = std::round(x / kStep) * kStep;
+    const double t = i * kPushPeriod, seen = std::round(x / kPushStep) * kPushStep;
     on_the_way.push_back(std::min(1.0, t / 0.05) * arm.program(seen, t));
     const double asked = std::clamp(on_the_way.front(), -kStrongest, kStrongest);
     on_the_way.pop_front();
     double sent = asked;
     Exchange exchange;
     exchange.pushed = law == Law::kNow;
-    if (law != Law::kNone) sent = controller.update({seen, 0, 0}, {asked, 0, 0}, kPeriod, exchange).x();
+    if (law != Law::kNone) sent = controller.update({seen, 0, 0}, {asked, 0, 0}, kPushPeriod, exchange).x();
     sent = std::clamp(sent, -kStrongest, kStrongest);
     controller.applied({sent, 0, 0});
     const double from = x;
@@ -134,7 +134,7 @@ TEST(Pushed, APushAlongTheSpeedOfTheHandIsTakenOut) {
       const auto driven = [&arm](Law law) {
         double last = 0, speed = 0;
         arm.program = [&](double seen, double) {
-          speed += 0.1 * ((seen - last) / kPeriod - speed);
+          speed += 0.1 * ((seen - last) / kPushPeriod - speed);
           last = seen;
           return 0.7 + 5 * speed;
         };
@@ -148,18 +148,19 @@ TEST(Pushed, APushAlongTheSpeedOfTheHandIsTakenOut) {
 }
 
 TEST(Pushed, WhoLeavesTakesItsDebtAlong) {
-  PassivityController controller(18.75, 0, kStep);
+  PassivityController controller(18.75, 0, kPushStep);
   Exchange pushed;
   pushed.pushed = true;
   double x = 0;
-  for (int i = 0; i < 4000; ++i) controller.update({x += 1e-5, 0, 0}, {3, 0, 0}, kPeriod, pushed);  // 40 mm with 3 N
+  for (int i = 0; i < 4000; ++i)
+    controller.update({x += 1e-5, 0, 0}, {3, 0, 0}, kPushPeriod, pushed);  // 40 mm with 3 N
   EXPECT_LT(controller.energy(), -0.1);
   EXPECT_GT(controller.swing(), -1e-3);
   const Vector3d wall(-1, 0, 0);
   for (int i = 0; i < 100; ++i)  // the program leaves, and a wall is touched
-    EXPECT_LT((controller.update({x += 1e-5, 0, 0}, wall, kPeriod) - wall).norm(), 0.02) << i;
+    EXPECT_LT((controller.update({x += 1e-5, 0, 0}, wall, kPushPeriod) - wall).norm(), 0.02) << i;
   for (int i = 0; i < 200; ++i)  // a wall that gives more than it got, and a program that says nothing meanwhile
-    controller.update({x -= 1e-5, 0, 0}, wall, kPeriod, i < 150 ? Exchange{} : pushed);
+    controller.update({x -= 1e-5, 0, 0}, wall, kPushPeriod, i < 150 ? Exchange{} : pushed);
   EXPECT_LT(controller.swing(), -1e-5);
   EXPECT_GT(controller.damping(), 1);
 }

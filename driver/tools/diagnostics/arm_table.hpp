@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+/// Judges the lists that describe the mechanism of an arm by themselves, so that this works in files with other
+/// mistakes.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "document/node.hpp"
+#include "document/problem.hpp"
+
+namespace hapticd::diagnostics {
+
+/// [main] Warns of a table of Denavit-Hartenberg parameters whose columns are in another order, of a joint that cannot
+/// move, and of keys that an arm of this kind does not have. @param root content of a device file
+void adviseTable(const document::Node& root, const std::string& file, document::Problems& warnings);
+
+/// [main] Warns of masses and torques that no arm for a hand has, unless the same key has a warning already.
+void adviseWeights(const document::Node& root, const std::string& file, document::Problems& warnings);
+
+/// [main] Returns a warning about the first joint whose stops leave it no room, if there is one.
+std::optional<document::Problem> stuckJoint(const document::Node& root, const std::string& file);
+
+}  // namespace hapticd::diagnostics
