@@ -21,7 +21,7 @@ __thread void (*look)() __attribute__((tls_model("initial-exec"))) = nullptr;
 }
 
 [[maybe_unused]] constexpr size_t kPlain = alignof(max_align_t);  ///< [bytes] alignment of the blocks of malloc
-const hapticd::OtherAllocator* other = nullptr;  ///< kept after its use ended: its blocks may be freed at any time
+const hapticd::OtherAllocator* other = nullptr;  ///< never reset, because its blocks may be freed later
 __thread bool from_other __attribute__((tls_model("initial-exec"))) = false;
 
 [[maybe_unused]] void* takeOther(size_t size, size_t alignment) {

@@ -23,8 +23,8 @@ struct OtherAllocator {
   size_t (*size)(const void* block);
 };
 
-/// [any] From now on this thread's blocks come from `other`, which must live to the end of the process; nullptr ends
-/// that. Returns false, and changes nothing, if this build does not replace the C library's functions.
+/// [any] From now on this thread allocates its blocks from `other`, which must live until the process ends; nullptr
+/// ends that. Returns false, and changes nothing, if this build does not replace the C library's functions.
 bool allocateFrom(const OtherAllocator* other) noexcept;
 
 }  // namespace hapticd

@@ -9,7 +9,8 @@
 namespace hapticd {
 namespace {
 
-/// Allocations of further owners are not counted: it is enough to name one owner.
+/// Largest number of owners whose allocations are counted. Further owners are not counted, because a message names only
+/// one owner.
 constexpr size_t kOwners = 16;
 
 struct Noted {

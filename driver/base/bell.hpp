@@ -8,14 +8,15 @@
 
 namespace hapticd {
 
-/// Wakes one waiting thread. Strikes are counted, so a thread that remembers the count misses none.
+/// A bell that one thread waits for. Each strike of the bell says that there is news. The strikes are counted, so a
+/// thread that remembers the count misses none.
 class Bell {
  public:
   /// [rt] Returns the number of strikes so far.
   uint32_t strikes() const noexcept HSP_RT { return strikes_.load(); }
-  /// [rt] Counts a strike and wakes nobody, so it makes no system call.
+  /// [rt] Counts a strike, but wakes nobody, so it makes no system call.
   void strike() noexcept HSP_RT { strikes_.fetch_add(1); }
-  /// [any] Counts a strike and wakes the waiting thread; it makes a system call only if one waits.
+  /// [any] Wakes the waiting thread, but counts no strike. It makes a system call only if a thread waits.
   void wake() noexcept;
   /// [any] Calls strike() and wake().
   void ring() noexcept {

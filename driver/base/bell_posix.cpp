@@ -10,7 +10,8 @@
 
 namespace hapticd {
 
-static_assert(sizeof(std::atomic<uint32_t>) == sizeof(uint32_t), "the kernel looks at the bare number");
+static_assert(sizeof(std::atomic<uint32_t>) == sizeof(uint32_t),
+              "the futex calls of the kernel read the atomic as a plain 32-bit number");
 
 void Bell::wake() noexcept {
   if (sleeps_.load() != 0) syscall(SYS_futex, &strikes_, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0);
@@ -19,7 +20,8 @@ void Bell::wake() noexcept {
 void Bell::wait(uint32_t heard, Nanoseconds until) noexcept {
   const timespec end{static_cast<time_t>(until / kNanosecondsPerSecond),
                      static_cast<long>(until % kNanosecondsPerSecond)};
-  sleeps_.store(1);  // set before the count is read, so that any later strike knows that this thread must be woken
+  // This is set before the count is read, so that wake() after any later strike knows that this thread must be woken.
+  sleeps_.store(1);
   while (strikes_.load() == heard)
     if (syscall(SYS_futex, &strikes_, FUTEX_WAIT_BITSET_PRIVATE, heard, &end, nullptr, FUTEX_BITSET_MATCH_ANY) != 0 &&
         errno == ETIMEDOUT)

@@ -13,14 +13,15 @@ namespace {
 
 thread_local bool t_works = false;
 
-/// For each worker, a pointer to the variable that names the owner of the code it runs; nullptr if there is no worker.
+/// For each worker, a pointer to the variable that names the owner of the code that the worker runs; nullptr if no
+/// thread is this worker.
 std::atomic<std::atomic<const Owner*>*> workers[kWorkerCount];
 
 struct Code {
   std::atomic<const void*> begin{nullptr}, end{nullptr};
   std::atomic<const Owner*> owner{nullptr};
 };
-constexpr size_t kMostLibraries = 256;  // code of further libraries has no known owner
+constexpr size_t kMostLibraries = 256;  // libraries that are loaded later have no known owner
 std::array<Code, kMostLibraries> libraries;
 std::atomic<size_t> library_count{0};
 
@@ -34,7 +35,8 @@ Code* libraryAt(const void* address) noexcept {
 
 const Owner* ownerOf(const std::string& module, const std::string& name, bool device) {
   static std::mutex mutex;
-  // Never destroyed: handlers may read an owner at the very end. The keys are their module, name and kind.
+  // The map is never destroyed, because signal handlers may read an owner until the process ends. A key consists of
+  // module, name and kind.
   static auto& known = *new std::unordered_map<std::string, Owner>;
   const std::lock_guard lock(mutex);
   const std::string key = module + '\0' + name + '\0' + (device ? 'd' : 's');

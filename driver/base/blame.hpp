@@ -13,8 +13,8 @@ namespace hapticd {
 
 /// A plugin or device module, and the model or device that is an instance of it.
 struct Owner {
-  std::string module;  ///< "nurbs_rigid"
-  std::string name;    ///< "teapot"
+  std::string module;  ///< such as "nurbs_rigid"
+  std::string name;    ///< such as "teapot"
   bool device = false;
 };
 
@@ -50,7 +50,7 @@ inline const Owner* calledHere() noexcept {
 enum class Worker : int { kMain, kServo, kSearch, kControl };
 constexpr int kWorkerCount = 4;
 
-/// [any] Makes the calling thread that worker as long as the object lives.
+/// [any] Registers the calling thread as that worker, as long as the object lives.
 class Working {
  public:
   explicit Working(Worker worker) noexcept;
@@ -65,7 +65,7 @@ class Working {
 /// [any] Returns the owner of the code that this worker runs now; nullptr if it is the daemon's own code, or if no
 /// thread is this worker. Async-signal-safe.
 const Owner* calledBy(Worker worker) noexcept;
-/// [any] True if the calling thread is one of the workers above. Async-signal-safe.
+/// [any] Tells whether the calling thread is one of the workers above. Async-signal-safe.
 bool isWorker() noexcept;
 
 /// [main] Notes that the code from `begin` up to `end` belongs to one library. ownCode() names its owner later; if it

@@ -43,7 +43,7 @@ const Owner* ownerInterrupted(const void* context) noexcept {
 }
 
 const Owner* ownerOnStack(const void* from) noexcept {
-  constexpr size_t kPiece = 128, kPieces = 64;  // [words] together at most 64 KiB of the stack
+  constexpr size_t kPiece = 128, kPieces = 64;  // [words] the stack is read in pieces, at most 64 KiB in all
   const auto* stack = static_cast<const uintptr_t*>(from);
   for (size_t piece = 0; stack != nullptr && piece < kPieces; ++piece, stack += kPiece) {
     std::array<uintptr_t, kPiece> words{};

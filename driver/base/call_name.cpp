@@ -8,7 +8,8 @@ namespace hapticd {
 
 namespace {
 
-/// A list that only grows, at its head, and is never destroyed, because handlers may read it at any moment.
+/// An entry of a linked list. The list only grows, at its head, and is never destroyed, because signal handlers may
+/// read it at any moment.
 struct Known {
   const Owner* owner;
   std::string place;
@@ -20,7 +21,7 @@ std::atomic<const Known*> newest{nullptr};
 
 void keepPlace(const Owner* owner, const std::string& place) {
   static std::mutex mutex;
-  static auto& last = *new std::unordered_map<const Owner*, const Known*>;  // for a fast search
+  static auto& last = *new std::unordered_map<const Owner*, const Known*>;  // newest entry of each owner
   const std::lock_guard lock(mutex);
   const Known*& known = last[owner];
   if ((known != nullptr ? known->place : "") == place) return;

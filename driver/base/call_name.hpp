@@ -17,7 +17,7 @@ inline thread_local std::atomic<const char*> t_call_name{nullptr};
 /// step of a shape names no function: if a module runs and no function is named, the call is a step.
 class CallName {
  public:
-  /// @param name such as "activate", in static storage
+  /// @param name name of the function, such as "activate"; it must have static storage
   explicit CallName(const char* name) noexcept : before_(detail::t_call_name.load(std::memory_order_relaxed)) {
     detail::t_call_name.store(name, std::memory_order_relaxed);
   }
@@ -34,9 +34,10 @@ inline const char* callNameHere() noexcept {
   return detail::t_call_name.load(std::memory_order_relaxed);
 }
 
-/// [main] Notes that `place`, such as "scene.yaml:4", asks for that owner. A later call replaces the place.
+/// [main] Notes which line of a file asks for that owner. @param place such as "scene.yaml:4"; a later call replaces it
 void keepPlace(const Owner* owner, const std::string& place);
-/// [any] Returns the place that asks for that owner; "" if it is unknown. Async-signal-safe.
+/// [any] Returns the line of the file that asks for that owner, such as "scene.yaml:4"; "" if it is unknown.
+/// Async-signal-safe.
 const char* placeOf(const Owner* owner) noexcept;
 
 }  // namespace hapticd

@@ -13,7 +13,7 @@ using Nanoseconds = uint64_t;
 constexpr Nanoseconds kNanosecondsPerSecond = 1'000'000'000;
 constexpr double kSecondsPerNanosecond = 1e-9;
 
-/// [any] CLOCK_MONOTONIC, for time stamps and for the cost of a piece of work.
+/// [any] Returns the time of CLOCK_MONOTONIC, for time stamps and to measure how long a piece of work takes.
 Nanoseconds monotonicNow() noexcept HSP_RT;
 
 /// A clock that the servo loop can wait on.
@@ -26,8 +26,8 @@ class Clock {
 };
 
 /// Uses CLOCK_MONOTONIC: sleeps until `spin` before the deadline, then waits busily. Busy waiting reduces the lateness
-/// (median 22 us to 0.1 us on a virtual machine) and uses spin * rate of one CPU. It must not last a whole period, or
-/// the kernel throttles the thread.
+/// (its median from 22 us to 0.1 us on a virtual machine) and uses spin * rate of one CPU. The busy wait must not last
+/// a whole period, or the kernel throttles the thread.
 class RealClock final : public Clock {
  public:
   explicit RealClock(Nanoseconds spin) : spin_(spin) {}

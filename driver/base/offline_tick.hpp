@@ -11,7 +11,7 @@ namespace detail {
 inline std::atomic<uint64_t> offline_begun{0}, offline_ended{0};
 }
 
-/// Lives for the duration of one tick.
+/// Counts a tick: its constructor counts the beginning, its destructor the end.
 class OfflineTick {
  public:
   OfflineTick() noexcept { count(detail::offline_begun); }
@@ -20,14 +20,14 @@ class OfflineTick {
   OfflineTick& operator=(const OfflineTick&) = delete;
 
   static uint64_t ended() noexcept { return detail::offline_ended.load(std::memory_order_relaxed); }
-  /// The number of the tick in progress, counted from 1; 0: no tick is in progress.
+  /// Returns the number of the tick in progress, counted from 1, or 0 if no tick is in progress.
   static uint64_t current() noexcept {
     const uint64_t begun = detail::offline_begun.load(std::memory_order_relaxed);
     return begun != ended() ? begun : 0;
   }
 
  private:
-  /// Only one thread at a time may have ticks of this kind.
+  /// Adds 1 without an atomic addition, because only one thread at a time may run ticks of this kind.
   static void count(std::atomic<uint64_t>& number) noexcept {
     number.store(number.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   }

@@ -14,10 +14,12 @@
 
 namespace hapticd::os {
 
-constexpr size_t kThreadStackBytes = 256 * 1024;  ///< small, because all of it (default: 8 MiB) counts as locked memory
-constexpr int kServoPriority = 80;                ///< below the kernel's migration threads, which have 99
+/// Size of a thread's stack. It is small, because the whole stack is locked in memory; the system's default is 8 MiB.
+constexpr size_t kThreadStackBytes = 256 * 1024;
+constexpr int kServoPriority = 80;  ///< SCHED_FIFO priority, below that of the kernel's migration threads (99)
 
-/// A thread with an explicit stack, named for `ps` and `top`. Joins in its destructor.
+/// A thread with a stack of kThreadStackBytes and a name for `ps` and `top`. The destructor waits until the thread has
+/// ended.
 class Thread {
  public:
   Thread();
@@ -36,7 +38,7 @@ class Thread {
   std::function<void()> body_;
 };
 
-/// Undoes lockMemory.
+/// Undoes lockMemory().
 void unlockMemory();
 
 /// Gives the calling thread the policy SCHED_FIFO at `priority`.
@@ -45,11 +47,11 @@ std::error_code setFifo(int priority);
 /// Pins the calling thread to one processor.
 std::error_code pinTo(int cpu);
 
-/// Locks present and future memory, and keeps malloc from returning any to the system, so that no tick has a page
-/// fault.
+/// Locks present and future memory, so that no tick has a page fault. calmAllocator() must be called too.
 std::error_code lockMemory();
 
-/// Gives malloc the settings that lockMemory needs (one arena, no trimming), without locking memory.
+/// Keeps malloc from returning memory to the system, because that memory would have to be locked again: one arena, no
+/// trimming, no mmap. Locks nothing itself.
 void calmAllocator();
 
 /// Writes to the unused part of the calling thread's stack, so that its pages are present before the first tick.
@@ -68,16 +70,17 @@ class DmaLatencyHold {
   int fd_;
 };
 
-/// Resident memory of the process [bytes].
+/// Returns the resident memory of the process [bytes].
 size_t residentBytes();
 
-/// What affects the right to run in real time, in one line for messages: limits, capability, cgroup.
+/// Returns one line for messages with what affects the right to run in real time: limits, capabilities, cgroup.
 std::string realTimeRights();
 
-/// True inside a virtual machine, where spinning does not prevent pauses that the host causes.
+/// Tells whether the program runs in a virtual machine. There, busy waiting does not prevent the pauses that the host
+/// machine causes.
 bool inVirtualMachine();
 
-/// [any] Returns the system's number of the calling thread. Async-signal-safe.
+/// [any] Returns the operating system's id of the calling thread. Async-signal-safe.
 int threadId() noexcept;
 
 /// Installs a handler for SIGTSTP (Ctrl-Z), and ignores SIGTTIN and SIGTTOU, so that a process in the background is not

@@ -37,7 +37,7 @@ std::string firstLine(const char* file) {
   return line;
 }
 
-/// The value of a "Name:\tvalue" line of /proc/self/status.
+/// Returns the value of a "Name:\tvalue" line of /proc/self/status.
 std::string statusField(const std::string& name) {
   std::ifstream in("/proc/self/status");
   for (std::string line; std::getline(in, line);)
@@ -111,7 +111,8 @@ void calmAllocator() {
 }
 
 std::error_code lockMemory() {
-  // Below this limit mlockall() succeeds, but the next malloc() or thread fails. An error here can name the cause.
+  // With a lower limit mlockall() may succeed, but the next malloc() or thread fails. So a lower limit is an error
+  // here, which can name the cause.
   constexpr rlim_t kEnough = 64u << 20;
   constexpr unsigned kCapIpcLock = 14;
   rlimit limit{};
@@ -196,8 +197,10 @@ void onFatalSignals(void (*handler)(int, siginfo_t*, void*)) {
 
 namespace {
 constexpr int kStopSignals[] = {SIGINT, SIGTERM, SIGQUIT, SIGHUP};
-std::atomic<void (*)(int)> former_stops[SIGTERM + 1];                 ///< by signal; SIG_DFL: the system's default
-std::atomic<void (*)(int, siginfo_t*, void*)> stop_handler{nullptr};  ///< nullptr if none is installed
+/// The former handler of each signal; SIG_DFL is the system's default.
+std::atomic<void (*)(int)> former_stops[SIGTERM + 1];
+/// The handler of onStopSignals(); nullptr if none is installed.
+std::atomic<void (*)(int, siginfo_t*, void*)> stop_handler{nullptr};
 }  // namespace
 
 void onStopSignals(void (*handler)(int, siginfo_t*, void*)) {

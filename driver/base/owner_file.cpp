@@ -9,7 +9,8 @@ namespace hapticd {
 
 namespace {
 
-/// A list that only grows, at its head, and is never destroyed, because handlers may read it at any moment.
+/// An entry of a linked list. The list only grows, at its head, and is never destroyed, because signal handlers may
+/// read it at any moment.
 struct FileOfOwner {
   const Owner* owner;
   std::string identity;
@@ -18,7 +19,7 @@ struct FileOfOwner {
 };
 std::atomic<const FileOfOwner*> newest_file{nullptr};
 
-/// True if a later entry of the same module replaces this entry.
+/// Tells whether a later entry of the same module replaces this entry.
 bool isRepeated(const FileOfOwner* entry) noexcept {
   for (const FileOfOwner* later = newest_file.load(); later != entry; later = later->next)
     if (later->foreign && later->owner->module == entry->owner->module) return true;
@@ -29,7 +30,7 @@ bool isRepeated(const FileOfOwner* entry) noexcept {
 
 void keepFile(const Owner* owner, const std::string& identity, bool foreign) {
   static std::mutex mutex;
-  static auto& last = *new std::unordered_map<const Owner*, const FileOfOwner*>;  // for a fast search
+  static auto& last = *new std::unordered_map<const Owner*, const FileOfOwner*>;  // newest entry of each owner
   const std::lock_guard lock(mutex);
   const FileOfOwner*& kept = last[owner];
   if ((kept != nullptr ? kept->identity : "") == identity) return;

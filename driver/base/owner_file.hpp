@@ -9,13 +9,14 @@
 
 namespace hapticd {
 
-/// [main] Notes the file of an owner. @param identity identity of the file when it was loaded, one line without tabs
+/// [main] Notes which file contains the code of an owner. @param identity identity of the file when it was loaded, one
+/// line without tabs
 /// @param foreign true if the file does not ship with hapticd
 void keepFile(const Owner* owner, const std::string& identity, bool foreign);
 /// [any] Returns the identity of that owner's file; "" if none was given. Async-signal-safe.
 const char* fileOf(const Owner* owner) noexcept;
-/// [any] Returns one of the owners whose files do not ship with hapticd, each module once. Numbers begin at 0; nullptr
-/// if there are no more. Async-signal-safe.
+/// [any] Returns the owner of that number among the owners whose files do not ship with hapticd. Each module counts
+/// once, and numbers begin at 0. Returns nullptr if there is no such number. Async-signal-safe.
 const Owner* foreignOwner(size_t number) noexcept;
 
 }  // namespace hapticd

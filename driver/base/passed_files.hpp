@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Files that a client passes to the daemon as open descriptors, together with their names, because the client may have
-/// other rights. While they are in force, a thread reads these files and no others, so that a client cannot use a name
-/// to open a file with the rights of the daemon.
+/// Files that a client passes to the daemon as open descriptors, together with their names, because the client and the
+/// daemon may have different rights. While a Scope object lives, its thread reads these files and no others, so that a
+/// client cannot use a name to open a file with the rights of the daemon.
 #pragma once
 #include <map>
 #include <set>
@@ -18,7 +18,7 @@ class PassedFiles {
   static constexpr size_t kMostBytes = 256u << 20;  ///< largest size of all files together
 
   /// [main] Copies the contents of each descriptor to memory that nobody can change. It refuses a descriptor without
-  /// the right to read (O_PATH, O_WRONLY), and a file whose reader may have to wait for ever.
+  /// the right to read (O_PATH, O_WRONLY), and a file that can make its reader wait for ever (FUSE, proc).
   /// @param names one name for each descriptor
   static Result<PassedFiles> copy(const std::vector<std::string>& names, std::vector<Descriptor> descriptors);
 

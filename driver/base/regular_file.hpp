@@ -16,7 +16,8 @@ std::string notAFile(std::filesystem::file_type type);
 /// [main] Opens a regular file for reading. The error is meant to follow the file's name in a message.
 Result<int> openRegular(const std::string& file);
 
-/// [main] Reads the bytes of a regular file, with the same errors. @param max_bytes a larger file is an error
+/// [main] Reads the bytes of a regular file. The errors are those of openRegular(), and a file of more than `max_bytes`
+/// is an error too.
 Result<std::string> readRegular(const std::string& file, size_t max_bytes);
 
 /// [main] Writes a file completely or not at all. A device, a pipe or a link is written directly, so it may be left

@@ -13,7 +13,8 @@ namespace hapticd {
 
 class SealedMemory {
  public:
-  /// Largest size. All of the memory is allocated at once, so a wrong size must not use up the machine's memory.
+  /// Largest size [bytes]. All of the memory is allocated at once, so a size that is wrong must not use up the
+  /// machine's memory.
   static constexpr size_t kMostBytes = size_t{1} << 30;
 
   /// Which processes may write, besides this one.
@@ -22,8 +23,8 @@ class SealedMemory {
     kOne   ///< no other process: no further writable mapping can be made, and write() is refused
   };
 
-  /// [main] Makes memory that is zeroed, present, and locked if possible. @param name name shown in /proc, at most 200
-  /// bytes
+  /// [main] Makes memory that is zeroed, present, and locked if possible. @param name the name that /proc shows, at
+  /// most 200 bytes
   static Result<std::unique_ptr<SealedMemory>> create(const char* name, size_t bytes, Writers writers);
   ~SealedMemory();
   SealedMemory(const SealedMemory&) = delete;

@@ -17,10 +17,10 @@ class SpscRing {
   static_assert(std::is_trivially_copyable_v<T>, "entries are copied by both threads");
 
  public:
-  /// [main] @param capacity rounded up to a power of two
+  /// [main] @param capacity largest number of values, which is rounded up to a power of two
   explicit SpscRing(size_t capacity) : slots_(std::bit_ceil(capacity)), mask_(slots_.size() - 1) {}
 
-  /// [rt] False if the ring is full; nothing is written then.
+  /// [rt] Appends a value. Returns false and writes nothing if the ring is full.
   bool push(const T& value) noexcept HSP_RT {
     const size_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_.load(std::memory_order_acquire) == slots_.size()) return false;

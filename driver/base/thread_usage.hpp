@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Measures how much processor time a thread has used, and how many page faults it had. A platform that cannot measure
-/// them returns zeros: nothing that is computed in virtual time depends on these numbers.
+/// Measures how much processor time a thread has used, and how many page faults it has had. A platform that cannot
+/// measure them returns zeros: nothing that is computed in virtual time depends on these numbers.
 #pragma once
 #include <cstdint>
 
@@ -13,14 +13,15 @@ constexpr CpuClock kNoCpuClock = 1;  ///< CLOCK_MONOTONIC, used until the thread
 /// [rt] Returns the number of page faults (minor and major) of the calling thread so far.
 long pageFaultsOfThread() noexcept;
 
-/// [rt] CPU clock of the calling thread, for other threads to read.
+/// [rt] Returns the CPU clock of the calling thread, so that other threads can read it.
 CpuClock cpuClockOfThread() noexcept;
-/// [any] CPU time [ns] that the thread of a clock has used; async-signal-safe.
+/// [any] Returns the CPU time [ns] that the thread of this clock has used. Async-signal-safe.
 uint64_t cpuTime(CpuClock clock) noexcept;
-/// [rt] CPU time [ns] that the calling thread has used.
+/// [rt] Returns the CPU time [ns] that the calling thread has used.
 uint64_t cpuTimeOfThread() noexcept;
 
-/// [any] True if the kernel took the processor from the calling thread since the last call. It makes a system call.
+/// [any] Tells whether the kernel took the processor from the calling thread since its last call of this function. It
+/// makes a system call.
 bool wasPreempted() noexcept;
 
 /// [rt] Wakes at most `most` threads, of any process, that wait for a word of shared memory to change; never waits.

@@ -13,20 +13,20 @@ namespace hapticd {
 template <class T>
 class TripleBuffer {
  public:
-  /// [rt] The slot to fill before publish(); it belongs to the writer.
+  /// [rt] Returns the slot that the writer fills before publish(). Only the writer may use it.
   T& back() noexcept HSP_RT { return slots_[back_].value; }
 
   /// [rt] Makes the back slot the newest value.
   void publish() noexcept HSP_RT { back_ = middle_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex; }
 
-  /// [rt] True if a new value has come since the last call; front() then returns it.
+  /// [rt] Tells whether a new value has come since the last call. If so, front() returns the new value from now on.
   bool update() noexcept HSP_RT {
     if ((middle_.load(std::memory_order_relaxed) & kFresh) == 0) return false;
     front_ = middle_.exchange(front_, std::memory_order_acq_rel) & kIndex;
     return true;
   }
 
-  /// [rt] Returns the value that was the newest at the last update(); it belongs to the reader.
+  /// [rt] Returns the value that was the newest at the last update(). Only the reader may use it.
   const T& front() const noexcept HSP_RT { return slots_[front_].value; }
 
  private:

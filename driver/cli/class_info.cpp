@@ -60,7 +60,7 @@ std::string defaultText(const host::ParamInfo& p) {
   }
 }
 
-/// The value that a file gives for the parameter.
+/// Returns the value that a file gives for the parameter, as text.
 std::string valueText(const host::ParamInfo& p, const scene::Value& value) {
   if (p.kind == HSP_REAL || p.kind == HSP_INT) return document::numberText(value.number);
   if (p.kind == HSP_BOOL) return value.number != 0 ? "true" : "false";

@@ -51,25 +51,26 @@ bool isRunning(const std::string& name) {
   return control::connectTo(status::runtimeFolder(false) + file) || control::connectTo("/run/hapticd" + file);
 }
 
-volatile sig_atomic_t program = 0;  ///< for the signal handler
+volatile sig_atomic_t program = 0;  ///< process id of the program, for the signal handler
 
 void passOn(int signal) {
   if (program > 0) kill(static_cast<pid_t>(program), signal);
 }
 
-/// Called in a child process: makes it end when `hapticd client` ends, in whatever way, also after execve.
+/// Called in a child process. Makes the child end when `hapticd client` ends for any reason, even after the child has
+/// called execve.
 void endWith(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) std::_Exit(kFailed);  // the parent has already ended
 }
 
-/// Called in the child, which becomes the program in `words`. If `silent`, what it prints is dropped.
+/// Called in the child, which becomes the program in `words`. If `silent`, its standard output is dropped.
 [[noreturn]] void become(std::vector<std::string> words, bool silent) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   if (silent && std::freopen("/dev/null", "w", stdout) == nullptr) std::_Exit(kFailed);
-  if (silent) setpgid(0, 0);  // Ctrl-C is for the program; the daemon ends after it
+  if (silent) setpgid(0, 0);  // Ctrl-C must reach only the program; the daemon ends after the program
   execvp(arguments[0], arguments.data());
   std::fprintf(stderr, "error: %s: cannot be started: %s\n", arguments[0], std::strerror(errno));
   std::_Exit(kBadInput);
@@ -156,7 +157,8 @@ void addClient(const Command& app, int& exit_code) {
   const Command command = app.addSubcommand("client", "Run an OpenHaptics (HDAPI) program on a daemon's arm.");
   command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
   command.addOption("--scene", options->scene, "scene for the daemon that this command starts if none runs");
-  command.addFlag("--env", options->env, "print the environment that the program needs, for a shell");
+  command.addFlag("--env", options->env,
+                  "print the environment variables that the program needs, as commands of a shell");
   command.takesForeignCommandLine();  // the options after PROGRAM belong to that program
   command.footer(
       "The program uses hapticd's libHD.so and connects to the daemon of --name. If no such daemon runs, this command\n"

@@ -45,7 +45,7 @@ std::filesystem::path daemonFile() {
   return host::shippedFile("hapticd.yaml").value_or("");
 }
 
-/// Settings of this machine's daemon file hold for every scene.
+/// Applies the settings of this machine's daemon file to a scene. They hold for every scene.
 void applyDaemon(const scene::Daemon& daemon, scene::Scene& scene) {
   if (daemon.rate) scene.servo.rate = *daemon.rate;
   for (scene::Device& device : scene.devices)

@@ -57,7 +57,7 @@ host::Catalog& catalog();
 /// Prints every problem as file:line:column: key: what is wrong, and what was expected.
 void printProblems(const document::Problems& problems, std::FILE* out);
 
-/// Prints warnings in the same way.
+/// Prints every warning as file:line:column: key: warning: what is wrong.
 void printWarnings(document::Problems warnings, std::FILE* out);
 
 /// Loads a scene, or prints every problem on standard error.

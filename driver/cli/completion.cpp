@@ -20,7 +20,8 @@ struct Word {
   std::vector<std::string> choices;  ///< what may follow an option
 };
 
-/// A command of the tree: "" is the program itself, "plugin info" a command below a command.
+/// The program or one of its commands. The path is "" for the program itself, and "plugin info" for the command `info`
+/// of `plugin`.
 struct CommandNode {
   std::string path;
   std::vector<Word> words;
@@ -32,7 +33,7 @@ bool isFile(const Option& argument) {
   return std::find(kFiles.begin(), kFiles.end(), argument.positionalName()) != kFiles.end();
 }
 
-/// Returns the words of a validator such as "TEXT:{scene,device}"; none for other validators.
+/// Returns the words of a validator such as "TEXT:{scene,device}"; returns an empty list for other validators.
 std::vector<std::string> choicesOf(const Option& option) {
   const std::string type = option.valueName();
   const size_t begin = type.find('{'), end = type.find('}');
@@ -88,7 +89,7 @@ std::string findPath(const std::vector<CommandNode>& nodes, const std::string& w
   return text + ") path_=\"${path_:+$path_ }$word_\" ;;\n    esac\n  done\n";
 }
 
-/// Commands whose argument is a name, and what `--names` must list for them.
+/// The commands whose argument is a name of the same kind. `completion --names KIND` lists the names of this kind.
 struct Named {
   const char* kind;
   std::vector<const char*> paths;

@@ -59,7 +59,8 @@ std::string lineOf(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// `socket`: prints only the path, for programs that connect to it; fails if no daemon serves it.
+/// Does `ctl socket`: prints only the path of the socket, for programs that connect to it. Fails if no daemon serves
+/// it.
 int showSocket(const CtlArguments& options) {
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());
@@ -83,7 +84,8 @@ int send(const CtlArguments& options, const std::string& line) {
   return show(options, control::ask(socketOf(options), line));
 }
 
-/// `add` and `reload`: the scene and the files that it names are opened here, with the rights of the caller.
+/// Does `ctl add` and `ctl reload`. The scene and the files that it names are opened here, with the rights of the
+/// caller.
 int sendScene(const CtlArguments& options, Json request) {
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());
@@ -102,14 +104,14 @@ int sendScene(const CtlArguments& options, Json request) {
   return show(options, client->askWith(lineOf(request), numbers));
 }
 
-/// The stream has ended. A daemon that ends in order ends the stream in order; one that died does not.
+/// Returns the exit code after a stream of answers has ended. Reports an error if the daemon was killed or crashed.
 int endOfStream(const CtlArguments& options) {
   if (!control::wasKilled(socketOf(options))) return kWorked;
   return fail(kFailed, "the daemon " + options.name +
                            " was killed, or it crashed: nothing more comes\n  fix: start it again with hapticd run");
 }
 
-/// `stop` answers once the daemon has ended and its name is free, so that a new daemon can take it.
+/// Does `ctl stop`. Returns when the daemon has ended and its name is free, so that a new daemon can take the name.
 int stop(const CtlArguments& options, const std::string& line) {
   constexpr double kPatience = 10;  // [s]
   const int told = send(options, line);
@@ -123,7 +125,7 @@ int stop(const CtlArguments& options, const std::string& line) {
 /// Prints the triangles, and then each new frame of vertices, one line of JSON each, until the reader of the output or
 /// the daemon ends.
 int follow(const CtlArguments& options) {
-  constexpr Nanoseconds kPause = 4'000'000;  // a quarter of a frame's duration
+  constexpr Nanoseconds kPause = 4'000'000;  // [ns] a quarter of the time between two frames
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());
   RealClock clock(0);
@@ -221,7 +223,8 @@ void addFeatureRequest(const Command& ctl, const std::shared_ptr<CtlArguments>& 
   feature.addOption("number", options->number, "feature of a trace or recording, counted from 0").required();
 }
 
-/// Prints what happened, one line of JSON each; with `follow` also what happens from now on, until the daemon ends.
+/// Prints the events so far, one line of JSON each. With `follow` it also prints the events from now on, until the
+/// daemon ends.
 int showEvents(const CtlArguments& options) {
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());

@@ -25,7 +25,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Reports here what the servo would refuse, because the line number is known here.
+/// Checks a target for what the servo would refuse. It is checked here, because here the message can name the line.
 Result<hapticd_target> checked(const hapticd_target& target) {
   constexpr double kFarthest = 10, kUnitWithin = 1e-3;  // [m]; deviation of the length from 1; as in control.md
   const auto length = [](const double* of, size_t count) {
@@ -65,7 +65,7 @@ int tellOfEnd() {
   return fail(kFailed, "the daemon has ended, or it ended this lead: nothing is led any more");
 }
 
-/// Each line is one target, which is sent as soon as it is read. @return the exit code
+/// Sends each line of standard input as one target, as soon as the line is read. @return the exit code
 int putLines(const control::Client& client, link::PoseSlot& slot) {
   std::string line;
   for (int number = 1; std::getline(std::cin, line); ++number) {

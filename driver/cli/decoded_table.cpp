@@ -9,7 +9,7 @@
 namespace hapticd::cli {
 namespace {
 
-/// The fields of one line; a comma between quotes separates none.
+/// Returns the fields of one line. A comma between quotes does not separate fields.
 std::vector<std::string> fieldsOf(const std::string& line) {
   std::vector<std::string> fields(1);
   bool quoted = false;

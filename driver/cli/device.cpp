@@ -91,14 +91,15 @@ int list() {
   return kWorked;
 }
 
-/// @param most [N] device.max_force of the device file; 0 if it is not given
+/// Prints the limits of an arm. @param most [N] device.max_force of the device file; 0 if it is not given
 void printLimits(const scene::Limits& limits, double most) {
   const auto text = [](double value, const char* unit, const char* none) {
     return value == 0 ? std::string(none) : document::numberText(value) + " " + unit;
   };
   std::printf("limits\n  force      %s\n  torque     %s\n  slew       %s\n  velocity   %s\n  workspace  %s\n",
               text(limits.force > 0 ? limits.force : most, "N", "none known: only the motors bound it").c_str(),
-              text(limits.torque, "N m", "the motors'").c_str(), text(limits.slew, "N/s", "none").c_str(),
+              text(limits.torque, "N m", "none: only the motors bound it").c_str(),
+              text(limits.slew, "N/s", "none").c_str(),
               (limits.velocity ? text(*limits.velocity, "m/s", "none") : std::string("5 m/s on real hardware")).c_str(),
               text(limits.workspace, "m", "none").c_str());
   std::printf("  enable     %s\n",
@@ -166,7 +167,7 @@ void printDoubts(const scene::Device& description, const host::DeviceInstance& d
     std::printf("  no masses in its description: gravity is not compensated\n");
 }
 
-/// Errors are returned as results too, and printed by the caller.
+/// Prints a message, unless it is an error: errors are also returned as results, and the caller prints them.
 void logButNoErrors(int level, const std::string& who, const std::string& text) {
   if (level != HSP_LOG_ERROR) logToTerminal(level, who, text);
 }

@@ -66,7 +66,8 @@ void print(const Outcome& outcome) {
   std::fflush(stdout);
 }
 
-/// Runs all tests of one device, up to the first that crashes or hangs, or that the others depend on.
+/// Runs the tests of one device. Stops after a test that crashes or hangs, or that fails and is needed by the tests
+/// after it.
 std::vector<Outcome> examine(const scene::Device& device, const ExamineArguments& options) {
   std::vector<Outcome> outcomes;
   for (const device_check::Test& test : device_check::tests()) {

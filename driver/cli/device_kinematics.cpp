@@ -27,7 +27,8 @@ struct KinematicsArguments {
 };
 
 constexpr size_t kMaxCsvBytes = 256u << 20;
-constexpr const char* kTipColumns = ",x,y,z,qw,qx,qy,qz";  ///< after the joints
+/// Columns of the pose of the tip; they follow the columns of the joints.
+constexpr const char* kTipColumns = ",x,y,z,qw,qx,qy,qz";
 
 std::string headerOf(size_t joints) {
   std::string header;
@@ -35,12 +36,13 @@ std::string headerOf(size_t joints) {
   return header;
 }
 
-/// The table that `device decode` writes, as q1,q2,...: its good rows. Nothing for another one.
+/// Converts a table that `device decode` wrote to a table with the columns q1,q2,... Only good rows are taken. Returns
+/// nothing if the text is another table.
 std::optional<std::string> fromDecoded(const std::string& text, size_t joints) {
   std::istringstream in(text);
   std::string line;
   std::getline(in, line);
-  const auto cells = [](const std::string& row) {  // also empty ones
+  const auto cells = [](const std::string& row) {  // returns the cells of a row, also the empty ones
     std::vector<std::string> found(1);
     for (const char c : row) {
       if (c == ',')
@@ -132,11 +134,11 @@ class Table {
     return {};
   }
 
-  /// Returns the number of rows whose tip the arm cannot reach within its joint limits.
+  /// Returns how many rows had a tip that the arm cannot reach within its joint limits.
   size_t outside() const { return outside_; }
 
  private:
-  /// tau = J^T W (Thompson et al. 1999, Eq. 9).
+  /// Adds the torques tau = J^T W (Thompson et al. 1999, Eq. 9).
   void addTorques(const std::vector<double>& values, const double* J) {
     const size_t n = kinematics_.joint_count;
     for (size_t j = 0; j < n; ++j) {
@@ -167,7 +169,8 @@ int kinematics(const KinematicsArguments& options) {
   auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
   if (!device) return fail(kFailed, device.error());
   const Inputs inputs{{options.joints, "the file of joints"}, {options.file, "the device file"}};
-  const OutputKind kind{"a table of this command (CSV)", {"q1,"}, kTipColumns};  // for any number of joints
+  // Such tables have any number of joints.
+  const OutputKind kind{"a table of this command (CSV)", {"q1,"}, kTipColumns};
   if (const std::string wrong = whyNotWritten(options.out, kind, inputs); !wrong.empty()) return fail(kBadInput, wrong);
   auto rows = readRows(options.joints, (*device)->kinematics().joint_count);
   if (!rows) return fail(kBadInput, rows.error());

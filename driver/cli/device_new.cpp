@@ -38,8 +38,8 @@ double ofJoint(const std::vector<double>& list, int joint) {
   return list[list.size() == 1 ? 0 : static_cast<size_t>(joint)];
 }
 
-/// Returns true for a chain whose axes are all parallel, because its tip stays in a plane and no force across that
-/// plane can be felt.
+/// Tells whether the arm is a chain whose axes are all parallel. The tip of such a chain stays in a plane, and no force
+/// across the plane can be felt.
 bool isPlanar(const NewDeviceArguments& o) {
   const auto straight = [](double twist) { return std::abs(std::sin(twist)) < 1e-6; };
   return o.kind == "chain" && o.joints > 1 && std::all_of(o.twists.begin(), o.twists.end(), straight);
@@ -65,7 +65,8 @@ std::string wrongIn(const NewDeviceArguments& o) {
   if (!hid && !bulk) return "--bus " + o.bus + ": expected hid or bulk";
   if (o.kind != "phantom" && o.kind != "delta" && o.kind != "chain")
     return "--kind " + o.kind + ": expected phantom, delta or chain";
-  if (o.kind != "chain" && o.joints != 3) return "--joints " + std::to_string(o.joints) + ": a " + o.kind + " has 3";
+  if (o.kind != "chain" && o.joints != 3)
+    return "--joints " + std::to_string(o.joints) + ": a " + o.kind + " has 3 joints";
   if (o.joints < 1 || o.joints > 16) return "--joints " + std::to_string(o.joints) + ": expected 1 to 16";
   if (o.bits < 2 || o.bits > 64) return "--bits " + std::to_string(o.bits) + ": expected 2 to 64";
   const size_t lengths = o.kind == "phantom" ? 2 : o.kind == "delta" ? 8 : static_cast<size_t>(o.joints);
@@ -101,7 +102,7 @@ bool readNumbers(const std::string& text, std::vector<double>& numbers) {
   return true;
 }
 
-/// Asks for what no option gave; an empty answer keeps the present value.
+/// Asks the user for each value that no option gave. An empty answer keeps the present value.
 class Questions {
  public:
   explicit Questions(const Command& command) : command_(command) {}
@@ -121,7 +122,7 @@ class Questions {
     }
   }
 
-  /// Asks for a list, such as 0.21, 0.17; an empty answer keeps the template's.
+  /// Asks for a list, such as 0.21, 0.17. An empty answer keeps the values of the template.
   template <class Wrong>
   void askList(const char* option, const std::string& question, std::vector<double>& list, const Wrong& wrong) {
     if (command_.given(option)) return;
@@ -167,18 +168,19 @@ std::string listOf(const std::vector<double>& numbers) {
 std::string phantomOf(const NewDeviceArguments& o) {
   std::vector<double> all = o.lengths.empty() ? std::vector<double>{0.2, 0.2} : o.lengths;
   all.insert(all.end(), {0, 0, 0});
-  return fmt::format(
-             "    lengths: {}     # m: upper arm, forearm; l3, l5, l6 for the weight alone: driver/docs/devices.md\n",
-             listOf(all)) +
-         "    masses: [0, 0, 0, 0]          # kg: ma, mc, mbe, mdf; all 0: its weight is not carried; left out: a "
-         "Premium 1.5's\n";
+  return fmt::format("    lengths: {}     # m: upper arm, forearm; l3, l5, l6: see driver/docs/devices.md\n",
+                     listOf(all)) +
+         "    masses: [0, 0, 0, 0]          # kg: ma, mc, mbe, mdf; all 0: the weight is not carried; if left out, "
+         "those "
+         "of a Premium 1.5\n";
 }
 
 std::string deltaOf(const NewDeviceArguments& o) {
-  return (o.lengths.empty() ? "    # lengths: [a, b, c, d, e, f, r, s]    # m; left out: the Falcon's\n"
+  return (o.lengths.empty() ? "    # lengths: [a, b, c, d, e, f, r, s]    # m; if left out, those of a Falcon\n"
                             : fmt::format("    lengths: {}    # m: a, b, c, d, e, f, r, s\n", listOf(o.lengths))) +
-         "    masses: [0, 0, 0]             # kg: arm, rod, platform; all 0: its weight is not carried; left out: a "
-         "Falcon's, guessed\n";
+         "    masses: [0, 0, 0]             # kg: arm, rod, platform; all 0: the weight is not carried; if left out, "
+         "guesses "
+         "for a Falcon\n";
 }
 
 std::string chainOf(const NewDeviceArguments& o) {
@@ -193,20 +195,22 @@ std::string chainOf(const NewDeviceArguments& o) {
         "      # Every alpha is 0: all axes are parallel, and the tip stays in a plane. A base that turns about the\n"
         "      # vertical has alpha 1.5707963 in the first row, and base_orientation below.\n";
   return text +
-         "    # base_orientation: [0.7071068, -0.7071068, 0, 0]   # the first axis points up; left out: toward the "
-         "user\n"
-         "    # masses: [...]               # kg, one per row; left out: its weight is not carried\n"
+         "    # base_orientation: [0.7071068, -0.7071068, 0, 0]   # the first axis points up; if left out, toward "
+         "the user\n"
+         "    # masses: [...]               # kg, one per row; if left out, the weight is not carried\n"
          "    # centers: [[-0.1, 0, 0], ...] # m, one per row: the link's centre of mass, from its far end, in its "
          "frame;\n"
-         "                                  # left out: each mass is at the far end of its link, which is too heavy\n";
+         "                                  # if left out, each mass is at the far end of its link, so the weight is "
+         "too large\n";
 }
 
 std::string armOf(const NewDeviceArguments& o) {
   const std::string links = o.kind == "phantom" ? phantomOf(o) : o.kind == "delta" ? deltaOf(o) : chainOf(o);
   return fmt::format("  arm:\n    kind: {}\n", o.kind) + links +
          fmt::format(
-             "    # limits: [[-1, 1], ...]      # rad, one row per joint; left out: the mechanism's own\n"
-             "    max_torque: {}             # N m at the joint: the motor's, times its turns in one joint turn\n",
+             "    # limits: [[-1, 1], ...]      # rad, one row per joint; if left out, those of the mechanism\n"
+             "    max_torque: {}             # N m at the joint: torque of the motor times its turns per turn of the "
+             "joint\n",
              listOf(o.torque));
 }
 
@@ -233,11 +237,12 @@ std::string wireOf(const NewDeviceArguments& o) {
       "  wire:                           # driver/docs/devices.md has every key\n"
       "    exchange: stream              # or poll: the arm answers each command\n    rate: 1000                    # "
       "Hz\n"
-      "    # watchdog: 0.02              # s after which its own hardware switches the motors off, if it does\n{}"
-      "    input:                        # what the arm sends; bytes counted without a report id\n",
+      "    # watchdog: 0.02              # s: if the arm has a watchdog, the time after which it switches its motors "
+      "off\n{}"
+      "    input:                        # what the arm sends; bytes are counted without the report id\n",
       o.bus == "bulk" ? "    endpoints: {in: 0x81, out: 0x02}\n" : "");
   int bit = 16;
-  std::string fields = "        - {is: counter, at: 0, type: u16}               # goes up with each report\n";
+  std::string fields = "        - {is: counter, at: 0, type: u16}               # grows with each report\n";
   for (int i = 0; i < o.joints; ++i, bit += o.bits) {
     const std::string place = bit % 8 == 0 ? fmt::format("at: {}", bit / 8) : fmt::format("bit_offset: {}", bit);
     fields +=
@@ -270,13 +275,12 @@ std::string wireOf(const NewDeviceArguments& o) {
 /// their dimensions.
 std::string mountOf(const NewDeviceArguments& o) {
   if (o.kind == "phantom")
-    return "mount: {position: [0, 0, 0.09]}     # m: where its frame stands in the world; this one puts the tip at "
-           "rest\n"
+    return "mount: {position: [0, 0, 0.09]}     # m: where the arm's frame is in the world; here the resting tip is\n"
            "                                     # 9 cm in front of the origin, where the scenes have their shapes\n";
-  return "# mount: {position: [0, 0, 0]}      # m: where its frame stands in the world; scenes have their shapes about "
-         "the\n"
-         "                                     # origin: (0, 0, 0.09) less the tip at rest, as `device kinematics` has "
-         "it\n";
+  return "# mount: {position: [0, 0, 0]}      # m: where the arm's frame is in the world. The shapes of scenes are "
+         "near\n"
+         "                                     # the origin, so take (0, 0, 0.09) minus the resting tip, as `device "
+         "kinematics` prints it\n";
 }
 
 std::string textOf(const NewDeviceArguments& o) {
@@ -286,18 +290,21 @@ std::string textOf(const NewDeviceArguments& o) {
       "# {0}. Written by `hapticd device new`; each number is a guess until you have measured it.\n"
       "hapticd-device: 1\nmodule: usb_{1}\nname: {0}\n"
       "{9}"
-      "limits: {{force: {2:g}, {10}passivity: true}}   # N: begin low, and raise it when the signs are right\n{8}"
+      "limits: {{force: {2:g}, {10}passivity: true}}   # N: begin low; raise it when the force has the right "
+      "direction\n{8}"
       "parameters:\n  usb: {{id: \"{3}\"}}\n"
-      "  # device: {{max_force: 5, max_stiffness: 1000, mass: 0.2}}      # what `check` and `tune` may rely on\n{4}"
-      "  calibration:\n    method: pose                  # or none: absolute encoders; device: it finds its zero "
-      "itself\n"
-      "    pose: [{5}]{6}# rad, while it is held as below\n    instructions: \"Hold every joint at its zero.\"\n{7}",
+      "  # device: {{max_force: 5, max_stiffness: 1000, mass: 0.2}}      # properties for `check` and `tune`\n{4}"
+      "  calibration:\n    method: pose                  # or none, for absolute encoders; or device, if the arm finds "
+      "its zero itself\n"
+      "    pose: [{5}]{6}# rad: joint positions while the arm is held as described below\n    instructions: \"Hold "
+      "every joint at its zero.\"\n{7}",
       o.name, o.bus, o.force, o.id, armOf(o), pose, "               ", wireOf(o),
-      o.buttons > 0 ? "# in limits: enable: {button: 0}   # forces only while it is held; here buttons count from 0, "
-                      "in wire from 1\n"
+      o.buttons > 0 ? "# in limits: enable: {button: 0}   # forces only while the button is held; buttons count from 0 "
+                      "here, from 1 in wire\n"
                     : "",
       mountOf(o),
-      o.joints > 3 ? fmt::format("torque: {:.2g}, ", 0.1 * o.force) : "");  // [N m] this force at a handle of 0.1 m
+      // [N m] torque of the largest force at a lever of 0.1 m.
+      o.joints > 3 ? fmt::format("torque: {:.2g}, ", 0.1 * o.force) : "");
 }
 
 bool usableDeviceName(const std::string& name) {
@@ -338,8 +345,8 @@ int makeNew(const Command& command, NewDeviceArguments options) {
   const std::string twin = options.kind == "delta"
                                ? ""  // the simulated arm does not have this mechanism
                                : "  hapticd device twin " + name +
-                                     "                 # the same arm simulated, to feel a scene with before it is "
-                                     "there\n";
+                                     "                 # the same arm simulated, to try a scene without the "
+                                     "real arm\n";
   std::printf(
       "%s\n\nthen, step by step (driver/docs/devices.md, \"A new arm, step by step\"):\n"
       "  hapticd check %s                       # after each change\n"

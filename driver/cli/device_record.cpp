@@ -21,7 +21,7 @@ struct CaptureArguments {
 
 std::atomic<bool> g_stop{false};
 
-/// The file that gets the transfers, and their counts.
+/// The file to which the transfers are written, and how many transfers there were.
 struct Log {
   std::FILE* out = nullptr;
   double until = 0;  ///< [s] end of the recording
@@ -68,7 +68,7 @@ int record(const CaptureArguments& options) {
   return log.from_arm > 0 ? kWorked
                           : fail(kFailed,
                                  "the arm sent nothing: an arm that only answers needs wire.exchange: poll, "
-                                 "and one that waits for a command wire.startup");
+                                 "and an arm that waits for a first command needs wire.startup");
 }
 
 }  // namespace

@@ -30,10 +30,10 @@ int judge(const std::string& file, const std::string& out) {
   problems = diagnostics::refusedArms(alone, false);
   printProblems(problems, stderr);
   if (problems.empty()) return kWorked;
-  return fail(kFailed, out + " was written, but its hand cannot reach its start position\n  fix: correct mount in " +
-                           file +
-                           ", which says where the arm stands (shapes and hand are near the world's origin; without "
-                           "mount, that of a chain is found), or correct arm.limits there; then write the twin again");
+  return fail(kFailed,
+              out + " was written, but its hand cannot reach its start position\n  fix: correct mount in " + file +
+                  ", which says where the arm stands (shapes and hand are near the world's origin; without "
+                  "mount, a chain is placed automatically), or correct arm.limits there; then write the twin again");
 }
 
 int makeTwin(const std::string& file, const std::string& wanted) {

@@ -9,7 +9,7 @@
 
 namespace hapticd::cli {
 
-/// Which of a table's columns become numbers of a report, and how.
+/// Says which columns of a table become numbers of a report, and how.
 struct EncodeColumns {
   std::vector<std::string> names;  ///< name of each number of a row, as encodeRow() knows it
   std::vector<size_t> from;  ///< column of the table for each of these names; none for joints that follow from the tip

@@ -74,7 +74,7 @@ std::vector<uint64_t> measureSteps(servo::World& world, const scene::Scene& scen
   return medians;
 }
 
-/// The debug messages of models, by the name of the model.
+/// The debug messages of the models. The key is the name of the model.
 using Details = std::multimap<std::string, std::string>;
 
 void explainModels(const scene::Scene& scene, servo::World& world, const std::vector<uint64_t>& costs,
@@ -100,8 +100,10 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
       say("  deformation", "not computed until it is touched; then only moving control points are integrated");
     const bool identity = model.pose.position.isZero(0) && model.pose.orientation.vec().isZero(0);
     const bool still = (report.flags & HSP_R_MOVES) == 0 && !model.kinematic;
-    say("  transform", identity && still ? "none: the model stands at the world's origin"
-                                         : "probe in, foot point and normal out, in every tick in which it is traced");
+    say("  transform",
+        identity && still
+            ? "none: the model stands at the world's origin"
+            : "in every tick in which it is traced: the probe into its frame, foot point and normal back");
     say("  velocity", (report.flags & HSP_R_VELOCITY) != 0 ? "used (damping, viscosity or friction)" : "not used");
     say("  memory", bytes(report.locked_bytes));
     say("  cost", std::to_string(costs[i]) + " ns per tick near the surface (median of 300)");

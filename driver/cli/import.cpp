@@ -52,14 +52,16 @@ std::string otherWay(const std::string& file) {
 std::string misplaced(const ImportArguments& options, bool cad) {
   const bool turned = options.placement.fit > 0 || options.placement.center || options.up != "y";
   if (cad && (turned || options.placement.scale != 1))
-    return "--scale, --fit, --center and --up are not for CAD files, which state their unit: place the part by pose";
+    return "--scale, --fit, --center and --up have no effect with CAD files, which state their unit: place the part by "
+           "`pose` in the scene";
   if (options.medial && turned)
-    return "--fit, --center and --up are not for --medial, expected --scale (metres per unit of the file)";
+    return "--fit, --center and --up have no effect with --medial, expected only --scale (metres per unit of the file)";
   if (options.outward != "auto" && (cad || options.medial || isMeshFile(options.file)))
-    return "--outward is for .bpt files; triangles and CAD faces are turned outward by the volume that they enclose";
-  if (!cad && options.cad.check) return "--check is for CAD files (.step, .iges, .brep)";
+    return "--outward has an effect only with .bpt files; triangles and CAD faces are turned outward by the volume "
+           "that they enclose";
+  if (!cad && options.cad.check) return "--check has an effect only with CAD files (.step, .iges, .brep)";
   if (options.out.empty() && !options.cad.check)
-    return "--out is required: a name for what the file becomes, such as part.hpart";
+    return "--out is required: the name of the file to write, such as part.hpart";
   return "";
 }
 

@@ -66,9 +66,11 @@ Result<pid_t> start(std::vector<std::string> words) {
   return child;
 }
 
-/// Waits for the child and ends it when its time is up. @return its status; `late` if it was ended
+/// Waits for the child and ends it when its time is up. @return the status of the child. Sets `late` if the child was
+/// ended
 int wait(pid_t child, double seconds, bool& late) {
-  const int handle = static_cast<int>(syscall(SYS_pidfd_open, child, 0));  // glibc 2.36's header lacks extern "C"
+  // A direct system call, because the header of glibc 2.36 lacks extern "C".
+  const int handle = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
   pollfd ended{handle, POLLIN, 0};
   const int timeout_ms = static_cast<int>(std::min(1000 * seconds, 2e9));
   late = handle >= 0 && poll(&ended, 1, timeout_ms) == 0;
@@ -103,10 +105,11 @@ int importCad(const CadImport& options) {
   const int status = wait(*child, options.time_s, late);
   if (late || (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL)))
     return fail(kBadInput, options.file + ": was not read within " + whole(options.time_s) +
-                               " s, nothing was written\n  fix: --time SECONDS for a large file");
+                               " s, nothing was written\n  fix: for a large file, give more time: --time SECONDS");
   if (WIFSIGNALED(status))
-    return fail(kBadInput, options.file + ": Open CASCADE broke off while reading it (" + strsignal(WTERMSIG(status)) +
-                               "), nothing was written: the file is damaged, or its shapes are\n  fix: open and save "
+    return fail(kBadInput, options.file + ": Open CASCADE crashed or was stopped while reading it (" +
+                               strsignal(WTERMSIG(status)) +
+                               "), nothing was written: the file or one of its shapes is damaged\n  fix: open and save "
                                "it in a CAD program");
   return WEXITSTATUS(status);
 }

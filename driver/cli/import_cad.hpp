@@ -8,7 +8,7 @@ namespace hapticd::cli {
 
 struct CadImport {
   std::string file, out;
-  bool check = false;       ///< true writes nothing, but reports what would be lost
+  bool check = false;       ///< true: writes nothing, and only reports what would be lost
   bool json = false;        ///< true prints the report for programs
   double memory_mb = 4096;  ///< most memory that the child may use
   double time_s = 600;      ///< longest time that the child may take

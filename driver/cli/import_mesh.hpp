@@ -10,7 +10,7 @@ namespace hapticd::cli {
 struct MeshImport {
   std::string file, out;
   importing::Placement placement;
-  double smooth_angle = 0;  ///< [degrees] as MeshOptions::smooth_angle
+  double smooth_angle = 0;  ///< [degrees] see MeshOptions::smooth_angle
   bool json = false;        ///< true prints the report as JSON
 };
 

@@ -66,7 +66,7 @@ std::string whyNotWritten(const std::string& out, const OutputKind& kind, const 
   if (!fs::is_regular_file(out, error) || fs::file_size(out, error) == 0) return "";
   if (!std::ifstream(out, std::ios::binary) || isOf(kind, headOf(out))) return "";
   return out + ": exists already and is not " + kind.name + ", so it would be lost; expected a new name, or that of " +
-         kind.name + " to be replaced\n  fix: another name, or remove the file";
+         kind.name + " to be replaced\n  fix: give another name, or remove the file";
 }
 
 }  // namespace hapticd::cli

@@ -165,8 +165,8 @@ void print(const std::string& file, const Json& info) {
       return std::round(1e9 * length.get<double>()) * (large ? 1e-9 : 1e-6) + 0.0;
     };
     const char* unit = large ? "m" : "mm";
-    std::printf("  size: %.4g x %.4g x %.4g %s, from (%.4g, %.4g, %.4g) %s on\n", in(size[0]), in(size[1]), in(size[2]),
-                unit, in(low[0]), in(low[1]), in(low[2]), unit);
+    std::printf("  size: %.4g x %.4g x %.4g %s, least corner at (%.4g, %.4g, %.4g) %s\n", in(size[0]), in(size[1]),
+                in(size[2]), unit, in(low[0]), in(low[1]), in(low[2]), unit);
   }
   if (info["faces"].get<std::size_t>() > 0) {
     std::printf("  faces: %s\n", listed(info["face_kinds"]).c_str());

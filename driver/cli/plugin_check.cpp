@@ -39,10 +39,10 @@ struct ConformanceArguments {
 struct Outcome {
   std::string plugin, name, why;
   bool passed = false, skipped = false, hung = false, warned = false;
-  std::string end;  ///< how its process ended, if it gave no answer
+  std::string end;  ///< how the process of the test ended, if it gave no answer
 };
 
-/// Gives a plugin that ships with hapticd and needs a model a model that ships, and prints a note.
+/// If a plugin that ships with hapticd needs a model file, gives it one that ships too, and prints a note.
 void addModelOfOurs(const host::ClassInfo& info, Recipe& recipe) {
   const int index = info.indexOf("geometry");
   const bool ours = info.id.rfind("org.hapticd.", 0) == 0;
@@ -76,7 +76,7 @@ std::vector<Recipe> recipesFor(const std::vector<host::ClassInfo>& classes, cons
     // A bare name would be looked up in the system's library folders.
     recipes.push_back({std::filesystem::absolute(options.file).string(), info.name, set.valuesFor(info), {}});
     addModelOfOurs(info, recipes.back());
-    if (!set.problems().empty()) continue;  // a wrong name may stand for the missing parameter
+    if (!set.problems().empty()) continue;  // the missing parameter may have been given under a wrong name
     for (const std::string& one : missing(info, recipes.back().set)) problems.push_back(one);
   }
   problems.insert(problems.begin(), set.problems().begin(), set.problems().end());
@@ -112,7 +112,7 @@ Outcome tryOne(const Recipe& recipe, const ConformanceTest& test, const Conforma
   return outcome;
 }
 
-/// Does some runs with random input in one child process. @return "=" if nothing was wrong
+/// Tests `count` runs with random input in one child process. @return "=" if nothing was wrong
 Result<std::string> fuzzSome(const Recipe& recipe, const ConformanceArguments& options, uint64_t first, int count) {
   return host::runInChild(
       [&recipe, first, count] {
@@ -124,7 +124,7 @@ Result<std::string> fuzzSome(const Recipe& recipe, const ConformanceArguments& o
       options.limitMs(count));
 }
 
-/// Runs random input until the time is over; the seed of a failure repeats it.
+/// Tests with random input until the time is over. The result names the seed of a failure, which repeats it.
 Outcome fuzz(const Recipe& recipe, const ConformanceArguments& options) {
   constexpr int kRunsAChild = 20;
   const Nanoseconds end = monotonicNow() + static_cast<Nanoseconds>(options.fuzz * 1e9);
@@ -234,8 +234,8 @@ std::optional<Outcome> overrunBehind(const Recipe& recipe, const ConformanceArgu
   return std::nullopt;
 }
 
-/// Runs all tests of one class, up to the first that hangs, because later tests would hang too. A test that needs a
-/// failed test is left out, because it would fail for the same reason. @return how many tests were not run
+/// Runs the tests of one class. Stops after the first test that hangs, because later tests would hang too. A test that
+/// needs a failed test is left out, because it would fail for the same reason. @return how many tests were not run
 size_t testClass(const Recipe& recipe, const ConformanceArguments& options, std::vector<Outcome>& outcomes) {
   const auto& tests = conformanceTests();
   Lacking lacking;

@@ -10,7 +10,7 @@
 namespace hapticd::cli {
 
 Result<std::vector<PathRow>> readProbePath(const std::string& file) {
-  constexpr size_t kMaxBytes = size_t{4} << 30;  // ten hours at 1 kHz
+  constexpr size_t kMaxBytes = size_t{4} << 30;  // [bytes] enough for ten hours at 1 kHz
   constexpr size_t kPoseColumns = 8;
   const document::CsvRules rules{{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, false, true, HUGE_VAL};
   document::Problems problems;

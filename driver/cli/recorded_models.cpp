@@ -64,11 +64,11 @@ class RecordedModelsImpl final : public RecordedModels {
   struct Built {
     std::string name, plugin, error;
     std::unique_ptr<servo::World> world;
-    /// Computes the shape of a body that deforms, if the recording has the tips.
+    /// Computes the shape of a body that deforms, if the recording has the positions of the tips.
     std::unique_ptr<servo::ModelRerun> rerun;
   };
 
-  /// Makes a scene of that model alone, so that a failing model does not affect the others.
+  /// Builds a scene with that model alone, so that a model that fails does not affect the others.
   Built build(const scene::Scene& scene, const scene::Model& model, double rate) const {
     Built built{model.name, model.plugin, "", nullptr, nullptr};
     auto found = catalog().shape(model.plugin);

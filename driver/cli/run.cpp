@@ -45,7 +45,8 @@ struct RunArguments {
   bool virtual_time = false, allow_non_rt = false, view = false, no_open = false;
 };
 
-const Nanoseconds program_start = monotonicNow();  ///< when the libraries were loaded
+/// Time at which the program began, taken when its libraries were loaded.
+const Nanoseconds program_start = monotonicNow();
 
 /// Checks before the run that a file can be written. Leaves no new file behind, in case the run does not start.
 bool writable(const std::string& file) {
@@ -161,7 +162,7 @@ int conclude(const RunArguments& options, servo::Runner& runner, const std::vect
               record::paceText(report, options.rate.value_or(runner.scene().servo.rate)))
                  .c_str(),
              stdout);
-  std::fflush(stdout);  // the report is kept even if a plugin crashes while it is taken down
+  std::fflush(stdout);  // the summary is printed even if a plugin crashes while it is deactivated
   warnOfHeat(runner, report.rate_hz);
   if (const record::Recorder* recorder = runner.recorder())
     std::printf("  recorded  %s: %llu ticks, %llu rows lost\n", options.record.c_str(),
@@ -177,7 +178,7 @@ int conclude(const RunArguments& options, servo::Runner& runner, const std::vect
   return faults.empty() ? kWorked : kFailed;
 }
 
-/// True if the file of a plugin that ended an earlier run was rebuilt or replaced, so that it is tried again.
+/// Warns that a plugin that ended an earlier run is tried again, because its file was rebuilt or replaced.
 void tellTriedAgain(const scene::Model& model, const watch::QuarantinedPlugin& entry) {
   log::write(HSP_LOG_WARNING, "",
              "model " + model.name + ": plugin '" + entry.plugin + "' ended an earlier run by " + entry.reason + " (" +
@@ -186,8 +187,8 @@ void tellTriedAgain(const scene::Model& model, const watch::QuarantinedPlugin& e
                  entry.plugin);
 }
 
-/// Models of a plugin that crashed the daemon stay out until its file changes or the user clears it. @return a message
-/// for each
+/// Removes from the scene the models of plugins that crashed the daemon. They stay out until the file of the plugin
+/// changes or the user clears the plugin. @return a message for each model
 std::vector<std::string> leaveOutQuarantined(scene::Scene& scene, const std::filesystem::path& dir) {
   std::vector<std::string> messages;
   if (dir.empty()) return messages;
@@ -205,7 +206,8 @@ std::vector<std::string> leaveOutQuarantined(scene::Scene& scene, const std::fil
   return messages;
 }
 
-/// Warnings, before any force, about what cannot be stable on the opened arms, and what they cannot hold.
+/// Warns, before any force is sent, of paths that are too fast, of arms that give less force, and of stiffnesses that
+/// cannot be stable on the opened arms.
 void warnOfSettings(servo::Runner& runner, double rate) {
   scene::Scene scene = runner.scene();
   scene.servo.rate = rate;
@@ -222,7 +224,7 @@ void warnOfSettings(servo::Runner& runner, double rate) {
   }
 }
 
-/// Logs a message, unless the one that ends the set-up will contain it anyway.
+/// Logs a message, unless the error that ends the set-up will contain it anyway.
 void logOfRun(int level, const std::string& who, const std::string& text) {
   if (!SetupErrors::keeps(level, who, text)) log::write(level, who, text);
 }
@@ -291,7 +293,7 @@ Result<void> tickToTheEnd(servo::Runner& runner, servo::RunFiles* files) {
 
 int runScene(const RunArguments& options, scene::Scene& scene) {
   servo::RunOptions how = runOptions(options, scene);
-  // a run in virtual time has such files only if it was given a name, because it is soon over
+  // a run in virtual time is soon over, so it has a status page and a black box only if it was given a name
   std::unique_ptr<servo::RunFiles> files;
   if (!options.virtual_time || !options.name.empty()) {
     auto opened = servo::RunFiles::open(options.name, how);
@@ -334,7 +336,8 @@ bool switchesAreThere(const scene::Scene& scene) {
 int run(const RunArguments& options) {
   if (auto opened = log::open(options.log); !opened) return fail(kBadInput, opened.error());
   if (const std::string wrong = wrongFiles(options); !wrong.empty()) return fail(kBadInput, wrong);
-  // Watches the set-up, whenever the run itself does not watch, until all memory that a plugin could damage is freed.
+  // Watches the plugins whenever the run itself does not watch them: during the set-up, and until all memory that a
+  // plugin could damage is freed.
   const GuardedCommand guarded(watch::stateDir());
   auto scene = loadSceneOrReport(options.scene, options.device);
   if (!scene || !switchesAreThere(*scene)) return kBadInput;
@@ -360,7 +363,7 @@ void addTiming(const Command& command, RunArguments& options) {
   command.addFlag("--virtual-time", options.virtual_time,
                   "run as fast as the processor allows, on simulated devices; the same input gives the same bits");
   command.addOption("--rate", options.rate, "servo rate [Hz] instead of the scene's")
-      .within(10.0, 20000.0);  // as servo.rate
+      .within(10.0, 20000.0);  // the range of servo.rate
   command.addOption("--cpu", options.cpu, "processor to pin the servo thread to").wholeWithin(0, 1023);
   command
       .addOption("--priority", options.priority,

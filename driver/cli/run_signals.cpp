@@ -9,7 +9,7 @@ namespace hapticd::cli {
 
 namespace {
 
-std::atomic<servo::Runner*> running{nullptr};  ///< for the signal handlers
+std::atomic<servo::Runner*> running{nullptr};  ///< the present run, for the signal handlers
 std::atomic<bool> told_to_stop{false};
 
 void stopRun(int) {

@@ -13,7 +13,8 @@ namespace hapticd::cli {
 
 class SetOption {
  public:
-  /// [main] @param pairs ID=VALUE; VALUE is YAML: a number, a word, [1, 2, 3]; a path is relative to the current folder
+  /// [main] Reads and checks the pairs. @param pairs ID=VALUE; VALUE is YAML: a number, a word, [1, 2, 3]; a path is
+  /// relative to the current folder
   /// @param classes classes of the plugin file; each ID must be a parameter of one of them
   SetOption(const std::vector<std::string>& pairs, const std::vector<host::ClassInfo>& classes);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Watches a command that runs the servo core without a servo: if a step of a plugin does not return, the plugin is
-/// named and the command ends.
+/// Watches a command that runs the servo core without a servo loop: if a step of a plugin does not return, the plugin
+/// is named and the command ends.
 #pragma once
 #include "base/offline_tick.hpp"
 #include "base/thread_usage.hpp"
@@ -16,7 +16,7 @@ class TickWatch {
   TickWatch() { (void)watch_.start(); }
 
  private:
-  /// Gives EndWatch the ticks of a command: there is no servo, but a tick may still hang.
+  /// Tells EndWatch the ticks of a command. The command has no servo loop, but a tick may still hang.
   class Ticks final : public watch::Ended {
    public:
     uint64_t ticks() const noexcept override { return OfflineTick::ended(); }

@@ -98,7 +98,7 @@ View look(const status::Page& page) {
                    false};
     const status::SharedHistogram& step = page.model[i].step_us;
     line.p50 = step.quantile(0.5), line.p99 = step.quantile(0.99), line.max = step.max();
-    constexpr uint64_t kFresh = 50;  // ticks: a model whose last step is longer ago is far away
+    constexpr uint64_t kFresh = 50;  // [ticks] a model whose last step is longer ago is far from the tip
     line.traced = line.now.tick + kFresh >= view.now.tick && std::isfinite(line.now.depth);
     if (!line.traced) line.now.force = 0;
     line.silenced =
@@ -189,7 +189,8 @@ std::string clientsTable(const View& view) {
   return text;
 }
 
-/// Returns in which share of the ticks with a foot point it was certain, as the nearest point or by a held contact.
+/// Returns the share of the ticks in which the foot point was certain: it was the nearest point, or the contact was
+/// held. Ticks without a foot point do not count.
 std::string knownShare(const status::ModelFeet& feet) {
   const uint64_t known = feet.nearest + feet.held, all = known + feet.degraded;
   if (all == 0) return "-";

@@ -16,7 +16,8 @@ namespace hapticd::cli {
 
 class TraceWriter {
  public:
-  static constexpr const char* kFirstColumns = "t,model,feature,u,v,";  ///< by these such a file is recognised
+  /// A file of this kind is recognised by these columns.
+  static constexpr const char* kFirstColumns = "t,model,feature,u,v,";
 
   /// [main] Opens `file` ("-" is standard output) and writes the header. @param models indices of the models to print
   static Result<std::unique_ptr<TraceWriter>> open(const std::string& file, const scene::Scene& scene,
@@ -40,7 +41,7 @@ class TraceWriter {
   std::FILE* out_;
   std::string file_;
   std::vector<uint32_t> models_;
-  std::vector<std::string> names_;  // as CSV fields
+  std::vector<std::string> names_;  // names of the models, as CSV fields
   std::string line_;
 };
 

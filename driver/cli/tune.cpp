@@ -97,7 +97,7 @@ std::string nameOfMotion(const TuneArguments& options) {
   return file.empty() ? "the motion of the scene's hand" : file;
 }
 
-/// Shows a bar on a terminal, and a line every five seconds in a log.
+/// Shows the progress: a bar on a terminal, or a line every five seconds in a log.
 bool showProgress(const tune::Progress& progress) {
   static Nanoseconds told = monotonicNow();
   constexpr Nanoseconds kEvery = 5'000'000'000;

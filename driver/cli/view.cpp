@@ -30,7 +30,7 @@ std::vector<std::string> argumentsOf(const ViewArguments& options) {
   return arguments;
 }
 
-volatile sig_atomic_t viewer = 0;  ///< for the signal handler
+volatile sig_atomic_t viewer = 0;  ///< process id of the page's server, for the signal handler
 
 void passToView(int signal) {
   if (viewer > 0) kill(static_cast<pid_t>(viewer), signal);

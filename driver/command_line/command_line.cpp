@@ -154,7 +154,7 @@ void Command::optionsMayFollowSubcommand() const {
 
 void Command::takesForeignCommandLine() const {
   app_->prefix_command();
-  app_->fallthrough(false);  // the words after it are not parsed as options of the program either
+  app_->fallthrough(false);  // the words after the first unknown one are not parsed as options of the program either
 }
 
 std::vector<std::string> Command::foreignCommandLine() const {

@@ -42,10 +42,11 @@ class Option {
   Option needs(const std::string& name) const;
   Option excludes(const Option& other) const;
   Option excludes(const std::string& name) const;
-  Option showDefault() const;                               ///< the help shows the value that the variable has now
-  Option valueWithoutWord(const std::string& value) const;  ///< value if the option is given without one
+  Option showDefault() const;  ///< the help shows the value that the variable has now
+  /// Sets the value that counts if the option is given without one.
+  Option valueWithoutWord(const std::string& value) const;
 
-  // What the help says about it.
+  // What the help says about the option.
   bool positional() const;
   bool isHelp() const;
   std::string description() const;
@@ -75,11 +76,11 @@ class Command {
 
   void footer(const std::string& text) const;                    ///< text below the help: examples, exit codes
   void callback(const std::function<void()>& whatItDoes) const;  ///< called after the whole command line was read
-  void requireSubcommand() const;                                ///< exactly one must be given
+  void requireSubcommand() const;                                ///< exactly one subcommand must be given
   void optionsMayFollowSubcommand() const;                       ///< options of the program may also follow it
-  void takesForeignCommandLine() const;                          ///< words from the first unknown one on are not parsed
+  void takesForeignCommandLine() const;                          ///< nothing after the first unknown word is parsed
   std::vector<std::string> foreignCommandLine() const;           ///< the words that were not parsed
-  bool given(const std::string& option) const;                   ///< whether the command line contained it
+  bool given(const std::string& option) const;                   ///< whether the command line contained the option
   Command subcommand(const std::string& name) const;             ///< the subcommand of that name, which exists
   std::string name() const;
   std::string description() const;
@@ -107,7 +108,8 @@ class Program : public Command {
   std::optional<int> parse(int argc, const char* const* argv) const;
 };
 
-/// Reads a word in the way of an option of this type. If it returns false, `value` is undefined.
+/// Converts a word to a value, as an option of this type does. If it returns false, the word could not be read, and
+/// `value` is undefined.
 template <class Value>
 bool read(const std::string& word, Value& value);
 

@@ -10,7 +10,8 @@
 namespace hapticd::document {
 namespace {
 
-constexpr size_t kShownProblems = 20;  ///< limit per file: a file in another format is wrong in every line
+/// Largest number of problems that are reported for one file. A file in another format is wrong in every line.
+constexpr size_t kShownProblems = 20;
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r";
@@ -86,7 +87,7 @@ class Parser {
     for (const std::string& header : rules_.headers) text += (text.empty() ? "" : " or ") + header;
     return text;
   }
-  /// Returns a hint about separators if the line seems to have other signs than commas between its columns; else "".
+  /// Returns a hint if the columns of the line seem to be separated by other characters than commas; else "".
   static std::string separators(const std::vector<Field>& fields, size_t columns) {
     if (fields.size() >= columns) return "";
     bool others = fields.size() == 1 && fields[0].text.find(' ') != std::string_view::npos;

@@ -14,12 +14,13 @@
 
 namespace hapticd::document {
 
-/// What a table must be like.
+/// The rules that a table must keep.
 struct CsvRules {
-  std::vector<std::string> headers;  ///< accepted headers, such as "t,x,y,z", each with another number of columns
-  bool finite = true;                ///< true: nan and inf are errors. In column 1 of a growing table they always are
-  bool growing = false;              ///< true: the first column must grow from row to row
-  double largest = HUGE_VAL;         ///< largest magnitude of a finite number
+  /// The accepted headers, such as "t,x,y,z". No two of them have the same number of columns.
+  std::vector<std::string> headers;
+  bool finite = true;  ///< true: nan and inf are errors. In the first column of a growing table they are always errors
+  bool growing = false;       ///< true: the first column must grow from row to row
+  double largest = HUGE_VAL;  ///< largest magnitude of a finite number
 };
 
 struct CsvTable {

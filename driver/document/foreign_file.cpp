@@ -13,7 +13,8 @@ struct Kind {
   std::string_view ending, begins, name;
 };
 
-/// If two formats have a name in common, the one with known first words comes first.
+/// A file is of the first kind here whose ending or first words it has. For kinds without first words, only the ending
+/// counts.
 constexpr Kind kKinds[] = {{".step", "ISO-10303-21", "a STEP file"},
                            {".stp", "ISO-10303-21", "a STEP file"},
                            {".iges", "", "an IGES file"},

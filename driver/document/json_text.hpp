@@ -11,7 +11,7 @@ namespace hapticd::document {
 /// [any] Parses a text; keys keep their order. If the text is not JSON, is_discarded() of the result is true.
 nlohmann::ordered_json parseJson(std::string_view text);
 
-/// [any] As parseJson(), but throws nlohmann::json::parse_error if the text is not JSON.
+/// [any] Does what parseJson() does, but throws nlohmann::json::parse_error if the text is not JSON.
 nlohmann::ordered_json parseJsonOrThrow(std::string_view text);
 
 }  // namespace hapticd::document

@@ -14,7 +14,7 @@
 namespace hapticd::document {
 namespace {
 
-constexpr size_t kLongest = 60;  ///< length of the longest text that is examined: a number with its unit is short
+constexpr size_t kLongest = 60;  ///< longest text that is examined; a longer one is not a number with a unit
 
 /// A unit as people write it, the unit that hapticd uses, and the factor between them.
 struct Known {
@@ -90,7 +90,8 @@ std::optional<std::string> ungrouped(std::string_view text) {
   return grouped && group == 3 && toNumber(out) ? std::optional(out) : std::nullopt;
 }
 
-/// Advice for a number with the text `rest` behind it: what its writer probably meant, and how to write that.
+/// Returns advice for a number that is followed by the text `rest`: what its writer probably meant, and how to write
+/// that.
 std::string unitMeant(double number, const std::string& shown, std::string_view rest, std::string_view unit) {
   const std::string value = numberText(number), behind(rest);
   if (rest == "," || rest == ";") return "; write " + value + ", without the " + behind + " after it";

@@ -67,7 +67,7 @@ class Builder final : public YAML::EventHandler {
   void OnMapEnd() override { closeLast(); }
 
   std::optional<Node> take() { return std::move(root_); }
-  /// The place where the last quoted text began.
+  /// Returns the place where the last quoted text began.
   const YAML::Mark& lastQuoted() const { return last_quoted_; }
 
  private:
@@ -231,7 +231,8 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
       return std::nullopt;
     }
     std::optional<Node> root = builder.take();
-    if (const auto open = openQuote(text, placeOf(builder.lastQuoted(), file))) {  // to the parser, the end closes it
+    // If a quote is never closed, the parser takes the end of the text for the closing quote.
+    if (const auto open = openQuote(text, placeOf(builder.lastQuoted(), file))) {
       problems.push_back(*open);
       return std::nullopt;
     }

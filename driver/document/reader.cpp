@@ -14,7 +14,8 @@
 namespace hapticd::document {
 namespace {
 
-constexpr double kUnitTolerance = 1e-3;  ///< allowed error of a quaternion's length, since people write few digits
+/// Allowed error of a quaternion's length. It is large, because people write few digits.
+constexpr double kUnitTolerance = 1e-3;
 constexpr size_t kLongestName = 100;
 
 std::string wordOf(const Node& node) {

@@ -83,8 +83,8 @@ std::optional<Problem> wrongBlank(const std::string& text, int last, const std::
   return std::nullopt;
 }
 
-/// Finds a line up to `last` whose indentation is wrong. The parser notices it only later, and says it in its own
-/// terms.
+/// Finds a line up to `last` whose indentation is wrong. The parser notices this mistake only later, and describes it
+/// in its own terms.
 std::optional<Problem> wrongIndent(const std::string& text, int last, const std::string& file) {
   const auto wrong = [&](const Line& line, const std::string& expected) {
     return Problem{{file, line.number, line.indent + 1},
@@ -135,7 +135,7 @@ std::optional<Problem> wrongPair(const std::string& text, const std::string& fil
   if (scan.long_quote)
     return at(*scan.long_quote, file,
               quoted(scan.long_quote->what) + " that begins here is closed only in line " +
-                  std::to_string(scan.long_quote_ends) + ", expected another one in line " +
+                  std::to_string(scan.long_quote_ends) + ", expected the closing quote in line " +
                   std::to_string(scan.long_quote->line));
   if (!scan.open.empty())
     return at(scan.open.front(), file,
@@ -213,7 +213,7 @@ std::optional<Problem> openQuote(const std::string& text, const Place& last_quot
   const std::optional<Mark> open = scanYaml(text).quote;
   if (!open || open->line != last_quoted.line || open->column != last_quoted.column) return std::nullopt;
   return at(*open, last_quoted.file,
-            std::string("the ") + open->what + " that begins here is never closed, expected another one");
+            std::string("the ") + open->what + " that begins here is never closed, expected the closing one");
 }
 
 std::string withAliasMeant(const std::string& text, const Place& place, const std::string& words) {

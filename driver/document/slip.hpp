@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Finds out why a text is not YAML, and says it in plain words at the place of the mistake. A parser notices a mistake
-/// only later in the text, and describes it in its own terms.
+/// Finds out why a text is not YAML, and describes the mistake in plain words, with its place. A parser notices a
+/// mistake only later in the text, and describes it in its own terms.
 #pragma once
 #include <optional>
 #include <string>

@@ -37,7 +37,7 @@ struct Key {
   std::span<const std::string_view> choices{};
   const Table* table = nullptr;  ///< for kObject and kList: the keys of the mapping
   void (*store)(Reader&, const Node&, const std::string& path, const Key&, void* object) = nullptr;
-  const char* shape = "";  ///< for kAny: words that say what is expected
+  const char* shape = "";  ///< for kAny: what the messages say is expected
 
   std::string expected() const;  ///< such as "a number, 10 to 20000 Hz"
 };
@@ -123,7 +123,8 @@ constexpr Key boolean(const char* name, const char* def, const char* doc) {
           }};
 }
 
-/// The member is a std::string or an enumeration in the order of the choices.
+/// Makes a key whose value is one of the choices. The member M is a std::string, or an enumeration in the order of the
+/// choices.
 template <auto M>
 constexpr Key choice(const char* name, std::span<const std::string_view> choices, const char* def, const char* doc) {
   return {name,
@@ -205,7 +206,8 @@ constexpr Key quaternion(const char* name, const char* def, const char* doc) {
           }};
 }
 
-/// A nested mapping. If the member is a std::optional, it has a value only if the file contains the mapping.
+/// Makes a key whose value is a nested mapping. If the member M is a std::optional, it has a value only if the file
+/// contains the mapping.
 template <auto M>
 constexpr Key object(const char* name, const Table& table, const char* doc) {
   return {name,
@@ -225,7 +227,8 @@ constexpr Key object(const char* name, const Table& table, const char* doc) {
           }};
 }
 
-/// A list of mappings. If the elements have a member `node`, it keeps the element's node, with its line and column.
+/// Makes a key whose value is a list of mappings. If the elements have a member `node`, it keeps the element's node,
+/// with its line and column.
 template <auto M>
 constexpr Key list(const char* name, const Table& table, Range count, const char* doc) {
   return {name,
@@ -253,7 +256,8 @@ constexpr Key list(const char* name, const Table& table, Range count, const char
           }};
 }
 
-/// Any node, kept without checks. The node must live longer than the object that points to it.
+/// Makes a key whose value may be any node. The node is not checked. The member M points to it, so the node must live
+/// longer than the object.
 template <auto M>
 constexpr Key any(const char* name, const char* shape, const char* doc) {
   return {name,

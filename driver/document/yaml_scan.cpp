@@ -43,7 +43,8 @@ class Scanner {
     while (at_ < text_.size() && text_[at_] != '\n') ++at_;
   }
 
-  /// True if the line before ends with | or > (and perhaps their options), so that a block text begins.
+  /// Tells whether the line that ends here has | or > at its end (perhaps with options after it), so that a block text
+  /// begins.
   bool opensBlock() const {
     size_t end = at_;
     while (end > line_start_ && (isBlank(text_[end - 1]) || text_[end - 1] == '-' || text_[end - 1] == '+' ||

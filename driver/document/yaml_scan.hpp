@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Finds quotes and brackets of a YAML text that are not closed or do not fit. It does not parse the text: it explains
-/// why the parser failed.
+/// Finds quotes and brackets of a YAML text that are not closed or do not match. It does not parse the text: it
+/// explains why the parser failed.
 #pragma once
 #include <optional>
 #include <string>
@@ -18,7 +18,7 @@ struct Scan {
   std::optional<Mark> quote;        ///< a quote that is never closed
   std::optional<Mark> long_quote;   ///< the first quote that is closed in another line
   int long_quote_ends = 0;          ///< line in which that quote is closed
-  std::optional<Mark> wrong_close;  ///< the first closing bracket that does not fit
+  std::optional<Mark> wrong_close;  ///< the first closing bracket that does not match the open one
   std::optional<Mark> wrong_open;   ///< the bracket that is open at `wrong_close`, if there is one
 };
 

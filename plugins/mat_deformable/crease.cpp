@@ -9,7 +9,8 @@ namespace {
 using medial::FeltPlace;
 using medial::PlaceNode;
 
-/// if 1 + cosine of two normals is below this, they belong to the two sides of a sheet
+/// If 1 + cosine of the normals of two feet is below this, the feet are nearly on opposite sides of a sheet. The rival
+/// then counts less, and not at all if the normals are opposite.
 constexpr double kNoRival = 0.05;
 
 }  // namespace

@@ -5,8 +5,9 @@
 
 namespace hapticd {
 
-/// [rt] Returns how much the rival foot counts besides the foot: from 0, to 1 if both are equally deep.
-/// @param width [m] difference of the depths from which the rival does not count
+/// [rt] Returns how much the rival (Track::rival, the foot on the other flank) counts besides the foot: 0 if not at
+/// all, 1 if the probe is equally deep below both.
+/// @param width [m] if the depths differ by this or more, the rival does not count
 double rivalShare(const Track& track, double width) noexcept HSP_RT;
 
 /// [rt] Returns the felt surface in a valley. Its depth is a smooth maximum of both depths, and its direction is the

@@ -18,9 +18,11 @@ constexpr double kLarge = 1.5;  ///< [m] a longer body is unusual: no arm reache
 /// ratio of the felt stiffness to the file's stiffness above which a hint is given
 constexpr double kNoticed = 1.1;
 constexpr std::size_t kMostLines = 200;  ///< most lines in the log; nobody reads more
-/// multiple of K T / 2; only a swinging mass needs an arm with more damping than this
+/// multiple of K T / 2, the damping of the arm that the contact spring alone needs; only a swinging mass needs more
+/// than this
 constexpr double kSwings = 2;
-/// attempts to find a sufficient damping: from kLittle of the critical damping on, each time kMore times the last
+/// most attempts to find a sufficient damping; the first one is kLittle times the critical damping, and each of the
+/// others is kMore times the one before
 constexpr int kGuesses = 30;
 constexpr double kLittle = 1e-3, kMore = 1.3;
 constexpr double kSameStiffness = 1e-3;  ///< places with a smaller relative difference are reported together
@@ -137,7 +139,8 @@ void MatDeformable::describe(const MedialFile& file, double tick) const {
   if (host() == nullptr || host()->log == nullptr) return;
   const Description description = body_->describe(geometry_);
   say(description.warning ? HSP_LOG_WARNING : HSP_LOG_INFO, description.text);
-  if (!(body_->greatestRadius() > 0)) say(HSP_LOG_WARNING, geometry_ + ": all radii are 0: nothing will be felt");
+  if (!(body_->greatestRadius() > 0))
+    say(HSP_LOG_WARNING, geometry_ + ": all radii are 0, so nothing will be felt; give radii above 0, in m");
   describeMaterial(file, tick);
   for (const std::string& odd : file.odd) say(HSP_LOG_WARNING, "geometry: " + odd);
   describeDynamics(file);

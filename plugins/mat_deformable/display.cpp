@@ -7,7 +7,8 @@
 namespace hapticd {
 
 namespace {
-/// most attempts to read a complete set; they suffice, because a set is written in microseconds, 60 times a second
+/// most attempts to read a complete set of displacements; they suffice, because a set is written in microseconds, and
+/// only 60 times a second
 constexpr int kAttempts = 100;
 }  // namespace
 

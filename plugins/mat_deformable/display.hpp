@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The present look of a body, for drawing: the servo thread writes displacements, and another thread reads them.
+/// The present shape of a body, for drawing: the servo thread writes displacements, and another thread reads them.
 #pragma once
 #include <Eigen/Core>
 #include <atomic>
@@ -29,9 +29,9 @@ class Displaced {
   std::atomic<uint32_t> version_{0};        ///< odd while values_ is being written
 };
 
-/// Writes the vertices of a contour for a host that takes a frame with its steps. A contour that is too large for one
-/// step is computed in parts over several steps, all for the body as it was at the first part. The host then gets the
-/// last complete frame.
+/// Writes the vertices of a contour for a host that takes the vertices from step() (hsp_step::viz_xyz). A contour that
+/// is too large for one step is computed in parts over several steps, all for the body as it was at the first part. The
+/// host then gets the last complete frame.
 class Frames {
  public:
   Frames(std::unique_ptr<medial::MovingMesh> contour, std::size_t nodes);  ///< [main] allocates all memory

@@ -18,10 +18,11 @@ constexpr double kAside = 0.87;
 constexpr double kFarAside = 0.7;  ///< samples with a smaller cosine certainly belong to another place
 constexpr double kParting = 0.05;  ///< [rad] feet whose directions differ by less are at one place
 constexpr double kParted = 0.15;   ///< [rad] feet whose directions differ by more are at two places
-/// share of the radius by which a foot between samples may be nearer than the samples
+/// share of the radius by which a foot between two samples may be nearer than these samples
 constexpr double kMayBeNearer = 0.1;
 constexpr uint32_t kGroup = 8;  ///< number of samples that are ruled out together; kATick is a multiple of it
-/// factor that turns a missed condition into a large negative depth, while a narrow miss stays possible
+/// A condition that a sample misses is multiplied by this. So a sample that clearly misses it gets a large negative
+/// depth, and one that misses it only by rounding stays possible.
 constexpr float kSteep = 1e6F;
 constexpr float kRounding = 2e-5F;  ///< share of size_; more than the rounding error of floats
 
@@ -122,7 +123,7 @@ uint32_t FootScan::nextGroup(const Probe& probe, uint32_t first, uint32_t k, uin
   return k;
 }
 
-/// Most samples are ruled out in groups, with floats; the others are examined in double precision.
+/// Rules most samples out in groups, with floats, and examines the others in double precision.
 std::optional<std::array<double, 2>> FootScan::rival(const Vector3d& p, const medial::SkeletonFoot& foot, double width,
                                                      uint32_t& next) const noexcept {
   const auto count = static_cast<uint32_t>(samples_.size()), looks = std::min(kATick, count);

@@ -23,7 +23,7 @@ class FootScan {
   std::optional<std::array<double, 2>> rival(const Eigen::Vector3d& p, const medial::SkeletonFoot& foot, double width,
                                              uint32_t& next) const noexcept;
   /// [rt] Returns 0 if two feet are at the same place of the skeleton, 1 if they are at two places; values between
-  /// blend.
+  /// if the two places are close together.
   static double apart(const medial::SkeletonFoot& a, const medial::SkeletonFoot& b) noexcept;
   std::size_t bytes() const noexcept {
     return samples_.capacity() * sizeof(Sample) + 4 * x_.capacity() * sizeof(float);

@@ -16,20 +16,22 @@ namespace {
 using Eigen::Vector3d;
 using medial::SkeletonFoot;
 
-/// if a probe has moved by more than this share of a cell in a tick, its foot is searched on the whole body
+/// If a probe has moved by more than this share of a cell in a tick, its foot is searched on the whole body.
 constexpr double kNewPlace = 0.25;
-/// [m] for a body that is farther away, the servo waits for the proximity search
+/// [m] If the body is farther from the probe than this, the servo thread does not search the whole body. It waits for
+/// the foot that the proximity search offers.
 constexpr double kWithinReach = 0.02;
 constexpr double kGridHullError = 0.005;  ///< chord error of hull(), as a share of the greatest radius
-/// share of the radius; a rival that is less deep by more than this is dropped
+/// share of the radius; a rival that is less deep than the foot by more than this is dropped
 constexpr double kForget = 0.3;
 /// share of the radius; a rival on the other flank is searched already if it is less deep by up to this, because a scan
 /// of all samples takes many ticks
 constexpr double kLookAhead = 0.2;
 /// [m] if a probe is farther outside a felt body than this, its foot need not be exact
 constexpr double kAloof = 0.01;
-constexpr double kLoosely = 1e-6;  ///< [m] error of the distance that is allowed there
-/// an offered foot whose parameters differ by more than this counts as another foot
+constexpr double kLoosely = 1e-6;  ///< [m] error of the distance that is allowed for a probe beyond kAloof
+/// If the parameters u and v of an offered foot differ from those of the known foot by more than this together, it
+/// counts as another foot.
 constexpr double kOtherFoot = 0.02;
 
 class GridBody final : public SoftBody {

@@ -20,7 +20,7 @@ constexpr double kShowPeriod = 1.0 / 60;  ///< [s] time between two sets of disp
 constexpr double kFinestMesh = 1e-6;      ///< [m] least chord error of a mesh for drawing
 /// if more ticks than this have passed since the last step, no probe was near in the meantime
 constexpr double kGapFactor = 1.5;
-/// share of the radius; a foot that moves farther in one tick, beyond kSweep, has jumped
+/// share of the radius; a foot that moves farther in one tick than this plus kSweep times the probe's path has jumped
 constexpr double kHop = 0.2;
 constexpr double kSweep = 4;  ///< multiple of the probe's path that a foot may move on the inside of a bend
 
@@ -318,7 +318,7 @@ hsp_status MatDeformable::stop(uint32_t probe) noexcept HSP_RT {
   return HSP_OK;
 }
 
-/// Before activation, the state is the loaded one; after deactivation, the last one.
+/// Writes the state of the body: before activation the loaded state, after deactivation the last one.
 int64_t MatDeformable::save(void* buffer, uint64_t capacity) const {
   const std::vector<unsigned char> state = body_                     ? stateOf(body_->nodes(), body_->feltSurface())
                                            : states_->loaded.empty() ? states_->kept
@@ -328,7 +328,7 @@ int64_t MatDeformable::save(void* buffer, uint64_t capacity) const {
   return static_cast<int64_t>(state.size());
 }
 
-/// The bytes are checked in activate(), when the body is known.
+/// Stores the bytes of a state. activate() checks that they belong to this body, because only then the body is known.
 hsp_status MatDeformable::load(const void* buffer, uint64_t length) {
   if (body_) return HSP_E_STATE;
   const auto* bytes = static_cast<const unsigned char*>(buffer);

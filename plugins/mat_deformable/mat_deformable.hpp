@@ -33,16 +33,16 @@ class MatDeformable final : public Shape {
         F::path("geometry", &T::geometry_,
                 "model file with the key medial (format hapticd-model/1 or /2, YAML or JSON), or a medial mesh (.ma)",
                 HSP_P_REQUIRED),
-        F::choice(
-            "search", &T::search_, kSearchNames, 0,
-            "newton: safeguarded Newton iteration from the last foot point; binary: nested bisection, as in the paper",
-            HSP_P_ACCURACY),
+        F::choice("search", &T::search_, kSearchNames, 0,
+                  "newton: safeguarded Newton iteration from the last foot point; binary: nested bisection, after "
+                  "Corso et al. 2002",
+                  HSP_P_ACCURACY),
         F::integer("depth", &T::depth_, "", 4, 30, 10, "number of halvings of each parameter with search: binary",
                    HSP_P_ACCURACY),
         F::real("tolerance", &T::tolerance_, "m", 1e-12, 1e-3, 1e-8,
                 "with search: newton, the search ends at a step shorter than this", HSP_P_ACCURACY | HSP_P_LIVE),
         F::choice("envelope", &T::envelope_, kEnvelopeNames, 0,
-                  "exact: the union of the spheres; foot: the paper's test, too small where radii vary",
+                  "exact: the union of the spheres; foot: the test of Corso et al. 2002, too small where radii vary",
                   HSP_P_ACCURACY),
         F::integer("degree", &T::degree_, "", 1, medial::kMaxSkeletonDegree, 3,
                    "highest degree of the skeleton spline"),
@@ -73,8 +73,9 @@ class MatDeformable final : public Shape {
         F::real("relaxation.time", &T::relaxation_time_, "s", 1e-4, 100, 0.5,
                 "with dynamics felt: time constant of this relaxation"),
         F::real("shear_offset", &T::shear_offset_, "", 0, 0.5, kUsualShearOffset,
-                "distance of the ends of four springs along the surface, as a share of the parameter range; 0: no such "
-                "springs. They make the body stiffer than its file says; with shear_distance they do not")};
+                "distance from the contact to the ends of four springs along the surface, as a share of the parameter "
+                "range; 0: no such springs. They make the body stiffer than its file says; with shear_distance they do "
+                "not")};
   }
   static constexpr auto contactFields() {  // what else a probe feels
     using T = MatDeformable;
@@ -114,7 +115,8 @@ class MatDeformable final : public Shape {
                 "largest distance of the drawn mesh, which is updated 60 times a second, from the surface; 0: no such "
                 "mesh"),
         F::real("shear_distance", &T::shear_distance_, "m", 0, 1, 0,
-                "distance of the ends of four springs along the surface. They change the direction of the force, but "
+                "distance from the contact to the ends of four springs along the surface. They change the direction of "
+                "the force, but "
                 "not its part along the normal. 0: shear_offset is used for files of format hapticd-model/1, and no "
                 "springs for others"),
         F::real(
@@ -187,7 +189,7 @@ class MatDeformable final : public Shape {
               hsp_contact& contact) noexcept HSP_RT;
   void push(const hsp_probe& probe, const Felt& felt, Track& track, hsp_contact& contact) noexcept HSP_RT;
 
-  double energy() const noexcept HSP_RT;  ///< [J] of the body and its contacts
+  double energy() const noexcept HSP_RT;  ///< [J] energy of the body and its contacts
 
   int64_t nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const;
   hsp_status start(const hsp_near& near) noexcept HSP_RT;
@@ -216,7 +218,7 @@ class MatDeformable final : public Shape {
     uint32_t probe = 0;
     Felt felt;
   };
-  /// has the size of the most contacts of one surface; the first met_.size() are in use
+  /// contacts of this step; there is room for the most contacts of one surface, and the first met_.size() are in use
   std::vector<medial::FeltContact> contacts_;
   std::unique_ptr<medial::FeltPlace> beside_;  ///< place of the rival foot, for the contact that is being handled
   std::vector<Met> met_;                       ///< contacts of this step; has room for all probes

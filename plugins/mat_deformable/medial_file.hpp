@@ -37,7 +37,8 @@ struct Material {
 /// line each, for every possible content of the file.
 MedialFile readMedialFile(const std::string& path, const Material& material);
 
-/// [main] The same from the text of a file. `name` appears in messages, and its ending gives the format.
+/// [main] Does the same as readMedialFile() for the text of a file. `name` appears in messages, and its ending gives
+/// the format.
 MedialFile parseMedialFile(const std::string& text, const std::string& name, const Material& material);
 
 }  // namespace hapticd

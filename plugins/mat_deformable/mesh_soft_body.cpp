@@ -89,7 +89,7 @@ class MeshSoftBody final : public SoftBody {
  private:
   medial::MeshBody body_;
   double greatest_radius_ = 0;
-  /// the force fades out after a push through the body only if the body is felt; others keep their results
+  /// The force fades out after a push through the body only if the body is felt. Other bodies keep their old results.
   bool felt_ = false;
 };
 

@@ -50,8 +50,8 @@ double wayOut(const Vector3d& p, const Track& track) noexcept {
   return std::sqrt(std::max(0.0, along * along + radius * radius - d.squaredNorm())) - along;
 }
 
-/// Returns what a probe feels that has left the body. If it left on the far side, it is still pushed back, with a force
-/// that fades out.
+/// Returns the felt surface of a probe that has left the body. If it left on the far side, it is still pushed back,
+/// with a force that fades out.
 Felt outside(const Vector3d& p, bool fades, Track& track) noexcept {
   const medial::SkeletonFoot& foot = track.foot;
   const double left = foot.radius > 0 ? 1 + foot.depth / foot.radius : 0, through = -track.pushed.dot(foot.normal);

@@ -14,10 +14,10 @@ namespace hapticd {
 /// valley
 Felt feltTurning(const Eigen::Vector3d& p, const Eigen::Vector3d& moved, bool fades, Track& track) noexcept HSP_RT;
 
-/// [rt] The same for a sheet from a grid. In the interior of the sheet, the direction is that of the foot, on the side
-/// from which the probe came. Round the rim it turns by a bounded angle per metre that the probe moves aside; after the
-/// probe comes back from the rim, per metre that the probe moves in any direction. A probe that does not move feels a
-/// constant force everywhere.
+/// [rt] Returns the felt surface of a sheet from a grid. In the interior of the sheet, the direction is that of the
+/// foot, on the side from which the probe came. Round the rim it turns by a bounded angle per metre that the probe
+/// moves aside; after the probe comes back from the rim, per metre that the probe moves in any direction. A probe that
+/// does not move feels a constant force everywhere.
 /// @param fades see feltTurning()
 Felt feltOnSheet(const Eigen::Vector3d& p, const Eigen::Vector3d& moved, bool fades, Track& track) noexcept HSP_RT;
 

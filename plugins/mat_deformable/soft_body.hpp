@@ -20,7 +20,7 @@ namespace hapticd {
 /// How the foot point is searched.
 struct FindOptions {
   medial::NewtonOptions newton;
-  bool binary = false;  ///< true: uses the paper's bisection instead of Newton's method
+  bool binary = false;  ///< true: uses the bisection of Corso et al. 2002 instead of Newton's method
   int halvings = 10;
   double crease = 0;  ///< [m] width over which the force turns from one part of a mesh to another; see MeshBody::foot()
 };
@@ -42,7 +42,8 @@ struct Track {
   bool near = false;     ///< the probe was within reach of the swinging surface in the last tick
   /// in a valley: the foot on another part of the surface, below which the probe is nearly as deep
   medial::SkeletonFoot rival;
-  /// 0 if there is no rival or it is at the foot's own place; 1 if it is at another place; between: separating
+  /// 0 if there is no rival or if it is at the foot's own place; 1 if it is at another place; values between while the
+  /// two places separate
   double apart = 0;
   bool swapped = false;  ///< true if the foot is the rival of the last tick
   uint32_t scanned = 0;  ///< index of the sample that the search for a rival examined last
@@ -60,7 +61,7 @@ struct Felt {
 };
 /// if the cosine between the felt direction and the direction of the foot is above this, they count as equal
 inline constexpr double kSameDirection = 0.99;
-/// if it is below this, they are different, and the felt direction turns toward the foot's
+/// if this cosine is below kTurned, the directions are different, and the felt direction turns toward that of the foot
 inline constexpr double kTurned = 0.9;
 
 /// [rt] Returns 1 if a felt direction with this cosine to the direction of the foot counts as equal to it, and 0 if as
@@ -110,7 +111,7 @@ class SoftBody {
 
   virtual medial::Nodes& nodes() noexcept = 0;  ///< [rt] the moving parts of the body
   virtual const Eigen::AlignedBox3d& bounds() const noexcept = 0;
-  virtual double greatestRadius() const noexcept = 0;     ///< [m] of all spheres
+  virtual double greatestRadius() const noexcept = 0;     ///< [m] greatest radius of all spheres
   virtual double greatestStiffness() const noexcept = 0;  ///< [N/m] no force grows faster with depth
   virtual std::unique_ptr<medial::MovingMesh> contour(double chord_error) const = 0;  ///< [main] a mesh for drawing
   /// [main] Returns a mesh that is fine enough for the body's volume to be right to a thousandth.

@@ -55,7 +55,8 @@ struct MotionParameters {
 /// [main] Returns the centre of mass and the inertia of 1 kg that fills a model: the volume inside its surfaces, or, if
 /// these are not closed, the box around the model. `bounded` is set to true in the first case.
 dynamics::MassProperties massProperties(const trace::Model& model, bool& bounded);
-/// [main] The same for a part, from triangles that are exact to a ten-thousandth of its size.
+/// [main] Does the same as the function above for a part, from triangles that are exact to a ten-thousandth of its
+/// size.
 dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded);
 
 /// A model that moves under forces: its rigid body, its frame, and its contacts.

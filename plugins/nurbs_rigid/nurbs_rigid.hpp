@@ -34,13 +34,13 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
                       "static: does not move; kinematic: the host moves it along a path; dynamic: it moves under the "
                       "forces on it"),
             F::real("stiffness", &NurbsRigid::stiffness_, "N/m", 0, 1e5, 800,
-                    "k of the contact law (Eq. 4): the force is k x0 at depth x0", HSP_P_LIVE | HSP_P_SAFETY),
+                    "k of the contact law k x0 (x/x0)^n: the force is k x0 at depth x0", HSP_P_LIVE | HSP_P_SAFETY),
             F::real("damping", &NurbsRigid::damping_, "N s/m", 0, 1e3, 0,
-                    "damping of the closing speed; it grows with depth", HSP_P_SAFETY),
-            F::real("exponent", &NurbsRigid::exponent_, "", 0.25, 3, 1, "n of the contact law (Eq. 4); 1: linear wall",
+                    "damping against the speed at which the probe goes deeper; it grows with depth", HSP_P_SAFETY),
+            F::real("exponent", &NurbsRigid::exponent_, "", 0.25, 3, 1, "n of the contact law; 1: linear wall",
                     HSP_P_SAFETY),
-            F::real("depth_scale", &NurbsRigid::depth_scale_, "m", 1e-6, 1, 1e-3, "x0 of the contact law (Eq. 4)",
-                    HSP_P_SAFETY),
+            F::real("depth_scale", &NurbsRigid::depth_scale_, "m", 1e-6, 1, 1e-3,
+                    "x0 of the contact law: the depth at which the force is k x0", HSP_P_SAFETY),
             F::real("friction_static", &NurbsRigid::friction_static_, "", 0, 10, 0,
                     "mu_s: a stuck probe begins to slide when the force along the surface exceeds mu_s times the wall "
                     "force"),

@@ -31,7 +31,8 @@ void PushButton::activate(const hsp_activation& activation, hsp_report& report) 
   probes_.emplace(std::max(activation.max_probes, 1u));
   report.max_stiffness = stiffness_;
   report.flags |= HSP_R_MOVES | HSP_R_PUSHES;
-  // if the detent falls faster than the surface's spring, the button snaps, and the force jumps by less than this
+  // greatest force of the detent: where the detent falls faster than the surface's spring, the button snaps, and the
+  // force jumps by less than this
   double highest = 0;
   for (const dynamics::DetentCurve::Knot& knot : knots) highest = std::max(highest, knot.force);
   reportJumps(report, highest);

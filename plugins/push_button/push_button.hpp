@@ -24,7 +24,7 @@ class PushButton final : public TracedShape {
                 std::array{F::vector3("axis", &PushButton::axis_, "", -1e6, 1e6, "[0, -1, 0]",
                                       "direction in which the button is pushed in, in the model frame"),
                            F::real("stiffness", &PushButton::stiffness_, "N/m", 1, 1e5, 2000,
-                                   "k1: spring of the surface", HSP_P_SAFETY),
+                                   "k1: stiffness of the surface's spring", HSP_P_SAFETY),
                            F::array("detent", &PushButton::detent_, "m, N", 2, 2, 128, 0, 1e3,
                                     "[[0, 0], [0.003, 4], [0.004, 2], [0.005, 3]]",
                                     "points [travel, force] of the button's own resistance, beginning at [0, 0]; the "

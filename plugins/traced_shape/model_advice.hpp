@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Warnings for values in a model file that its format allows, but that nobody can mean.
+/// Warnings for values in a model file that its format allows, but that are surely mistakes.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,8 +10,8 @@ namespace hapticd {
 
 /// [main] Finds a size in another unit, a surface without area, a mistyped name or weight, and a corner that misses its
 /// neighbour.
-/// @param text of the file, to find the lines
-/// @param name of the file, for messages
+/// @param text the text of the file, in which the lines of the values are found
+/// @param name the name of the file, for the warnings
 /// @return warnings of the form `file:line:column: key: what`
 std::vector<std::string> adviseModel(const ModelFile& file, const trace::Model& model, const std::string& text,
                                      const std::string& name);

@@ -28,7 +28,7 @@ class ModelFileError : public std::runtime_error {
 /// @throws ModelFileError with every problem found, for every possible content of the file.
 ModelFile readModelFile(const std::string& path);
 
-/// [main] The same from the text of a file; `name` appears in messages.
+/// [main] Does the same as readModelFile() for the text of a file; `name` appears in messages.
 ModelFile parseModelFile(const std::string& text, const std::string& name);
 
 }  // namespace hapticd

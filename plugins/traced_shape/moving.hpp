@@ -14,13 +14,13 @@ struct MovingFrame {
   Eigen::Quaterniond orientation{1, 0, 0, 0};
   Eigen::Vector3d linear{0, 0, 0}, angular{0, 0, 0};
 
-  /// [rt] Converts an hsp_pose.
+  /// [rt] Returns an hsp_pose as a MovingFrame.
   static MovingFrame of(const hsp_pose& pose) noexcept HSP_RT {
     const double* q = pose.orientation;
     return {Eigen::Vector3d(pose.position), Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized(),
             Eigen::Vector3d(pose.linear), Eigen::Vector3d(pose.angular)};
   }
-  /// [rt] Writes an hsp_pose.
+  /// [rt] Writes this frame to an hsp_pose.
   void write(hsp_pose& pose) const noexcept HSP_RT {
     for (int i = 0; i < 3; ++i) {
       pose.position[i] = position[i];

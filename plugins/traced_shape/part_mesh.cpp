@@ -19,7 +19,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kMostCells = 256;        ///< most cells of a face along u or v
-constexpr double kLowestStrip = 4096;  ///< most strips of a face
+constexpr double kLowestStrip = 4096;  ///< a strip is at least the range of v divided by this
 
 class FaceMesh {
  public:
@@ -121,7 +121,8 @@ class FaceMesh {
     for (int i = 0; i < count; ++i) chain.push_back(at(static_cast<double>(i) / count));
   }
 
-  /// Returns the values of v between which no loop turns.
+  /// Returns ascending values of v that divide the face into strips. All segments of loops end at these values, except
+  /// where two values would be closer than the lowest strip.
   std::vector<double> strips() const {
     std::vector<double> levels;
     for (const Segment& s : segments_) {

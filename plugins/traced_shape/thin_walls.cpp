@@ -17,7 +17,7 @@ constexpr std::uint32_t kMostOfFace = 32;  ///< most points on one face
 /// [m] a point that is farther from the part lies outside the loops of its face
 constexpr double kOnSurface = 1e-7;
 constexpr double kAbove = 1e-6;  ///< [m] height of the tip over the face before it presses
-/// greatest cosine between the normals of two faces that bound a wall and not a wedge
+/// If the cosine between the normals of two faces is greater than this, they bound a wedge and not a wall.
 constexpr double kOpposite = -0.7;
 constexpr int kHalvings = 20;
 

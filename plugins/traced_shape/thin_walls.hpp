@@ -9,7 +9,7 @@
 namespace hapticd {
 
 struct ThinWall {
-  double thickness = 0;       ///< [m] along the face's normal
+  double thickness = 0;       ///< [m] thickness of the wall along the face's normal
   std::uint32_t feature = 0;  ///< the face or triangle that was pressed
 };
 

@@ -14,7 +14,7 @@
 namespace hapticd {
 namespace {
 
-/// Returns a warning about a size or a place that nobody can mean, or "".
+/// Returns a warning about a size or a place that is surely a mistake, or "".
 std::string oddPlace(const Eigen::AlignedBox3d& box, const hsp_pose& pose) {
   constexpr double kHuge = 10, kTiny = 1e-3, kFar = 2;  // [m] sizes and distances beyond these are unusual
   const double size = box.diagonal().norm();
@@ -22,7 +22,9 @@ std::string oddPlace(const Eigen::AlignedBox3d& box, const hsp_pose& pose) {
   if (size > kHuge || size < kTiny) {
     std::snprintf(
         text, sizeof text,
-        "it is %.3g m large, too large or too small for a hand; a wrong unit? (see --scale of hapticd import)", size);
+        "it is %.3g m large, which is too large or too small for a hand; is it in a wrong unit? (see --scale of "
+        "hapticd import)",
+        size);
     return text;
   }
   const Eigen::Quaterniond turn(pose.orientation[0], pose.orientation[1], pose.orientation[2], pose.orientation[3]);
@@ -30,7 +32,8 @@ std::string oddPlace(const Eigen::AlignedBox3d& box, const hsp_pose& pose) {
   const double away = box.exteriorDistance(origin);
   if (away <= kFar) return "";
   std::snprintf(text, sizeof text,
-                "its nearest point is %.3g m from the world's origin, and no arm reaches it; give the model a pose",
+                "its nearest point is %.3g m from the world's origin, where no arm reaches it; give the model a pose "
+                "nearer to the origin",
                 away);
   return text;
 }

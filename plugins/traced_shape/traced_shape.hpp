@@ -126,7 +126,7 @@ class TracedShape : public Shape {
   /// The result of a search about a place, and how often it has been returned since.
   struct Search {
     Eigen::Vector3d at{0, 0, 0};
-    /// [m] place of the last request that used it; the same hand asks again near there
+    /// [m] place of the last request that was answered with this result; the same hand asks again near it
     Eigen::Vector3d asked{0, 0, 0};
     double radius = -1;
     int told = 0;  ///< number of requests answered with this result

@@ -90,7 +90,7 @@ Result<void> Client::say(const std::string& line, std::span<const int> descripto
 }
 
 /// The daemon sends a descriptor with the first byte of its line, and the kernel delivers no byte of the next message
-/// with it, so it belongs to the line that begins last.
+/// with it, so the descriptor belongs to the last line that begins in the received bytes.
 void Client::take(std::string_view bytes, std::vector<Descriptor> with) {
   while (!bytes.empty()) {
     const size_t end = bytes.find('\n');

@@ -14,7 +14,7 @@
 
 namespace hapticd::control {
 
-/// A piece of work that the sockets' thread gives to the desk, and (Done) its result.
+/// A piece of work that the sockets' thread gives to the desk. Done is its result.
 struct Job {
   enum class Kind { kAnswer, kNews, kLeft };
   Kind kind = Kind::kAnswer;

@@ -22,7 +22,7 @@ bool isThere(const std::string& file) {
   return fs::exists(fs::symlink_status(file, unknown));
 }
 
-/// Calls `done` every 10 ms. @return whether it returned true in time
+/// Calls `done` every 10 ms until it returns true. Returns false if the time ends first.
 template <class Done>
 bool within(double seconds, Done&& done) {
   constexpr Nanoseconds kPause = 10'000'000;

@@ -165,7 +165,7 @@ void Server::seat(Nanoseconds now) {
   }
 }
 
-/// Ends the client that has been silent for longest.
+/// Ends the client that has been silent for the longest time.
 void Server::makeRoom(bool seated) {
   const auto rank = [&](const Client& c) {
     return std::tuple(c.seated != seated || c.fd < 0, c.standing.stays, c.asked, c.heard);

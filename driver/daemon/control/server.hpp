@@ -41,12 +41,14 @@ class Server {
   };
 
   static constexpr size_t kMaxClients = 32;
-  static constexpr size_t kMaxStanding = 16;  ///< clients without a place: only their urgent requests are answered
-  static constexpr size_t kMaxStaying = 24;   ///< most clients with Standing::stays, so that others find places
+  /// most clients that wait for a place; meanwhile only their urgent requests are answered
+  static constexpr size_t kMaxStanding = 16;
+  static constexpr size_t kMaxStaying = 24;  ///< most clients with Standing::stays, so that others find places
   static constexpr Nanoseconds kNewsPeriod = 20'000'000;
-  static constexpr size_t kMaxWaiting = 1 << 20;       ///< [bytes] kept for a client that does not read
+  static constexpr size_t kMaxWaiting = 1 << 20;       ///< [bytes] most that is kept for a client that does not read
   static constexpr Nanoseconds kIdle = 2'000'000'000;  ///< [ns] a client idle for longer is dropped if another waits
-  static constexpr Nanoseconds kPatience = 10'000'000'000;  ///< [ns] time to send the rest of a line, or to read
+  /// [ns] longest time for a client to send the rest of a line, or to read its answers
+  static constexpr Nanoseconds kPatience = 10'000'000'000;
 
   /// [main] Binds the socket; its owner and its group may connect. An old socket that no process serves is replaced. It
   /// is an error if a process serves it. @param group group of the socket; "" takes the group of the process
@@ -66,16 +68,16 @@ class Server {
     std::string in;
     std::vector<Descriptor> given;  ///< descriptors that came with the lines in `in`, in their order
     std::list<Reply> out;           ///< lines to send, with their ends; a descriptor goes with its line's first byte
-    size_t waiting = 0;             ///< [bytes] in `out`
-    Nanoseconds since = 0;          ///< since when half a line, or an answer, waits for the client; 0: nothing waits
-    Nanoseconds heard = 0;          ///< the last time that bytes were received or sent
-    bool closing = false;           ///< the connection ends when `out` has been sent
-    bool hung = false;              ///< the client has closed its end; its requests are still carried out
-    bool seated = true;             ///< it has a place; if false, it waits for one
-    bool asked = false;             ///< one of its requests is worked on
-    bool listening = false;         ///< its news are being collected
-    bool known = false;             ///< the desk's thread has had a request of this client
-    size_t scanned = 0;             ///< [bytes] of `in` that were already searched for urgent requests
+    size_t waiting = 0;             ///< [bytes] number of bytes in `out`
+    Nanoseconds since = 0;   ///< time since which half a line, or an answer, waits for the client; 0: nothing waits
+    Nanoseconds heard = 0;   ///< the last time that bytes were received or sent
+    bool closing = false;    ///< the connection ends when `out` has been sent
+    bool hung = false;       ///< the client has closed its end; its requests are still carried out
+    bool seated = true;      ///< it has a place; if false, it waits for one
+    bool asked = false;      ///< one of its requests is worked on
+    bool listening = false;  ///< its news are being collected
+    bool known = false;      ///< the desk's thread has had a request of this client
+    size_t scanned = 0;      ///< [bytes] part of `in` that was already searched for urgent requests
   };
   Server(std::string file, int fd, int wake_read, int wake_write)
       : file_(std::move(file)), fd_(fd), wake_{wake_read, wake_write} {}

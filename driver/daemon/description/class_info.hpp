@@ -12,7 +12,7 @@ namespace hapticd::host {
 
 enum class Kind : uint8_t { kShape, kDevice };
 
-/// hsp_param with owned strings.
+/// A copy of an hsp_param that owns its strings.
 struct ParamInfo {
   std::string id, unit, doc;
   uint32_t kind = 0, flags = 0;
@@ -22,7 +22,7 @@ struct ParamInfo {
   std::optional<std::string> def_text;
 };
 
-/// hsp_class or hdv_class with owned strings.
+/// A copy of an hsp_class or hdv_class that owns its strings.
 struct ClassInfo {
   Kind kind = Kind::kShape;
   std::string id, name, version, license, doc;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// A validated scene as plain data: the contents of its files, with every default filled in. The loader (load.hpp)
-/// writes it, and the set-up of the daemon reads it. The servo thread uses nothing of it.
+/// writes it, and the set-up of the daemon reads it. The servo thread does not read it.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -56,7 +56,7 @@ struct Enable {
   EnableMode mode = EnableMode::kHold;
 };
 
-/// One motor, for the model of its heat. The numbers are those of data sheets.
+/// The properties of one motor, for the model of its heat. The numbers are those of its data sheet.
 struct Motor {
   double ratio = 1;                              ///< joint torque divided by motor torque
   double torque_constant = 0, resistance = 0;    ///< [N m/A], [ohm] at 25 degC
@@ -70,7 +70,7 @@ struct Limits {
   double force = 0;                ///< [N] largest force; 0: the device's own maximum
   double torque = 0;               ///< [N m] largest torque on the hand; 0: only the motors limit it
   double slew = 2000;              ///< [N/s] fastest growth of force; 0: no limit
-  double torque_slew = 200;        ///< [N m/s] fastest growth of torque; 0: no limit. 200 is `slew` at 0.1 m
+  double torque_slew = 200;        ///< [N m/s] fastest growth of torque; 0: no limit. 200 is `slew` at a lever of 0.1 m
   double power = 0;                ///< [W] most power that the arm gives to the hand; 0: no limit
   double impulse = 0;              ///< [N s] largest impulse within any tenth of a second; 0: no limit
   std::optional<double> velocity;  ///< [m/s] a faster tip latches a fault; 0: no limit; default on hardware: 5
@@ -83,7 +83,8 @@ struct Limits {
   std::vector<Motor> motors;  ///< in the order of the joints; if empty, their heat is not modelled
 };
 
-/// Compliance control: measured joint torque drives a virtual mass and damper, rendered as positions.
+/// Compliance control: the measured joint torques move a virtual mass with a damper, and the arm's position loop
+/// follows it.
 struct Admittance {
   double mass = 1, damping = 10;  ///< [kg], [N s/m] of the virtual mass and damper
 };
@@ -95,7 +96,7 @@ struct HdJoint {
   double offset = 0;   ///< [rad]
 };
 
-/// How HDAPI programs see an arm. For what is empty, the device's own description is used.
+/// How HDAPI programs see an arm. What is empty here comes from the device's own description.
 struct HdArm {
   std::string model, vendor, serial;
   std::vector<HdJoint> joints;    ///< turret, thigh, shin, and the three joints of the gimbal
@@ -124,7 +125,7 @@ enum class Instructions {
 
 struct Velocity {
   std::string estimator = "window";  ///< window, butterworth, foaw, least_squares, kalman
-  double parameter = 3;              ///< by estimator: number of samples, cut-off in Hz, or process noise
+  double parameter = 3;  ///< its meaning depends on the estimator: number of samples, cut-off in Hz, or process noise
 };
 
 struct Servo {
@@ -152,7 +153,7 @@ struct Clients {
   double max_force = 0;    ///< [N] largest force of one program; 0: only the device's limit counts
   bool exclusive = false;  ///< true: one program per arm; false: the forces of several programs add up
   double answer_time = 0;  ///< [s] time after the start of a tick for which the servo waits for answers; 0: none
-  bool push = true;        ///< false: programs see what pushing programs see, but may not push
+  bool push = true;        ///< false: programs may read the state of the arms, but may not push
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< [m] origin of the HDAPI's coordinates, in the axes of `frame`
   ClientFrame frame = ClientFrame::kWorld;           ///< the world's axes, or the axes of the arm's mount
 };

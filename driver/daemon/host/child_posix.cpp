@@ -43,7 +43,8 @@ bool writeAll(int fd, const std::string& bytes) {
   return true;
 }
 
-int answer_fd = -1;  ///< in a child: where it answers. Global, because a terminate handler has no argument
+/// Descriptor to which a child writes its answer. It is global, because a terminate handler has no argument.
+int answer_fd = -1;
 
 /// Ends the child because of the present exception. The text of the exception is sent in place of the answer.
 [[noreturn]] void endByException() {

@@ -16,7 +16,7 @@ class Contour {
   static constexpr double kRate = 60;  ///< [Hz]
   struct Frame {
     uint64_t number = 0;     ///< number of the frame, from 1; 0: none has come yet
-    std::vector<float> xyz;  ///< [m] in the model's frame
+    std::vector<float> xyz;  ///< [m] vertices in the model's frame
   };
 
   /// [main] Allocates the memory of all frames.
@@ -58,7 +58,7 @@ class Contour {
   uint32_t vertices_;
   TripleBuffer<Frame> frames_;
   std::atomic<int> wanted_{0};
-  double since_ = 1 / kRate;  ///< [s] since the last frame
+  double since_ = 1 / kRate;  ///< [s] time since the last frame
   uint64_t number_ = 0;
   bool offered_ = false;
 };

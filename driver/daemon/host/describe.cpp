@@ -57,10 +57,12 @@ ClassInfo copyClass(const Class& given, Kind kind, const std::filesystem::path& 
                  {},
                  file};
   if (info.name.empty()) throw std::runtime_error("one of its classes has no name");
-  if (!complete(given)) throw std::runtime_error("class '" + info.name + "' lacks a required function");
+  if (!complete(given))
+    throw std::runtime_error("class '" + info.name +
+                             "' lacks a required function; expected all functions of version 1.0 of the interface");
   if (given.param_count > kMaxParams)
     throw std::runtime_error("class '" + info.name + "' claims " + std::to_string(given.param_count) +
-                             " parameters, which is too many");
+                             " parameters; expected at most 4096");
   std::set<std::string> ids;
   for (uint32_t i = 0; i < given.param_count; ++i) {
     const ParamInfo param = copyParam(*HSP_AT(const hsp_param, given.params, given.params[0].struct_size, i));
@@ -168,9 +170,10 @@ Result<std::vector<ClassInfo>> describe(const std::filesystem::path& file) {
     if (folder == "devices") return Error{devices.error()};
     if (folder == "plugins") return Error{shapes.error()};
     if (!(*library)->exports("hsp_plugin_entry") && !(*library)->exports("hdv_module_entry"))
-      return Error{file.string() +
-                   " is neither a plugin of shapes nor a device module: it exports no hsp_plugin_entry and no "
-                   "hdv_module_entry\n  fix: end it with HAPTICD_SHAPES(...) or HAPTICD_DEVICES(...)"};
+      return Error{
+          file.string() +
+          " is neither a plugin of shapes nor a device module: it exports no hsp_plugin_entry and no "
+          "hdv_module_entry\n  fix: write HAPTICD_SHAPES(...) or HAPTICD_DEVICES(...) at the end of its source file"};
     return Error{(*library)->exports("hdv_module_entry") ? devices.error() : shapes.error()};
   }
   std::vector<ClassInfo> classes;

@@ -13,11 +13,11 @@ namespace hapticd::host {
 /// constructors run.
 Result<std::vector<ClassInfo>> describe(const std::filesystem::path& file);
 
-/// [main] Does the same in a child process, so that a crash, hang or exit in a constructor becomes a message about the
-/// file.
+/// [main] Like describe(), but in a child process, so that a crash, hang or exit in a constructor becomes a message
+/// about the file.
 Result<std::vector<ClassInfo>> describeInChild(const std::filesystem::path& file);
 
-/// [any] Does the same in a separate program, for a process whose threads must not be disturbed by a fork.
+/// [any] Like describe(), but in a separate program, for a process whose threads must not be disturbed by a fork.
 /// @param program path of hapticd itself
 Result<std::vector<ClassInfo>> describeByProgram(const std::filesystem::path& program,
                                                  const std::filesystem::path& file);

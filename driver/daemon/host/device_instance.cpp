@@ -78,7 +78,8 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
   const hdv_class* found = findClass<hdv_class>(**entry, device.module);
   if (found == nullptr) return Error{who + device.library.string() + " has no module named '" + device.module + "'"};
   if (!complete(*found))
-    return Error{who + "module '" + device.module + "' of " + device.library.string() + " lacks a required function"};
+    return Error{who + "module '" + device.module + "' of " + device.library.string() +
+                 " lacks a required function; expected all functions of version 1.0 of the interface"};
 
   ownCode(reinterpret_cast<const void*>(found->create), instance->owner_);
   const Calling calling(instance->owner_);

@@ -81,7 +81,7 @@ class DeviceInstance {
 
   /// [any] True if the samples of the arm can drive the servo loop; then waitForSample() waits for them.
   bool canPace() const { return pace_ != nullptr && (info_.capabilities & HDV_C_PACING) != 0; }
-  /// [rt] Sleeps between two ticks until the arm has a new sample or a trouble, and at most until `until`.
+  /// [rt] Sleeps between two ticks until the arm has a new sample or reports a trouble, and at most until `until`.
   /// @return time of the next tick
   uint64_t waitForSample(uint64_t until) noexcept {
     if (playback_ != nullptr) return until;

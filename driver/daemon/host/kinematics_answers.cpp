@@ -50,8 +50,8 @@ struct Answers {
     if (!finite && no_numbers++ == 0) at = q;
     return finite;
   }
-  /// @param everywhere true: it is an error only if no accepted place has a finite result; false: it is an error if any
-  /// has not
+  /// Returns what is wrong with the results; "" if nothing is wrong. @param everywhere true: it is an error only if no
+  /// accepted place has a finite result; false: it is an error if the result of any accepted place is not finite
   std::string wrong(Eigen::Index joints, bool everywhere, const char* where) const {
     const std::string name = std::string("has kinematics whose ") + function + "() ";
     if (asked > 0 && refused == asked)

@@ -16,8 +16,9 @@ using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kStep = 1e-5;    ///< [rad or m] step of the differences; their error is about 1e-10 of the arm's size
 constexpr double kWrong = 0.02;   ///< allowed error, as a share of the longest column; rounding causes less
-constexpr double kSmooth = 1e-3;  ///< if the differences for two steps differ by this share, J is not smooth
-constexpr double kLeastColumn = 1e-3;  ///< [m/rad] errors are compared at least with a column of this length
+constexpr double kSmooth = 1e-3;  ///< if the differences for two steps differ by more than this share, J is not smooth
+/// [m/rad] errors are compared with the longest column, or with this length if it is larger
+constexpr double kLeastColumn = 1e-3;
 
 std::optional<Tip> tipAt(const KinematicsCalls& calls, const Joints& q) {
   Tip tip;

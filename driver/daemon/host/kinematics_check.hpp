@@ -21,8 +21,9 @@ std::string wrongJacobian(const hdv_ext_kinematics& kinematics, const hdv_device
 /// numbers than it may, and a wrong Jacobian. @return as wrongJacobian()
 std::string wrongKinematics(const hdv_ext_kinematics& kinematics, const hdv_device* device);
 
-/// [main] Checks the same between the stops of an open arm, where a run will call the functions. Here every answer must
-/// be finite, and the functions must accept at least one place. @return as wrongJacobian()
+/// [main] Checks the answers of the functions at places between the stops of an open arm, where a run will call them.
+/// Here every answer must be finite, and forward() and jacobian() must accept at least one place. @return as
+/// wrongJacobian()
 std::string wrongBetweenStops(const hdv_ext_kinematics& kinematics, const hdv_device* device, const hdv_info& info);
 
 /// [main] Finds an inverse() whose joints do not give the same tip again, or that accepts a tip which no arm reaches.

@@ -37,9 +37,10 @@ class Services {
   std::string lastError() const;
   /// [main] Forgets that message, so that a failure of the next call does not show an older message.
   void forgetError();
-  /// [main] What the host itself has to say of the instance.
+  /// [main] Logs a warning of the host itself about the instance.
   void warn(const std::string& text) { write(HSP_LOG_WARNING, text.c_str()); }
-  size_t lockedBytes() const { return locked_bytes_; }  ///< [main] how much alloc has given out
+  /// [main] bytes that alloc has given out and release has not taken back
+  size_t lockedBytes() const { return locked_bytes_; }
 
   /// [any] Takes the next event of the servo thread. Returns false if there is none. There must be only one reader.
   bool takeEvent(TraceEvent& event) noexcept { return events_.pop(event); }

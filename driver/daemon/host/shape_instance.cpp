@@ -76,7 +76,8 @@ Result<std::unique_ptr<ShapeInstance>> ShapeInstance::create(const scene::Model&
   if (instance->class_ == nullptr)
     return Error{who + model.library.string() + " has no plugin named '" + model.plugin + "'"};
   if (!complete(*instance->class_))
-    return Error{who + "plugin '" + model.plugin + "' of " + model.library.string() + " lacks a required function"};
+    return Error{who + "plugin '" + model.plugin + "' of " + model.library.string() +
+                 " lacks a required function; expected all functions of version 1.0 of the interface"};
 
   ownCode(reinterpret_cast<const void*>(instance->class_->create), instance->owner_);
   keepPlace(instance->owner_, placeOf(model));

@@ -73,7 +73,8 @@ class ShapeInstance {
   const hsp_report& report() const { return report_; }  ///< valid while active
   /// Returns the damping [N s/m] that was set on the shape: the largest of its parameters with this unit.
   double claimedDamping() const { return damping_; }
-  const hsp_ext_surfaces* surfaces() const { return surfaces_; }  ///< nullptr if the shape traces itself
+  /// nullptr if the shape finds its foot points by itself
+  const hsp_ext_surfaces* surfaces() const { return surfaces_; }
   uint32_t surfaceCount() const noexcept { return surface_count_; }
   const hsp_ext_geometry* geometry() const { return geometry_; }
   const hsp_ext_energy* energy() const { return energy_; }

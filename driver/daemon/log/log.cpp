@@ -27,7 +27,7 @@ constexpr std::array kPriorities{"<7>", "<6>", "<4>",
 
 enum class Target : uint8_t { kTerminal, kJournal, kPlain };
 
-/// True if stderr goes to journald: it names the stream that it gives to a service by device and inode.
+/// True if stderr goes to journald, which names the stream of a service by device and inode in JOURNAL_STREAM.
 bool isJournal() {
   const char* stream = std::getenv("JOURNAL_STREAM");
   struct stat status{};

@@ -6,7 +6,8 @@
 namespace hapticd::record {
 
 std::string allocationText(const RunReport& report, const AllocationShare& most) {
-  constexpr uint64_t kSome = 100, kRare = 20;  // least number of allocations; least rate: one in this many ticks
+  // fewer allocations, or fewer than one in this many ticks, are not reported
+  constexpr uint64_t kSome = 100, kRare = 20;
   const uint64_t all = report.servo_allocations;
   if (all < kSome || all * kRare < report.ticks) return "";
   std::string text = fmt::format("warning: the servo thread allocated memory {} times in {} ticks", all, report.ticks);

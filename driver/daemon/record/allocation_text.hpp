@@ -8,7 +8,8 @@
 
 namespace hapticd::record {
 
-/// [any] Returns a warning for people; "" if there were only few allocations, as each order causes some.
+/// [any] Returns a warning for people; "" if there were only few allocations, because each order to the servo causes
+/// some.
 /// @param most owner of the code that made most of the allocations
 std::string allocationText(const RunReport& report, const AllocationShare& most);
 

@@ -13,7 +13,7 @@ bool late(const ClientReport& client) {
 std::string lateFix(double answer_time) {
   const std::string priority = "give the program SCHED_FIFO priority 70 (group haptic) and its own processor";
   if (answer_time > 0) return priority;
-  return "clients: {mode: add, answer_time: 60e-6} in the scene, so that the servo waits for its answers; then " +
+  return "write clients: {mode: add, answer_time: 60e-6} in the scene, so that the servo waits for its answers; then " +
          priority;
 }
 

@@ -12,9 +12,9 @@ struct ClientReport {
   int pid = 0;             ///< number of the program's last process
   uint64_t times = 1;      ///< how often the program was started
   uint64_t answers = 0;    ///< answers that were used
-  uint64_t in_time = 0;    ///< of these, answers in the same tick
-  uint64_t next_tick = 0;  ///< of these, answers one tick later
-  uint64_t silences = 0;   ///< how often it stopped to answer, so that its force was ramped out
+  uint64_t in_time = 0;    ///< number of these answers that came in the same tick
+  uint64_t next_tick = 0;  ///< number of these answers that came one tick later
+  uint64_t silences = 0;   ///< how often it stopped answering, so that its force was ramped out
   double largest_n = 0;    ///< [N] its largest force
   double asked_n = 0;      ///< [N] largest force that it asked for
   uint64_t bounded = 0;    ///< answers whose force was reduced to the bound

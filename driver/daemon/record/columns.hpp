@@ -31,7 +31,7 @@ constexpr uint32_t bytesOf(ColumnType type) {
 struct Column {
   std::string name, unit, doc;
   ColumnType type = ColumnType::kReal;
-  uint32_t offset = 0;  ///< [bytes] from the start of the row
+  uint32_t offset = 0;  ///< [bytes] distance from the start of the row
 };
 
 /// The layout of a row. Numbers are aligned to their size, and rows to 8 bytes.

@@ -53,7 +53,9 @@ class ContactStatistics {
   /// [rt] Adds a tick of contact in which the force pulled the probe deeper in.
   void addPull(double force_n) noexcept HSP_RT { pulls_.add(force_n); }
 
-  /// [rt] Adds a tick with a foot point: whether it is proved to be the nearest one. Not called in ticks without one.
+  /// [rt] Adds a tick that has a foot point. @param held true if a contact is held at this point, although another
+  /// point is nearer @param degraded true if the answer was degraded, so that the point is not proved to be the
+  /// nearest; `held` is then ignored
   void addFoot(bool held, bool degraded) noexcept HSP_RT {
     ++(degraded ? degraded_feet_ : held ? held_feet_ : nearest_feet_);
   }
@@ -65,8 +67,9 @@ class ContactStatistics {
   const Pushes& pulls() const noexcept { return pulls_; }          ///< pulls into the surface, in contact
   uint64_t nearestFeet() const noexcept { return nearest_feet_; }  ///< ticks with a foot proved to be the nearest
   uint64_t heldFeet() const noexcept { return held_feet_; }        ///< ticks of a held contact; another point is nearer
-  uint64_t degradedFeet() const noexcept { return degraded_feet_; }  ///< ticks with a foot neither proved nor held
-  double meanDepth() const noexcept { return mean_; }                ///< [m]
+  /// ticks with a degraded answer, so that the foot is not proved to be the nearest
+  uint64_t degradedFeet() const noexcept { return degraded_feet_; }
+  double meanDepth() const noexcept { return mean_; }  ///< [m]
   double stdDepth() const noexcept { return ticks_ > 1 ? std::sqrt(spread_ / static_cast<double>(ticks_ - 1)) : 0; }
   double maxDepth() const noexcept { return max_depth_; }
   double meanForce() const noexcept { return ticks_ > 0 ? force_sum_ / static_cast<double>(ticks_) : 0; }  ///< [N]

@@ -29,8 +29,8 @@ std::string slowText(const ModelReport& model, double period_us, uint64_t least_
 
 /// Names the model whose longest step alone delayed the loop, even if it happened only once.
 std::string heldUpText(const RunReport& report, double period_us) {
-  constexpr double kVirtual =
-      50;  // [periods] in virtual time, since steps are measured by the wall clock, also while other programs run
+  constexpr double kVirtual = 50;  // [periods] shorter steps are not reported in virtual time, because there the wall
+                                   // clock measures them, which includes the time of other programs
   if (!report.virtual_time && report.missed_ticks == 0) return "";
   const ModelReport* slowest = nullptr;
   for (const ModelReport& model : report.models)

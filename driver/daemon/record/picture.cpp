@@ -15,7 +15,8 @@ namespace hapticd::record {
 
 namespace {
 
-constexpr double kOver = 640, kBeside = 300, kHeight = 120;  ///< [px] over time, histogram; height
+/// [px] width of a plot over time, and of a histogram; height of both
+constexpr double kOver = 640, kBeside = 300, kHeight = 120;
 constexpr size_t kBins = 40;
 constexpr const char *kDepth = "#1b6ca8", *kForce = "#b5432a", *kTime = "#3a7d44", *kPlace = "#6a4c93";
 
@@ -108,7 +109,7 @@ std::vector<Span> limitSpans(const std::vector<Sample>& samples) {
   return spans;
 }
 
-/// Returns marks at the beginning of each fault; if there are many faults, only of the first ones. The end of a run is
+/// Returns marks at the moments of the notes, and at the beginning of each fault: at most 12 marks. The end of a run is
 /// not a fault.
 std::vector<Mark> faultMarks(const std::vector<Sample>& samples, const RunNotes& notes) {
   constexpr size_t kMost = 12;
@@ -160,7 +161,8 @@ std::string distanceNote(double low, const std::vector<Sample>& samples) {
   return fmt::format(" (negative: distance; more than {:g} mm drawn at the bottom edge)", -low);
 }
 
-/// Adds to the panel of the forces: the force that the models asked for, the times of limits, and the limit.
+/// Adds to the panel of the forces: the force that the models asked for, the times in which limits reduced it, and
+/// limits.force.
 void addAsked(Panel& panel, const std::vector<Sample>& samples, const RunNotes& notes) {
   const auto asked = [](const Sample& s) { return s.asked_n; };
   if (std::any_of(samples.begin(), samples.end(), [](const Sample& s) { return std::isfinite(s.asked_n); }))

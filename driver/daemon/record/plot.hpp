@@ -56,7 +56,7 @@ struct Panel {
   std::vector<Curve> curves{};
   std::vector<Bars> bars{};
   std::vector<NamedPoint> points{};
-  std::vector<Mark> moments{}, bounds{};  ///< at values of x; at values of y
+  std::vector<Mark> moments{}, bounds{};  ///< marks at values of x; marks at values of y
   std::vector<Span> spans{};              ///< spans with the same name are in the legend once
   double height = 200;                    ///< [px] height of the area between the axes
 };

@@ -12,7 +12,7 @@ namespace {
 constexpr const char *kGrid = "#e4e4e4", *kInk = "#444", *kAxis = "#888";
 constexpr double kTitle = 18, kLabel = 20, kBelow = 36;
 
-/// Returns about the width [px] of a text; a character of several bytes in UTF-8 counts once.
+/// Returns the approximate width [px] of a text; a character of several bytes in UTF-8 counts once.
 double widthOf(const std::string& text, double size) {
   const auto characters = std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
   return 0.56 * size * static_cast<double>(characters);

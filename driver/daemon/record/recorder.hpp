@@ -30,7 +30,7 @@ class Recorder {
   /// written
   Result<void> finish();
 
-  uint64_t rows(size_t stream) const { return recording_->rows(stream); }  ///< [main] after finish()
+  uint64_t rows(size_t stream) const { return recording_->rows(stream); }  ///< [main] final after finish()
   uint64_t lost() const;                                                   ///< [main] lost rows of all streams
   /// [any] True if the servo must wait, because the black box could overwrite rows that are not yet in the file.
   bool behind() const noexcept HSP_RT;

@@ -22,7 +22,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr uint64_t kMostAbout = 64u << 20;  ///< [bytes] for comparison: a scene of 10,000 models has 2 MB
+/// [bytes] longest description that is read; that of a scene of 10,000 models has 2 MB
+constexpr uint64_t kMostAbout = 64u << 20;
 
 template <class T>
 std::optional<T> at(std::span<const std::byte> bytes, uint64_t address) {

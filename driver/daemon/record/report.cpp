@@ -115,7 +115,7 @@ std::string deepText(const ModelReport& model) {
 /// Warns of a model that does more work on the hand than the hand did on it, and so pushes the hand. Small differences
 /// are not reported: contacts are sampled, and a model may be switched off and on.
 std::string energyText(const ModelReport& model) {
-  constexpr double kTold = 2e-3, kShare = 0.1;  // [J]
+  constexpr double kTold = 2e-3, kShare = 0.1;  // [J], and share of the hand's work: less is not reported
   const double net = model.given_j - model.taken_j;
   if (model.moves || !(net > std::max(kTold, kShare * model.taken_j))) return "";
   return fmt::format(
@@ -131,11 +131,12 @@ std::string modelText(const ModelReport& model, const RunReport& report) {
   for (const ArmContact& arm : model.arms) text += contactText(arm.contact, report, " by " + arm.device);
   text += oddPushesText(model) + pullText(model) + energyText(model) + deepText(model);
   if (model.degraded_ticks > 0)
-    text += fmt::format("  degraded  {} ticks, down to level {} of 3, to keep the tick's budget; residual up to {}\n",
-                        model.degraded_ticks, model.coarsest, lengthText(model.residual_m));
+    text +=
+        fmt::format("  degraded  {} ticks, down to accuracy level {} of 3, to keep the tick's budget; error up to {}\n",
+                    model.degraded_ticks, model.coarsest, lengthText(model.residual_m));
   if (c.heldFeet() + c.degradedFeet() > 0)
-    text += fmt::format("  feet      {} nearest, {} held in contact, {} not proved\n", c.nearestFeet(), c.heldFeet(),
-                        c.degradedFeet());
+    text += fmt::format("  feet      nearest in {} ticks, held in contact in {}, not proved in {}\n", c.nearestFeet(),
+                        c.heldFeet(), c.degradedFeet());
   const Histogram& step = c.stepUs();
   if (step.total() > 0)
     text += fmt::format("  step      p50 {:.0f} ns   p99 {:.0f} ns   max {:.0f} ns\n", step.quantile(0.5) * 1e3,
@@ -173,7 +174,7 @@ std::string untouchedText(const RunReport& report) {
 
 std::string limitText(const LimitReport& device, uint64_t ticks) {
   if (device.any == 0 || ticks == 0) return "";
-  std::string text = fmt::format("limits of {}: the force was cut in {:.3g} % of the ticks (", device.device,
+  std::string text = fmt::format("limits of {}: the force was reduced in {:.3g} % of the ticks (", device.device,
                                  100.0 * static_cast<double>(device.any) / static_cast<double>(ticks));
   for (size_t i = 0; i < device.ticks.size(); ++i)
     text += fmt::format("{}{}: {}", i > 0 ? ", " : "", device.ticks[i].first, device.ticks[i].second);

@@ -34,7 +34,7 @@ struct ModelReport {
 struct LimitReport {
   std::string device;
   uint64_t any = 0;                                     ///< ticks in which at least one limit reduced it
-  std::vector<std::pair<std::string, uint64_t>> ticks;  ///< by limit: ticks in which it reduced the force
+  std::vector<std::pair<std::string, uint64_t>> ticks;  ///< for each limit, the ticks in which it reduced the force
 };
 
 /// Counts the ticks in which a joint stood at the end of its range.

@@ -15,7 +15,7 @@ using document::Problems;
 /// within 1e-3; they are normalised.
 std::vector<PathPoint> readKinematicPath(const std::filesystem::path& file, Problems& problems);
 
-/// [main] Does the same with a text, for tests and fuzzing.
+/// [main] Like readKinematicPath(), but reads a text. For tests and fuzzing.
 std::vector<PathPoint> parseKinematicPath(const std::string& text, const std::string& file, Problems& problems);
 
 }  // namespace hapticd::scene

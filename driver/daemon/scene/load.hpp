@@ -49,8 +49,8 @@ LoadedDaemon loadDaemon(const std::filesystem::path& file);
 /// @param scene receives the scene if the file is a scene without problems; may be nullptr
 Problems checkFile(const std::filesystem::path& file, host::Catalog& catalog, std::optional<Scene>* scene = nullptr);
 
-/// [main] Does the same with a text; fuzzing calls it. `file` is the name in messages, and its folder is where relative
-/// paths begin.
+/// [main] Like checkFile(), but reads a text; fuzzing calls it. `file` is the name in messages, and its folder is where
+/// relative paths begin.
 Problems checkText(const std::string& text, const std::filesystem::path& file, host::Catalog& catalog,
                    std::optional<Scene>* scene = nullptr);
 

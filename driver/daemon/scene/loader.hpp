@@ -21,8 +21,10 @@ bool hasFormat(const Node& root, const char* wanted, Reader& in);
 /// Reads the tree of a scene file. Problems go to `in`.
 std::optional<Scene> loadScene(const Node& root, Reader& in, host::Catalog& catalog, const LoadOptions& options);
 
-/// Reads a device file, and replaces what the scene says otherwise.
-/// @param scene_in reader of the scene; @param hand the scene's `hand:` for all its devices
+/// Reads a device file. Settings that the scene gives replace those of the file.
+/// @param scene_in reader of the scene; nullptr if no scene names the device
+/// @param hand the scene's `hand:` for all its devices, or nullptr
+/// @param has_hand receives whether the module has a simulated hand; may be nullptr
 std::optional<Device> loadDeviceFile(const DeviceReference& reference, host::Catalog& catalog, Problems& problems,
                                      Reader* scene_in, const Node* hand, bool* has_hand);
 

@@ -15,7 +15,7 @@ namespace hapticd::servo {
 
 /// Settings of the loop in the recorded run. A replay uses the same.
 struct RunFacts {
-  double rate = 1000;  ///< [Hz] of the servo
+  double rate = 1000;  ///< [Hz] rate of the servo
   uint64_t period_ns = 1'000'000, ticks = 0;
   bool virtual_time = false;
   bool found_pressed = false;     ///< old version: a hold button that was down before the run enabled forces

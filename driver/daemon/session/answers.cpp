@@ -307,7 +307,7 @@ void addRefused(const Session& session, uint32_t arm, Json& json) {
   }
 }
 
-/// For an event of a lead: adds the program, and what it leads.
+/// For an event of a lead: adds the program, and whether it leads or pushes.
 void addProgram(const Session& session, const hapticd_event& event, Json& json) {
   const bool push = event.model < 0 && event.code == static_cast<uint32_t>(Order::Led::kForce);
   if (event.kind == HAPTICD_REFUSED && push) return addRefused(session, static_cast<uint32_t>(event.probe), json);

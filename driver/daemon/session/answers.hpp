@@ -15,7 +15,7 @@ namespace hapticd::servo {
 
 /// A place for a model, on the side of the control thread. Its number is the model's number in every row.
 struct ModelPlace {
-  scene::Model model;  ///< with the present values of its parameters
+  scene::Model model;  ///< the model, with the present values of its parameters
   bool taken = false, enabled = true;
 };
 

@@ -31,13 +31,14 @@ Result<Leads::Target> RequestHandler::pushOf(const std::string& device) const {
   if (!arm) return Error{arm.error()};
   if (!runner_.scene().clients.push)
     return refuse("unsupported",
-                  "the scene lets programs watch, but not push\n  fix: clients: {push: true} in the scene");
+                  "the scene lets programs watch, but not push\n  fix: write clients: {push: true} in the scene");
   if (!leads_.mayPush())
     return refuse("unsupported", "the scene of the last reload does not let programs push: " + scene_file_ +
-                                     "\n  fix: clients: add (or instead) in the scene, and hapticd ctl reload");
+                                     "\n  fix: write clients: add (or instead) in the scene, then: hapticd ctl reload");
   if (!runner_.arms()[*arm]->clients().possible())
-    return refuse("unsupported",
-                  "the scene does not let programs push on its arms\n  fix: clients: add (or instead) in the scene");
+    return refuse(
+        "unsupported",
+        "the scene does not let programs push on its arms\n  fix: write clients: add (or instead) in the scene");
   return Leads::Target{Order::Led::kForce, *arm, "device \"" + device + "\""};
 }
 
@@ -55,7 +56,7 @@ Result<Leads::Target> RequestHandler::leadOf(const Request& request) const {
     if (!places_[*place].model.kinematic)
       return refuse("unsupported", "model \"" + request.model +
                                        "\" is not kinematic: only kinematic models can be led\n"
-                                       "  fix: motion: kinematic in the scene");
+                                       "  fix: write motion: kinematic in the scene");
     return Leads::Target{Order::Led::kModel, *place, "model \"" + request.model + "\""};
   }
   const auto arm = armOf(request.hand);
@@ -65,8 +66,8 @@ Result<Leads::Target> RequestHandler::leadOf(const Request& request) const {
     return refuse("unsupported",
                   name + " is not simulated, so a person holds it; only the hand of a simulated arm can be led");
   if (!runner_.arms()[*arm]->hand().guided())
-    return refuse("unsupported",
-                  "the hand of " + name + " follows a script or a path\n  fix: hand: {script: guided} in the scene");
+    return refuse("unsupported", "the hand of " + name +
+                                     " follows a script or a path\n  fix: write hand: {script: guided} in the scene");
   return Leads::Target{Order::Led::kHand, *arm, "the hand of " + name};
 }
 

@@ -21,8 +21,9 @@ class EventFinder {
  public:
   /// [s] the probe must be outside this long before another touch is reported
   static constexpr double kFreeFor = 0.05;
-  static constexpr double kRefusedPeriod = 1.0;  ///< [s] between two reports about refused records of a leader
-  static constexpr size_t kMost = 64;            ///< most events of one tick; more are dropped
+  /// [s] least time between two reports about refused records of a leader
+  static constexpr double kRefusedPeriod = 1.0;
+  static constexpr size_t kMost = 64;  ///< most events of one tick; more are dropped
 
   /// [main] @param places most models that the run can have @param arms number of arms
   EventFinder(size_t places, size_t arms) : models_(places), arms_(arms) {}
@@ -39,7 +40,7 @@ class EventFinder {
  private:
   /// The state of a model one tick ago.
   struct ModelNote {
-    std::array<double, link::kMaxProbes> touched = never();  ///< [s] by probe: time when it was last inside
+    std::array<double, link::kMaxProbes> touched = never();  ///< [s] time when each probe was last inside
     uint32_t level = 0;
     Trouble trouble = Trouble::kNone;
     bool leaving = false;
@@ -73,7 +74,7 @@ class EventFinder {
   size_t count_ = 0, leaving_ = 0;
 };
 
-/// [main] Returns why the target of a lead was refused, for such an event; "" for other events.
+/// [main] Returns why the target of a lead was refused, for an event HAPTICD_REFUSED; "" for other events.
 const char* whyRefused(const hapticd_event& event);
 
 /// [main] Returns the name of an event in JSON, such as "click"; "" if there is no such event.

@@ -132,7 +132,8 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
       if (event.t < kBegins)
         return {HSP_LOG_WARNING, who,
                 device(event) +
-                    " is inside this model at the start, so a force begins at once (over limits.ramp_in)\n  fix: move "
+                    " is inside this model at the start, so a force begins with the run (it grows over "
+                    "limits.ramp_in)\n  fix: move "
                     "the model, the arm (mount) or the hand (hand), so that the tip starts outside"};
       return {HSP_LOG_DEBUG, who, fmt::format("{} touches it at {:.4f} s", device(event), event.t)};
     case HAPTICD_SILENCED:
@@ -148,10 +149,11 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
       return {HSP_LOG_INFO, who, "has left the scene"};
     case HAPTICD_STALLED:
       return {HSP_LOG_WARNING, "",
-              fmt::format("no tick for {:.2f} s, until {:.2f} s: the process was stopped (SIGSTOP, a debugger), the "
-                          "machine had no time for it, or the module of an arm kept it (\"in arms\" of the report; "
-                          "hapticd device check FILE)",
-                          event.value, event.t)};
+              fmt::format(
+                  "no tick for {:.2f} s, until {:.2f} s: the process was stopped (SIGSTOP, a debugger), the "
+                  "machine had no time for it, or a call of an arm's module took that long (\"in arms\" of the report; "
+                  "hapticd device check FILE)",
+                  event.value, event.t)};
     default:
       return {HSP_LOG_DEBUG, "", ""};
   }

@@ -160,7 +160,7 @@ void Flight::tickArm(const ArmColumns& columns, const Arm& arm, const Core& core
 }
 
 void Flight::links(double t, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
-  constexpr double kPeriod = 1.0 / 60;  // [s] as often as screens draw
+  constexpr double kPeriod = 1.0 / 60;  // [s] screens draw this often
   if (t < links_due_) return;
   links_due_ = t + kPeriod;
   std::array<Arm::LinkEnd, HDV_MAX_LINKS> ends;

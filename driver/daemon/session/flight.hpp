@@ -113,7 +113,7 @@ std::vector<record::StreamSpec> flightStreams(const scene::Scene& scene, const s
 
 class Flight {
  public:
-  /// [main] @param ring with the streams that flightStreams() gave for these arms
+  /// [main] @param ring ring with the streams that flightStreams() gave for these arms
   /// @param places most models that the run can have
   Flight(std::unique_ptr<record::FlightRing> ring, const std::vector<std::unique_ptr<Arm>>& arms, size_t places);
 

@@ -34,8 +34,8 @@ void tickColumns(RowLayout& layout) {
              "depth of the deepest contact; negative: distance to the nearest surface; nan: no model is traced");
   layout.add("lateness_us", ColumnType::kReal32, "us", "how long after its deadline the tick began");
   layout.add("compute_us", ColumnType::kReal32, "us", "how long the tick took");
-  layout.add("model", ColumnType::kInt, "", "model of the depth above, -1: none");
-  layout.add("status", ColumnType::kInt, "", "worst status of a step, hsp_status");
+  layout.add("model", ColumnType::kInt, "", "number of the model to which the column depth belongs, -1: none");
+  layout.add("status", ColumnType::kInt, "", "worst status of a model's step in this tick, hsp_status");
 }
 
 /// The columns in the order of ArmRow.
@@ -48,7 +48,7 @@ void armColumns(RowLayout& layout, const std::string& arm) {
   layout.add(arm + "buttons", ColumnType::kWord, "", "bit i is set if button i is down");
   layout.add(arm + "fault_before", ColumnType::kWord, "", "latched fault before the tick, 0: none");
   layout.add(arm + "fault", ColumnType::kWord, "", "latched fault after the tick, 0: none");
-  layout.add(arm + "mode", ColumnType::kWord, "", "command: 0 motors off, 1 torque");
+  layout.add(arm + "mode", ColumnType::kWord, "", "what was commanded: 0 motors off, 1 torques, 2 positions");
   layout.add(arm + "valid", ColumnType::kWord, "", "1 if the sample was good, otherwise 0");
   vector(layout, arm, "m", "position of the tip, world frame");
   quaternion(layout, arm, "orientation of the tip, world frame");
@@ -72,14 +72,14 @@ RowLayout contactColumns() {
   RowLayout layout;
   layout.add("tick", ColumnType::kCount, "", "number of the tick");
   layout.add("model", ColumnType::kWord, "", "index in about.models");
-  layout.add("probe", ColumnType::kWord, "", "arm");
+  layout.add("probe", ColumnType::kWord, "", "number of the arm");
   layout.add("feature", ColumnType::kWord, "", "surface or medial element of the foot point");
   layout.add("iterations", ColumnType::kWord, "", "number of evaluations of the surface in the step");
   layout.add("flags", ColumnType::kWord, "", "HSP_OUT_*");
   layout.add("status", ColumnType::kInt, "", "status of the model's step, hsp_status");
   layout.add("depth", ColumnType::kReal, "m", "penetration depth; negative: distance outside");
-  layout.add("u", ColumnType::kReal, "", "parameter of the foot");
-  layout.add("v", ColumnType::kReal, "", "parameter of the foot");
+  layout.add("u", ColumnType::kReal, "", "surface parameter of the foot point");
+  layout.add("v", ColumnType::kReal, "", "surface parameter of the foot point");
   vector(layout, "p", "m", "foot point, world frame");
   vector(layout, "n", "", "outward unit normal at the foot point, world frame");
   vector(layout, "f", "N", "force of this model, world frame");
@@ -107,9 +107,9 @@ RowLayout activationColumns() {
   layout.add("model", ColumnType::kWord, "", "index in about.models");
   layout.add("order", ColumnType::kWord, "", "0 start tracing, 1 use a better foot point, 2 stop tracing");
   layout.add("surface", ColumnType::kWord, "", "number of the surface in the model");
-  layout.add("probe", ColumnType::kWord, "", "arm");
-  layout.add("u", ColumnType::kReal, "", "parameter of the foot");
-  layout.add("v", ColumnType::kReal, "", "parameter of the foot");
+  layout.add("probe", ColumnType::kWord, "", "number of the arm");
+  layout.add("u", ColumnType::kReal, "", "surface parameter of the foot point");
+  layout.add("v", ColumnType::kReal, "", "surface parameter of the foot point");
   layout.add("distance", ColumnType::kReal, "m", "distance from the probe to the foot point, as the search found it");
   return layout;
 }
@@ -172,7 +172,7 @@ RowLayout pushColumns() {
 RowLayout linkColumns() {
   RowLayout layout;
   layout.add("tick", ColumnType::kCount, "", "number of the tick; a row 60 times a second");
-  layout.add("arm", ColumnType::kWord, "", "arm");
+  layout.add("arm", ColumnType::kWord, "", "number of the arm");
   layout.add("link", ColumnType::kWord, "", "number of the link; about.devices says where the link begins");
   vector(layout, "", "m", "far end of the link, world frame");
   quaternion(layout, "", "orientation of the link, world frame");
@@ -183,7 +183,7 @@ RowLayout linkColumns() {
 RowLayout motorColumns() {
   RowLayout layout;
   layout.add("tick", ColumnType::kCount, "", "number of the tick; a row 10 times a second");
-  layout.add("arm", ColumnType::kWord, "", "arm");
+  layout.add("arm", ColumnType::kWord, "", "number of the arm");
   layout.add("joint", ColumnType::kWord, "", "joint that the motor moves");
   layout.add("winding", ColumnType::kReal, "degC", "temperature of the motor's winding, calculated by limits.motors");
   layout.add("share", ColumnType::kReal, "", "share of every force that the hottest motor of the arm allows, 0 to 1");
@@ -208,7 +208,7 @@ RowLayout eventColumns() {
   layout.add("model", ColumnType::kInt, "", "number of the model, -1 if there is none");
   layout.add("probe", ColumnType::kInt, "", "number of the arm, -1 if there is none");
   layout.add("code", ColumnType::kWord, "",
-             "number of the fault, of the reason of a silence, or of what is led; see the header client.h");
+             "number of the fault, of the reason why a model was silenced, or of what is led; see the header client.h");
   layout.add("value", ColumnType::kReal, "", "measured value; see the header client.h");
   return layout;
 }

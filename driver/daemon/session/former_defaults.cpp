@@ -13,7 +13,7 @@ struct FormerDefault {
   const char* plugin_id;
   const char* version;  ///< the last version that had this default
   const char* id;
-  uint32_t index;  ///< of the parameter, in the plugin's table
+  uint32_t index;  ///< index of the parameter in the plugin's table
   double value;
 };
 
@@ -24,7 +24,7 @@ constexpr FormerDefault kFormer[] = {
     {"org.hapticd.shape.push_button", "1.0", "contact_hysteresis", 6, 0},
 };
 
-/// True if the model is a part: contacts of parts were always held.
+/// True if the model is a part (a .hpart file): contacts of parts were always held.
 bool isPart(const scene::Model& model) {
   return std::any_of(model.parameters.begin(), model.parameters.end(), [](const scene::Value& value) {
     return value.kind == HSP_PATH && std::filesystem::path(value.text).extension() == ".hpart";

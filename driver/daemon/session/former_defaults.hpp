@@ -8,7 +8,7 @@
 namespace hapticd::servo {
 
 /// [main] For an old recording: sets parameters for which the scene gave no value to the defaults that the plugin had
-/// in that version, so that a replay gives the same forces. @param version of the plugin in the recorded run
+/// in that version, so that a replay gives the same forces. @param version version of the plugin in the recorded run
 void useFormerDefaults(scene::Model& model, const std::string& plugin_id, const std::string& version);
 
 }  // namespace hapticd::servo

@@ -41,14 +41,15 @@ bool allFinite(const float* numbers, std::size_t count) {
   return std::all_of(numbers, numbers + count, [](float number) { return std::isfinite(number); });
 }
 
-/// Makes the triangles of a shape. @param tolerance as asked for; becomes the one that was used
+/// Makes the triangles of a shape. @param tolerance chord error [m] that was asked for; becomes the one that was used
 Result<hsp_mesh> cut(const host::ShapeInstance& shape, double& tolerance) {
   if (shape.geometry() == nullptr) return Error{kNoTriangles};
   const double size = shape.report().size_m;
   if (!(tolerance > 0) && shape.contour() == nullptr) tolerance = size > 0 ? kChordShare * size : kDefaultChord;
   hsp_mesh mesh{};
   if (shape.tessellate(tolerance, mesh) < 0)
-    return Error{fmt::format("the model cannot be cut into triangles within {:g} m", tolerance)};
+    return Error{
+        fmt::format("the plugin of the model gives no valid triangles for a chord error of {:g} m", tolerance)};
   return mesh;
 }
 
@@ -128,7 +129,7 @@ Result<std::string> verticesAnswer(const host::ShapeInstance& shape, double afte
     if (tooLong(text))
       return Error{
           fmt::format("{} vertices do not fit into the {} bytes of an answer\n"
-                      "  fix: a larger display_tolerance among the model's parameters in the scene",
+                      "  fix: set a larger display_tolerance among the model's parameters in the scene",
                       frame.xyz.size() / 3, control::Server::kMaxWaiting)};
     text += "]";
   }

@@ -9,9 +9,9 @@
 
 namespace hapticd::servo {
 
-/// [main] Returns the triangles of an active model in its own frame, of a soft body as it is deformed now: one line of
-/// JSON with xyz [m] and triangles, both flat lists. Fails if the model has no triangles, or more than fit into one
-/// answer. @param tolerance chord error [m]; 0: 5/1000 of the model's size
+/// [main] Returns the triangles of an active model in its own frame (those of a soft body in its present deformation):
+/// one line of JSON with xyz [m] and triangles, both flat lists. Fails if the model has no triangles, or more than fit
+/// into one answer. @param tolerance chord error [m]; 0: 5/1000 of the model's size
 Result<std::string> geometryAnswer(const host::ShapeInstance& shape, double tolerance);
 
 /// [main] Returns the triangles in read-only memory, for models of any size: f32 xyz [m], then f32 unit normals if the

@@ -25,7 +25,7 @@ bool same(const Leads::Target& a, const Leads::Target& b) {
 
 }  // namespace
 
-/// Chooses a place for a program. Each time the next free one, because the force of the last program in a place may
+/// Chooses a place for a program: each time the next free one, because the force of the last program in a place may
 /// still ramp out.
 Result<void> Leads::findPlace(Target& target, const control::Peer& peer) {
   const auto others = pushers(target.index);
@@ -65,7 +65,7 @@ Result<Descriptor> Leads::begin(Target target, const control::Peer& peer) {
   if (programs_.size() >= kMostPrograms) programs_.clear();
   programs_[peer.pid] = programOf(peer.pid);  // set before the servo reports the new leader
   const auto given = give_(order);
-  // also if the servo did not obey in time, because it may obey later
+  // kept also if the servo did not obey in time, because it may obey later
   leads_.push_back({target, peer, std::move(*memory), programs_[peer.pid]});
   tell(leads_.back(), News::kBegins);
   if (given) return std::move(*shared);

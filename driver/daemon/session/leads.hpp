@@ -28,7 +28,7 @@ class Leads {
     Order::Led led = Order::Led::kModel;
     uint32_t index = 0;  ///< number of the model or the arm
     std::string name;    ///< such as "model door", for messages
-    uint32_t place = 0;  ///< for a force: the program's place on the arm, chosen by begin()
+    uint32_t place = 0;  ///< the program's place on the arm if it leads a force; begin() chooses it
   };
 
   /// A program that pushes on an arm.
@@ -62,7 +62,8 @@ class Leads {
 
   /// [main] Returns the process that leads a model or a hand, if there is one.
   std::optional<pid_t> leader(Order::Led led, uint32_t index) const;
-  /// [main] Returns the name of a process that led or pushed; "?" if none had this number.
+  /// [main] Returns the name of a process that led or pushed; "?" if none had this number, or if its name was
+  /// forgotten.
   std::string program(pid_t pid) const;
   /// [main] Returns the programs that push on an arm.
   std::vector<Pusher> pushers(uint32_t arm) const;
@@ -92,7 +93,7 @@ class Leads {
   uint32_t last_place_ = 0;
   std::vector<Lead> leads_;
   std::map<pid_t, std::string> programs_;            ///< names of the newest programs
-  std::vector<std::unique_ptr<SealedMemory>> kept_;  ///< of leads that the servo may still read
+  std::vector<std::unique_ptr<SealedMemory>> kept_;  ///< memory of ended leads that the servo may still read
 };
 
 }  // namespace hapticd::servo

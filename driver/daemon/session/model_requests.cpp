@@ -106,7 +106,8 @@ Result<scene::Scene> RequestHandler::loadPassed(const control::Peer& peer, const
 /// Returns an error that this peer may see: another user does not get quotes from the daemon's own scene.
 std::string RequestHandler::tellable(const control::Peer& peer, const std::string& why) const {
   if (passed_) return passed_->named(why);
-  return isForeign(peer) ? scene_file_ + ": cannot be used\n  fix: ask the daemon's user for hapticd check" : why;
+  return isForeign(peer) ? scene_file_ + ": cannot be used\n  fix: ask the daemon's user to test it with hapticd check"
+                         : why;
 }
 
 Result<std::string> RequestHandler::add(const control::Peer& peer, const Request& request) {
@@ -174,7 +175,7 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
     order.model = prepared_.back().get();
     const auto given = give(order);
     places_[place] = {models[i], true, true};
-    // Also if the servo did not obey in time, because it may obey later.
+    // The shape is kept also if the servo did not obey in time, because it may obey later.
     runner_.world().keep(place, std::move(shapes[i]), models[i]);
     if (!given) return given;
     prepared_.pop_back();

@@ -18,14 +18,15 @@ class PusherLog {
  public:
   /// [s] a longer silence is reported in the log; shorter ones are only counted
   static constexpr double kSilent = 0.2;
-  static constexpr double kRefusedPeriod = 1.0;  ///< [s] between two reports about refused answers of a program
+  /// [s] least time between two reports about refused answers of a program
+  static constexpr double kRefusedPeriod = 1.0;
 
   /// A message for the log. @param level HSP_LOG_INFO, ...
   struct Message {
     int32_t level;
     std::string text;
   };
-  /// How a program stops pushing.
+  /// How a program stops pushing: by a request, or because its connection ended.
   enum class End { kUnlead, kLeft };
 
   /// [any] Called when a program begins to push. @param place less than ClientForces::kMost

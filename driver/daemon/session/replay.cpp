@@ -218,7 +218,7 @@ class Replay::Player final : public Clock {
     return push_slots_.back().get();
   }
 
-  /// Writes the recorded answers of pushing programs likewise.
+  /// Writes the recorded answers of pushing programs into their memory, as feedLeads() does for leaders.
   void feedPushes() {
     if (recorded_[kPushes] == nullptr) return;
     for (const RecordedStream& stream = *recorded_[kPushes]; push_ < stream.rows(); ++push_) {

@@ -45,7 +45,8 @@ std::string expectedOf(const hsp_param& param) {
   return "one of " + document::listed(words, 40);
 }
 
-/// Returns the number of a word of the parameter, or nothing if there is no such word.
+/// Returns the number that a word of a choice or switch stands for, such as 1 for "on"; nothing if there is no such
+/// word.
 std::optional<double> numberOf(const hsp_param& param, const std::string& word) {
   for (uint32_t i = 0; param.kind == HSP_ENUM && i < param.choice_count; ++i)
     if (word == host::textOf(param.choices[i])) return i;
@@ -224,7 +225,8 @@ Result<void> RequestHandler::able(const std::string& model, bool enabled) {
 
 /// Enables a model. If a tip is inside, the model is not felt until the tip has left; the answer says so.
 Result<std::string> RequestHandler::enable(const std::string& model) {
-  constexpr double kMet = 0.02;  // [s] enough, because an unfelt model is still traced
+  // [s] in this time the model is surely stepped once, because an unfelt model is still traced
+  constexpr double kMet = 0.02;
   if (auto done = able(model, true); !done) return Error{done.error()};
   nlohmann::ordered_json json = {{"ok", true}};
   const auto place = placeOf(model);

@@ -24,7 +24,7 @@ class RequestHandler {
  public:
   /// Loads a scene file with everything it names.
   using LoadScene = std::function<Result<scene::Scene>(const std::string& file)>;
-  /// Returns warnings about the models in a scene. @param stiffness [N/m] claim of each model
+  /// Returns warnings about the models in a scene. @param stiffness [N/m] stiffness that each model claims
   using Advise =
       std::function<std::vector<std::string>(const scene::Scene& models, const std::vector<double>& stiffness)>;
 
@@ -36,20 +36,21 @@ class RequestHandler {
   /// [main] Called before the first request: sets the function for warnings about added models; empty for no warnings.
   void adviseBy(Advise advise) { advise_ = std::move(advise); }
 
-  /// [any] One thread at a time. Answers a request (one line of JSON) with one line of JSON. @param files descriptors
-  /// that came with the line
+  /// [any] Only one thread at a time may call this. Answers a request (one line of JSON) with one line of JSON.
+  /// @param files descriptors that came with the line
   control::Reply answer(const control::Peer& peer, const std::string& line, std::vector<Descriptor> files = {});
-  /// [any] Any thread, at any time. Carries out a request to hold arms or to end the run at once, without waiting for
-  /// other requests. @return the answer, or nothing if the line is not such a request
+  /// [any] Any thread may call this at any time. Carries out a request to hold arms or to end the run at once, without
+  /// waiting for other requests. @return the answer, or nothing if the line is not such a request
   std::optional<control::Reply> urgent(const control::Peer& peer, const std::string& line);
-  /// [any] The thread of answer(). Returns what depends on the peer's connection.
+  /// [any] Called from the thread of answer(). Returns what depends on the peer's connection.
   control::Standing standing(const control::Peer& peer) const { return {stays(peer), listeners_.count(peer.id) > 0}; }
-  /// [any] The thread of answer(). Returns new events for a subscriber, one line each; "" if there are none.
+  /// [any] Called from the thread of answer(). Returns new events for a subscriber, one line each; "" if there are
+  /// none.
   std::string news(const control::Peer& peer);
-  /// [any] The thread of answer(). Called when a connection is gone: ends what depended on it.
+  /// [any] Called from the thread of answer() when a connection is gone: ends what depended on it.
   void left(const control::Peer& peer);
 
-  /// [any] The thread of answer(). Writes the black box to a file. @return the name of the file
+  /// [any] Called from the thread of answer(). Writes the black box to a file. @return the name of the file
   Result<std::string> dump(const std::string& why);
 
  private:
@@ -108,11 +109,11 @@ class RequestHandler {
   LoadScene load_;
   Advise advise_;
   std::string name_, socket_;
-  std::vector<double> came_stiffness_;  ///< [N/m] claims of the models of the last request
+  std::vector<double> came_stiffness_;  ///< [N/m] stiffness that each model of the last request claims
   host::Services::Log log_;
   std::string dump_folder_, scene_file_;
   std::vector<ModelPlace> places_;
-  std::vector<std::unique_ptr<ModelState>> prepared_;  ///< given to the servo, which has not taken them yet
+  std::vector<std::unique_ptr<ModelState>> prepared_;  ///< models given to the servo, which has not taken them yet
   uint64_t given_ = 0;
   Leads leads_;
   std::map<uint64_t, uint64_t> listeners_;  ///< subscribers: number of the next event, by peer

@@ -56,7 +56,7 @@ bool isAutomatic(const std::string& name) {
          name.find_first_not_of("0123456789", begin.size()) == std::string::npos;
 }
 
-/// Removes the files of killed runs with such names, and saves their black boxes.
+/// Removes the files of killed runs with automatic names, and saves their black boxes.
 void clearDead(const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code error;

@@ -32,7 +32,7 @@ class RunFiles {
   /// [main] Called a few times per second: dumps the black box once after each new fault.
   void look();
 
-  const std::string& name() const { return name_; }  ///< [main] path of the run's socket; "" if it has none
+  const std::string& name() const { return name_; }  ///< [main] name of the run; "" if it has no files
 
   void end();  ///< [main] called after the run: ends requests and removes files
 

@@ -70,12 +70,13 @@ std::unique_ptr<watch::Watchdog> watchdogOf(watch::Watched& watched, bool may_la
   return watchdog;
 }
 
-/// Asked again if nobody is to blame.
+/// Ends the process if a call of a module after the last tick did not return. If no module is in a call, it returns,
+/// and is called again later.
 void dieOfStop() {
   if (const Owner* keeps = keepsTheEnd()) watch::dieOf("a stop() that did not come back", keeps);
 }
 
-/// @param after the last tick: calls of modules that may hang as well
+/// Runs the loop in virtual time. @param after called after the last tick; it calls modules, which may hang as well
 Result<void> runInVirtualTime(Loop& loop, const watch::Watched& watched, const std::function<void()>& after) {
   const auto hung = [] {
     if (const Owner* keeps = keepsTheEnd()) watch::dieOf("a step that did not come back", keeps);
@@ -287,7 +288,7 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
     const auto idle = [] {};
     watch::EndWatch last(watched, idle, idle);
     last.lastCalls(dieOfStop);
-    [[maybe_unused]] const auto unwatched = last.start();  // then the arms are stopped all the same
+    [[maybe_unused]] const auto unwatched = last.start();  // if it cannot start, the arms are stopped all the same
     stopArms();
   }
   if (guard_) guard_->arm(false);

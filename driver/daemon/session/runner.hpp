@@ -27,7 +27,7 @@ class ProximityThread;
 namespace hapticd::servo {
 
 struct RunOptions {
-  double rate = 1000;              ///< [Hz] of the servo
+  double rate = 1000;              ///< [Hz] rate of the servo
   std::optional<double> duration;  ///< [s] length of the run; without it, until stop()
   bool virtual_time = false;
   std::optional<int> cpu;  ///< processor for the servo thread
@@ -77,22 +77,22 @@ class Runner {
   Door& door() { return loop_->door(); }
   /// [main] Called after the run: removes the file of the black box.
   void endBlackBox() { telemetry_->flight()->ring().removeFile(); }
-  /// [any] The thread of giveOrder(): a model takes a place, or has left it (`name` is "").
+  /// [any] Called from the thread of giveOrder() when a model takes a place, or has left it (`name` is "").
   void nameModel(uint32_t place, const std::string& name, const std::string& plugin);
-  /// [any] The thread of giveOrder(): a program is about to lead.
+  /// [any] Called from the thread of giveOrder() when a program is about to lead.
   void nameLeader(pid_t pid, const std::string& program) { event_log_->leads(pid, program); }
-  /// [any] The thread of giveOrder(): a program begins to push on an arm.
+  /// [any] Called from the thread of giveOrder() when a program begins to push on an arm.
   void namePusher(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
-  /// [any] The thread of giveOrder(): a program has stopped pushing.
+  /// [any] Called from the thread of giveOrder() when a program has stopped pushing.
   void forgetPusher(uint32_t arm, uint32_t place, PusherLog::End how);
-  /// [any] The thread of giveOrder(): adds the counts of a program that pushed to the report.
+  /// [any] Called from the thread of giveOrder(): adds the counts of a program that pushed to the report.
   void book(const record::ClientReport& client) { telemetry_->pushed(client); }
 
   /// Folder for the quarantine list and for files after a crash; "" if there is none.
   const std::string& stateDir() const { return options_.state_dir; }
   bool virtualTime() const { return options_.virtual_time; }
-  /// [any] One thread: memory that the loop shares with other programs until it has ended; nullptr before the first
-  /// request.
+  /// Memory that the loop shares with other programs until it has ended; nullptr before the first request. Only one
+  /// thread may use it.
   struct Shared {
     std::unique_ptr<SealedMemory> state, bell;
   };

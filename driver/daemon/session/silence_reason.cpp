@@ -32,7 +32,7 @@ std::string sizeOf(const Pull& jump) {
 std::string onPurpose(const Pull& jump) {
   if (!(jump.force > 0)) return "";
   const double unit = std::pow(10, std::floor(std::log10(jump.force)) - 1);
-  return fmt::format("if on purpose: reportJumps(report, {:.6g}) in its activate(); if not, ",
+  return fmt::format("if on purpose, call reportJumps(report, {:.6g}) in its activate(); if not, ",
                      unit * std::ceil(jump.force / unit));
 }
 

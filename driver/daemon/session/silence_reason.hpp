@@ -14,11 +14,12 @@ enum class Trouble : uint8_t;
 
 /// [main] Returns why the model was silenced and what to do; "" if it was not silenced.
 std::string silenceReason(const ModelState& model);
-/// [main] The same. @param failed_status the first status not allowed by the ABI that step() returned
+/// [main] Returns the same text from the data of a model. @param failed_status the first status that step() returned
+/// and that the ABI does not allow
 std::string silenceReason(const std::string& model, Trouble trouble, int32_t failed_status);
-/// [main] The same. @param pull the pull, or the largest jump, for which it was silenced
+/// [main] Returns the same text with more detail. @param pull the pull, or the largest jump, for which it was silenced
 std::string silenceReason(const std::string& model, Trouble trouble, int32_t failed_status, const Pull& pull);
-/// [main] The same for an event of kind HAPTICD_SILENCED.
+/// [main] Returns the text for an event of kind HAPTICD_SILENCED.
 std::string silenceReason(const hapticd_event& event, const std::string& model);
 
 }  // namespace hapticd::servo

@@ -21,10 +21,10 @@ namespace hapticd::servo {
 
 /// A short row about one tick: for the status line, and for the black box if there is no Flight.
 struct BlackBoxRow {
-  double t = 0;  ///< [s] since the start
+  double t = 0;  ///< [s] time since the start of the run
   float lateness_us = 0, compute_us = 0;
-  std::array<float, 3> position{};  ///< [m] of the first arm, world frame
-  std::array<float, 3> force{};     ///< [N] of the first arm, world frame, as sent
+  std::array<float, 3> position{};  ///< [m] tip of the first arm, world frame
+  std::array<float, 3> force{};     ///< [N] force as sent to the first arm, world frame
   float depth_m = 0;                ///< deepest contact; negative: distance to the nearest foot; 0: no model is traced
   uint32_t model = UINT32_MAX;      ///< model of this contact or foot
   int32_t status = 0;               ///< worst status of the tick

@@ -11,7 +11,7 @@ using control::Request;
 
 namespace {
 
-/// [ns] Pause between two looks whether the servo has obeyed, and longest wait; the servo needs one tick.
+/// [ns] Pause between two checks whether the servo has obeyed, and longest time to wait; the servo needs one tick.
 constexpr Nanoseconds kPause = 500'000, kPatience = 100'000'000;
 
 std::string good() {

@@ -51,11 +51,12 @@ class Proximity {
  private:
   mutable std::mutex mutex_;  ///< models come and leave between two searches
   struct Model {
-    uint32_t index;  ///< of the model in the scene; UINT32_MAX: it has left
+    uint32_t index;  ///< number of the model in the scene; UINT32_MAX: it has left
     const host::ShapeInstance* shape;
-    uint32_t surfaces;                 ///< number of its surfaces
-    uint64_t bytes;                    ///< locked memory of the shape
-    Eigen::Vector3d box_min, box_max;  ///< [m] model frame; without a box the model is always searched
+    uint32_t surfaces;  ///< number of its surfaces
+    uint64_t bytes;     ///< locked memory of the shape
+    Eigen::Vector3d box_min,
+        box_max;  ///< [m] corners of the box, model frame; without a box the model is always searched
     bool has_box;
     Eigen::Vector3d position;
     Eigen::Quaterniond orientation;

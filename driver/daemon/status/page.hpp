@@ -60,18 +60,18 @@ struct Now {
 };
 
 struct ArmNow {
-  double position[3] = {}, force[3] = {};  ///< [m] of the tip; [N] as sent; world frame
+  double position[3] = {}, force[3] = {};  ///< [m] position of the tip; [N] force as sent; world frame
   uint64_t sequence = 0;                   ///< number of the newest sample
   uint32_t fault = 0, valid = 0;
 };
 
 struct ModelNow {
-  double depth = 0, force = 0, gain = 0;  ///< [m] NaN if not traced; [N]; factor of its force, 0 to 1
+  double depth = 0, force = 0, gain = 0;  ///< [m] depth, NaN if not traced; [N] force; factor of the force, 0 to 1
   uint64_t tick = 0;                      ///< tick in which it was last stepped
   int32_t status = 0;
   uint32_t iterations = 0;
   uint32_t trouble = 0;       ///< servo::Trouble: why it is not felt
-  int32_t failed_status = 0;  ///< the first status not allowed by the ABI that step() returned; 0: none
+  int32_t failed_status = 0;  ///< the first status that step() returned and that the ABI does not allow; 0: none
   /// waits: 1 if it was added or enabled with a tip inside, and is not felt until the tip has left. none: unused.
   uint32_t waits = 0, none = 0;
 };
@@ -100,7 +100,7 @@ struct Name {
 struct Page {
   std::atomic<uint64_t> magic{0};
   uint32_t bytes = 0, arms = 0, models = 0, pid = 0;
-  double rate = 0;  ///< [Hz] of the servo, as asked for
+  double rate = 0;  ///< [Hz] rate of the servo, as asked for
   Slot<Now> now;
   SharedHistogram lateness_us, compute_us;
   struct {
@@ -112,12 +112,12 @@ struct Page {
     Slot<ModelNow> now;
     SharedHistogram step_us;
   } model[kMaxModels];
-  double answer_time = 0;  ///< [s] how long in a tick the servo waits for programs' answers
+  double answer_time = 0;  ///< [s] longest time in a tick for which the servo waits for programs' answers
   struct {
     Slot<Pusher> who;
     Slot<PusherNow> now;
   } pusher[kMaxArms * kPushersOfArm];  ///< places of arm i begin at i * kPushersOfArm
-  Slot<ModelFeet> feet[kMaxModels];    ///< by the place of a model
+  Slot<ModelFeet> feet[kMaxModels];    ///< feet of each model, by its place
 };
 
 }  // namespace hapticd::status

@@ -22,8 +22,8 @@ namespace {
 
 std::atomic<int> dying{0};  ///< number of the thread that ends the process; 0: none
 
-/// Data of that thread. The reason and the culprit are set before the first step, because later steps may find a
-/// damaged process.
+/// Data of the thread that ends the process. The reason and the culprit are set before the first step, because later
+/// steps may find a damaged process.
 struct Death {
   std::atomic<size_t> step{0};  ///< index of the next step in kSteps
   const char* dir = "";         ///< see die()

@@ -47,7 +47,7 @@ void EndWatch::look(Nanoseconds now) noexcept {
   if (now - still_since_ >= kEndWithin && !std::exchange(told_, true)) late_();
 }
 
-/// Time is counted by the number of looks, not by a clock. So a process that was stopped by a debugger, or a laptop
+/// Time is counted by the number of calls, not by a clock. So a process that was stopped by a debugger, or a laptop
 /// that slept, does not count as hanging.
 void EndWatch::lookForHang(uint64_t ticks) noexcept {
   const Nanoseconds begun = servo_.tickBegun(), cpu = servo_.cpuTime();

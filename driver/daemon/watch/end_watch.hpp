@@ -15,15 +15,15 @@ namespace hapticd::watch {
 class EndWatch {
  public:
   static constexpr Nanoseconds kLookEvery = 50'000'000;
-  static constexpr Nanoseconds kEndWithin = 900'000'000;  ///< [ns] longest time without a tick once it must end
+  static constexpr Nanoseconds kEndWithin = 900'000'000;  ///< [ns] longest time without a tick once the run must end
 
   /// [ns] longest processor time of a tick. No useful shape takes this long, and processor time does not grow on a busy
   /// machine.
   static constexpr Nanoseconds kHungAfter = 5'000'000'000;
-  /// [ns] longest time of a tick that waits for something, such as a lock or a file, counted in looks of the thread.
+  /// [ns] longest time of a tick that waits for something, such as a lock or a file, counted in calls of look().
   static constexpr Nanoseconds kWaitsAfter = 30'000'000'000;
   /// [ns] longest time of the calls after the last tick, in which a module may wait for its own threads, counted in
-  /// looks of the thread.
+  /// calls of look().
   static constexpr Nanoseconds kWaitsForLast = 10'000'000'000;
 
   /// [main] @param late ends a process that was asked to end @param hung ends a process whose tick hangs; if it finds
@@ -38,7 +38,7 @@ class EndWatch {
   /// [main] Called after the last tick. The calls that follow, such as stop() of the arms, may take kWaitsForLast.
   /// @param stuck ends the process after that; if it finds nobody to blame it returns, and is called again later
   void lastCalls(std::function<void()> stuck);
-  /// [any] Looks at the servo once. The thread does nothing else but this, periodically.
+  /// [any] Checks the servo once. The thread only calls this, every kLookEvery.
   void look(Nanoseconds now) noexcept;
 
  private:
@@ -49,9 +49,10 @@ class EndWatch {
   std::function<void()> late_, hung_, stuck_;
   uint64_t ticks_ = UINT64_MAX;
   Nanoseconds still_since_ = 0;
-  Nanoseconds looked_last_ = 0;  ///< [ns] time spent looking at the calls after the last tick
+  Nanoseconds looked_last_ = 0;  ///< [ns] duration of the calls after the last tick, as far as it was watched
   Nanoseconds tick_begun_ = 0;
-  Nanoseconds looked_ = 0, cpu_before_ = 0;  ///< [ns] time spent looking at this tick; CPU time of the servo before it
+  /// [ns] duration of this tick, as far as it was watched; CPU time of the servo before it
+  Nanoseconds looked_ = 0, cpu_before_ = 0;
   bool told_ = false, stop_ = false;
   std::mutex mutex_;
   std::condition_variable stopped_;

@@ -23,7 +23,7 @@ namespace hapticd::watch {
 namespace {
 
 constexpr Nanoseconds kLook = 1'000'000, kOnTime = 2 * kLook;
-constexpr Nanoseconds kKillAfter = 1'000'000'000;  ///< [ns] without a tick: then it kills the daemon
+constexpr Nanoseconds kKillAfter = 1'000'000'000;  ///< [ns] after this time without a tick, the guard kills the daemon
 constexpr unsigned kUsbTimeout = 100;              ///< [ms] timeout of a USB transfer
 constexpr size_t kMostArms = 16;
 
@@ -77,7 +77,7 @@ class GuardLoop {
   }
 
  private:
-  /// Waits for a message, at most for the period of a look. Returns false if the daemon's end is closed.
+  /// Waits for a message, at most for kLook. Returns false if the daemon's end is closed.
   bool listen() {
     pollfd polled{kGuardSocket, POLLIN, 0};
     if (poll(&polled, 1, static_cast<int>(kLook / 1'000'000)) <= 0) return true;
@@ -97,7 +97,7 @@ class GuardLoop {
     target.fd = std::move(descriptors_.front());
   }
 
-  /// Checks that ticks go on. If a look comes late, the machine may have stood still, so only part of the time counts.
+  /// Checks that ticks go on. If a check comes late, the machine may have stood still, so only part of the time counts.
   void look(Nanoseconds now) {
     const Nanoseconds way = now - std::exchange(last_, now);
     const uint64_t ticks = beat_.ticks.load();

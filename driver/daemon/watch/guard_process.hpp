@@ -46,7 +46,7 @@ class GuardProcess {
   Descriptor socket_, memory_;
   uint64_t memory_is_ = 0;  ///< inode of the memory, to notice that another thread closed the descriptor
   int process_ = -1;
-  std::map<uint32_t, uint64_t> told_;  ///< by arm: the epoch of the data that were sent last
+  std::map<uint32_t, uint64_t> told_;  ///< the epoch of the data that were sent last, by arm
 };
 
 /// [main] The main function of the guard process; it never returns. @param arguments see kGuardArgument

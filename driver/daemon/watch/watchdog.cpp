@@ -42,9 +42,10 @@ void Watchdog::watchEnd() noexcept {
   if (servo_.stopAsked() != 0 && ++checks_since_stop_ == kEndWithin / kCheckEvery && late_) late_();
 }
 
-/// @param overdue time since the tick began, or should have begun @param seen time since the last look that counts
+/// Judges the present phase at one check, and returns true if it cut the motors. @param overdue [ns] time since the
+/// tick began, or should have begun @param seen [ns] part of the time before this check that counts
 bool Watchdog::judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcept {
-  if (!(phase == phase_)) {  // the first look at this phase
+  if (!(phase == phase_)) {  // the first check in this phase
     phase_ = phase;
     cpu_at_phase_ = servo_.cpuTime();
     counted_ = 0;
@@ -63,8 +64,8 @@ bool Watchdog::judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcep
   return true;
 }
 
-/// Time is counted by the number of looks, not by a clock, so that a tick during which the machine slept does not count
-/// as hanging. A servo that merely gets no processor does not hang either.
+/// Time is counted by the number of checks, not by a clock, so that a tick during which the machine slept does not
+/// count as hanging. A servo that merely gets no processor does not hang either.
 void Watchdog::watchHung(Phase phase) noexcept {
   if (hung_told_ || (phase.waits && servo_.inServo() == nullptr)) return;
   const Nanoseconds looked = ++checks_since_cut_ * kCheckEvery;

@@ -15,22 +15,22 @@ namespace hapticd::watch {
 class Watchdog {
  public:
   static constexpr Nanoseconds kCheckEvery = 500'000;
-  static constexpr Nanoseconds kOnTime = 2'000'000;  ///< [ns] if the time between two looks is longer, the look is late
-  static constexpr Nanoseconds kLateCounts = 1'000'000;  ///< [ns] part of the time before a late look that counts
-  /// [ns] longest tick of an arm. The next look follows at most 0.5 ms later; in 3 ms, 8.5 N give a free tip of 75 g an
-  /// energy of 4.3 mJ.
+  static constexpr Nanoseconds kOnTime = 2'000'000;  ///< [ns] if the time between two checks is longer, a check is late
+  static constexpr Nanoseconds kLateCounts = 1'000'000;  ///< [ns] part of the time before a late check that counts
+  /// [ns] longest tick of an arm. The next check follows at most 0.5 ms later; in 3 ms, 8.5 N give a free tip of 75 g
+  /// an energy of 4.3 mJ.
   static constexpr Nanoseconds kStuckAfter = 2'500'000;
-  /// [ns] the same in a virtual machine, where the processor may do other work during a tick.
+  /// [ns] longest tick in a virtual machine, where the processor may do other work during a tick.
   static constexpr Nanoseconds kStuckInVirtualMachine = 10'000'000;
   /// [ns] least value for simulated arms: they cannot hurt a hand, and pauses of a virtual machine count as servo time.
   static constexpr Nanoseconds kStuckSimulated = 60'000'000;
   /// [ns] longest delay of the next tick. In a virtual machine it is longer, because the host pauses single processors.
   static constexpr Nanoseconds kMissedAfter = 2'500'000, kMissedInVirtualMachine = 50'000'000;
-  static constexpr Nanoseconds kHungAfter = 500'000'000;  ///< [ns] a tick that takes longer never returns
-  /// [ns] the same for a simulation. In less time the servo may only have had no processor, which is not a module's
-  /// fault. But a simulation that has used kHungAfter of processor time hangs.
+  static constexpr Nanoseconds kHungAfter = 500'000'000;  ///< [ns] a tick that takes longer counts as hanging
+  /// [ns] a tick of a simulation that takes longer counts as hanging. In less time the servo may only have had no
+  /// processor, which is not a module's fault. But a simulation that has used kHungAfter of processor time hangs.
   static constexpr Nanoseconds kHungSimulated = 5'000'000'000;
-  static constexpr Nanoseconds kEndWithin = 900'000'000;       ///< [ns] time to end, after the end was asked for
+  static constexpr Nanoseconds kEndWithin = 900'000'000;  ///< [ns] longest time for the end, after it was asked for
   static constexpr Nanoseconds kSimulatedPause = 200'000'000;  ///< [ns] a busy machine may pause a simulation this long
 
   /// [main] @param hung ends the process @param missed_after [ns] longest delay of the start of a tick
@@ -48,10 +48,10 @@ class Watchdog {
   std::error_code start(int priority);
   void stop();
 
-  /// [any] Looks at the servo once, and returns true if it cut the motors. The thread only calls this periodically.
-  /// Before a look that comes late, the whole machine may have stood still, with this thread and the servo. So the time
-  /// before it counts as only one millisecond, and the servo gets a moment to end its tick. If all looks come late, the
-  /// motors of a stuck servo are cut by the third look at the latest; if looks are on time, within 3 ms.
+  /// [any] Checks the servo once, and returns true if it cut the motors. The thread only calls this periodically.
+  /// Before a check that comes late, the whole machine may have stood still, with this thread and the servo. So the
+  /// time before it counts as only one millisecond, and the servo gets a moment to end its tick. If all checks come
+  /// late, the motors of a stuck servo are cut by the third check at the latest; if checks are on time, within 3 ms.
   bool check(Nanoseconds now) noexcept;
 
   uint64_t cuts() const noexcept { return cuts_.load(); }
@@ -78,7 +78,7 @@ class Watchdog {
   Nanoseconds checks_since_cut_ = 0, checks_since_stop_ = 0;
   bool hung_told_ = false;
   Nanoseconds cpu_at_phase_ = 0;
-  Nanoseconds looked_at_ = 0;  ///< time of the last look
+  Nanoseconds looked_at_ = 0;  ///< time of the last check
   Nanoseconds counted_ = 0;    ///< [ns] duration of the phase, as far as it was watched
   std::atomic<uint64_t> cuts_{0};
   std::atomic<bool> stop_{false};

@@ -12,7 +12,7 @@ namespace hapticd::servo {
 /// gives; 0 if the force of one arm is unknown.
 double maxForceOf(const scene::Scene& scene);
 
-/// [any] The same for a recorded run. @param devices reports of the arms when they were opened
+/// [any] Returns this force for a recorded run. @param devices reports of the arms when they were opened
 double maxForceOf(const scene::Scene& scene, const std::vector<hdv_info>& devices);
 
 }  // namespace hapticd::servo

@@ -7,7 +7,7 @@ namespace hapticd::servo {
 
 namespace {
 
-// Read by plugins/kernels, which do not depend on the daemon.
+// Name of the environment variable by which plugins/kernels get the choice, because they do not depend on the daemon.
 constexpr const char* kVariable = "HAPTICD_INSTRUCTIONS";
 
 bool portableByEnvironment() {

@@ -16,7 +16,7 @@
 namespace hapticd::servo {
 
 struct WorldOptions {
-  double rate = 1000;  ///< [Hz] of the servo
+  double rate = 1000;  ///< [Hz] rate of the servo
   uint32_t probe_count = 1;
   uint32_t spare_models = 0;   ///< places for models that are added during the run
   bool measure = false;        ///< true: measure the CPU time of every step

@@ -25,7 +25,7 @@ bool Arm::look(hapticd_state& state) {
   constexpr int kPatienceMs = 500;
   hapticd_state newer;
   if (hapticd_next_state(client_, device_, UINT64_MAX, kPatienceMs, &state) != 1) return false;
-  // The memory still exists after the daemon has ended, so the ticks must be seen to go on.
+  // The memory still exists after the daemon has ended, so only new ticks show that the daemon runs.
   return nowNs() < state.time_ns + kHoldsNs ||
          hapticd_next_state(client_, device_, state.tick, kPatienceMs, &newer) == 1;
 }

@@ -24,7 +24,7 @@ class Arm {
   Arm& operator=(const Arm&) = delete;
 
   const std::string& name() const { return name_; }
-  /// [main] Reads the newest state. False if no new states come any more.
+  /// [main] Reads the newest state. Returns false if no new states come any more.
   bool look(hapticd_state& state);
   /// [main] Sets the force [N, world frame] that is applied from now on. The first call begins a lead of the force.
   Result<void> push(const double force[3]);

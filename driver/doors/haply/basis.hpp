@@ -9,8 +9,8 @@ namespace hapticd::haply {
 
 class Basis {
  public:
-  /// Sets a permutation in Haply's form, such as "XZY" or "X-YZ". False, and no change, if the text is not a
-  /// permutation.
+  /// Sets a permutation in Haply's form, such as "XZY" or "X-YZ". Returns false and changes nothing if the text is not
+  /// a permutation.
   bool set(const std::string& permutation);
   std::array<double, 3> fromWorld(const double v[3]) const;
   std::array<double, 3> toWorld(const double v[3]) const;
@@ -19,7 +19,7 @@ class Basis {
 
  private:
   bool mirrored() const;
-  std::array<int, 3> axis_{0, 1, 2};  ///< axis of Haply's frame for each axis of the program
+  std::array<int, 3> axis_{0, 1, 2};  ///< number of Haply's axis for each axis of the program
   std::array<double, 3> sign_{1, 1, 1};
 };
 

@@ -34,7 +34,7 @@ void converse(websocket::Channel& channel, const std::string& daemon, int number
   if (!session) return say(number, session.error());
   std::string text = (*session)->inventory();
   while (!text.empty() && !told_to_end && channel.send(text, kSendMs)) {
-    constexpr int kSilentMs = 30'000;  // [ms] a program that is silent for longer has gone
+    constexpr int kSilentMs = 30'000;  // [ms] a program that is silent for longer counts as gone
     const auto message = channel.receive(kSilentMs);
     if (!message) return;
     text = (*session)->answer(*message);
@@ -65,7 +65,7 @@ void serve(websocket::Listener& listener, const std::string& daemon) {
     ++number;
   }
   std::fflush(nullptr);
-  std::_Exit(0);  // does not wait for silent programs; the daemon ends their forces with the connection
+  std::_Exit(0);  // ends without waiting for silent programs; the daemon ends their forces when the connection ends
 }
 
 }  // namespace

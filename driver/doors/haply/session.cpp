@@ -20,7 +20,7 @@ const Json& childOf(const Json& json, const char* key) {
   return it != json.end() ? *it : nothing;
 }
 
-/// Reads three finite numbers. False unless all three are there.
+/// Reads three finite numbers x, y and z. Returns false if one of them is missing or not finite.
 bool readVector(const Json& json, double v[3]) {
   const char* axes[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
@@ -45,7 +45,7 @@ Json stateOf(const hapticd_state& state, const double wanted[3], const Basis& ba
           {"control_mode", "force"}};
 }
 
-/// Writes the part of a state about the handle: the orientation of the tip, and the buttons.
+/// Returns the part of a state that describes the handle: the orientation of the tip, and the buttons.
 Json gripOf(const hapticd_state& state, const std::string& id, const Basis& basis) {
   const auto q = basis.turnFromWorld(state.orientation);
   return {{"device_id", id},

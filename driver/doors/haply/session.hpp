@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The conversation with one program of Haply's interface: first it gets an inventory, then one state for each message
-/// that it sends.
+/// The conversation with one program that uses Haply's interface. The program first gets an inventory, then one state
+/// for each message that it sends.
 #pragma once
 #include <memory>
 #include <nlohmann/json.hpp>

@@ -24,7 +24,7 @@ uint32_t bitOf(HDenum capability) {
 }
 
 constexpr uint32_t kNone = 0,
-                   kStopped = 8;  ///< hapticd_state.fault: no fault; the arm is held, or the daemon ends
+                   kStopped = 8;  ///< values of hapticd_state.fault; kStopped: the arm is held, or the daemon ends
 
 /// Returns the HDAPI's error for the daemon's reason for withholding a force (hapticd_state.fault), or HD_SUCCESS if
 /// there is nothing to report.
@@ -73,12 +73,13 @@ void scaleTo(double v[3], double most) {
 }  // namespace
 
 void Arm::open(std::shared_ptr<Link> link, Facts facts) {
-  constexpr double kRampTime = 0.05;  // [s] from zero to the largest force
+  // [s] time in which a force that is switched on grows from zero to the largest force.
+  constexpr double kRampTime = 0.05;
   link_ = std::move(link);
   facts_ = std::move(facts);
   motion_ = {};
   frame_ = last_ = {};
-  ended_ = pushed_ = seen_ = false;  // a new daemon; a frame that is open now can still be ended
+  ended_ = pushed_ = seen_ = false;  // the daemon may be a new one; a frame that is open now can still be ended
   told_fault_ = 0, stopped_since_ = -1, told_limit_ = false;
   std::fill_n(held_force_, 3, 0.0), std::fill_n(held_torque_, 3, 0.0);
   capabilities_ = bitOf(HD_MAX_FORCE_CLAMPING) | bitOf(HD_FORCE_RAMPING) | bitOf(HD_SOFTWARE_FORCE_LIMIT) |
@@ -94,7 +95,7 @@ void Arm::close() {
   capabilities_ = 0;
 }
 
-/// Takes a state, unless another thread has taken a newer one already.
+/// Takes a new state of the arm, unless another thread has already taken a newer one.
 void Arm::look(const hapticd_state& state) {
   if (seen_ && state.tick <= now_.tick) return;
   seen_ = true;
@@ -123,7 +124,7 @@ const Frame& Arm::newest() {
 
 void Arm::see(Frame& frame) const {
   frame.state = now_;
-  if (facts_.pushable)  // the daemon estimates it for programs that push
+  if (facts_.pushable)  // the daemon estimates a velocity for programs that push
     std::copy_n(now_.velocity, 3, frame.velocity);
   else
     motion_.velocity(frame.velocity);
@@ -147,7 +148,7 @@ void Arm::reportFault() {
   if (fault != kStopped) stopped_since_ = -1;
   if (fault == told_fault_) return;
   // A daemon that ends ramps its forces out, which looks like a hold. The scheduler reports that the daemon has gone.
-  constexpr double kEnds = 0.25;  // [s]
+  constexpr double kEnds = 0.25;  // [s] a hold that lasts longer than this is not the end of a daemon
   if (fault == kStopped && stopped_since_ < 0) stopped_since_ = now_.t;
   if (fault == kStopped && now_.t - stopped_since_ < kEnds) return;
   told_fault_ = fault;
@@ -219,7 +220,7 @@ HDerror Arm::checked(uint64_t ns, double force[3]) const {
   return HD_SUCCESS;
 }
 
-/// The servo ignores a second answer to a tick, and an answer to an earlier tick.
+/// Sends the answer to a tick, unless this tick or a later one was answered: the servo would ignore such an answer.
 void Arm::answer(uint64_t tick, const double force[3], const double torque[3], uint64_t ns) {
   if (pushed_ && tick <= pushed_tick_) return;
   hapticd_push push{};
@@ -249,7 +250,7 @@ bool Arm::isEnabled(HDenum capability) const {
 bool Arm::enable(HDenum capability, bool on, std::string& why) {
   if (on && capability == HD_FORCE_OUTPUT && !link_->lead(why)) return false;
   capabilities_ = on ? capabilities_ | bitOf(capability) : capabilities_ & ~bitOf(capability);
-  if (!forceOn()) force_since_ns_ = 0;  // it ramps in again
+  if (!forceOn()) force_since_ns_ = 0;  // the force ramps in when it is switched on again
   return bitOf(capability) != 0;
 }
 

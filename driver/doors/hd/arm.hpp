@@ -16,7 +16,7 @@ struct Frame {
   hapticd_state state{};
   double velocity[3] = {}, angular[3] = {};
   double force[3] = {}, torque[3] = {};  ///< [N], [N m]
-  double joint_torque[6] = {};  ///< [N m] of turret, thigh, shin, three of the gimbal; added to force and torque
+  double joint_torque[6] = {};  ///< [N m] of turret, thigh, shin, gimbal; converted and added to force and torque
 };
 
 /// Bounds that the library checks. The daemon's limits do not depend on them.
@@ -37,9 +37,10 @@ class Arm {
   const std::shared_ptr<Link>& link() const { return link_; }
   const Facts& facts() const { return facts_; }
 
-  /// To be called when a tick of the scheduler begins. @param ns CLOCK_MONOTONIC
+  /// To be called when a tick of the scheduler begins. @param ns time of the beginning (CLOCK_MONOTONIC)
   void tick(const hapticd_state& state, uint64_t ns);
-  /// To be called when the tick ends: tells the servo that this program lives, and the force to apply.
+  /// To be called when a tick of the scheduler ends. Tells the servo that this program still runs, and which force to
+  /// apply.
   void heartbeat(uint64_t ns);
 
   /// Begins a frame. @param scheduler_tick number of the current tick, or UINT64_MAX if the caller is not in a tick
@@ -54,13 +55,14 @@ class Arm {
 
   static bool isCapability(HDenum capability);
   bool isEnabled(HDenum capability) const;
-  /// @return false, and the reason in `why`, if there is no such capability or it is not available
+  /// Switches a capability on or off. @return false, and the reason in `why`, if there is no such capability or it is
+  /// not available
   bool enable(HDenum capability, bool on, std::string& why);
   Bounds& bounds() { return bounds_; }
   bool forceOn() const { return isEnabled(HD_FORCE_OUTPUT); }
   bool knowsJacobian() const;                ///< true if joint torques can be turned into a force
-  double motorTemperature(int joint) const;  ///< from 0 (cold) to 1 (the hottest allowed)
-  bool first = false;                        ///< opened as the default device
+  double motorTemperature(int joint) const;  ///< from 0 (ambient temperature) to 1 (the hottest that is allowed)
+  bool first = false;                        ///< true if it was opened as the default device
   int32_t light = 0;                         ///< value of HD_USER_STATUS_LIGHT; no arm has this light
 
  private:
@@ -87,7 +89,7 @@ class Arm {
   double held_force_[3] = {}, held_torque_[3] = {};
   uint32_t capabilities_ = 0, told_fault_ = 0;
   double stopped_since_ = -1;  ///< [s] time of the daemon since which the arm is held; < 0 if it is not held
-  bool told_limit_ = false;    ///< it was reported that the program asks for more than the arm's largest force
+  bool told_limit_ = false;    ///< true after it was reported that the program asks for more than the largest force
   Bounds bounds_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The HDAPI's functions for calibration, which the daemon does itself, and the functions that fit nowhere else.
+/// The HDAPI's functions for calibration, which only `hapticd device calibrate` does, and the functions that fit
+/// nowhere else.
 #include "HD/hd.h"
 #include "library.hpp"
 #include "rotation.hpp"
@@ -9,7 +10,7 @@ using namespace hapticd::hd;
 
 namespace {
 
-constexpr uint32_t kNotCalibrated = 7;  ///< hapticd_state.fault
+constexpr uint32_t kNotCalibrated = 7;  ///< value of hapticd_state.fault if the arm is not calibrated
 
 bool isCalibrated(Library& all, Arm& arm) {
   const bool in_tick = all.scheduler().tickOfCaller() != UINT64_MAX;

@@ -7,7 +7,7 @@ namespace hapticd::hd {
 
 namespace {
 
-/// Turns a program's vectors into the world frame.
+/// Returns the rotation that turns a program's vectors into the world frame.
 Eigen::Quaterniond turnOf(const Facts& facts) {
   return {facts.turn[0], facts.turn[1], facts.turn[2], facts.turn[3]};
 }

@@ -45,7 +45,8 @@ HHD keep(Library& all, const std::string& wanted, std::shared_ptr<Link> link, Fa
   const Guard guard(all.lock);
   HHD handle = 0;
   const Arm* there = openOf(all, wanted, handle);
-  if (there == nullptr) there = openOf(all, facts.name, handle);  // may be open by its own name and as the default
+  // The arm may be open under its own name and as the default device.
+  if (there == nullptr) there = openOf(all, facts.name, handle);
   if (there != nullptr && there->alive())
     return all.errors.push(HD_DEVICE_ALREADY_INITIATED, handle), all.current = handle;
   if (there == nullptr) handle = freeHandle(all);

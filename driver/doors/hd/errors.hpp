@@ -9,7 +9,8 @@
 
 namespace hapticd::hd {
 
-/// [any] The newest error comes first; if there are more than 64, the oldest are dropped.
+/// [any] The stack of errors. The newest error is taken first. If there are more than 64 errors, the oldest are
+/// dropped.
 class ErrorStack {
  public:
   void push(HDerror code, HHD device, int internal = 0);

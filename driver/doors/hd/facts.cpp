@@ -83,7 +83,8 @@ void readHd(const Json& device, Facts& facts) {
 }
 
 void readInfo(const Json& info, Facts& facts) {
-  constexpr double kDampingTime = 1e-3;  // [s] largest damping per stiffness: stable for a wall at 1 kHz
+  // [s] largest damping divided by largest stiffness; a wall at 1 kHz is stable with it.
+  constexpr double kDampingTime = 1e-3;
   facts.joints = info.at("joint_count");
   const Json& torque = info.at("max_torque");
   const auto motors = std::count_if(torque.begin(), torque.end(),
@@ -104,7 +105,8 @@ void readScene(const Json& scene, size_t device, Facts& facts) {
   if (const Json& enable = limits.at("enable"); enable.is_object()) facts.enable_button = enable.value("button", -1);
   if (const double force = limits.at("force"); force > 0)
     facts.max_force = facts.max_force > 0 ? std::min(facts.max_force, force) : force;
-  constexpr size_t kHottest = 7, kAmbient = 8;  // index of these numbers in the list of a motor
+  // Index of the largest and the ambient temperature in the list of a motor.
+  constexpr size_t kHottest = 7, kAmbient = 8;
   for (const Json& motor : limits.at("motors")) facts.motors.push_back({motor.at(kHottest), motor.at(kAmbient)});
   facts.max_torque = limits.at("torque");
   const Json clients = scene.value("clients", Json::object());

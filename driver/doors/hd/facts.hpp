@@ -9,17 +9,18 @@
 namespace hapticd::hd {
 
 struct Facts {
-  std::string name, model, vendor = "hapticd", serial, driver;  ///< `name` in the daemon's form
+  std::string name, model, vendor = "hapticd", serial, driver;  ///< `name` is the name that the daemon uses
   std::string firmware_text;
-  double firmware = 0;  ///< first number in firmware_text
+  double firmware = 0;  ///< the first number in the text of the firmware version
   double rate = 1000;   ///< [Hz] rate of the servo
   int joints = 3, input_dof = 3, output_dof = 3;
   double max_force = 0, continuous_force = 0;  ///< [N]
   double max_stiffness = 0, max_damping = 0;   ///< [N/mm], [N s/mm]
-  double workspace[6] = {}, usable[6] = {};    ///< [mm] least x y z, then greatest x y z; HDAPI axes
-  double tabletop = 0;                         ///< [mm] height of the workspace's middle above the table
+  /// [mm] least x, y, z, then greatest x, y, z, in the axes of the programs.
+  double workspace[6] = {}, usable[6] = {};
+  double tabletop = 0;     ///< [mm] height of the workspace's middle above the table
   int enable_button = -1;  ///< number of the enable button, needed for any force; -1 if there is none
-  bool pushable = false;   ///< the scene lets programs push
+  bool pushable = false;   ///< true if the scene lets programs push
   struct Motor {
     double hottest, ambient;  ///< [degC]
   };
@@ -29,12 +30,13 @@ struct Facts {
     size_t joint;
     double sign, offset;
   };
-  std::vector<Joint> joint_of;      ///< turret, thigh, shin, and up to three of the gimbal
-  std::vector<unsigned> button_of;  ///< device's button for each of the programs' buttons; empty if they are the same
-  double max_torque = 0;            ///< [N m] largest torque on the hand; 0 if programs cannot turn the hand
-  bool is_world = true;             ///< true if the programs' coordinates are those of the world
-  double origin[3] = {};            ///< [m] origin of the programs' coordinates, in the world
-  double turn[4] = {1, 0, 0, 0};    ///< w x y z, from the programs' axes to the world's
+  std::vector<Joint> joint_of;  ///< turret, thigh, shin, and up to three of the gimbal
+  /// Number of the device's button for each button of the programs; empty if the numbers are equal.
+  std::vector<unsigned> button_of;
+  double max_torque = 0;          ///< [N m] largest torque on the hand; 0 if programs cannot turn the hand
+  bool is_world = true;           ///< true if the programs' coordinates are those of the world
+  double origin[3] = {};          ///< [m] origin of the programs' coordinates, in the world
+  double turn[4] = {1, 0, 0, 0};  ///< w x y z: rotation from the programs' axes to the world's
 };
 
 /// [main] Reads the facts of one device. @param about JSON in which the daemon describes itself @return false if it

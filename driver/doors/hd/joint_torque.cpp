@@ -12,7 +12,8 @@ constexpr size_t kArm = 3, kAll = 6;  // number of joints without the gimbal, an
 /// Returns the W that minimises |J^T W - torque|^2 + damping |W|^2.
 template <int N>
 Eigen::Matrix<double, N, 1> solved(const Eigen::Matrix<double, N, N>& J, const Eigen::Matrix<double, N, 1>& torque) {
-  constexpr double kDamping = 1e-9;  // share of the mean square of a row; the error is small far from singular poses
+  // Damping as a share of the mean square of a row; far from singular poses it causes only a small error.
+  constexpr double kDamping = 1e-9;
   Eigen::Matrix<double, N, N> normal = J * J.transpose();
   const double size = normal.trace();
   if (!(size > 0)) return Eigen::Matrix<double, N, 1>::Zero();

@@ -13,7 +13,7 @@
 
 namespace hapticd::hd {
 
-constexpr size_t kMostArms = 16;  // handles are 0 to 15; some programs take 260 for an error
+constexpr size_t kMostArms = 16;  // handles are 0 to 15; some programs take the handle 260 for an error
 
 class Library {
  public:
@@ -27,9 +27,9 @@ class Library {
   /// Returns the open arm of this handle, or nullptr if there is none.
   Arm* find(HHD handle) { return handle < kMostArms && arms_[handle].isOpen() ? &arms_[handle] : nullptr; }
   Scheduler& scheduler() { return scheduler_; }
-  double rate() const;  ///< [Hz] of the daemon
+  double rate() const;  ///< [Hz] rate of the daemon
 
-  /// Puts an error on the stack with the current device.
+  /// Puts an error of the current device on the stack of errors.
   void fail(HDerror code) { errors.push(code, current); }
   /// Returns the current arm. If there is none, puts an error on the stack and returns nullptr.
   Arm* currentArm();

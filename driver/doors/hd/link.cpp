@@ -33,7 +33,7 @@ long placeOf(const hapticd_column* columns, long count, const char* name) {
   return -1;
 }
 
-/// An HDAPI program never calls hapticd_connect, so the message must not mention it.
+/// Rewrites a message that mentions hapticd_connect, because an HDAPI program never calls it.
 std::string forPrograms(std::string text) {
   constexpr std::string_view kCall = "give hapticd_connect the name of a running one";
   if (const size_t at = text.find(kCall); at != std::string::npos)

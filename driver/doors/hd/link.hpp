@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// One arm of a running daemon, through the client library.
+/// The connection to one arm of a running daemon, through the client library.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -13,25 +13,25 @@ namespace hapticd::hd {
 /// Only one thread at a time may open, lead and close. Meanwhile other threads may wait, push and read.
 class Link {
  public:
-  /// [main] Connects to the daemon of $HAPTICD_NAME. @param name name of the arm, empty for the first @param why
-  /// becomes the reason of a failure and its fix @param number becomes errno or 0 @return nullptr if it cannot connect
+  /// [main] Connects to the daemon of $HAPTICD_NAME. @param name name of the arm; empty for the first arm @param why
+  /// gets the reason of a failure and its fix @param number gets errno, or 0 @return nullptr if it cannot connect
   static std::shared_ptr<Link> open(const std::string& name, Facts& facts, std::string& why, int& number);
   Link(hapticd_client* client, int device) : client_(client), device_(device) {}
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
   ~Link() { hapticd_close(client_); }
 
-  /// [any] As hapticd_next_state.
+  /// [any] Does what hapticd_next_state does, for this arm.
   int next(uint64_t after, int timeout_ms, hapticd_state& state) const {
     return hapticd_next_state(client_, device_, after, timeout_ms, &state);
   }
-  /// [any] As hapticd_listen.
+  /// [any] Does what hapticd_listen does.
   void listen(unsigned microseconds) const { hapticd_listen(client_, microseconds); }
   /// [any] Reads the newest Jacobian of the arm. @return false if there is none
   bool jacobian(hapticd_jacobian& jacobian) const { return hapticd_read_jacobian(client_, device_, &jacobian) == 1; }
-  /// [any] True if a daemon of this name runs, which may be another one than before.
+  /// [any] Tells whether a daemon of this name runs. It may be another daemon than before.
   bool runs() const { return hapticd_alive(client_) == 1; }
-  /// [main] True if the daemon to which this object connected still runs.
+  /// [main] Tells whether the daemon to which this object connected still runs.
   bool alive() const {
     return !lost && runs() && hapticd_ask(client_, R"({"do":"snapshot"})", nullptr, 0, nullptr) >= 0;
   }

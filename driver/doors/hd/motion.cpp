@@ -32,7 +32,7 @@ void Motion::angularVelocity(double out[3]) const {
   const hapticd_state &newest = at(0), &oldest = at(count_ - 1);
   const double time = newest.t - oldest.t;
   const double *b = newest.orientation, *a = oldest.orientation;
-  // The turn b * conj(a), whose vector part is its axis times the sine of half the angle.
+  // The rotation from a to b is b * conj(a). Its vector part is the axis times the sine of half the angle.
   const double w = b[0] * a[0] + b[1] * a[1] + b[2] * a[2] + b[3] * a[3];
   const double v[3] = {-b[0] * a[1] + b[1] * a[0] - b[2] * a[3] + b[3] * a[2],
                        -b[0] * a[2] + b[1] * a[3] + b[2] * a[0] - b[3] * a[1],

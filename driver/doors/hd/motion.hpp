@@ -11,9 +11,10 @@ namespace hapticd::hd {
 class Motion {
  public:
   void add(const hapticd_state& state);  ///< takes a state newer than the last; others are ignored
-  /// [m/s] By least squares over the states that were kept; zeros if there are fewer than two.
+  /// Writes the velocity of the tip [m/s], by least squares over the states that were kept; zeros if there are fewer
+  /// than two.
   void velocity(double out[3]) const;
-  /// [rad/s] From the oldest kept orientation to the newest, world frame.
+  /// Writes the angular velocity [rad/s, world frame], from the oldest kept orientation to the newest.
   void angularVelocity(double out[3]) const;
 
  private:

@@ -73,7 +73,7 @@ bool Pacer::waitFor(const Lead& lead, hapticd_state& state) {
   return lead.link && lead.link->next(seen_, 0, state) == 1;
 }
 
-/// Called if no state came. Reports the error once per outage.
+/// Called if no state came in time. Reports the error once, until states come again.
 void Pacer::missed(const Lead& lead) {
   const uint64_t now = nowNs();
   if (silent_since_ns_ == 0) silent_since_ns_ = now, looked_ns_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Ticks for the scheduler: those of the daemon or, if there is no daemon, those of a clock of this process.
+/// Gives the scheduler its ticks: those of the daemon or, if there is no daemon, those of a clock of this process.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -16,13 +16,13 @@ class Library;
 class Pacer {
  public:
   explicit Pacer(Library& library) : library_(library) {}
-  /// Waits for a tick and gives its states to the arms. Only one thread at a time may call it. @return CLOCK_MONOTONIC
-  /// [ns] at which the tick began
+  /// Waits for a tick and gives its states to the arms. Only one thread at a time may call it. @return time [ns,
+  /// CLOCK_MONOTONIC] at which the tick began
   uint64_t wait();
   /// [any] Makes wait() poll instead of sleep, from this number of microseconds before a tick is due; with 0 it sleeps
   /// (see hapticd_listen).
   void listen(unsigned microseconds) { listen_us_ = microseconds; }
-  void endTick();  ///< [servo] tells the daemon, for every arm, that the program lives
+  void endTick();  ///< [servo] tells the daemon, for every arm, that the program still runs
   double rate() const;
 
  private:
@@ -39,7 +39,7 @@ class Pacer {
   std::mutex waiting_;
   std::weak_ptr<Link> followed_;  ///< the arm whose ticks are used; closed by its device
   uint64_t seen_ = UINT64_MAX, silent_since_ns_ = 0, looked_ns_ = 0;
-  bool lost_ = false;  ///< the daemon is lost, and this was reported
+  bool lost_ = false;  ///< true after it was reported that the daemon is lost
   std::atomic<unsigned> listen_us_{0};
 };
 

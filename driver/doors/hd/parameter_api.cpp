@@ -10,8 +10,8 @@ namespace hapticd::hd {
 
 namespace {
 
-/// Returns the frame that CURRENT_... means for the caller: the open frame; without one, the last frame if the caller
-/// is in a tick, and the present state if not.
+/// Returns the frame that CURRENT_... means for the caller: the open frame, if there is one; otherwise the last frame
+/// if the caller is in a tick, or else the present state.
 const Frame& currentFor(Library& all, Arm& arm) {
   if (arm.inFrame() || all.scheduler().tickOfCaller() != UINT64_MAX) return arm.frame();
   return arm.newest();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Poses in the form of the HDAPI: 4 x 4 matrices, column-major, with the position in mm at [12..14].
+/// Computes with poses in the form of the HDAPI: 4 x 4 matrices, column-major, with the position in mm at [12..14].
 #pragma once
 #include "hapticd/client.h"
 

@@ -24,7 +24,7 @@ namespace hapticd::hd {
 namespace {
 
 constexpr size_t kMostTasks = 512;
-constexpr int kPriority = 70;  ///< real-time priority, below 80 of the daemon's servo
+constexpr int kPriority = 70;  ///< real-time priority, below that of the daemon's servo thread (80)
 
 thread_local int ticks_of_this_thread = 0;  ///< number of callbacks in which this thread is nested
 
@@ -72,7 +72,7 @@ void tellRates(double wanted, double daemon) {
 bool Scheduler::start() {
   const std::lock_guard guard(lock_);
   if (running_) return true;
-  if (thread_.joinable()) thread_.detach();  // one of its own callbacks stopped it, so it is about to end
+  if (thread_.joinable()) thread_.detach();  // a callback of the thread itself called this, so the thread ends soon
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all,
@@ -155,7 +155,8 @@ void Scheduler::run(const std::shared_ptr<Task>& task) {
   changed_.notify_all();
 }
 
-/// Callbacks run by priority, highest first. Callbacks of equal priority run in the order in which they were added.
+/// Adds a callback. Callbacks run by priority, highest first. Callbacks of equal priority run in the order in which
+/// they were added.
 std::shared_ptr<Scheduler::Task> Scheduler::add(HDSchedulerCallback function, void* data, HDushort priority) {
   constexpr HDSchedulerHandle kLastHandle = 0x7fffffff;  // programs keep handles in 32 bits
   const std::lock_guard guard(lock_);
@@ -175,7 +176,8 @@ HDSchedulerHandle Scheduler::schedule(HDSchedulerCallback function, void* data, 
   return handle;
 }
 
-/// Runs a callback in ticks of the calling thread, because there is no servo loop, or because the caller is in it.
+/// Runs a callback in ticks of the calling thread, because no servo loop runs, or because the caller is in the servo
+/// loop itself.
 void Scheduler::runHere(HDSchedulerCallback function, void* data) {
   const bool nested = ticks_of_this_thread > 0;
   HDCallbackCode code = HD_CALLBACK_CONTINUE;
@@ -184,7 +186,7 @@ void Scheduler::runHere(HDSchedulerCallback function, void* data) {
     ++ticks_of_this_thread;
     code = function(data);
     --ticks_of_this_thread;
-    if (nested) break;  // inside a tick no further tick can come
+    if (nested) break;  // inside a tick no other tick can begin
   }
 }
 

@@ -18,23 +18,24 @@ class Scheduler {
  public:
   explicit Scheduler(Pacer& pacer) : pacer_(pacer) {}
 
-  bool start();  ///< false if no thread can be started
-  void stop();   ///< waits for the end of the current tick, unless a callback of this tick is the caller
+  bool start();  ///< starts the thread; returns false if none can be started
+  void stop();   ///< stops the thread; waits for the end of the current tick, unless a callback of this tick calls it
   bool running() const { return running_; }
 
   /// Adds a callback. @return its handle, or HD_INVALID_HANDLE if there are too many callbacks
   HDSchedulerHandle schedule(HDSchedulerCallback function, void* data, HDushort priority);
   /// Adds a callback and returns when it is done. @return false if there are too many callbacks
   bool runToEnd(HDSchedulerCallback function, void* data, HDushort priority);
-  bool unschedule(HDSchedulerHandle handle);  ///< false if the callback has ended, or never existed
+  bool unschedule(HDSchedulerHandle handle);  ///< removes a callback; returns false if it has ended or never existed
   bool isScheduled(HDSchedulerHandle handle, bool wait);
 
-  bool setRate(double rate);                    ///< [Hz] false if it is not the daemon's rate over a whole number
+  /// [Hz] returns false if it is not the daemon's rate divided by a whole number.
+  bool setRate(double rate);
   double rate() const;                          ///< [Hz]
   bool realTime() const { return real_time_; }  ///< true if the servo loop has real-time priority
   double instantaneousRate() const { return instantaneous_; }
 
-  /// Returns the number of the tick in which the calling thread is, or UINT64_MAX if it is not in a tick.
+  /// Returns the number of the tick whose callbacks the calling thread runs, or UINT64_MAX if it runs none.
   uint64_t tickOfCaller() const;
   double secondsInTick() const;
 
@@ -66,7 +67,8 @@ class Scheduler {
   HDSchedulerHandle next_handle_ = 1;
   std::atomic<double> wanted_rate_{0}, instantaneous_{0};
   std::atomic<uint64_t> tick_{0}, began_ns_{0};
-  std::atomic<bool> real_time_{true};  ///< true until the library has tried to get it
+  /// Whether the thread has real-time priority; true until the library has tried to get it.
+  std::atomic<bool> real_time_{true};
 };
 
 }  // namespace hapticd::hd

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The HDAPI has mm and mN m; the daemon has SI units.
+/// Factors between the units of the HDAPI (mm, mN m) and the SI units of the daemon.
 #pragma once
 
 namespace hapticd::hd {

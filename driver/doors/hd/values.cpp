@@ -13,13 +13,13 @@ namespace hapticd::hd {
 
 namespace {
 
-constexpr size_t kTurnJoints = 3;  // the first three joints carry the tip, the next three turn it
+constexpr size_t kTurnJoints = 3;  // the first three joints move the tip, the next three rotate it
 
 void copy(const double* from, int count, double factor, double* out) {
   for (int i = 0; i < count; ++i) out[i] = factor * from[i];
 }
 
-/// Writes a value of a frame: for CURRENT_... of the open frame, for LAST_... of the frame before.
+/// Writes a value of a frame: of the open frame for CURRENT_..., of the frame before it for LAST_....
 struct OfFrame {
   HDenum current, last;
   int count;
@@ -234,7 +234,7 @@ HDerror set(Arm& arm, HDenum name, const double* numbers) {
     copy(numbers, 3, 1 / kMmPerMetre, joints + kTurnJoints);
   if (name == HD_CURRENT_FORCE) copy(numbers, 3, 1, arm.frame().force);
   if (name == HD_CURRENT_TORQUE) copy(numbers, 3, 1 / kMmPerMetre, arm.frame().torque);
-  return HD_SUCCESS;  // a gimbal without motors has no torque
+  return HD_SUCCESS;  // a gimbal without motors gives no torque, so the numbers are ignored
 }
 
 }  // namespace hapticd::hd

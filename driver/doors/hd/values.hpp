@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The HDAPI's parameters, as numbers in the HDAPI's units.
+/// Reads and sets the HDAPI's parameters, as numbers in the HDAPI's units.
 #pragma once
 #include "arm.hpp"
 #include "scheduler.hpp"
@@ -8,7 +8,7 @@ namespace hapticd::hd {
 
 constexpr int kMostNumbers = 16;
 
-/// The arm and the frame from which a parameter is read.
+/// Says from which arm and frame a parameter is read.
 struct Asked {
   Arm& arm;
   const Frame& current;  ///< the frame that CURRENT_... means for the caller

@@ -25,7 +25,8 @@ std::string secret() {
   return text;
 }
 
-/// Compares in a time that does not depend on where the texts differ.
+/// Tells whether two secrets are equal. Its duration does not depend on where the texts differ, so it does not help to
+/// guess.
 bool sameSecret(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return false;
   unsigned char difference = 0;
@@ -50,7 +51,7 @@ std::vector<std::string> split(std::string_view text, char by) {
   return parts;
 }
 
-/// True for "localhost", "127.0.0.1" or "[::1]", with any port, because a tunnel (ssh -L) may use another port.
+/// Returns true for "localhost", "127.0.0.1" or "[::1]", with any port, because a tunnel (ssh -L) may use another port.
 bool loopback(const std::string& host) {
   for (const std::string_view name : {"localhost", "127.0.0.1", "[::1]"}) {
     if (host.rfind(name, 0) != 0) continue;

@@ -12,7 +12,7 @@ struct RequestHead {
   std::string host, origin, cookie;  ///< header fields, "" if the field is missing
   std::string target;                ///< "/path?query"
   std::string protocols;             ///< Sec-WebSocket-Protocol
-  bool upgrade = false;              ///< asks for a WebSocket
+  bool upgrade = false;              ///< true if the request asks for a WebSocket
 };
 
 /// The protocol of a WebSocket.
@@ -21,7 +21,7 @@ enum class Subprotocol { kNone, kHapticd, kFoxglove };
 /// The decision about a request.
 struct Admission {
   unsigned status = 200;     ///< HTTP status: 200, 400, 401 no token, 403 foreign origin, 421 foreign host
-  bool give_cookie = false;  ///< the token was in the URL; the answer sets the cookie, which is used from now on
+  bool give_cookie = false;  ///< true if the token was in the URL: the answer sets the cookie, which then replaces it
   Subprotocol protocol = Subprotocol::kNone;
   std::string protocol_name;  ///< name of the protocol in the answer
   std::string why;            ///< reason of a refusal
@@ -30,12 +30,13 @@ struct Admission {
 /// The secrets of one view: 128 random bits each, as hexadecimal text.
 class Doorkeeper {
  public:
-  /// [main] Draws the secrets. @param port part of the cookie's name, because browsers share cookies between ports
+  /// [main] Makes the secrets from random numbers. @param port becomes part of the cookie's name, because browsers
+  /// share cookies between ports
   explicit Doorkeeper(unsigned short port);
 
-  /// [main] Decides. It checks the name of the host first (against DNS rebinding), then the origin, then the secret. A
-  /// page of another origin may only open a Foxglove WebSocket, which only reads, and only with the token in its URL,
-  /// never by the cookie.
+  /// [main] Decides about a request. It checks the name of the host first (against DNS rebinding), then the origin,
+  /// then the secret. A page of another origin may only open a Foxglove WebSocket, which only reads, and only with the
+  /// token in its URL, never by the cookie.
   Admission judge(const RequestHead& head) const;
 
   const std::string& token() const { return token_; }

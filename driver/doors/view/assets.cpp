@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// The page is part of the program: there is no folder to find, to traverse or to change.
+/// The files of the page. They are part of the program, so there is no folder to find, and nobody can change them.
 #include "server.hpp"
 
-// The assembler takes the bytes of a file as they are; HAPTICD_VIEW_BUNDLE is its folder.
+// The assembler copies the bytes of a file into the program. HAPTICD_VIEW_BUNDLE is the folder of the files.
 #define HAPTICD_VIEW_FILE(symbol, file)                                                                                \
   __asm__(".section .rodata\n.global hapticd_view_" symbol "\n.balign 16\nhapticd_view_" symbol                        \
           ":\n.incbin \"" HAPTICD_VIEW_BUNDLE "/" file "\"\n.global hapticd_view_" symbol "_end\nhapticd_view_" symbol \

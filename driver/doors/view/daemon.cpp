@@ -64,7 +64,7 @@ class DaemonImpl final : public Daemon {
   }
 
  private:
-  /// State that outlives its owner while an operation is in progress.
+  /// The state of a connection. It outlives its owner while an operation is in progress.
   struct Link {
     explicit Link(asio::io_context& io) : socket(io) {}
     Local::socket socket;
@@ -89,7 +89,8 @@ class DaemonImpl final : public Daemon {
     });
   }
 
-  /// Reads the bytes that have arrived, and the descriptor that may come with them. False if the daemon has ended.
+  /// Reads the bytes that have arrived, and the descriptor that may come with them. Returns false if the daemon has
+  /// ended.
   bool take() {
     char buffer[1 << 14];
     std::vector<Descriptor> descriptors;
@@ -115,7 +116,8 @@ class DaemonImpl final : public Daemon {
     in_.erase(0, begin);
   }
 
-  /// One read may contain several answers. A descriptor belongs to the answer that says "bytes".
+  /// Returns the descriptor that belongs to an answer. One read may contain several answers; the descriptor belongs to
+  /// the answer with the key "bytes".
   Descriptor takeMemory(const Json& answer) {
     if (memories_.empty() || !answer.contains("bytes")) return {};
     Descriptor memory = std::move(memories_.front());

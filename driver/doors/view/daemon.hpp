@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 class Daemon {
  public:
-  /// The answer, or {"ok": false, "error": ...} if there is none, and the memory file that came with it.
+  /// Gets the answer, or {"ok": false, "error": ...} if there is none, and the memory file that came with it.
   using Answered = std::function<void(const Json& answer, const Descriptor& memory)>;
 
   virtual ~Daemon() = default;

@@ -14,7 +14,7 @@ namespace hapticd::view {
 
 namespace {
 
-constexpr uint64_t kTickBytes = 1u << 20;  ///< [bytes] most rows of one stream in one tick of the view
+constexpr uint64_t kTickBytes = 1u << 20;  ///< [bytes] largest size of the rows of one stream that are sent at once
 constexpr char kMessageData = 1;           ///< op code of a message to a subscription
 
 uint64_t wallNow() {
@@ -48,9 +48,9 @@ class Foxglove final : public Conversation {
   void onTick() override;
 
  private:
-  /// A channel: a stream of rows, /tf or /scene.
+  /// A channel of the protocol: a stream of rows, /tf or /scene.
   struct Channel {
-    size_t stream = SIZE_MAX;  ///< SIZE_MAX: /tf or /scene
+    size_t stream = SIZE_MAX;  ///< number of the stream; SIZE_MAX for /tf and /scene
     Json advert;
   };
 
@@ -94,7 +94,7 @@ void Foxglove::begin() {
   t_offset_ = 0;
   for (const record::Column& column : columnsOf(stage_.about(), "ticks"))
     if (column.name == "t") t_offset_ = column.offset;
-  start_ = 0;  // set with the first tick that is seen
+  start_ = 0;  // set when the first tick is seen
   peer_.text(Json({{"op", "serverInfo"},
                    {"name", "hapticd " + stage_.about().value("hapticd", "")},
                    {"capabilities", Json::array()},
@@ -164,7 +164,7 @@ void Foxglove::sendStream(size_t stream) {
       double t = 0;
       std::memcpy(&t, row + t_offset_, sizeof t);
       const auto since = static_cast<uint64_t>(std::max(0.0, t) * 1e9);
-      if (start_ == 0) start_ = wallNow() - since;  // read only once, because the wall clock may jump
+      if (start_ == 0) start_ = wallNow() - since;  // the wall clock is read only once, because it may jump
       newest_ = start_ + since;
     }
     if (subscription != 0)

@@ -37,7 +37,7 @@ std::unique_ptr<Lead> Lead::ask(boost::asio::io_context& io, const std::string& 
 }
 
 Lead::~Lead() {
-  daemon_.reset();  // first, because a pending answer may still set `page_`
+  daemon_.reset();  // destroyed first, because a pending answer could still set `page_`
   if (page_ != nullptr) munmap(page_, HAPTICD_LEAD_BYTES);
 }
 

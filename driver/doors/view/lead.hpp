@@ -28,7 +28,7 @@ class Lead {
   /// [main] Writes a record; it never waits, and the newest record wins. @param record the bytes of a hapticd_target
   /// @return false if the size is wrong, or there is no lead (yet)
   bool put(std::span<const std::byte> record);
-  bool refused() const { return refused_; }  ///< [main] the daemon refused the lead
+  bool refused() const { return refused_; }  ///< [main] true if the daemon refused the lead
 
  private:
   Lead() = default;

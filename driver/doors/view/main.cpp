@@ -33,10 +33,10 @@ struct Options {
   bool control = false, open = false, until_end = false;
 };
 
-/// True while a daemon holds the lock on its name.
+/// Tells whether a daemon holds the lock on its name.
 bool daemonLives(const std::string& lock_file) {
   const int fd = open(lock_file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
-  if (fd < 0) return errno == EACCES;  // the lock file of another user: the daemon may run
+  if (fd < 0) return errno == EACCES;  // the lock file belongs to another user, so the daemon may run
   const bool free = flock(fd, LOCK_SH | LOCK_NB) == 0;
   close(fd);
   return !free;
@@ -51,7 +51,7 @@ void openBrowser(const std::string& url) {
     std::fputs("no browser could be started (xdg-open is missing): open the address above yourself\n", stderr);
 }
 
-/// Calls every conversation 60 times per second while there are any, and watches for the end of the daemon.
+/// Calls onTick() of every conversation 60 times per second, and checks whether the daemon has ended.
 class Heart {
  public:
   Heart(boost::asio::io_context& io, Stage& stage, Server& server, std::string lock_file)
@@ -71,7 +71,8 @@ class Heart {
   }
 
  private:
-  static constexpr unsigned kLook = 64;  ///< beats between two checks for the daemon's end: about one second
+  /// Number of ticks between two checks whether the daemon has ended: about one second.
+  static constexpr unsigned kLook = 64;
   boost::asio::io_context& io_;
   boost::asio::steady_timer timer_;
   Stage& stage_;

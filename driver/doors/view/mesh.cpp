@@ -20,7 +20,7 @@ void append(std::string& bytes, T value) {
   bytes.append(raw, sizeof raw);
 }
 
-/// Returns a list of numbers of the answer, or nullptr if it is not one.
+/// Returns the value of `key` in the answer if it is a list of numbers, or nullptr if it is not.
 const Json* numbers(const Json& answer, const char* key) {
   const auto it = answer.find(key);
   return it != answer.end() && it->is_array() ? &*it : nullptr;
@@ -35,7 +35,7 @@ bool appendAll(std::string& bytes, const Json& list) {
   return true;
 }
 
-constexpr size_t kMost = size_t{1} << 24;  ///< most vertices, and most triangles, that a page draws
+constexpr size_t kMost = size_t{1} << 24;  ///< largest number of vertices, and of triangles, that a page draws
 
 struct Counts {
   size_t vertices = 0, triangles = 0;
@@ -53,8 +53,8 @@ Counts countsOf(const Json& answer) {
   return counts.vertices <= kMost && counts.triangles <= kMost ? counts : Counts{};
 }
 
-/// Reads the memory. False if it has too few bytes. It is not mapped, because this process would be killed if another
-/// process shortened it.
+/// Appends `count` bytes of the memory to `bytes`. Returns false if it has too few bytes. The memory is read and not
+/// mapped, because this process would be killed if another process shortened it.
 bool appendFrom(int memory, size_t count, std::string& bytes) {
   struct stat info{};
   if (memory < 0 || fstat(memory, &info) != 0 || info.st_size < static_cast<off_t>(count)) return false;

@@ -19,7 +19,8 @@ constexpr uint32_t kMeshMessage = 0x80000000u, kVerticesMessage = 0x100;
 /// the answer is wrong, or if the memory is shorter than the answer says.
 Message meshMessage(const Json& answer, int memory);
 
-/// [main] The same with only the vertices, for a body that deforms. Returns nullptr in the same cases.
+/// [main] Makes a message with only the vertices of the answer to `geometry`, for a body that deforms. Returns nullptr
+/// in the same cases as meshMessage().
 Message verticesMessage(const Json& answer, int memory, uint32_t model, uint32_t frame);
 
 /// [main] Makes a message from the daemon's answer to `vertices`. Returns nullptr if it has no vertices.

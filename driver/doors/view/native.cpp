@@ -17,13 +17,14 @@ namespace hapticd::view {
 
 namespace {
 
-constexpr uint64_t kBacklogBytes = 4u << 20;  ///< [bytes] most rows that a new page gets: 10 s of one arm at 1 kHz
-constexpr uint64_t kMessageBytes = 1u << 20;  ///< [bytes] most rows of one stream in one message
+/// [bytes] largest size of the rows that a new page gets: 10 s of one arm at 1 kHz.
+constexpr uint64_t kBacklogBytes = 4u << 20;
+constexpr uint64_t kMessageBytes = 1u << 20;  ///< [bytes] largest size of the rows of one stream in one message
 constexpr double kBacklogSeconds = 10;
 constexpr std::array<std::string_view, 4> kReads = {"status", "list", "geometry", "feature"};
 constexpr std::array<std::string_view, 14> kControls = {"enable", "disable", "move", "set",  "add", "remove", "reload",
                                                         "hold",   "clear",   "dump", "stop", "get", "lead",   "unlead"};
-constexpr size_t kMostLeads = 4;  ///< most leads of one page
+constexpr size_t kMostLeads = 4;  ///< largest number of leads of one page
 
 template <class Words>
 bool contains(const Words& words, std::string_view word) {
@@ -62,12 +63,12 @@ class Native final : public Conversation {
 
   Peer& peer_;
   Stage& stage_;
-  std::shared_ptr<bool> alive_;  ///< false after the page has gone, for answers that come later
+  std::shared_ptr<bool> alive_;  ///< false after the page has gone, so that later answers are dropped
   uint64_t run_ = 0, list_number_ = 0, status_number_ = 0;
   std::vector<uint64_t> next_;  ///< next row to send of each stream
   std::map<std::string, uint64_t> frames_;
   std::unique_ptr<Playback> playback_;
-  /// A body of the recording, and what this page has of it.
+  /// What this page has requested of a body of the recording.
   struct Body {
     double time = NAN;  ///< [s] time of the shape that was requested last
     bool asked = false;
@@ -146,14 +147,15 @@ void Native::sendRows() {
     if (playback_->takeChanged()) peer_.text(playback_->stateJson());
     return;
   }
-  // reads the end of the ticks first: rows of other streams are written before the row of their tick
+  // the end of the ticks is read first, because rows of other streams are written before the row of their tick
   const size_t ticks = rows.find("ticks");
   for (size_t i = 0; i < next_.size(); ++i)
     if (i != ticks) sendRows(i, rows.end(i));
   if (ticks < next_.size()) sendRows(ticks, rows.end(ticks));
 }
 
-/// Called when the place in the recording jumped: the page forgets its rows and gets the rows before the new place.
+/// Called when the place in the recording has jumped. Makes the page forget its rows, and sends it the rows before the
+/// new place.
 void Native::jump() {
   if (!playback_->takeJumped()) return;
   peer_.text(R"({"type":"reset"})");
@@ -227,8 +229,8 @@ void Native::onText(std::string_view text) {
   pass(id, std::move(request));
 }
 
-/// A message with the record of a lead: u32 lead, u32 0, hapticd_target. An unknown lead is ignored, because it may
-/// have ended meanwhile.
+/// Takes a message with the record of a lead: u32 lead, u32 0, hapticd_target. An unknown lead is ignored, because it
+/// may have ended meanwhile.
 void Native::onBinary(std::span<const std::byte> bytes) {
   constexpr size_t kHead = 8;
   uint32_t number = 0;
@@ -264,7 +266,7 @@ void Native::answer(const Json& id, Json answer) {
   peer_.text(answer.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-/// A mesh is sent as bytes, directly before the answer that names it.
+/// Answers a request for triangles. The mesh is sent as bytes, directly before the answer that names it.
 void Native::draw(const Json& id, const Json& request) {
   if (!request.contains("model") || !request["model"].is_string())
     return answer(id, {{"ok", false}, {"error", "geometry needs a model"}});

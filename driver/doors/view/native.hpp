@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The protocol of the page, "hapticd.1". Text is JSON, bytes are rows and meshes (see mesh.hpp).
+/// The protocol of the page, "hapticd.1". Text messages are JSON; binary messages are rows and meshes (see mesh.hpp).
 ///
 /// To the page: {"type": "about" | "list" | "status" | "end" | "reset" | "playback", ...}, and {"type": "answer", "id":
 /// N, ...}. From the page: requests as in control.md with an "id", and for a recording also play, pause and seek. A

@@ -21,10 +21,11 @@ class Peer {
   /// [main] Sends a text (JSON) after all waiting messages. If more than kMostWaiting bytes wait, the connection ends.
   virtual void text(std::string json) = 0;
   virtual void binary(Message bytes) = 0;  ///< [main] sends bytes in the same way
-  /// [main] True if no message waits to be sent. Newest values are sent only then, so that a slow reader skips some.
+  /// [main] Tells whether no message waits to be sent. The newest values are sent only then, so that a slow reader
+  /// skips some.
   virtual bool idle() const = 0;
 
-  static constexpr size_t kMostWaiting = 64u << 20;  ///< [bytes] size of the meshes of a large scene
+  static constexpr size_t kMostWaiting = 64u << 20;  ///< [bytes] enough for the meshes of a large scene
 };
 
 /// The protocol over one connection. It is made when the connection opens, and destroyed after the connection has

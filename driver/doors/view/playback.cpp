@@ -32,7 +32,7 @@ double Playback::timeOf(uint64_t row) const {
   return t;
 }
 
-/// The first tick at t or later.
+/// Returns the number of the first row of `ticks` at the time t or later.
 uint64_t Playback::tickAt(double t) const {
   uint64_t low = 0, high = rows_.end(ticks_);
   while (low < high) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The playback of a recording for one page: place, speed, loop.
+/// The playback of a recording for one page: present place, speed and loop.
 #pragma once
 #include <chrono>
 #include <string>
@@ -17,14 +17,14 @@ class Playback {
   Playback(const RowSource& rows, const Json& about);
 
   static bool knows(const std::string& word);  ///< [any] true for play, pause and seek
-  /// [main] {"do": "play", "speed": 1, "loop": true}, {"do": "pause"}, {"do": "seek", "t": seconds}. @return an error,
-  /// or ""
+  /// [main] Does what a request says: {"do": "play", "speed": 1, "loop": true}, {"do": "pause"} or {"do": "seek", "t":
+  /// seconds}. @return an error, or ""
   std::string obey(const Json& request);
 
   void advance();                                              ///< [main] advances by the time since the last call
   double time() const { return t_; }                           ///< [s] [main]
   const std::vector<uint64_t>& ends() const { return ends_; }  ///< [main] rows of each stream up to the present place
-  /// [main] First row of each stream for the last `seconds` before the present place.
+  /// [main] Returns for each stream the number of its first row in the last `seconds` before the present place.
   std::vector<uint64_t> rowsFrom(double seconds) const;
 
   bool takeJumped();              ///< [main] true if the place jumped since the last call: earlier rows are invalid

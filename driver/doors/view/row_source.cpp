@@ -183,7 +183,7 @@ uint64_t firstRowOf(const RowSource& source, size_t stream, uint64_t tick) {
   uint64_t low = source.begin(stream), high = source.end(stream);
   while (low < high) {
     const uint64_t middle = low + (high - low) / 2;
-    uint64_t at = 0;  // tick 0, if the row was overwritten meanwhile: it is too old
+    uint64_t at = 0;  // stays 0 if the row was overwritten meanwhile, because the row is then too old
     if (source.copy(stream, middle, 1, row.data()) == 1) std::memcpy(&at, row.data(), sizeof at);
     if (at < tick)
       low = middle + 1;

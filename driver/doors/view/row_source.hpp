@@ -26,17 +26,17 @@ class RowSource {
   RowSource(const RowSource&) = delete;
   RowSource& operator=(const RowSource&) = delete;
 
-  /// [main] The JSON that describes the run: scene, devices, columns (see recording.md).
+  /// [main] Returns the JSON that describes the run: scene, devices, columns (see recording.md).
   virtual const std::string& aboutJson() const = 0;
-  /// [main] The streams in the order of the file: the index of a stream is its number in messages.
+  /// [main] Returns the streams in the order of the file. The index of a stream is its number in messages.
   virtual const std::vector<RowStream>& streams() const = 0;
-  virtual uint64_t begin(size_t stream) const = 0;  ///< [main] the oldest row that is kept
-  virtual uint64_t end(size_t stream) const = 0;    ///< [main] one past the newest row
+  virtual uint64_t begin(size_t stream) const = 0;  ///< [main] number of the oldest row that is kept
+  virtual uint64_t end(size_t stream) const = 0;    ///< [main] number of the newest row plus one
 
   /// [main] Copies up to `count` rows from row number `first` on. @return how many, or 0 if `first` is no longer kept
   virtual uint64_t copy(size_t stream, uint64_t first, uint64_t count, std::byte* rows) const = 0;
 
-  /// [main] The index of the stream of that name, or streams().size().
+  /// [main] Returns the index of the stream of that name, or streams().size() if there is none.
   size_t find(const std::string& name) const;
 };
 

@@ -54,8 +54,8 @@ RequestHead headOf(const Request& request) {
 class ServerImpl;
 class Socket;
 
-/// The open connections. Each connection shares the ownership: connections that are still open at the end outlive the
-/// server, because they end with the io_context.
+/// The open connections. Each connection shares the ownership of this register, because connections that are still open
+/// at the end outlive the server: they end with the io_context.
 struct Register {
   std::set<Socket*> sockets;
   size_t connections = 0;
@@ -167,7 +167,7 @@ class ServerImpl final : public Server {
       if (!error && register_->connections < kMostConnections)
         std::make_shared<Connection>(std::move(socket), *this)->read();
       if (!error) return accept(acceptor);
-      // waits, so that it does not try again and again without a free descriptor
+      // waits before it accepts again, because there may be no free descriptor
       auto timer = std::make_shared<asio::steady_timer>(acceptor.get_executor(), std::chrono::milliseconds(500));
       timer->async_wait([this, &acceptor, timer](ErrorCode) { accept(acceptor); });
     });
@@ -295,7 +295,7 @@ void Socket::onRead(ErrorCode error) {
   else
     conversation_->onBinary(std::as_bytes(std::span(data, bytes.size())));
   buffer_.consume(buffer_.size());
-  paused_ = waiting_.size() > kMostUnread;  // reads no more requests of a client that does not read its answers
+  paused_ = waiting_.size() > kMostUnread;  // no more requests are read from a client that does not read its answers
   if (!ended_ && !paused_) read();
 }
 
@@ -325,7 +325,7 @@ void Socket::end() {
   if (std::exchange(ended_, true)) return;
   ErrorCode ignored;
   beast::get_lowest_layer(stream_).socket().close(ignored);
-  // later, because the conversation itself may have called this function
+  // done later, because the conversation itself may have called this function
   asio::post(stream_.get_executor(), [self = shared_from_this()] { self->conversation_.reset(); });
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// HTTP and WebSocket on the loopback interface. Everything is bounded: heads of 8 KiB, messages of 64 KiB, 10 s for a
-/// head, 8 WebSockets, 32 connections. Only server.cpp uses Boost.Beast.
+/// HTTP and WebSocket on the loopback interface. Everything is bounded: 8 KiB for the head of a request, 10 s for its
+/// arrival, 64 KiB per message, 8 WebSockets, 32 connections. Only server.cpp uses Boost.Beast.
 #pragma once
 #include <boost/asio/io_context.hpp>
 #include <functional>
@@ -29,7 +29,7 @@ class Server {
   /// Makes the conversation of a new WebSocket; `peer` outlives it.
   using Converse = std::function<std::unique_ptr<Conversation>(Subprotocol, Peer& peer)>;
 
-  /// [main] Binds 127.0.0.1 and, if it exists, ::1. @param port 0 for any free port
+  /// [main] Listens on 127.0.0.1 and, if it exists, on ::1. @param port 0 for any free port
   static Result<std::unique_ptr<Server>> listen(boost::asio::io_context& io, unsigned short port, Converse converse);
   virtual ~Server() = default;
   Server() = default;

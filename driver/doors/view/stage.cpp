@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kFindEvery(500), kPollEvery(1000);
 constexpr std::chrono::milliseconds kGeometryEvery(60),
-    kRestless(1500);  ///< a body may swing after a touch
+    /// Time after a touch in which the shape of a body is requested, because the body may still swing.
+    kRestless(1500);
 constexpr uint64_t kContactsAtOnce = 512;
 
 /// Calls use(number, model) for each model of a list. Rows use the same number.
@@ -65,7 +66,7 @@ void Stage::adopt(std::unique_ptr<RowSource> rows) {
   ++run_, ++list_number_, ++status_number_;
 }
 
-/// Searches for the daemon. It has started when its socket answers; its black box exists before that.
+/// Searches for the daemon. A daemon has started when its socket answers; its black box exists before.
 void Stage::find() {
   daemon_->connect();
   if (!daemon_->connected()) return;

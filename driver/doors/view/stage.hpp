@@ -21,12 +21,12 @@ struct StageOptions {
   std::string name;      ///< name of the daemon
   std::string file;      ///< a recording to show instead of a daemon, or ""
   std::string drawings;  ///< socket of a process that draws the models of the recording, or ""
-  bool control = false;  ///< pages may change the run
+  bool control = false;  ///< true if pages may change the run
 };
 
 /// The triangles of a model, or the reason why there are none.
 struct Drawn {
-  Message mesh;  ///< as a message for pages, see mesh.hpp
+  Message mesh;  ///< message for pages with the triangles (see mesh.hpp)
   std::string error;
 };
 
@@ -72,8 +72,8 @@ class Stage {
   /// A model that deforms. If its steps write no vertices, its triangles are requested while it is touched.
   struct Soft {
     uint32_t number = 0;
-    bool frames = true;  ///< its steps write vertices
-    bool asked = false;  ///< a request was sent and not yet answered
+    bool frames = true;  ///< true if its steps write vertices
+    bool asked = false;  ///< true if a request was sent and is not yet answered
     Clock::time_point touched{}, next{};
   };
   void find();

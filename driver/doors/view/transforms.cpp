@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint64_t kNanoseconds = 1'000'000'000;
 
-/// Writes CDR: the offset of each number, counted after the head, is a multiple of its size.
+/// Writes numbers in CDR. The offset of each number, counted from the end of the head, is a multiple of its size.
 class Cdr {
  public:
   template <class T>
@@ -42,7 +42,7 @@ uint32_t offsetOf(const Json& about, const char* stream, const std::string& name
   return 0;
 }
 
-/// Reads seven numbers: position and orientation.
+/// Reads a frame from seven numbers: position and orientation.
 void readFrame(const std::byte* at, Frame& frame) {
   std::memcpy(frame.position.data(), at, sizeof frame.position);
   std::memcpy(frame.orientation.data(), at + sizeof frame.position, sizeof frame.orientation);

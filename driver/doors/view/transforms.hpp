@@ -28,7 +28,7 @@ class Frames {
   /// [main] Takes rows of "ticks" or "poses", and ignores rows of other streams.
   void take(const std::string& stream, const std::byte* rows, uint64_t count, uint32_t row_bytes);
 
-  std::vector<Frame> all() const;  ///< [main] models, then tips
+  std::vector<Frame> all() const;  ///< [main] frames of the models, then of the tips
 
  private:
   std::vector<Frame> models_, tips_;

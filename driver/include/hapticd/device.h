@@ -149,9 +149,10 @@ HSP_LAYOUT(hdv_start, 48);
  *             threads of the module. If the result is negative, the run does not begin, and the arm stays open.
  * read        Copies the newest sample. It never waits. If the result is negative or HDV_S_LOST is set, the device
  *             counts as lost and gets no force until it is back. If `sequence` stays the same for 50 ms, the samples
- * are stale, and the device gets no force either. write       Takes the newest command; the module sends it at once or
- * with its next transfer. If the result is negative, the host cuts the motors, and the device counts as lost. A module
- * checks each command again: a number that is not finite becomes 0, and a torque stays within max_torque. stop Switches
- * the motors off, and returns when this command has been sent to the hardware. start() may follow. extension   Is
- * called after set(). The struct that it returns is valid until destroy(). */
+ *             are stale, and the device gets no force either.
+ * write       Takes the newest command. The module sends it at once or with its next transfer. If the result is
+ *             negative, the host cuts the motors, and the device counts as lost. A module checks each command again:
+ *             a number that is not finite becomes 0, and a torque stays within max_torque.
+ * stop        Switches the motors off, and returns when this command has been sent to the hardware. start() may follow.
+ * extension   Is called after set(). The struct that it returns is valid until destroy(). */
 #endif

@@ -11,7 +11,7 @@ extern "C" {
 enum {                     /* hdv_silence.kind: how to send the bytes */
        HDV_BY_WRITE = 1u,  /* write(fd, bytes), such as a report to a hidraw node */
        HDV_BY_PWRITE = 2u, /* pwrite(fd, bytes, offset), such as registers of a mailbox on a bus */
-       HDV_BY_USB = 3u     /* fd is of usbfs: claim `interface`, then send the bytes to `endpoint` */
+       HDV_BY_USB = 3u     /* fd is a file of usbfs: claim `interface`, then send the bytes to `endpoint` */
 };
 #define HDV_SILENCE_BYTES 1024
 typedef struct hdv_silence { /* module -> host: the command that switches the motors off, whatever was sent before */
@@ -25,9 +25,9 @@ typedef struct hdv_silence { /* module -> host: the command that switches the mo
 #define HDV_EXT_SILENCE "hdv.silence/1"
 typedef struct hdv_ext_silence {
   uint32_t struct_size, reserved;
-  /* [any] Also in a signal handler. Returns 0 while a cut (hdv.cut) is still to be sent to the hardware, so that the
-   * process must not end yet; otherwise 1. The function pointer is NULL if cut() has told the hardware when it returns.
-   */
+  /* [any] May be called in a signal handler. Returns 0 while a cut (hdv.cut) is still to be sent to the hardware, so
+   * that the process must not end yet; otherwise 1. The function pointer is NULL if cut() has told the hardware when it
+   * returns. */
   int32_t (*left)(const hdv_device*) HSP_RT;
   /* [any] Fills in how a process that outlives this one can switch the motors off, and returns 1. Returns 0 if that is
    * not possible now, such as while the arm is unplugged. The function pointer is NULL if it is never possible. */

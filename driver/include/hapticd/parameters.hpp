@@ -70,7 +70,8 @@ struct Fields {
     p.min = 0, p.max = 1, p.def = def ? 1 : 0;
     return {p, member};
   }
-  /// One word of `choices`, which must have static storage. The member holds the index of the word.
+  /// Makes a parameter that is one word of `choices`, which must have static storage. The member holds the index of the
+  /// word.
   template <size_t N>
   static constexpr Field<T> choice(const char* id, int T::* member, const char* const (&choices)[N], int def,
                                    const char* doc, uint32_t flags = 0) {
@@ -89,19 +90,20 @@ struct Fields {
     p.def_text = def;
     return {p, member};
   }
-  /// Any structure of lists and mappings. The member holds it as JSON text, and the module itself checks it.
+  /// Makes a parameter that may be any structure of lists and mappings. The member holds it as JSON text, and the
+  /// module itself checks it.
   static constexpr Field<T> data(const char* id, std::string T::* member, const char* def, const char* doc,
                                  uint32_t flags = 0) {
     hsp_param p = blank(HSP_DATA, id, "", flags, doc);
     p.def_text = def;
     return {p, member};
   }
-  /// Three numbers. `def` is their default as text, "[0, 1, 0]".
+  /// Makes a parameter of three numbers. `def` is their default as text, such as "[0, 1, 0]".
   static constexpr Field<T> vector3(const char* id, std::array<double, 3> T::* member, const char* unit, double min,
                                     double max, const char* def, const char* doc, uint32_t flags = 0) {
     return {arrayParam(id, unit, 3, 3, 3, min, max, def, doc, flags), member};
   }
-  /// Rows of `columns` numbers, with min_count to max_count numbers in all.
+  /// Makes a parameter of rows of `columns` numbers each, with min_count to max_count numbers in all.
   static constexpr Field<T> array(const char* id, std::vector<double> T::* member, const char* unit, uint32_t columns,
                                   uint32_t min_count, uint32_t max_count, double min, double max, const char* def,
                                   const char* doc, uint32_t flags = 0) {

@@ -16,7 +16,7 @@ typedef struct hsp_shape hsp_shape; /* one instance; the plugin owns it, and des
 
 /* ---- data of the servo thread: plain structs, aligned to 8 bytes; the structs of a probe hold no pointers */
 enum {
-  HSP_IN_JUMP = 1u << 0,   /* the probe moved discontinuously: the tracks of the last step are no longer near it */
+  HSP_IN_JUMP = 1u << 0,   /* the probe jumped: the foot points of the last step are no longer near it */
   HSP_IN_INVALID = 1u << 1 /* this tick has no good sample: return zero force; position is the last good one */
 };
 enum {
@@ -52,7 +52,7 @@ typedef struct hsp_step {
   double dt_s;                    /* s since the last step; 0 in the first step; several periods after an overrun */
   uint64_t budget_ns;             /* CPU time left for this call; the host counts calls that take longer; 0: no limit */
   double tolerance_m;             /* accuracy that the host asks for; 0 means that the shape's parameters decide */
-  uint32_t max_iterations, order; /* most evaluations per probe; order of the method, 1 or 2; 0 as for tolerance_m */
+  uint32_t max_iterations, order; /* most evaluations per probe; order of the method (1 or 2); 0 as above */
   const hsp_change* changes;      /* new values of live parameters since the last step */
   uint32_t change_count, viz_capacity; /* viz_capacity: number of vertices that fit into viz_xyz */
   float* viz_xyz;                      /* about 60 times a second not NULL: write the current vertices, 3 floats each */
@@ -185,7 +185,8 @@ HSP_LAYOUT(hsp_near, 32);
  *             not of unit length, the host fades the force out and does not call the shape again in this run. The host
  *             does the same after repeated forces that break the bounds in the report, and after repeated steps that
  *             take longer than the budget.
- * reset       Forgets all tracks, so that the next probe may be anywhere. Parameters stay.
+ * reset       Forgets the foot points that the shape follows from step to step (its tracks), so that the next probe may
+ *             be anywhere. Parameters stay.
  * deactivate  Frees what activate() allocated. Parameters may then be set, and the instance activated again.
  * extension   May be called in both states. A struct that it returned while active is used until deactivate(). */
 #endif

@@ -49,9 +49,9 @@ inline void reportJumps(hsp_report& report, double newtons) {
 class Shape {
  public:
   void deactivate() {}                                             ///< [main] frees what activate() took
-  void reset() noexcept HSP_RT {}                                  ///< [rt] forgets what was tracked
+  void reset() noexcept HSP_RT {}                                  ///< [rt] forgets the foot points that it follows
   const void* extension(const char* /*name*/) { return nullptr; }  ///< [main] nullptr if it has none of that name
-  void changed() noexcept HSP_RT {}               ///< [rt] live parameters have new values; step() follows
+  void changed() noexcept HSP_RT {}               ///< [rt] called when live parameters have new values, before step()
   const hsp_host* host() const { return host_; }  ///< [any] not valid in the constructor
 
  private:

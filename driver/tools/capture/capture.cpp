@@ -68,11 +68,11 @@ std::string shown(const std::string& line) {
   return text;
 }
 
-/// Returns how to convert the text into one that can be read, if its format is recognised.
+/// Returns advice for a text that cannot be read, or "" if its format is not recognised.
 std::string otherForm(const std::string& text) {
   if (!std::all_of(text.begin(), text.end(), isPrintable)) return "; this is not text, leave --hex out";
   const bool dump = text.rfind("00000000", 0) == 0;  // as at the beginning of the output of xxd and hexdump -C
-  return dump ? "; a dump with addresses: give the file itself, or `xxd -p -c SIZE`" : "";
+  return dump ? "; this is a dump with addresses: give the dumped file itself, or the output of `xxd -p -c SIZE`" : "";
 }
 
 Result<Capture> readText(const std::string& text) {
@@ -113,7 +113,7 @@ Result<Capture> readCapture(const std::string& bytes, Form form) {
     auto text = readText(bytes);
     if (text) return text;
     if (bytes.find_first_of(" \n\t,") != std::string::npos)
-      return Error{text.error() + "; for bytes that only look like text: --raw"};
+      return Error{text.error() + "; if these are raw bytes that only look like text, add --raw"};
   }
   Capture capture;
   if (!bytes.empty()) capture.transfers.push_back({-1, {bytes.begin(), bytes.end()}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Captured bytes of an arm: as they were on the wire, or as text.
+/// The form of a capture, which holds bytes of an arm: as they were on the wire, or as text.
 #pragma once
 #include <cstdint>
 #include <string>

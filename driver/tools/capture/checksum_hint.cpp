@@ -15,7 +15,7 @@ namespace {
 using codec::Checksum;
 using codec::Field;
 
-/// Fewer reports than this may agree with some method by chance.
+/// [reports] If fewer different reports than this are bad, a wrong method may fit them by chance, so no hint is given.
 constexpr size_t kFewestDifferent = 3;
 /// A hint is given only if the checksum is wrong in at least this share of the reports.
 constexpr double kMost = 0.8;
@@ -150,10 +150,9 @@ std::string checksumHint(const codec::Wire& wire, const Decoded& decoded) {
   tryMethods({*field, ""}, sums, wire.input.id, best);
   if (static_cast<double>(best.count) < needed) tryRanges(wire, *field, sums, best);
   if (static_cast<double>(best.count) < needed)
-    return "no method that is known by name fits them either, from byte " + std::to_string(field->from) + " to " +
-           std::to_string(field->to - 1) + ", a byte more or less" +
-           (wire.input.id >= 0 ? ", with the report id in front or without" : "") +
-           ": see from, to and at of the checksum\n";
+    return "no method that is known by name fits them either, over the bytes " + std::to_string(field->from) + " to " +
+           std::to_string(field->to - 1) + " or one byte more or less" +
+           (wire.input.id >= 0 ? ", with or without the report id" : "") + ": check from, to and at of the checksum\n";
   const bool all = best.count == sums.size() && sums.size() == decoded.bad.size();
   return "the checksum of " +
          (all ? "each" : std::to_string(best.count) + " of the " + std::to_string(decoded.bad.size())) +

@@ -12,7 +12,7 @@ using codec::Field;
 using codec::Role;
 using codec::Verdict;
 
-constexpr size_t kFewestReports = 20;  ///< no hints for fewer reports
+constexpr size_t kFewestReports = 20;  ///< for fewer reports no hint is given
 
 const Field* fieldOf(const codec::Wire& wire, Role role) {
   const auto found = std::find_if(wire.input.fields.begin(), wire.input.fields.end(),
@@ -61,7 +61,7 @@ std::string starts(const codec::Wire& wire, const DecodedReports& reports) {
     changes += reports[i]->state.starts != reports[i - 1]->state.starts ? 1 : 0;
   if (10 * changes < reports.size()) return "";
   return "starts is another number in " + std::to_string(changes) + " of " + std::to_string(reports.size()) +
-         " reports: the device would count as started anew each time; is it a counter ({is: counter}) or a clock ({is: "
+         " reports, as if the device restarted each time; is the field a counter ({is: counter}) or a clock ({is: "
          "time})?\n";
 }
 
@@ -103,7 +103,7 @@ std::string rate(const codec::Wire& wire, const DecodedReports& reports, double 
         "the reports are %.3g s apart (median), which is a rate of %.3g Hz, and wire.rate is %g%s; give rate: "
         "%.0f if this is how the arm sends\n",
         period, measured, wire.rate,
-        measured < least_rate * wire.rate ? ": with so few (health.least_rate) no torque goes out" : "", measured);
+        measured < least_rate * wire.rate ? ": at so low a rate (health.least_rate) no torque goes out" : "", measured);
   else
     std::snprintf(text, sizeof text,
                   "the reports are %.3g s apart (median), which is a rate of %.3g Hz, and wire.rate is %g; give rate: "
@@ -126,8 +126,8 @@ std::string clock(const codec::Wire& wire, const DecodedReports& reports) {
   if (times > kFast && times < kSlow) return "";
   char text[320];
   std::snprintf(text, sizeof text,
-                "the arm's clock grows by %.3g s from one report to the next (median), and wire.rate %g is one each "
-                "%.3g s; give rate: %.0f, or a scale of time that is %.4g times %s\n",
+                "the arm's clock grows by %.3g s from one report to the next (median), and wire.rate %g means one "
+                "report each %.3g s; give rate: %.0f, or a scale of the field time that is %.4g times %s\n",
                 period, wire.rate, 1 / wire.rate, 1 / period, times > 1 ? times : 1 / times,
                 times > 1 ? "smaller" : "larger");
   return text;

@@ -15,8 +15,8 @@ using codec::Escape;
 using codec::Field;
 using codec::Role;
 
-constexpr size_t kFewestGood = 5;         ///< reports: fewer may be good by chance
-constexpr size_t kTriedBytes = 8 * 1024;  ///< [bytes] so many are used, because a thousand framings are tried on them
+constexpr size_t kFewestGood = 5;         ///< [reports] fewer than this may be good by chance
+constexpr size_t kTriedBytes = 8 * 1024;  ///< [bytes] only the first are used, because a thousand framings are tried
 
 /// Returns the beginning of the capture, which represents all of it.
 Capture beginOf(const Capture& capture) {
@@ -33,7 +33,7 @@ Capture beginOf(const Capture& capture) {
   return begin;
 }
 
-/// Returns the same format with other marks. Constants at the places of the old marks are removed.
+/// Returns the same format with other marks. Constants at the places of the old marks get the values of the new ones.
 codec::Wire withMarks(codec::Wire wire, int start, int end) {
   for (Field& field : wire.input.fields) {
     const bool constant = field.role == Role::kConstant && field.bits == 8 && field.bit_skip == 0;
@@ -56,7 +56,7 @@ bool judges(const codec::Wire& wire) {
   });
 }
 
-/// Returns about which share of the bytes is in good reports.
+/// Returns about which share of the bytes is in good reports; 0 if there are fewer than kFewestGood.
 double goodWith(const codec::Wire& wire, const Capture& begin) {
   const Decoded decoded = decodeCapture(wire, begin);
   const size_t good = decoded.good();
@@ -139,8 +139,8 @@ std::string missingMark(const codec::Wire& wire, const Capture& capture) {
   const auto counts = countsOf(capture);
   for (const auto& [key, mark] : {std::pair{"start", wire.framing.start}, std::pair{"end", wire.framing.end}})
     if (mark >= 0 && counts[static_cast<size_t>(mark)] == 0)
-      return "no byte of the capture is framing." + std::string(key) + " " + hexByte(mark) +
-             ": see what its reports begin and end with\n";
+      return "framing." + std::string(key) + " " + hexByte(mark) +
+             " does not occur in the capture: look at the bytes with which its reports begin and end\n";
   return "";
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Finds out why a stream with framing shows no reports: other marks, other escapes, or marks or escapes that the file
-/// lacks.
+/// Finds out why hardly any reports are found in a stream with framing: the marks or escapes in the device file are
+/// wrong or missing.
 #pragma once
 #include <string>
 
@@ -9,7 +9,8 @@
 namespace hapticd::capture {
 
 /// [main] Returns one line, or "" if the framing is right. The line names the marks and escapes with which most reports
-/// would be good, or says what the marks of the file find in the capture.
+/// would be good, or says that a mark of the file does not occur in the capture or that most bytes are not between
+/// marks.
 std::string framingHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded);
 
 }  // namespace hapticd::capture

@@ -11,18 +11,18 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-constexpr size_t kRepeated = 3;  ///< reports: fewer may look alike by chance
+constexpr size_t kRepeated = 3;  ///< [reports] fewer than this may look alike by chance
 
 std::string idLacks(int id) {
   return "each begins with " + hexByte(id) + " and has one byte too many: if this is the report id, give " +
          "wire.input id: " + std::to_string(id) + "; size and offsets do not count it\n";
 }
 
-/// Returns that text with another possibility, because raw bytes may come from a stream without ids.
+/// Returns the text of idLacks() and a second possibility, because raw bytes may come from a stream without ids.
 std::string idOrMarkLacks(int id) {
   std::string words = idLacks(id);
   words.pop_back();
-  return words + ". Of a stream without ids: framing: {start: " + hexByte(id) +
+  return words + ". If the bytes are a stream without ids, give framing: {start: " + hexByte(id) +
          "}, with size and all offsets one larger\n";
 }
 
@@ -56,7 +56,7 @@ bool allOfOneSize(const Decoded& decoded) {
          });
 }
 
-/// How many of the reports would be good with another id and size; nothing if any report would be.
+/// Declared here because paddingHint() uses it; described at its definition.
 std::optional<double> goodWith(codec::Wire wire, int id, size_t size, const Capture& capture);
 
 /// Returns true if the bytes from `from` on are the same in all reports of this size, so that they are probably
@@ -106,8 +106,8 @@ std::string textHint(const codec::Wire& wire, const Capture& capture, const Deco
   const std::string padded = size % expected != 0 || one_byte ? paddingHint(wire, capture, size) : "";
   if (!padded.empty()) return padded;
   if (size > expected && size % expected == 0)
-    return std::to_string(size) + " bytes are " + std::to_string(size / expected) + " reports of " +
-           std::to_string(expected) + ": a line of text is one report, expected one a line\n";
+    return std::to_string(size) + " bytes in a line are " + std::to_string(size / expected) + " reports of " +
+           std::to_string(expected) + " bytes; expected one report per line\n";
   return "";
 }
 
@@ -168,7 +168,7 @@ std::string withAnId(const codec::Wire& wire, const Capture& capture, const Byte
   if (goodWith(wire, -1, size, capture).value_or(0) > kNearlyAll) return idIsMissing(id);
   const size_t whole = sizeWithId(bytes, id);
   if (whole == 0) return "";
-  return hexByte(id) + " stands at every " + std::to_string(whole) + " bytes: if these are the reports, give " +
+  return hexByte(id) + " occurs every " + std::to_string(whole) + " bytes: if it begins each report, give " +
          "wire.input size: " + std::to_string(whole - 1) + " (it is " + std::to_string(size) +
          "); size does not count the report id\n";
 }

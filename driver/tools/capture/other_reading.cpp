@@ -11,7 +11,7 @@ namespace {
 using codec::Field;
 using codec::Type;
 
-constexpr double kWholeRange = 0.75;  ///< share of the field's range: only a wrong sign bit makes such a step
+constexpr double kWholeRange = 0.75;  ///< share of the field's range: only a wrong sign or a wrap makes such a step
 
 /// One way to read the raw numbers of a field: each is changed to another number, and then scaled.
 struct Reading {
@@ -59,7 +59,7 @@ std::string typeOf(const Field& field, bool other) {
   return (whole ? "i" : "u") + std::to_string(field.bits);
 }
 
-/// Returns what the file must contain for a reading.
+/// Returns the keys and values that the file must contain for a reading, such as "type: i16, scale: 0.1".
 std::string wordsOf(const Field& field, const Reading& reading) {
   std::string words;
   const auto add = [&words](const std::string& more) { words += (words.empty() ? "" : ", ") + more; };
@@ -99,7 +99,7 @@ std::string wholeRange(const Field& field, const std::vector<double>& positions,
 bool leavesStops(const std::vector<double>& positions, const Stops& stops) {
   if (positions.empty() || !stops.given) return false;
   const auto [least, most] = std::minmax_element(positions.begin(), positions.end());
-  const double room = 0.05 * (stops.high - stops.low);  // a stop gives way
+  const double room = 0.05 * (stops.high - stops.low);  // a joint that is pressed against a stop goes a little farther
   return stops.placed ? *least < stops.low - room || *most > stops.high + room
                       : *most - *least > stops.high - stops.low + 2 * room;
 }
@@ -119,8 +119,8 @@ std::string otherReading(const Field& field, const std::vector<double>& position
     const auto as_other = allAs(field, reading, positions);
     if (leavesStops(as_other, stops) || jumpsOf(field, as_other, kWholeRange / 3) > 0) continue;
     const auto [least, most] = std::minmax_element(positions.begin(), positions.end());
-    return "from " + shortNumber(*least) + " to " + shortNumber(*most) +
-           ", beyond its arm.limits, and within them with " + wordsOf(field, reading);
+    return "goes from " + shortNumber(*least) + " to " + shortNumber(*most) +
+           ", beyond its arm.limits; it stays within them with " + wordsOf(field, reading);
   }
   return "";
 }

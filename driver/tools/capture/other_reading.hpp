@@ -16,7 +16,8 @@ struct Stops {
   double low = 0, high = 0;
 };
 
-/// [main] True if the positions leave the stops, or span more than the range between them.
+/// [main] Tells whether the positions leave the range between the stops. If the zero is unknown, tells whether they
+/// span more than this range.
 bool leavesStops(const std::vector<double>& positions, const Stops& stops);
 
 /// [main] Returns one line if the positions jump by nearly the whole range of their field, or if they leave the stops

@@ -41,18 +41,17 @@ Stops stopsOf(const ArmFacts& arm, size_t joint) {
   return {true, !arm.zeroed, arm.limits[2 * joint], arm.limits[2 * joint + 1]};
 }
 
-/// Returns a text if the joint goes beyond its stops, or, if its zero is not known yet, spans more than the range
-/// between them.
+/// Returns a text if the joint goes beyond its stops. If its zero is not known yet, returns a text if its positions
+/// span more than the range between them.
 std::string beyondStops(const Course& course, const Stops& stops) {
   constexpr double kTurns = 4 * M_PI;  // a joint with stops cannot make two turns
   const double way = course.most - course.least;
   if (stops.given ? !leavesStops(course.at, stops) : way <= kTurns * 1.1) return "";
   if (stops.placed && way <= stops.high - stops.low)
     return "from " + number(course.least) + " to " + number(course.most) + " rad, and arm.limits are " +
-           number(stops.low) + " to " + number(stops.high) + " rad: its way of " + number(way) +
-           " rad fits between them, so it is in another place: is offset in rad (for degrees: offset_degrees), with "
-           "the "
-           "right sign?";
+           number(stops.low) + " to " + number(stops.high) + " rad: its range of " + number(way) +
+           " rad fits between them, but it is shifted: is offset in rad (for degrees: offset_degrees), with the right "
+           "sign?";
   return "from " + number(course.least) + " to " + number(course.most) + " rad, " +
          (stops.placed  ? "and arm.limits are " + number(stops.low) + " to " + number(stops.high) + " rad"
           : stops.given ? "farther than the " + number(stops.high - stops.low) + " rad between its arm.limits"
@@ -61,7 +60,7 @@ std::string beyondStops(const Course& course, const Stops& stops) {
 }
 
 std::string jumps(const Course& course, const codec::Wire& wire, const ArmFacts& arm) {
-  constexpr double kLarge = 0.5;  // [rad]
+  constexpr double kLarge = 0.5;  // [rad] a smaller step is never called a jump
   // a few reports may be missing in between
   const double most = std::max(kLarge, 5 * arm.max_speed / std::max(wire.rate, 1.0));
   double largest = 0;
@@ -89,8 +88,9 @@ std::string tooLongAWay(const Course& course, Stops stops) {
 
 /// Returns a text if all joints moved, but none of them far, because a scale that is too small has no other symptom.
 std::string shortWays(const std::map<size_t, Course>& courses, const ArmFacts& arm) {
-  constexpr double kShort = 0.4, kMoved = 0.01;  // share of the range between the stops
-  constexpr size_t kEnough = 100;                // reports
+  // shares of the range between the stops: kMoved tells whether a joint moved at all, kShort whether it moved far
+  constexpr double kShort = 0.4, kMoved = 0.01;
+  constexpr size_t kEnough = 100;  // [reports] least number to judge a joint
   std::string ways;
   double widest = 0;
   for (const auto& [joint, course] : courses) {

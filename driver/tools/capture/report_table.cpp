@@ -42,7 +42,7 @@ bool has(const codec::Report& report, Role role) {
   return std::any_of(report.fields.begin(), report.fields.end(), [&](const Field& f) { return f.role == role; });
 }
 
-/// All digits of a field's bits, as a dump of its bytes has them.
+/// Returns the value in hexadecimal with all digits of the field, as in a dump of its bytes.
 std::string hex(uint64_t value, const Field& field) {
   char text[24];
   std::snprintf(text, sizeof text, "0x%0*" PRIx64, (field.bits + 3) / 4, value);
@@ -62,9 +62,9 @@ std::string whyWrong(const Field& field, std::span<const uint8_t> body) {
       return (field.role == Role::kFirmware ? "firmware" : "constant") + at + " is " + is + ", expected " +
              hex(field.code, field);
     case Role::kSequence:
-      return "counter" + at + " is " + is + ", which is another than the one before it, or beyond its modulo";
+      return "counter" + at + " is " + is + ", which differs from the counter before it, or is beyond its modulo";
     default:
-      return "the number" + at + " is not one";
+      return "the field" + at + " is not a number";
   }
 }
 
@@ -121,7 +121,7 @@ class Reader {
     }
   }
 
-  /// Counts turns as the module does, from the first report on.
+  /// Counts turns of positions that wrap as the device module does, from the first report on.
   void unwrap(codec::State& state) {
     for (const Field& field : wire_.input.fields) {
       if (field.role != Role::kPosition || !field.wraps) continue;
@@ -334,8 +334,8 @@ std::string summaryOf(const Decoded& decoded) {
   for (const auto& [word, count] : verdicts) text += ", " + std::to_string(count) + " " + word;
   if (decoded.others > 0)
     text += "; besides " + counted(decoded.others, "report") + " with another id" + idsOf(decoded.other_ids);
-  if (decoded.head > 0) text += "; it begins with the last " + counted(decoded.head, "byte") + " of a report";
-  if (decoded.lost > 0) text += "; besides " + counted(decoded.lost, "byte") + " of no report";
+  if (decoded.head > 0) text += "; the capture begins with the last " + counted(decoded.head, "byte") + " of a report";
+  if (decoded.lost > 0) text += "; besides " + counted(decoded.lost, "byte") + " outside of any report";
   if (decoded.repeats > 0) text += "; the counter stands still " + counted(decoded.repeats, "time");
   if (decoded.gaps > 0)
     text += "; numbers of the counter are missing " + counted(decoded.gaps, "time") +

@@ -53,8 +53,9 @@ std::string csvOf(const codec::Wire& wire, size_t joints, const Decoded& decoded
 std::string summaryOf(const Decoded& decoded);
 
 /// [main] Encodes one line of numbers as the bytes of a report. `columns` names the numbers, such as "torque1,torque2"
-/// or "position1,buttons,calibrated". @param to_arm true for a command to the arm; false for a report from it @param
-/// sequence sequence number of this report
+/// or "position1,buttons,calibrated".
+/// @param to_arm true for a command to the arm; false for a report from it
+/// @param sequence sequence number of this report
 Result<std::vector<uint8_t>> encodeRow(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns,
                                        const double* values, uint32_t sequence);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// For raw bytes of reports with an id, in which some bytes are missing or too many: finds the next report by its id
-/// and checksum.
+/// Finds the next report by its id and checksum in raw bytes in which some bytes are missing or too many.
 #pragma once
 #include <cstddef>
 #include <cstdint>

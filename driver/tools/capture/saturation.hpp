@@ -9,7 +9,7 @@
 
 namespace hapticd::capture {
 
-/// Collects, column by column, the numbers that had to be sent as other numbers.
+/// Collects, column by column, the numbers that a field could not carry, so that other numbers were sent.
 class Saturation {
  public:
   /// @param motors [N m] greatest torques of the joints; empty if unknown

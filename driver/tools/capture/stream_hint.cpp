@@ -11,7 +11,7 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-constexpr size_t kFewestAlike = 20;  ///< reports: fewer may have one byte in common by chance
+constexpr size_t kFewestAlike = 20;  ///< [reports] fewer than this may have one byte in common by chance
 
 /// A byte that occurs once in every report, and hardly anywhere else.
 struct Header {
@@ -68,8 +68,8 @@ bool tells(const codec::Report& report) {
   });
 }
 
-/// Returns how many bytes to leave out before the first whole report, so that nearly all reports are good; 0 if none,
-/// or if it is not clear.
+/// Returns how many bytes to leave out before the first whole report, so that nearly all reports are good. Returns 0 if
+/// no byte needs to be left out, or if the number is not clear.
 size_t bytesBefore(const codec::Wire& wire, const Bytes& bytes) {
   constexpr size_t kMostBytes = 8 * 1024, kFewReports = 3;
   constexpr double kNearly = 0.8, kDoubt = 0.5;  // share of the good reports at the best place, and at the second best
@@ -104,7 +104,7 @@ std::string beginHint(const codec::Wire& wire, const Bytes& bytes, const Decoded
   const std::string found = "the capture begins in the middle of a report: from byte " + std::to_string(before) +
                             " on, nearly all reports are good; ";
   if (mark != fields.end())
-    return found + "give " + framingOf({static_cast<uint8_t>(mark->code), before}) + ", and they are found\n";
+    return found + "give " + framingOf({static_cast<uint8_t>(mark->code), before}) + ", and the reports are found\n";
   return found + "leave out the first " + std::to_string(before) + (before == 1 ? " byte" : " bytes") + " (tail -c +" +
          std::to_string(before + 1) + " FILE)\n";
 }
@@ -116,16 +116,16 @@ std::string headerHint(const codec::Wire& wire, const Bytes& bytes, const Decode
   if (const auto header = headerOf(bytes, size)) {
     if (header->at == 0 || !beginsLater(wire.input, *header)) return "";
     std::snprintf(begins, sizeof begins, "0x%02x", static_cast<unsigned>(header->byte));
-    return std::string(begins) + " stands at byte " + std::to_string(header->at) + " of the capture and every " +
+    return std::string(begins) + " occurs at byte " + std::to_string(header->at) + " of the capture and every " +
            std::to_string(size) +
            " bytes after it: if it begins each report, the capture begins in the middle of one; give " +
-           framingOf(*header) + ", and they are found\n";
+           framingOf(*header) + ", and the reports are found\n";
   }
   if (2 * decoded.good() > decoded.reports.size() && bytes.size() % size == 0) return "";
   for (size_t other = size + 1; other <= std::min(2 * size, codec::kMaxReportBytes); ++other)
     if (const auto header = headerOf(bytes, other)) {
       std::snprintf(begins, sizeof begins, "0x%02x", static_cast<unsigned>(header->byte));
-      return std::string(begins) + " stands at every " + std::to_string(other) + " bytes, first at byte " +
+      return std::string(begins) + " occurs every " + std::to_string(other) + " bytes, first at byte " +
              std::to_string(header->at) + ": if it begins each report, give " + framingOf(*header) +
              " and wire.input size: " + std::to_string(other) + " (it is " + std::to_string(size) +
              "); size and offsets count this byte\n";

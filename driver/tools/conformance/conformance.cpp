@@ -58,7 +58,7 @@ std::string fuzzOnce(const Recipe& recipe, uint64_t seed) {
     if (std::string wrong = wrongStatus((*made)->step({q}, dt, flags)); !wrong.empty())
       return "at step " + std::to_string(i) + ", " + placed(wrong, q);
     if ((*made)->allocations() > 0) return "at step " + std::to_string(i) + ", " + placed("it allocates", q);
-    // [ns] a step that waits longer sleeps or blocks; other programs cannot make it wait
+    // [ns] a step that waits longer than this sleeps or blocks; only waits by its own choice count
     constexpr uint64_t kLong = 2'000'000;
     const StepCost& cost = (*made)->cost();
     if (cost.waited && cost.wall_ns > cost.cpu_ns + kLong)

@@ -102,8 +102,8 @@ std::string contactFlags(const Recipe& recipe, uint64_t) {
   return along(*made.subject, [](const Answer& answer, const Vector3d&) { return flagsOf(answer.contacts[0]); });
 }
 
-/// [N/m] Returns the slopes of a straight press at rest, sorted by size. A claimed jump (max_jump) is no slope, so it
-/// is subtracted; slopes are taken over distances so long that this hides little.
+/// [N/m] Returns the slopes of the force in a straight press at rest, sorted by size. A claimed jump (max_jump) is no
+/// slope, so it is subtracted. The slopes are then taken over longer distances, so that the subtraction hides little.
 std::vector<double> slopesOf(Subject& subject, const Place& place) {
   const hsp_report& report = subject.report();
   const double jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
@@ -128,8 +128,8 @@ std::vector<double> slopesOf(Subject& subject, const Place& place) {
   return slopes;
 }
 
-/// [N/m] Returns the slopes of a press that waits at each place until effects of the motion have faded, because the
-/// force of a velocity filter is not stiffness.
+/// [N/m] Returns the slopes of the force in a press that waits at each place until effects of the motion have faded,
+/// because the force of a velocity filter is not stiffness.
 std::vector<double> slopesAtRest(Subject& subject, const Place& place) {
   constexpr int kPlaces = 10, kRest = 200;  // ticks to wait at each place
   const double depth = pressDepth(subject);
@@ -149,7 +149,7 @@ std::vector<double> slopesAtRest(Subject& subject, const Place& place) {
   return slopes;
 }
 
-/// [N/m] Returns the slope that nine tenths of a press do not exceed; 0 if there are too few slopes.
+/// [N/m] Returns the slope that nine tenths of the slopes in a press do not exceed; 0 if there are too few slopes.
 double stiffnessAt(Subject& subject, const Place& place, double claimed) {
   constexpr double kDoubtful = 1.1;
   const std::vector<double> slopes = slopesOf(subject, place);
@@ -160,7 +160,7 @@ double stiffnessAt(Subject& subject, const Place& place, double claimed) {
   return std::min(measured, rested[rested.size() * 9 / 10]);
 }
 
-/// Returns how steep a force is, in words, compared with what is claimed.
+/// Returns a text that compares the measured stiffness with the claimed one.
 std::string besideClaim(double claimed, double measured) {
   return (claimed > 0 ? "it claims " + text(claimed) + " N/m" : std::string("it claims no stiffness")) +
          ", but its force grows by " + text(measured) +
@@ -197,9 +197,9 @@ std::string toldStiffness(Subject& subject, const Place& place) {
 std::string stiffnessClaim(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (made.subject->moves()) return "skip: it moves, and its force with it";
+  if (made.subject->moves()) return "skip: it moves, so its force changes by itself";
   const double claimed = made.subject->report().max_stiffness;
-  // factors, because a force law may be a little steeper in places; [N/m]
+  // factors by which the claim may be exceeded, because a force law may be a little steeper in places; [N/m]
   constexpr double kFails = 1.5, kWarns = 1.1, kNoise = 10;
   double steepest = 0;
   std::string wrong = atEachPlace(recipe, [claimed, &steepest](Subject& subject, const Place& place) {
@@ -229,7 +229,7 @@ std::string noStep(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   const hsp_report& report = made.subject->report();
-  if (made.subject->moves()) return "skip: it moves, and its force with it";
+  if (made.subject->moves()) return "skip: it moves, so its force changes by itself";
   const double stiffness = report.max_stiffness > 0 ? report.max_stiffness : servo::Claim::kUnclaimed;
   const double jumps = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
   return atEachPlace(recipe, [stiffness, jumps](Subject& subject, const Place& place) {
@@ -253,7 +253,8 @@ std::string noStep(const Recipe& recipe, uint64_t) {
   });
 }
 
-/// A press far below the surface, at rest at each depth, as far as the foot point stays on the same surface.
+/// The depths and forces of a press far below the surface that rests at each depth. It ends where the foot point leaves
+/// the surface.
 struct DeepPress {
   std::vector<double> depth, force;  ///< [m], [N] outward
 };
@@ -261,7 +262,8 @@ struct DeepPress {
 DeepPress pressDeep(Subject& subject, const Place& place) {
   constexpr double kStep = 1e-4, kStrongest = 10;  // [m]; [N] more than most hands press
   const double most = deepestPress(subject);
-  constexpr int kRest = 10;  // ticks: until then the force of a damper has faded, and that of a velocity filter nearly
+  // [ticks] in this time the force of a damper fades completely, and that of a velocity filter nearly
+  constexpr int kRest = 10;
   DeepPress press;
   for (int i = 0; i * kStep <= most; ++i) {
     const Vector3d p = place.foot - place.out * (i * kStep);
@@ -279,17 +281,17 @@ DeepPress pressDeep(Subject& subject, const Place& place) {
 std::string deepPress(const Recipe& recipe, uint64_t) {
   constexpr double kRoom = 0.1;  // [N] not felt as a step
   constexpr size_t kApart = 10;  // steps over which a slope is taken
-  // factor, as at the surface; factor of the claim, from one step to the next
+  // factors by which the claim may be exceeded: over kApart steps, as at the surface; from one step to the next
   constexpr double kSteep = 1.5, kJump = 3;
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   const hsp_report& report = made.subject->report();
   if (made.subject->moves() || (made.subject->description().flags & HSP_C_DEFORMS) != 0)
-    return "skip: it moves or gives way, and its force with it";
+    return "skip: it moves or deforms, so its force does not depend on the depth alone";
   const double claimed = report.max_stiffness, jumps = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
   if (!(claimed > 0)) return "skip: no stiffness is claimed";
   std::string steep;
-  int left = 4;  // places: a slow shape would take too long for all
+  int left = 4;  // [places] at all of them, a slow shape would take too long
   const std::string wrong = atEachPlace(recipe, [&](Subject& subject, const Place& place) {
     if (left-- <= 0) return std::string();
     const DeepPress press = pressDeep(subject, place);
@@ -316,8 +318,8 @@ std::vector<ConformanceTest> contactTests() {
   return {
       {"contact-found", "the shape can be found and touched", &contactFound, kFinite},
       {"force-outward", "forces in contact push out of the shape", &forceOutward, kFinite},
-      {kFoot, "the foot is on the surface, a depth away, and the normal points from it to the probe", &footAndNormal,
-       "depth-falls-outward"},
+      {kFoot, "the foot point is on the surface, as far away as the depth says, and the normal points to the probe",
+       &footAndNormal, "depth-falls-outward"},
       {"force-along-normal", "a shape that only pushes, and has no friction, pushes along its normal",
        &forceAlongNormal, kFoot},
       {"loops-give-no-energy", "a loop into the shape, along below its surface and out again gives no energy",

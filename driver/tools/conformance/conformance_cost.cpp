@@ -121,7 +121,8 @@ std::string noLock(const Recipe& recipe, uint64_t) {
          "; do not lock in a step: another thread that holds the lock would make the servo wait";
 }
 
-/// Fails if a step makes a system call. Most often it prints, so output is not buffered here, and each line is noticed.
+/// Fails if a step makes a system call. Most often this is a print, so output is not buffered here: each line is then a
+/// system call.
 std::string noSystemCall(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
@@ -144,7 +145,7 @@ std::string noSystemCall(const Recipe& recipe, uint64_t) {
 /// Compares the cost with the claim. The claim was measured on the author's machine, so only a large difference is a
 /// failure.
 std::string stepCost(const Recipe& recipe, uint64_t) {
-  constexpr uint64_t kFar = 10;
+  constexpr uint64_t kFar = 10;  // factor over the claim from which the test fails
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   const uint64_t claim = std::max(made.subject->report().worst_ns, made.subject->report().typical_ns);
@@ -165,7 +166,7 @@ std::string stepCost(const Recipe& recipe, uint64_t) {
 
 std::vector<ConformanceTest> costTests() {
   return {
-      {"steps-end-in-time", "every step comes back, and soon", &stepsEndInTime},
+      {"steps-end-in-time", "every step returns, and in time", &stepsEndInTime},
       {"no-system-call-in-step", "steps make no system call", &noSystemCall, kInTime},
       {"no-allocation-in-step", "steps do not allocate", &noAllocation, kInTime},
       {"no-lock-in-step", "steps do not lock", &noLock, kInTime},

@@ -26,7 +26,7 @@ struct Drawing {
   double diagonal() const { return (high - low).norm(); }
 };
 
-/// The differences between the triangles that were tried and the answers there.
+/// The differences between the triangles that were tried and the answers of the shape there.
 struct Compared {
   size_t seen = 0, away = 0, outward = 0, inward = 0;
   double distance = 0;             ///< [m] distance of the farthest foot point
@@ -128,7 +128,7 @@ std::string drawingWhereFelt(const Recipe& recipe, uint64_t) {
   if (std::string wrong = readDrawing(mesh, drawing); !wrong.empty()) return wrong;
   if (drawing.triangles.empty()) return "skip: tessellate() gives no triangle";
   if (std::string wrong = outsideBounds(drawing, low, high); !wrong.empty()) return wrong;
-  if (subject.moves()) return "skip: it moves, and its surface with it";
+  if (subject.moves()) return "skip: it moves, so its surface does not stay where it is drawn";
   Compared found;
   const size_t tried = std::min(kMostTriangles, drawing.triangles.size());
   constexpr double kGolden = 0.6180339887498949;  // equal steps could try the same column of a grid again and again

@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 using Positions = std::vector<Vector3d>;  ///< positions of all probes in one step
 
 constexpr uint32_t kProbes = 8;
-/// [bytes] Room after a single record, because the record ends this far before the guarded page. This room is checked
-/// after each step.
+/// [bytes] The gap between the end of a single record and the guarded page. After each step it is checked that nothing
+/// was written into this gap.
 constexpr size_t kBehind = 8;
 
 /// One step of the run.

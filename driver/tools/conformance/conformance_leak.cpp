@@ -42,7 +42,8 @@ double leakOf(const std::vector<double>& used) {
   return std::max(leak, 0.0) / static_cast<double>(used.size() / kParts);
 }
 
-/// The number of lives is the same on every machine; only a shape whose lives take very long gets fewer.
+/// Makes and destroys the shape many times and measures the memory in use. The number of lives is the same on every
+/// machine; only a shape whose lives take very long gets fewer.
 std::string createDestroyLeak(const Recipe& recipe, uint64_t) {
   constexpr int kFirst = 5, kLives = 40;
   constexpr Nanoseconds kLong = 3 * kNanosecondsPerSecond;

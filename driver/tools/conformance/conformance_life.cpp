@@ -29,7 +29,8 @@ std::string descriptorComplete(const Recipe& recipe, uint64_t) {
   auto made = Subject::make(recipe);
   if (!made) return made.error();
   const hsp_class& c = (*made)->description();
-  if (blank(c.id) || std::strchr(c.id, '.') == nullptr) return "id is not a reverse domain name";
+  if (blank(c.id) || std::strchr(c.id, '.') == nullptr)
+    return "id is not a reverse domain name; expected one such as org.example.sphere";
   if (blank(c.version) || blank(c.license) || blank(c.doc)) return "version, license or doc is missing";
   for (uint32_t i = 0; i < c.param_count; ++i) {
     const hsp_param& p = paramAt(c, i);
@@ -73,10 +74,12 @@ std::string idUnique(const Recipe& recipe, uint64_t) {
   for (uint32_t i = 0; i < (*entry)->class_count; ++i) {
     const hsp_class* c = (*entry)->classes[i];
     if (c == nullptr) return "a class is NULL";
-    if (!ids.insert(c->id).second || !ids.insert(c->name).second) return std::string("id or name twice: ") + c->id;
+    if (!ids.insert(c->id).second || !ids.insert(c->name).second)
+      return std::string("two classes have the same id or name: ") + c->id;
     std::set<std::string> params;
     for (uint32_t k = 0; k < c->param_count; ++k)
-      if (!params.insert(paramAt(*c, k).id).second) return std::string("parameter twice: ") + paramAt(*c, k).id;
+      if (!params.insert(paramAt(*c, k).id).second)
+        return std::string("two parameters have the same id: ") + paramAt(*c, k).id;
   }
   return "";
 }
@@ -128,8 +131,8 @@ std::string setOutOfRange(const Recipe& recipe, uint64_t) {
                                                                   : "";
 }
 
-/// Returns a text about a parameter whose value was lost when another one was set, because two lines of the table name
-/// the same member; or "".
+/// Returns a text about a parameter whose value was lost when another one was set, or "". This happens if two lines of
+/// the parameter table name the same member.
 std::string sharedMember(Subject& subject, const std::vector<double>& values, uint32_t set) {
   const hsp_class& c = subject.description();
   for (uint32_t i = 0; i < set; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Measures the energy of closed paths with a leg along below the surface. A force that circulates, however small,
-/// gives energy in one direction; a path straight through the shape would not show it.
+/// Measures the energy that closed paths give. A part of each path runs along below the surface. A force that
+/// circulates, however small, gives energy in one direction; a path straight through the shape would not show it.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,8 @@ struct Work {
   double aside = 0;             ///< [J] work of the part of the force that is across the normal
 };
 
-/// Returns a path from outside in, along by twice the depth, out, and back outside. The probe rests at each corner.
+/// Returns a path that goes in, sideways below the surface by twice the depth, out, and back to its start. The probe
+/// rests at each corner.
 std::vector<Vector3d> loopAt(const Place& place, const Vector3d& aside, double depth) {
   constexpr int kLeg = 40, kRest = 10;
   const Vector3d out = depth * place.out, way = 2 * depth * aside;
@@ -78,8 +79,8 @@ std::string gives(Subject& subject, const Place& place, const Vector3d& aside) {
 std::string loopsGiveNoEnergy(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (made.subject->moves()) return "skip: it moves, and gravity works on it as well as the hand";
-  int left = 6;  // places: a slow shape would take too long for all
+  if (made.subject->moves()) return "skip: it moves, so gravity may give it energy too";
+  int left = 6;  // [places] at all of them, a slow shape would take too long
   const std::string wrong = atEachPlace(recipe, [&left](Subject& subject, const Place& place) {
     if (left-- <= 0) return std::string();
     const Vector3d u = place.out.unitOrthogonal(), v = place.out.cross(u);

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Returns the answers of one instance along the path.
+/// Returns the answers of one instance along the path and in a press at each place.
 std::vector<Answer> answersOf(Subject& subject, int steps, double phase = 0) {
   std::vector<Answer> answers;
   for (int i = 0; i < steps; ++i)
@@ -37,7 +37,8 @@ std::string resetEqualsFresh(const Recipe& recipe, uint64_t) {
   if (!used.error.empty()) return used.error;
   if (used.subject->moves()) return "skip: it moves, and reset() does not forget its pose";
   size_t steps = answersOf(*used.subject, kConformanceSteps / 2, 0.7).size();
-  constexpr size_t kRounds = 2 * 3 * 5 * 7;  // with whole turns of such periods, a phase that is kept would not show
+  // A shape may keep a phase that repeats every 2, 3, 5 or 7 steps. After whole periods, it would not show.
+  constexpr size_t kRounds = 2 * 3 * 5 * 7;
   for (; steps % kRounds != 1; ++steps) used.subject->step({onPath(*used.subject, 0.5)}, kConformanceDt);
   used.subject->reset();
   const auto a = answersOf(*used.subject, kConformanceSteps / 4), b = answersOf(*fresh.subject, kConformanceSteps / 4);
@@ -49,9 +50,10 @@ std::string resetEqualsFresh(const Recipe& recipe, uint64_t) {
   return "";
 }
 
-/// The two probes stay apart. A plugin may use what it found for one probe to start the search of another probe nearby,
-/// as TracedShape::searchAbout does. Then the search ends at the same foot with other last bits (1e-15 N with eight
-/// probes of nurbs_rigid, and another "certified" flag). This does not couple forces and is allowed.
+/// Tests that two probes get the same answers together as alone. The two probes stay apart, because a plugin may use
+/// what it found for one probe to start the search of another probe nearby, as TracedShape::searchAbout does. Then the
+/// search ends at the same foot with other last bits (1e-15 N with eight probes of nurbs_rigid, and another "certified"
+/// flag). This does not couple forces and is allowed.
 std::string batchEqualsSingle(const Recipe& recipe, uint64_t) {
   const Made batch(recipe, 2), one(recipe), two(recipe);
   if (!batch.error.empty()) return "two probes: " + batch.error;
@@ -94,7 +96,7 @@ std::string searchesAfterJump(const Recipe& recipe, Subject& subject, uint64_t s
 
 /// [N] Returns the force at `to` after a jump. Before the jump, the probe stays at each point of `way` for a while.
 Vector3d forceAfterJump(Subject& subject, const std::vector<Vector3d>& way, const Vector3d& to) {
-  constexpr int kStay = 200;  // ticks: until then, effects of filters have faded
+  constexpr int kStay = 200;  // [ticks] in this time, effects of filters fade
   for (size_t i = 0; i < way.size(); ++i)
     for (int k = 0; k < kStay; ++k)
       subject.step({way[i]}, kConformanceDt, i + static_cast<size_t>(k) == 0 ? uint32_t{HSP_IN_JUMP} : 0);
@@ -253,9 +255,9 @@ std::vector<ConformanceTest> memoryTests() {
       {"determinism-bitwise", "same input, same bits", &determinism, kFinite},
       {"layout-golden", "structs have at least their size of version 1.0, and strides are used", &layoutGolden, kSame},
       {"create-destroy-leak", "create() to destroy() leaks no memory", &createDestroyLeak, kInTime},
-      {"asks-for-what-it-reads", "velocity and orientation are read by those who ask for them", &asksForWhatItReads,
-       kSame},
-      {"reset-equals-fresh", "reset() forgets", &resetEqualsFresh, kSame},
+      {"asks-for-what-it-reads", "velocity and orientation are read only if the shape asks for them",
+       &asksForWhatItReads, kSame},
+      {"reset-equals-fresh", "after reset() the shape answers as a new instance", &resetEqualsFresh, kSame},
       {"batch-equals-single", "probes of one step do not mix", &batchEqualsSingle, kSame},
       {kGuarded, "each of eight probes has memory of its own, and no block is overrun", &eightProbes, kSame},
       {"jump-flag", "after a jump the nearest foot is found, and the place before is forgotten", &jumpFlag, kSame},

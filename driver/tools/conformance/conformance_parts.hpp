@@ -10,16 +10,16 @@
 
 namespace hapticd::conformance {
 
-constexpr double kConformanceDt = 1e-3;  ///< [s] of every step
-constexpr int kConformanceSteps = 2000;  ///< once around the path
+constexpr double kConformanceDt = 1e-3;  ///< [s] duration of every step
+constexpr int kConformanceSteps = 2000;  ///< number of steps once around the path of onPath()
 
-/// Names of tests that must pass before others mean anything.
+/// Names of tests that must pass before other tests mean anything.
 constexpr const char *kInTime = "steps-end-in-time", *kFinite = "finite-outputs", *kSame = "determinism-bitwise",
                      *kFoot = "foot-and-normal", *kGuarded = "eight-probes";
-/// The beginning of an objection about an overrun that did not end the process.
+/// The beginning of the message about an overrun that did not end the process.
 constexpr const char* kBeyond = "it writes behind its hsp_contact";
 
-/// Makes and activates an instance; otherwise has the reason why there is none.
+/// An instance that is made and activated, or the reason why this failed.
 struct Made {
   std::unique_ptr<Subject> subject;
   std::string error;
@@ -29,10 +29,12 @@ struct Made {
 std::string text(double value);
 std::string text(const Eigen::Vector3d& p);  ///< "X, Y, Z m"
 
-/// Returns the objection with the place where it was found in front, because advice often stands at its end.
+/// Returns the objection (a text that says what is wrong) with the place where it was found in front of it. At its end,
+/// the place would come after the advice that an objection often ends with.
 std::string placed(const std::string& objection, const Eigen::Vector3d& p);
 
-/// A smooth closed path through and around the shape, from a corner outside its box and back to it.
+/// Returns a point of a smooth closed path through and around the shape, which begins and ends at a corner outside its
+/// box. @param part how far along the path, from 0 to 1 @param phase changes the path
 Eigen::Vector3d onPath(const Subject& subject, double part, double phase = 0);
 
 /// Moves the probe along onPath(), then presses at each place where the shape can be touched. Passes every answer of
@@ -40,17 +42,17 @@ Eigen::Vector3d onPath(const Subject& subject, double part, double phase = 0);
 std::string along(Subject& subject, const std::function<std::string(const Answer&, const Eigen::Vector3d&)>& look,
                   int steps = kConformanceSteps);
 
-/// Does the same as along(), and then goes straight in at each place as deep as deepestPress() and out again, because a
-/// click or a second layer there may allocate, lock or print too.
+/// Does the same as along(). Then at each place it goes straight in, as deep as deepestPress(), and out again, because
+/// a click or a second layer that deep may allocate, lock or print too.
 std::string alongAndDeep(Subject& subject,
                          const std::function<std::string(const Answer&, const Eigen::Vector3d&)>& look);
 
-/// Runs a test at each place where the shape can be touched, on one instance. The first objection ends the run. Returns
-/// "skip: WHY" if there is no such place.
+/// Runs a test on one instance at each place where the shape can be touched. Stops when `test` returns an objection,
+/// and returns it. Returns "skip: WHY" if there is no such place.
 std::string atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test);
 
-/// The outcome for a shape whose force has no surface.
-constexpr const char* kField = "skip: it names no surface (HSP_OUT_TRACED): a force without a surface has no sign";
+/// The result of a test of contacts for a shape that names no surface.
+constexpr const char* kField = "skip: it names no surface (HSP_OUT_TRACED), so its force points neither in nor out";
 
 /// Returns the answer to a probe that jumps to p and rests there; zero if no answer can be judged.
 hsp_contact answerAtRest(Subject& subject, const Eigen::Vector3d& p);
@@ -67,7 +69,8 @@ std::string loopsGiveNoEnergy(const Recipe& recipe, uint64_t);
 /// Returns "warn: ..." if there are parameters whose units are not SI, otherwise "".
 std::string unitsSi(const Recipe& recipe, uint64_t);
 
-/// [bytes] Returns the memory that leaks in each life of an instance. `used` is the memory in use after each life. The
+/// [bytes] Returns the memory that leaks in each life of an instance, from create() to destroy(). `used` is the memory
+/// in use after each life. The
 /// lives are cut into four quarters; each has a least and a greatest use. The leak is the smallest growth of either
 /// from one quarter to the next, divided by the lives of a quarter. Memory that is taken once, however late, and memory
 /// that an allocator keeps and gives back do not grow in every quarter, so they do not count. Returns 0 for fewer than
@@ -81,7 +84,7 @@ std::string createDestroyLeak(const Recipe& recipe, uint64_t);
 /// WHY" if the shape draws nothing.
 std::string drawingWhereFelt(const Recipe& recipe, uint64_t);
 
-/// Returns what goes wrong with as many probes as a run may have, in guarded memory, or "".
+/// Returns what goes wrong with eight probes, as many as a run may have, in guarded memory, or "".
 std::string eightProbes(const Recipe& recipe, uint64_t);
 
 /// Returns "" if the status is one that a step may return and the answer is finite, otherwise what is wrong.
@@ -89,7 +92,7 @@ std::string wrongStatus(const Answer& answer);
 
 const hsp_param& paramAt(const hsp_class& c, uint32_t i);
 
-/// Returns a warning with what `objection` says about each parameter, separated by `between`, and then `advice`; or ""
+/// Returns a warning: what `objection` says about each parameter, separated by `between`, and then `advice`. Returns ""
 /// if there is no objection.
 std::string warningOfParams(const Recipe& recipe, const std::function<std::string(const hsp_param&)>& objection,
                             const std::string& between, const std::string& advice);

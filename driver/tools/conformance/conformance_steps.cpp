@@ -28,7 +28,8 @@ std::string finiteOutputs(const Recipe& recipe, uint64_t seed) {
   return "";
 }
 
-/// Gives bad samples during a contact, where a shape that ignores the flag would go on pushing.
+/// Gives the shape bad samples (HSP_IN_INVALID) during a contact, where a shape that ignores the flag would go on
+/// pushing.
 std::string badSample(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
@@ -98,7 +99,8 @@ std::string normalUnit(const Recipe& recipe, uint64_t) {
     const hsp_contact& c = answer.contacts[0];
     const double norm = Vector3d(c.normal).norm();
     const bool traced = (c.flags & HSP_OUT_TRACED) != 0;
-    return traced && std::abs(norm - 1) > 1e-6 ? "a normal of length " + text(norm) : std::string();
+    return traced && std::abs(norm - 1) > 1e-6 ? "expected a normal of length 1, but its length is " + text(norm)
+                                               : std::string();
   });
 }
 
@@ -109,12 +111,12 @@ double medianOf(std::vector<double> values) {
   return *middle;
 }
 
-/// Checks that depths and feet are in m: depth must change by as much as the probe moves along the normal, and outside,
-/// the foot must be as far away as the depth says.
+/// Checks that depths and foot points are in m. The depth must change by as much as the probe moves along the normal.
+/// Outside, the foot point must be as far away as the depth says.
 class LengthsInMetres {
  public:
   void add(const hsp_contact& c, const Vector3d& p, const Vector3d& before, double depth_before) {
-    constexpr double kOutside = 1e-4;  // [m]
+    constexpr double kOutside = 1e-4;  // [m] a probe farther from its foot than this is outside
     if (const double away = (p - Vector3d(c.point)).norm(); !(c.depth_m > 0) && away > kOutside) {
       ++outside_;
       if (c.depth_m == 0) ++flat_;
@@ -150,7 +152,7 @@ class LengthsInMetres {
 std::string depthOutward(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (made.subject->moves()) return "skip: it moves, and its depth with it";
+  if (made.subject->moves()) return "skip: it moves, so its depth changes by itself";
   double agrees = 0, depth = 0;
   Vector3d last = Vector3d::Zero();
   bool known = false;
@@ -196,7 +198,9 @@ std::string energyNonIncreasing(const Recipe& recipe, uint64_t) {
   const double gained = std::isnan(before) ? 0 : made.subject->energy() - before;
   constexpr double kRounding = 0.02;  // share of the work in both directions, because the path is made of steps
   const double allowed = kRounding * moved + 1e-6 - gained;
-  return given <= allowed ? "" : "a closed path gave " + text(given) + " J to the hand of " + text(moved) + " J moved";
+  return given <= allowed ? ""
+                          : "a closed path gave " + text(given) + " J to the hand, of " + text(moved) +
+                                " J exchanged; expected none";
 }
 
 }  // namespace

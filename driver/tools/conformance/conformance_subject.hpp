@@ -58,12 +58,12 @@ class Subject {
   /// Moves every probe to a position within dt [s]. Velocities follow from the positions before. Every fifth step also
   /// makes a proximity search, as the host does.
   const Answer& step(const std::vector<Eigen::Vector3d>& positions, double dt, uint32_t flags = 0);
-  /// The same as `step` with one probe, exactly as given.
+  /// Makes a step with one probe exactly as given, without a proximity search.
   const Answer& stepRaw(const hsp_probe& probe, double dt);
-  /// From now on probes have what these flags stand for (HSP_R_VELOCITY, HSP_R_ORIENTATION), whether the shape asked
-  /// for it or not.
+  /// From now on probes have the quantities that these flags stand for (HSP_R_VELOCITY, HSP_R_ORIENTATION), even if the
+  /// shape did not ask for them.
   void give(uint32_t flags) { given_ = flags; }
-  /// From now on `cost` is the cost of the last step.
+  /// From now on the cost of each step is measured, and cost() returns that of the last step.
   void measureCost() { measured_ = true; }
   const StepCost& cost() const { return cost_; }
   /// Puts this much room between the records of a step, to show whether the shape uses the strides.
@@ -81,7 +81,7 @@ class Subject {
   bool moves() const { return (report_.flags & HSP_R_MOVES) != 0; }
   double damping() const { return damping_; }  ///< [N s/m] the largest damping that its parameters ask for
   double energy() const;                       ///< [J] stored energy; NaN if the shape does not report it
-  /// Returns the box of the shape in its own frame [m]; if it is unknown, 0.1 m about the origin.
+  /// Returns the box of the shape in its own frame [m]. If it is unknown, returns a cube from -0.1 m to 0.1 m.
   std::pair<Eigen::Vector3d, Eigen::Vector3d> bounds() const;
   uint64_t stepNs() const { return step_ns_; }           ///< [ns] wall-clock time of the last step
   uint64_t allocations() const { return allocations_; }  ///< number of allocations in all steps since activate()

@@ -12,9 +12,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kOffPart = 0.01;   ///< share of a length, because a foot that is followed is not exact
-constexpr double kOffLeast = 1e-6;  ///< [m]
-constexpr double kOffAngle = 0.02;  ///< [rad] a little more than a degree
+constexpr double kOffPart = 0.01;  ///< tolerance as a share of the length, because a foot that is followed is not exact
+constexpr double kOffLeast = 1e-6;  ///< [m] least tolerance of a length
+constexpr double kOffAngle = 0.02;  ///< [rad] tolerance of a direction, a little more than a degree
 
 /// What the answer to a resting probe says about the surface.
 struct Foot {
@@ -53,8 +53,8 @@ std::string offTheSurface(Subject& subject, const Foot& foot) {
   return "";
 }
 
-/// Returns true if the normal cannot be judged: if the foot stays while the probe goes aside, it lies on an edge, where
-/// many normals are right; if it leaps, another part of the surface is nearer.
+/// Returns true if the normal cannot be judged. If the foot stays in place while the probe moves sideways, it lies on
+/// an edge, where many normals are right. If the foot leaps, another part of the surface is nearer.
 bool staysOrLeaps(const Foot& before, const Foot& after) {
   constexpr double kStays = 0.2, kLeaps = 5;  // share of the distance that the probe moved
   const double foot = (after.point - before.point).norm(), probe = (after.p - before.p).norm();
@@ -103,7 +103,7 @@ std::string footAndNormal(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   if (made.subject->moves() || (made.subject->description().flags & HSP_C_DEFORMS) != 0)
-    return "skip: it moves or gives way, and its foot with it";
+    return "skip: it moves or deforms, so its foot point moves too";
   return atEachPlace(recipe, &wrongFoot);
 }
 

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 constexpr size_t kMostPlaces = 12, kMostOfASize = 6;
 
-/// The start points of a search: points on a box about the middle.
+/// A box whose surface has the start points of a search.
 struct Around {
   Vector3d middle, half;
 };
@@ -57,7 +57,7 @@ struct Search {
     });
   }
 
-  /// Returns true if a press there makes contact, as its flags or its force show.
+  /// Returns true if a press there gets inside the shape: HSP_OUT_TRACED is set and the depth is above 0.
   bool touches(const Place& place) {
     bool inside = false;
     press(subject, place, [&](const Answer& answer, const PressStep&) {
@@ -68,7 +68,8 @@ struct Search {
     return inside;
   }
 
-  /// Looks for the surface from p on. @return true if it can be touched there, and could not be before
+  /// Searches for the surface from the point p. @return true if a place was found that can be touched and was not known
+  /// before
   bool lookFrom(const Vector3d& p, double size) {
     const Answer& answer = subject.step({p}, kConformanceDt, HSP_IN_JUMP);
     if (answer.status != HSP_OK && answer.status != HSP_DEGRADED) return false;

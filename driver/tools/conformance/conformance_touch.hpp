@@ -26,8 +26,8 @@ struct Touch {
   bool felt = false;    ///< it gave a force or a torque somewhere
 };
 
-/// Follows the foot points that the shape gives, and presses at each to try it. Throws nothing. Returns an empty Touch
-/// for a shape that cannot be made.
+/// Follows the foot points that the shape gives, and presses at each to try it. Throws no exception. Returns an empty
+/// Touch for a shape that cannot be made.
 Touch findTouch(const Recipe& recipe);
 
 /// Writes a Touch as text, to pass it from a child process to its parent, and reads it back.
@@ -51,7 +51,8 @@ std::vector<PressStep> pressAt(const Place& place, double depth);
 
 using PressLook = std::function<std::string(const Answer&, const PressStep&)>;
 
-/// Presses at one place; the first step is a jump. The first objection of `look` ends the press.
+/// Presses at one place; the first step is a jump. Stops when `look` returns an objection, and returns it; returns ""
+/// if there is none.
 std::string press(Subject& subject, const Place& place, const PressLook& look);
 
 }  // namespace hapticd::conformance

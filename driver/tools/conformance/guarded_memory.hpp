@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Memory in which a plugin cannot overrun a block unseen: each block ends where an unreadable page begins.
+/// Memory in which an overrun of a block is always noticed, because each block ends where an unreadable page begins.
 #pragma once
 #include <cstddef>
 
@@ -19,7 +19,7 @@ class GuardedMemory {
   bool works_;
 };
 
-/// A wrong access to guarded memory: the block that it belongs to, and the place.
+/// A wrong access to guarded memory: the block that was overrun, and the place in it.
 struct Overrun {
   size_t block = 0;  ///< [bytes] size of the block; 0 if the address is not in guarded memory
   size_t at = 0;     ///< [bytes] from the beginning of the block to the address

@@ -91,7 +91,8 @@ void onFault(int signal, siginfo_t* info, void*) {
   ::signal(signal, SIG_DFL);
 }
 
-/// ", in step() with the probe at X, Y, Z m"; with several probes it is unknown which one it was.
+/// Returns ", in step() with the probe at X, Y, Z m". With several probes it is unknown which one it was, so all are
+/// named.
 std::string placesOfStep() {
   std::string places;
   const uint32_t count = std::min(last_step->count, LastStep::kMost);

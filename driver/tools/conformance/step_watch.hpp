@@ -45,7 +45,7 @@ void tellOverruns(uint32_t probes);
 /// cannot do this.
 bool watchSystemCalls();
 
-/// The first system call of each step; a step that makes several is counted once.
+/// The steps that made a system call. A step that makes several is counted once.
 struct SystemCalls {
   uint64_t steps = 0;  ///< number of steps that made a system call
   long number = 0;     ///< number (as in the kernel's table) of the last system call

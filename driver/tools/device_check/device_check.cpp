@@ -96,12 +96,12 @@ Finding claims(const scene::Device& device) {
     return Finding::warned(heavy);
   if (!has(HDV_EXT_CUT))
     return Finding::warned("there is no extension " HDV_EXT_CUT
-                           ": a servo thread that hangs cannot be cut by the watchdog");
+                           ": if the servo thread hangs, the watchdog cannot switch the motors off");
   return Finding::passed();
 }
 
-/// Returns the joints of a simulated arm after some ticks in the mode HDV_OFF, in which every command has torques all
-/// the same. @param share torques of the commands, as a share of the largest torques
+/// Returns the joint positions of a simulated arm after some ticks in the mode HDV_OFF. The commands have torques all
+/// the same, which the arm must ignore. @param share torques of the commands, as a share of the largest torques
 std::optional<std::vector<double>> placeAfter(const scene::Device& device, double share) {
   constexpr uint64_t kPeriod = 1'000'000, kTicks = 200;  // [ns]
   const Opened opened = openArm(device);

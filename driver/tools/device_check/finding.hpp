@@ -17,7 +17,7 @@ struct Finding {
   static Finding warned(std::string what) { return {Verdict::kWarned, std::move(what), false}; }
   static Finding failed(std::string what) { return {Verdict::kFailed, std::move(what), false}; }
   static Finding skipped(std::string why) { return {Verdict::kSkipped, std::move(why), false}; }
-  /// Makes a failed finding from an objection, or a passed one from "".
+  /// Makes a failed finding from a text that says what is wrong, or a passed one from "".
   static Finding of(std::string wrong) { return wrong.empty() ? passed() : failed(std::move(wrong)); }
   /// Marks this finding as one after which no other test can be run.
   Finding andEnds() && {

@@ -19,7 +19,7 @@ struct Opened {
 };
 Opened openArm(const scene::Device& device);
 
-/// One call of read() and the command after it, with the motors off.
+/// The result of one read(), and of the write() after it, with the motors off.
 struct Reading {
   uint64_t now_ns = 0;
   hsp_status read = HSP_OK, write = HSP_OK;
@@ -27,8 +27,9 @@ struct Reading {
 };
 
 /// [main] Starts the arm, reads it (a simulated arm for two seconds of its own time, a real one for half a second), and
-/// stops it. Every command is HDV_OFF. @param look judges each reading; its first objection ends the reading @param
-/// around called in place of each read() and write(), which it gets as an argument and must call
+/// stops it. Every command is HDV_OFF. Returns what is wrong, or "".
+/// @param look judges each reading; if it returns a text other than "", no more is read and the text is returned
+/// @param around is called in place of each read() and write(), which it gets as an argument and must call
 std::string readFor(host::DeviceInstance& arm, hdv_sample& sample,
                     const std::function<std::string(const Reading&)>& look,
                     const std::function<void(const std::function<void()>&)>& around);

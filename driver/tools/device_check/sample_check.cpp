@@ -26,7 +26,7 @@ std::string SampleCheck::wrongNumbers(const hdv_sample& sample) const {
 
 std::string SampleCheck::look(const Reading& reading) {
   const hdv_sample& sample = *reading.sample;
-  const std::string at = " at read " + std::to_string(++reads_);
+  const std::string at = " at read number " + std::to_string(++reads_);
   if (reading.read < 0)
     return "read() gives " + host::statusName(reading.read) + at + ": the device would count as lost";
   if (reading.write < 0)
@@ -61,11 +61,12 @@ Finding SampleCheck::sum() const {
         " reads gave the same number, and a run takes the force away after 50 ms; expected one more for each new "
         "sample");
   if (timeless_ == reads_)
-    return Finding::warned("hdv_sample.time_ns is never set; expected when it was measured, as now_ns counts");
+    return Finding::warned(
+        "hdv_sample.time_ns is never set; expected the time of the measurement, on the clock of now_ns");
   if (ahead_ > 0)
     return Finding::warned(
-        "hdv_sample.time_ns is more than 0.1 s ahead of now_ns; expected when the sample was measured, as "
-        "now_ns counts");
+        "hdv_sample.time_ns is more than 0.1 s ahead of now_ns; expected the time of the measurement, on the "
+        "clock of now_ns");
   if (beyond_ >= 0) {
     std::snprintf(
         text, sizeof text,

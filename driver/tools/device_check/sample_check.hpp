@@ -11,9 +11,9 @@ namespace hapticd::device_check {
 class SampleCheck {
  public:
   explicit SampleCheck(const hdv_info& info) : info_(info) {}
-  /// @return what is wrong with one sample; "" if nothing is
+  /// Judges one sample. Returns what would be a fault in a run, or "".
   std::string look(const Reading& reading);
-  /// Judges all samples together: fails for what would be a fault in a run, and warns of everything else.
+  /// Judges all samples together. Fails for what would be a fault in a run, and warns of everything else.
   Finding sum() const;
 
  private:

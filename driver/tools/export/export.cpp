@@ -83,7 +83,8 @@ Result<Exported> exportMcap(const Recording& recording, const std::string& file)
   Outgoing clock{ticks, 0};
   for (const RecordedStream& stream : recording.streams()) {
     if (!liesAsCdr(stream.columns()))
-      return Error{"rows of " + stream.name() + " do not have the layout of CDR: a newer hapticd wrote them"};
+      return Error{"rows of " + stream.name() +
+                   " do not have the layout of CDR: a newer hapticd wrote them; use it to export them"};
     const uint16_t channel =
         (*out)->addChannel("/hapticd/" + stream.name(), rosType(stream.name()), rosDefinition(stream.columns()));
     if (&stream == ticks)

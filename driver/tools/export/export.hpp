@@ -19,7 +19,8 @@ struct Exported {
 /// the time of its tick.
 Result<Exported> exportMcap(const Recording& recording, const std::string& file);
 
-/// [main] Writes one stream as a table with a header, with 17 digits per number.
+/// [main] Writes one stream as a table with a header. Each number has as many digits as are needed to read it back
+/// exactly.
 Result<Exported> exportCsv(const RecordedStream& stream, const std::string& file);
 
 }  // namespace hapticd::record

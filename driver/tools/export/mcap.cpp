@@ -16,7 +16,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are stored as they lie in memory");
 
 constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
-constexpr size_t kChunkBytes = 1u << 20;  ///< size before compression: a reader unpacks one chunk to seek
+constexpr size_t kChunkBytes = 1u << 20;  ///< size of a chunk before compression; to seek, a reader unpacks one chunk
 constexpr int kLevel = 3;                 ///< compression level of zstd, which is its default
 
 /// Op codes of records.

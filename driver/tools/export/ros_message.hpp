@@ -12,7 +12,7 @@
 
 namespace hapticd::record {
 
-/// The four bytes before a row; they mean plain CDR, little-endian, no options.
+/// The four bytes in front of a row that make it a message. They mean: plain CDR, little-endian, no options.
 constexpr std::array<char, 4> kCdrHead = {0, 1, 0, 0};
 
 /// [any] Returns the name of the message type, such as "hapticd_msgs/msg/Ticks" for "ticks".

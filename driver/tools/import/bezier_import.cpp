@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 constexpr int kMaxDegree = 15;
 constexpr int kMaxPatches = 100'000;
-constexpr size_t kCleanDigits = 9;  ///< digits of a coordinate: hides rounding errors of scaling
+constexpr size_t kCleanDigits = 9;  ///< digits of a written coordinate; more would show rounding errors of scaling
 
 /// Reads the numbers of a file with their lines, and skips comments.
 class Numbers {

@@ -23,11 +23,12 @@ using Eigen::Vector3d;
 constexpr int kRounds = 300;          ///< number of rounds of the fit
 constexpr double kFitted = 1e-4;      ///< relative error at which the fit ends
 constexpr double kGood = 0.05;        ///< relative error above which a place is reported
-constexpr double kReach = 0.7;        ///< share of the distance of points: how far an answer counts
-constexpr double kFarthestReach = 2;  ///< share of that distance: the largest shear reach that is tried
-constexpr double kNoReach = 0.05;     ///< share of that distance: a shear reach with practically no effect
+constexpr double kReach = 0.7;        ///< multiple of the points' distance: the distance at which an answer counts less
+constexpr double kFarthestReach = 2;  ///< multiple of the points' distance: the largest shear reach that is tried
+constexpr double kNoReach = 0.05;     ///< multiple of the points' distance: a smaller shear reach has hardly any effect
 constexpr double kStiffest = 1e6;     ///< [N/m] largest stiffness that a body may have
 
+/// A press that was measured or computed: its place on the surface [m], its depth [m] and its force [N].
 struct Answer {
   Vector3d place;
   double depth, force;
@@ -203,14 +204,15 @@ void tell(const std::vector<Answer>& answers, const std::vector<double>& forces,
     worst = std::max(worst, std::fabs(error));
     squares += error * error / static_cast<double>(answers.size());
     if (std::fabs(error) > kGood)
-      std::fprintf(stderr, "warning: at (%.4g, %.4g, %.4g) m the body gives %.4g N, the answer is %.4g N\n",
+      std::fprintf(stderr,
+                   "warning: at (%.4g, %.4g, %.4g) m the body gives %.4g N, but the file of answers says %.4g N\n",
                    answers[j].place.x(), answers[j].place.y(), answers[j].place.z(), forces[j], answers[j].force);
   }
   std::printf("%s: force at %zu places within %.2f %%, rms %.2f %%\n", options.out.c_str(), answers.size(), 100 * worst,
               100 * std::sqrt(squares));
 }
 
-/// Fits `fitted.stiffness`. @returns the forces [N] of the body at the answers
+/// Fits `fitted.stiffness`. Returns the force [N] of the body at the place of each answer.
 Result<std::vector<double>> fitStiffness(const Body& body, const std::vector<Answer>& answers,
                                          const Calibration& options, host::Catalog& catalog, Fitted& fitted) {
   const Eigen::MatrixXd shares = sharesOf(body, answers);
@@ -235,7 +237,7 @@ Result<std::vector<double>> fitStiffness(const Body& body, const std::vector<Ans
   return forces;
 }
 
-/// Fits `fitted.reach`, and reports how well the dents are met.
+/// Fits `fitted.reach`, and reports how well the body matches the given dents.
 Result<void> fitShear(const Body& body, const std::vector<Dent>& dents, const Calibration& options,
                       host::Catalog& catalog, Fitted& fitted) {
   Fitted tried{fitted.stiffness, 0, true};
@@ -255,13 +257,14 @@ Result<void> fitShear(const Body& body, const std::vector<Dent>& dents, const Ca
     wider += error / static_cast<double>(dents.size());
     if (std::fabs(error) > kGood)
       std::fprintf(stderr,
-                   "warning: at (%.4g, %.4g, %.4g) m the dent of the body is %.3f of the depth, the answer %.3f\n",
+                   "warning: at (%.4g, %.4g, %.4g) m the dent of the body is %.3f of the depth, but the file of dents "
+                   "says %.3f\n",
                    dents[i].beside.x(), dents[i].beside.y(), dents[i].beside.z(), fit->shares[i], dents[i].share);
   }
   if (worst > kGood && wider > 0 && fit->reach < kNoReach * spacing)
     std::fprintf(stderr,
-                 "warning: the dent of the body is wider than that of the answers; points closer together than %.3g m "
-                 "make it narrower\n",
+                 "warning: the dents of the body are wider than those of the file; points closer together than %.3g m "
+                 "make them narrower\n",
                  spacing);
   std::printf("%s: shear_reach %.4g m, dent at %zu places within %.3f of the depth, rms %.3f\n", options.out.c_str(),
               fitted.reach, dents.size(), worst, std::sqrt(squares));
@@ -279,8 +282,9 @@ Result<void> calibrate(const Calibration& options, host::Catalog& catalog) {
   std::vector<Dent> dents;
   if (!options.dents.empty()) {
     if (body->columns == 0)
-      return Error{options.body +
-                   ": has vertices, expected a grid of points: the dents of a mesh are those of its rings"};
+      return Error{
+          options.body +
+          ": has vertices, expected a grid of points: the dents of a mesh cannot be fitted, its rings fix them"};
     auto read = readDents(options.dents);
     if (!read) return Error{read.error()};
     dents = std::move(*read);

@@ -15,12 +15,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPress = 1e-4;    ///< [m] depth of the press of both probes
-constexpr double kTick = 1e-3;     ///< [s]
+constexpr double kPress = 1e-4;    ///< [m] depth to which both probes press
+constexpr double kTick = 1e-3;     ///< [s] duration of a tick
 constexpr int kMostTicks = 4000;   ///< largest number of ticks until both forces settle
-constexpr int kQuiet = 20;         ///< ticks without a change, after which forces count as settled
+constexpr int kQuiet = 20;         ///< number of ticks without a change after which forces count as settled
 constexpr double kSettled = 1e-7;  ///< relative change of a force that counts as no change
-constexpr int kLooks = 12;         ///< reaches that are tried before the best one is refined
+constexpr int kLooks = 12;         ///< number of shear reaches that are tried before the best one is refined
 constexpr int kRefinements = 14;   ///< steps of the golden section search
 constexpr double kGolden = 0.61803398874989485;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Measures how the surface of a soft body goes down beside a press, and finds the shear reach that fits given dents.
+/// Measures how far the surface of a soft body sinks beside a press, and finds the shear reach that fits given dents.
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
@@ -11,7 +11,7 @@
 #include "host/catalog.hpp"
 
 namespace hapticd::importing {
-/// Largest size of a CSV file of presses or dents.
+/// [bytes] Largest size of a CSV file of presses or dents.
 inline constexpr std::size_t kMostTableBytes = std::size_t{1} << 26;
 
 /// A press at one place and its effect at another.

@@ -15,11 +15,11 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-constexpr int kMostShrinks = 50;
+constexpr int kMostShrinks = 50;               ///< largest number of steps in which a ball shrinks
 constexpr double kShrunk = 1e-9;               ///< relative change of a radius below which a ball no longer shrinks
-constexpr std::size_t kMostCandidates = 6000;  ///< balls from which to choose
-constexpr std::size_t kMostCovered = 12000;    ///< [samples] at most so many must be covered
-constexpr std::size_t kTold = 10000;           ///< balls or candidates between two messages of progress
+constexpr std::size_t kMostCandidates = 6000;  ///< largest number of balls from which the spheres are chosen
+constexpr std::size_t kMostCovered = 12000;    ///< largest number of samples that the spheres must cover
+constexpr std::size_t kTold = 10000;           ///< number of balls between two messages of progress
 constexpr int kChecks = 8;                     ///< spheres that are checked along an edge
 constexpr double kFlatCosine = 0.94;           ///< cosine of 20 degrees: flatter edges belong to a smooth surface
 
@@ -130,7 +130,7 @@ std::vector<Ball> innerBalls(const SurfaceSamples& samples, const NearestPoints&
   return balls;
 }
 
-/// Returns the three spheres nearest to a witness, nearest first.
+/// Returns the indices of the three spheres nearest to a point, the nearest first; -1 where there are fewer spheres.
 std::array<int, 3> threeNearest(const std::vector<Ball>& kept, const Vector3d& p) {
   std::array<int, 3> best{-1, -1, -1};
   std::array<double, 3> distance{HUGE_VAL, HUGE_VAL, HUGE_VAL};
@@ -208,7 +208,8 @@ class Soundness {
 
 using Edges = std::set<std::array<int, 2>>;
 
-/// Joins two parts by the shortest edge inside the body, in case the samples were too few to find it.
+/// Joins parts that are still separate by the shortest edges inside the body, in case the samples were too few to find
+/// them.
 void bridgeGaps(const std::vector<Ball>& kept, const Soundness& sound, Parts& parts, Edges& edges) {
   std::vector<std::pair<double, std::array<int, 2>>> gaps;
   const int count = static_cast<int>(kept.size());

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr double kToleranceShare = 0.01;  ///< default tolerance, as a share of the body's size
 constexpr double kLarge = 1.0;            ///< [m] a larger body was probably given in millimetres
-constexpr double kChordShare = 0.002;     ///< share of a NURBS model's size: chord error of its triangles
+constexpr double kChordShare = 0.002;     ///< chord error of the triangles of a model, as a share of its size
 constexpr std::size_t kMostFileBytes = std::size_t{1} << 30;
 
 bool endsWith(const std::string& name, const char* end) {
@@ -85,7 +85,7 @@ Result<Deviation> deviationFrom(host::ShapeInstance& body, const std::vector<Vec
   return deviation;
 }
 
-/// Measures the written file in both directions and reports it.
+/// Measures the distance of the given surface from the written body, and of the body from the surface, and prints both.
 Result<void> report(const MedialImport& options, const MedialOptions& settings, const MedialAxis& axis,
                     const SurfaceSamples& samples, host::Catalog& catalog) {
   std::fprintf(stderr, "measuring the written body\n");

@@ -10,8 +10,8 @@ namespace hapticd::importing {
 
 class NearestPoints {
  public:
-  explicit NearestPoints(const std::vector<Eigen::Vector3d>& points);  ///< [main] points must outlive it
-  /// Restricts which points q count: those with (q - from) . inward > sine * |q - from|.
+  explicit NearestPoints(const std::vector<Eigen::Vector3d>& points);  ///< [main] `points` must outlive this
+  /// A restriction of the points: only points q with (q - from) . inward > sine * |q - from| count.
   struct Beyond {
     Eigen::Vector3d from, inward;
     double sine;

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 constexpr std::size_t kMostTriangles = 20'000'000;
 constexpr std::size_t kStlHead = 84, kStlTriangle = 50;  ///< [bytes]
 
-/// Gives one index to each distinct point.
+/// Gives equal points the same index.
 class Weld {
  public:
   explicit Weld(std::vector<Vector3d>& points) : points_(points) {}

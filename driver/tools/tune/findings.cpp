@@ -71,8 +71,8 @@ std::string noise(const Findings& findings) {
   for (const Candidate* c : points(findings))
     widest = std::max(widest, c->cost.p50_high_ns / std::max(c->cost.p50_low_ns, 1.0) - 1);
   return fmt::format(
-      "noise: medians of one setting lay up to {:.0f} % apart; costs whose intervals overlap count as equal, and so do "
-      "errors below {:g} um and {:g} N",
+      "noise: the medians of one setting differed by up to {:.0f} %; costs whose intervals overlap count as equal, and "
+      "so do errors below {:g} um and {:g} N",
       100 * widest, kErrorNoise * 1e6, kForceNoise);
 }
 
@@ -87,11 +87,12 @@ std::string reason(const Findings& findings) {
       return fmt::format("the most accurate of {} settings whose p99 is at most {}: {}", count, budget, p99);
     return fmt::format("none of {} settings has a p99 of at most {}; this is the cheapest: {}", count, budget, p99);
   }
-  const std::string limits =
-      fmt::format("within half of {:.3g} um and {:.3g} N", goal.tolerance_m * 1e6, goal.force_tolerance_n);
+  const std::string limits = fmt::format("with errors of at most half of {:.3g} um and {:.3g} N",
+                                         goal.tolerance_m * 1e6, goal.force_tolerance_n);
   if (findings.tuning.reached)
-    return fmt::format("the cheapest of {} settings {}, so that other motions stay within them", count, limits);
-  return fmt::format("none of {} settings is {}; this is the most accurate", count, limits);
+    return fmt::format("the cheapest of {} settings {}, so that other motions stay within the tolerances", count,
+                       limits);
+  return fmt::format("of {} settings there is none {}; this is the most accurate", count, limits);
 }
 
 }  // namespace hapticd::tune

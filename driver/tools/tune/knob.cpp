@@ -13,7 +13,8 @@
 namespace hapticd::tune {
 namespace {
 
-/// Returns decades around the default within the range, and the scene's own value.
+/// Returns the default multiplied by powers of ten, from 0.001 to 1000, as far as they lie in the range, and the
+/// scene's own value.
 std::vector<double> ladderOfReal(const host::ParamInfo& param, double present) {
   std::set<double> values{present};
   for (int decade = -3; decade <= 3; ++decade) {

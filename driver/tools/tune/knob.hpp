@@ -19,7 +19,7 @@ struct Knob {
   std::vector<double> numbers;      ///< the values to try, for set(); for a list, the value of all its members
   std::vector<std::string> values;  ///< the same values as text, such as "1e-09" or "newton"
   size_t current = 0;               ///< index of the value that the scene has
-  size_t finest = 0;                ///< index of the value that the converged reference has
+  size_t finest = 0;                ///< index of the value that the converged reference has, see findKnobs()
 
   std::string name() const { return plugin + "." + key; }
 };

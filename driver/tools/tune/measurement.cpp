@@ -71,11 +71,11 @@ Result<Cost> pass(const scene::Scene& scene, const Motion& motion, VelocityFrom 
   return cost;
 }
 
-/// Returns true if the two feet are a millimetre apart and equally near, so that the motion crossed the medial axis
-/// there. A foot on the same face that is wrong by so much would differ far more in its distance, because the distance
-/// grows with the square of the error.
+/// Returns true if the two foot points are more than a millimetre apart and equally near to the probe, because it is on
+/// the medial axis there. A foot on the same face that is wrong by so much would differ far more in its distance,
+/// because the distance grows with the square of the error.
 bool ambiguous(const Answer& a, const Answer& b) {
-  constexpr double kApart = 1e-3, kShare = 1e-3;  // [m]; share of the way between the feet
+  constexpr double kApart = 1e-3, kShare = 1e-3;  // [m]; share of the distance between the feet
   const double foot = (a.point - b.point).norm();
   return a.traced && b.traced && foot > kApart && std::abs(a.depth - b.depth) < kShare * foot;
 }

@@ -40,13 +40,13 @@ struct Difference {
   double depth_m = 0;
   double normal_deg = 0;   ///< only where there is a single nearest point
   double force_n = 0;      ///< [N] force of a single model
-  uint64_t ambiguous = 0;  ///< answers with another foot that is equally near
-  uint64_t untraced = 0;   ///< answers that only one of the two runs has
+  uint64_t ambiguous = 0;  ///< number of answers with another foot point that is equally near
+  uint64_t untraced = 0;   ///< number of answers that have a foot point in only one of the two runs
   /// [m] larger of foot_m and depth_m; 1 m if a surface was traced in only one of the two runs
   double geometry() const { return untraced > 0 ? 1 : std::max(foot_m, depth_m); }
 };
 
-constexpr double kCostNoise = 0.05;  ///< share of a time: measurements of the same thing differ by at least this
+constexpr double kCostNoise = 0.05;  ///< share of a time by which measurements of the same setting differ at least
 
 /// Adds another measurement of the same setting. The shorter times count, and the interval includes both medians.
 void widen(Cost& cost, const Cost& again);

@@ -10,9 +10,9 @@
 namespace hapticd::tune {
 namespace {
 
-constexpr int kPasses = 3;
-constexpr size_t kFewTogether = 256;  ///< up to so many combinations, all are tried
-constexpr double kMargin = 0.5;       ///< share of a tolerance to use: errors may be larger elsewhere
+constexpr int kPasses = 3;            ///< how often the motion is repeated to measure the time of one setting
+constexpr size_t kFewTogether = 256;  ///< if there are at most so many combinations of values, all are tried
+constexpr double kMargin = 0.5;       ///< share of a tolerance to use, because other motions may have larger errors
 
 double geometryOf(const Candidate& c) {
   return std::max(c.error.geometry(), kErrorNoise);

@@ -14,7 +14,7 @@ namespace hapticd::tune {
 /// What the user asks for. Errors of the chosen setting are at most half the tolerance, so that other motions stay
 /// within the tolerance too.
 struct Goal {
-  std::optional<double> budget_ns;  ///< if given, choose the most accurate setting whose p99 is below this; if not,
+  std::optional<double> budget_ns;  ///< if given, choose the most accurate setting whose p99 is at most this; if not,
                                     ///< choose the cheapest one within the tolerances
   double tolerance_m = 1e-6;        ///< [m] tolerance of foot and depth
   double force_tolerance_n = 0.1;

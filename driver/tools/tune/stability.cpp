@@ -12,7 +12,7 @@
 namespace hapticd::tune {
 namespace {
 
-constexpr double kUnfelt = 5;  ///< [N/m] 10 mm of it give less than most arms rub
+constexpr double kUnfelt = 5;  ///< [N/m] at a depth of 10 mm this gives less force than the friction of most arms
 constexpr double kBuzz = 0.1;  ///< [N] a force step between neighbouring counts that a hand feels
 
 std::string text(double value) {
@@ -46,7 +46,7 @@ void judgeModel(const scene::Scene& scene, size_t index, const scene::Device& de
   if (info.max_stiffness > 0 && stiffness > info.max_stiffness)
     warn(claim + ", and " + device.name + " is stable up to " + text(info.max_stiffness) + " N/m" +
          (info.max_stiffness < kUnfelt
-              ? ", as its device.max_stiffness says, which cannot be felt; expected N/m there (1 "
+              ? ", as its device.max_stiffness says; so little cannot be felt, so give device.max_stiffness in N/m (1 "
                 "N/mm is 1000 N/m)"
               : "; nearest: " + text(roundedDown(info.max_stiffness)) + " N/m"));
   if (alone > 0 && stiffness > alone)
@@ -82,8 +82,8 @@ void judgeRate(const scene::Scene& scene, const scene::Device& device, const hdv
   if (paced && (info.capabilities & HDV_C_PACING) == 0)
     document::report(problems, file, 0, 0, "servo.pace",
                      "device, but " + device.name +
-                         " gives a sample whenever it is asked, so it cannot drive the loop, and the clock does unless "
-                         "another arm can; expected clock");
+                         " gives a sample whenever it is asked, so it cannot drive the loop; unless another arm can, "
+                         "the clock drives it; expected clock");
   if (info.rate_hz <= 0) return;
   const double ratio = scene.servo.rate / info.rate_hz;
   if (paced && (ratio > kSlack || ratio < 1 / kSlack))
@@ -111,7 +111,7 @@ document::Place placeOfPath(const scene::Model& model) {
   return model.place;
 }
 
-/// The largest of several rates, and its time.
+/// The largest of several speeds or turning rates, and the time at which it begins.
 struct Fastest {
   double rate = 0, at = 0;
   void take(double now, double t) {
@@ -175,7 +175,7 @@ std::string overheating(const std::string& device, double sustained, const std::
   return device + " gave " + text(effective) + " N (root of the mean square of the last " +
          text(std::round(static_cast<double>(forces.size()) / rate)) + " s) and sustains " + text(sustained) +
          " N: real motors would overheat; use a softer model, or limits.force: " + text(sustained) +
-         " , which they sustain";
+         " in the scene, which they sustain";
 }
 
 }  // namespace hapticd::tune

@@ -10,7 +10,7 @@
 namespace hapticd::tune {
 namespace {
 
-constexpr double kFastest = 10'000;  // [Hz]
+constexpr double kFastest = 10'000;  // [Hz] the rate with whose forces those of other rates are compared
 
 /// Returns the sum of the forces of all models, which the hand feels.
 Eigen::Vector3d forceAt(const Run& run, size_t tick) {
@@ -36,7 +36,7 @@ double holdError(const Run& slow, double rate, const Run& fast) {
   return p99(errors);
 }
 
-/// Estimators with parameters that suit a kilohertz.
+/// The estimators to measure, with parameters that suit a servo rate of 1 kHz.
 const std::vector<scene::Velocity> kEstimators = {{"window", 1},       {"window", 3}, {"window", 10},
                                                   {"butterworth", 50}, {"foaw", 15},  {"least_squares", 8},
                                                   {"kalman", 100}};

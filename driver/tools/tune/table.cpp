@@ -24,23 +24,23 @@ std::string frontText(const Findings& findings) {
   std::string beaten;
   for (const Candidate* c : points(findings)) (c->on_front ? text : beaten) += rowText(findings, *c);
   if (!beaten.empty())
-    text += "\nanother setting is as accurate as this and cheaper, or as cheap and more accurate:\n" + beaten;
+    text += "\nfor each of these, another is as accurate and cheaper, or as cheap and more accurate:\n" + beaten;
   return text + "\n" + noise(findings) + "\n";
 }
 
 std::string servoText(const Findings& findings) {
   std::string text =
-      "\n   rate Hz      load    hold N   (load: share of a processor; hold: change of the force between two ticks, "
+      "\n   rate Hz      load    hold N   (load: share of a processor; hold: error of a force that is held for a tick, "
       "p99)\n";
   for (const RateRow& row : findings.rates)
     text += fmt::format("{} {:>8.0f} {:>8.2f} % {:>8.3g}\n", row.current ? '*' : ' ', row.rate, row.load * 100,
                         row.hold_error_n);
-  text += "\n    radius m   tick ns    foot um   activation radius (of what is nearest, against the widest)\n";
+  text += "\n    radius m   tick ns    foot um   activation radius (errors against the widest one)\n";
   for (const RadiusRow& row : findings.radii)
     text += fmt::format("{} {:>9.3g} {:>9.0f} {:>10}\n", row.current ? '*' : ' ', row.radius, row.tick_ns,
                         row.error.untraced > 0 ? "untraced" : errorText(row.error));
   if (findings.estimators.empty()) return text;
-  text += "\n    tick ns force p99 N     max N  velocity estimator (against the velocity that the motion has)\n";
+  text += "\n    tick ns force p99 N     max N  velocity estimator (errors against the true velocity)\n";
   for (const EstimatorRow& row : findings.estimators)
     text += fmt::format("{} {:>9.0f} {:>11.3g} {:>9.3g}  {}\n", row.current ? '*' : ' ', row.tick_ns, row.force_p99_n,
                         row.force_max_n, row.estimator);
@@ -56,8 +56,8 @@ std::string table(const Findings& findings) {
   text += frontText(findings);
   if (std::any_of(tried.begin(), tried.end(), [](const Candidate& c) { return c.error.ambiguous > 0; }))
     text +=
-        "\nin some ticks two places were equally near to the probe; there the errors of depth and size of force "
-        "count\n";
+        "\nin some ticks two places were equally near to the probe; there only the errors of the depth and of the size "
+        "of the force count\n";
   text += "\nchosen: " + nameOf(findings, tried[findings.tuning.chosen]) + "\n  " + reason(findings) + "\n";
   return text + servoText(findings);
 }

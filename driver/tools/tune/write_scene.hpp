@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A scene file with the chosen settings.
+/// Writes a scene file with the chosen settings.
 #pragma once
 #include <string>
 

@@ -41,7 +41,7 @@ enum class Followed : std::uint8_t {
 ///                                             `from` lies if it is almost on a face
 ///   void holdNearest()                        holds the nearest foot from now on
 ///   void release()                            ends the held contact
-/// Their feet have outward normals; this class turns them to the side that is felt.
+/// The feet from these functions have outward normals; this class turns them to the side that is felt.
 class ContactState {
  public:
   /// [rt] Returns the foot of this tick, seen from the side that is felt.
@@ -53,8 +53,8 @@ class ContactState {
   /// [rt] A shortcut for the most common tick; call it before step(). The kernel must have the nearest foot of all (or
   /// the held foot, if one is held), followed from the last tick, in the interior of its face. If the function returns
   /// true, the contact has not changed, and this foot seen from side() is the result of the tick.
-  /// @param height [m] of the probe above the face, along its outward normal
-  /// @param distance [m] from the probe to the foot
+  /// @param height [m] height of the probe above the face, along its outward normal
+  /// @param distance [m] distance from the probe to the foot
   bool goesOn(double height, double distance, const Eigen::Vector3d& p, const ContactRule& rule) noexcept {
     const double out = side_ * height;
     if (phase_ == Phase::kHeld && rule.hysteresis > 0) return out < 0;
@@ -67,8 +67,8 @@ class ContactState {
     return true;
   }
 
-  /// [rt] The same for a probe that was outside in the last tick, and can have met only the face of its foot since
-  /// then. If the function returns true, the probe has only passed by this face, however near.
+  /// [rt] A shortcut like goesOn(), for a probe that was outside in the last tick and can have met only the face of its
+  /// foot since then. If the function returns true, the probe has only passed by this face, however near.
   /// @param last position of the probe in the last tick [m]
   bool passesBy(double height, double distance, const Eigen::Vector3d& last, const Eigen::Vector3d& p,
                 const ContactRule& rule) noexcept {
@@ -163,7 +163,7 @@ bool ContactState::isLeft(Faces& faces, const ContactRule& rule, Foot& foot) noe
   return found(nearest) && nearest.distance < foot.distance - rule.hysteresis;
 }
 
-/// The swept test: true if the path since the probe was last outside leads into a face.
+/// Makes the swept test: returns true if the path since the probe was last outside leads into a face.
 template <class Faces>
 bool ContactState::begins(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule, Foot& foot) noexcept {
   const double way2 = (p - from_).squaredNorm();
@@ -207,8 +207,8 @@ Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const Conta
   return foot;
 }
 
-/// The rule without hysteresis. A shell is felt from the side from which the probe came, until the probe has gone round
-/// a free edge.
+/// Returns the foot by the rule without hysteresis. A shell is felt from the side from which the probe came, until the
+/// probe has gone round a free edge.
 inline Foot ContactState::nearestAlways(const Foot& nearest, const Eigen::Vector3d& p, Sides sides) noexcept {
   if (!found(nearest)) {
     phase_ = Phase::kUnknown;

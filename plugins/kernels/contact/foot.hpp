@@ -29,7 +29,7 @@ struct Foot {
   Eigen::Vector3d point{0, 0, 0};   ///< [m] position of the foot
   Eigen::Vector3d normal{0, 0, 1};  ///< unit normal, pointing away from the solid
   double depth = 0;                 ///< [m] penetration depth: > 0 inside; outside, minus the distance
-  double distance = 0;              ///< [m] from the probe to the point
+  double distance = 0;              ///< [m] distance from the probe to the point
   double behind = 0;                ///< [m] height of the probe behind the surface; negative in front of it
   double aside = 0;                 ///< [m] distance of the probe sideways from the free edge on which the foot lies
   double u = 0, v = 0;              ///< parameters of the foot on its surface

@@ -22,7 +22,8 @@ Eigen::Vector3d Friction::step(const FrictionLaw& law, const Eigen::Vector3d& fo
     weakened_ = 0;
     stuck_ = true;
   } else {
-    stretch_ = along(stretch_ + foot - foot_);  // projected on the surface: if it turns, stretch is lost, never gained
+    // projected on the surface: if the surface turns, stretch is lost and never gained
+    stretch_ = along(stretch_ + foot - foot_);
   }
   foot_ = foot;
 

@@ -27,8 +27,8 @@ class Friction {
   /// drag.
   /// @param foot nearest point of the surface [m], in the model frame
   /// @param normal outward unit normal at the foot
-  /// @param normal_force [N] of the wall, >= 0; 0 or NaN forgets the stuck point
-  /// @param velocity of the probe relative to the model [m/s]; only its part along the surface counts
+  /// @param normal_force [N] normal force of the wall, >= 0; 0 or NaN forgets the stuck point
+  /// @param velocity velocity of the probe relative to the model [m/s]; only its part along the surface counts
   Eigen::Vector3d step(const FrictionLaw& law, const Eigen::Vector3d& foot, const Eigen::Vector3d& normal,
                        double normal_force, const Eigen::Vector3d& velocity) noexcept;
 

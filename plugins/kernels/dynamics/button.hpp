@@ -43,7 +43,7 @@ struct Equilibrium {
 };
 
 struct Equilibria {
-  std::array<Equilibrium, DetentCurve::kMaxKnots> at;  ///< in the order of growing x2
+  std::array<Equilibrium, DetentCurve::kMaxKnots> at;  ///< the equilibria, in the order of growing x2
   int count = 0;
 };
 
@@ -62,8 +62,8 @@ class ButtonState {
     bool snapped = false;  ///< the button jumped from one branch of equilibria to another
   };
   /// [rt] Advances the button by one tick.
-  /// @param travel [m] of the probe from the surface of the button at rest; if it is <= 0 there is no contact, and the
-  /// button is at rest
+  /// @param travel [m] travel of the probe from the surface of the button at rest; if it is <= 0 there is no contact,
+  /// and the button is at rest
   Step step(double k1, const DetentCurve& detent, double travel) noexcept;
   void reset() noexcept {
     x2_ = 0;

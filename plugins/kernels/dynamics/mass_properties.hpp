@@ -8,7 +8,7 @@ namespace hapticd::dynamics {
 /// Centre of mass and inertia of a solid of 1 kg.
 struct MassProperties {
   Eigen::Vector3d center{0, 0, 0};  ///< centre of mass [m]
-  /// about the centre of mass, for 1 kg [m^2]; multiply by the mass to get kg m^2
+  /// inertia about the centre of mass, for 1 kg [m^2]; multiply by the mass to get kg m^2
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();
 };
 

@@ -8,9 +8,9 @@
 namespace hapticd::dynamics {
 namespace {
 
-/// The overdamped or critical case, with the two real rates -fast and -slow. The difference of the exponentials is
-/// computed by expm1, and the slow rate from the product of both rates. So no digits cancel, even if the rates are
-/// almost equal or far apart.
+/// Returns the step in the overdamped or critical case, with the two real rates -fast and -slow. The difference of the
+/// exponentials is computed by expm1, and the slow rate from the product of both rates. So no digits cancel, even if
+/// the rates are almost equal or far apart.
 OscillatorStep overdamped(double half, double root, double square, double dt) {
   const double fast = half + root;
   const double slow = square / fast;

@@ -17,7 +17,7 @@ struct OscillatorStep {
 /// @throws std::invalid_argument unless mass > 0, damping >= 0, stiffness >= 0, dt >= 0 and all are finite.
 OscillatorStep oscillatorStep(double mass, double damping, double stiffness, double dt);
 
-/// [rt] The same without a check of the arguments, for a dt that varies from tick to tick.
+/// [rt] Returns the same as oscillatorStep() without a check of the arguments, for a dt that varies from tick to tick.
 OscillatorStep oscillatorStepUnchecked(double mass, double damping, double stiffness, double dt) noexcept;
 
 /// [rt] Advances a free motion about 0 by one step. With a constant force f, pass x - f/k for x. T is a scalar, or an

@@ -12,12 +12,12 @@ namespace hapticd::dynamics {
 namespace {
 
 constexpr double kLargestPhase = 0.1;         // [rad] phase of the linear swing per substep of freeStep()
-constexpr double kLargestDampedPhase = 0.02;  // [rad] the same for the other two methods
+constexpr double kLargestDampedPhase = 0.02;  // [rad] the same phase for the two methods with damping
 constexpr int kPendulumSubsteps = 32;         // most substeps per step, which bounds the time of a tick
 // damping/inertia times the substep up to which Runge-Kutta resolves the decay
 constexpr double kWeak = 0.05;
 
-/// The step without damping. The error of its energy stays bounded for ever.
+/// Makes a step without damping. The error of its energy stays bounded for ever.
 PendulumState freeStep(double w2, double drive, PendulumState s, double h) noexcept {
   Splitting::step(
       h, [&](double time) { s.angle += time * s.rate; },
@@ -25,7 +25,7 @@ PendulumState freeStep(double w2, double drive, PendulumState s, double h) noexc
   return s;
 }
 
-/// The step for weak damping: the classical Runge-Kutta method of fourth order.
+/// Makes a step with weak damping, by the classical Runge-Kutta method of fourth order.
 PendulumState rungeKutta(double w2, double c, double drive, PendulumState s, double h) noexcept {
   const auto acceleration = [&](double angle, double rate) { return drive - w2 * std::sin(angle) - c * rate; };
   const double v1 = s.rate, a1 = acceleration(s.angle, v1);
@@ -35,8 +35,8 @@ PendulumState rungeKutta(double w2, double c, double drive, PendulumState s, dou
   return {s.angle + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), s.rate + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)};
 }
 
-/// The step for strong damping. It solves v' = a - c v exactly, with `a` from the angle in the middle of the step, so
-/// it is stable for every damping.
+/// Makes a step with strong damping. It solves v' = a - c v exactly, with `a` from the angle in the middle of the step,
+/// so it is stable for every damping.
 PendulumState exponential(double w2, double c, double drive, PendulumState s, double h) noexcept {
   const double decay = std::exp(-c * h), phi = -std::expm1(-c * h) / c;
   const double half_phi = -std::expm1(-c * h / 2) / c;

@@ -11,7 +11,8 @@ struct PendulumLaw {
   double damping = 0;     ///< [N m s/rad] c
   double gravity = 9.81;  ///< g: component of gravity in the plane of motion [m/s^2]
 
-  double frequencySquared() const noexcept { return mass * gravity * length / inertia; }  ///< [1/s^2] of a small swing
+  /// Returns the square of the angular frequency of a small swing [1/s^2].
+  double frequencySquared() const noexcept { return mass * gravity * length / inertia; }
 };
 
 struct PendulumState {

@@ -15,7 +15,7 @@ struct Pressing {
   Eigen::Vector3d normal{0, 0, 1};  ///< outward unit normal of the surface
   Eigen::Vector3d along{0, 0, 0};   ///< friction force on the probe, along the surface [N]
   contact::WallLaw law;
-  /// [m] > 0 inside; if it is just below 0, a contact that begins within the step is predicted
+  /// [m] depth of the probe, > 0 inside; if it is just below 0, a contact that begins within the step is predicted
   double depth = 0;
   double along_limit = 0;      ///< [N] greatest friction force
   double along_stiffness = 0;  ///< [N/m] stiffness of the friction while the probe sticks
@@ -24,10 +24,10 @@ struct Pressing {
 
 /// One contact in the coming step, in the world frame. A force that is held through a step still pushes the body after
 /// the body has moved away. So each half swing would grow by the factor e^(pi w h/4) (w^2 = k/m, step h), without limit
-/// for a light body. For this reason the force at the end of the step is used, and how much the body's own change of
-/// velocity reduces it.
+/// for a light body. For this reason a Press has the force at the end of the step, and by how much the body's own
+/// change of velocity reduces this force.
 struct Press {
-  Eigen::Vector3d point{0, 0, 0};  ///< [m]
+  Eigen::Vector3d point{0, 0, 0};  ///< [m] point of the body on which the force acts
   /// outward unit normal: no force ever pulls the body in this direction
   Eigen::Vector3d outward{0, 0, 1};
   /// force on the body at the end of the step, if the body keeps its velocity [N]
@@ -38,7 +38,7 @@ struct Press {
 
 /// [rt] Predicts the contact `last` for the end of a step of dt [s].
 /// @param probe_now position of the probe now [m]
-/// @param closing_speed of the probe relative to the surface [m/s], > 0 if it goes deeper
+/// @param closing_speed speed of the probe relative to the surface [m/s], > 0 if it goes deeper
 /// @param point_velocity velocity of the body at the contact [m/s]
 Press foresee(const Pressing& last, const Eigen::Vector3d& probe_now, double closing_speed,
               const Eigen::Vector3d& point_velocity, double dt) noexcept;

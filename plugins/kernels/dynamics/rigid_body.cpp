@@ -42,7 +42,7 @@ void validate(const RigidBodyLaw& law) {
   if (!law.center.allFinite()) throw std::invalid_argument("center: must be three finite numbers");
   principalMoments(law.inertia);
   if (!(law.damping >= 0) || !(law.angular_damping >= 0) || !(law.tether >= 0))
-    throw std::invalid_argument("damping, angular damping and tether must be 0 or more");
+    throw std::invalid_argument("drag, angular_drag and tether must be 0 or more");
   if (law.joint != Joint::kFree && !(law.axis.norm() > 0))
     throw std::invalid_argument("axis: all three numbers are 0, so it has no direction; give one such as [0, 1, 0]");
 }
@@ -56,7 +56,7 @@ RigidBody::RigidBody(const RigidBodyLaw& law, const Vector3d& position, const Qu
   const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(law.inertia);
   principal_ = solver.eigenvalues();
   Matrix3d axes = solver.eigenvectors();
-  if (law.inertia.isDiagonal(0)) {  // keep the order of the axes in which the user gave the moments
+  if (law.inertia.isDiagonal(0)) {  // this keeps the order of the axes in which the user gave the moments
     principal_ = law.inertia.diagonal();
     axes.setIdentity();
   }
@@ -162,8 +162,8 @@ void RigidBody::step(std::span<const Press> presses, double dt) noexcept {
   drift(alone, dt);
 }
 
-/// The second half of a backward Euler step: sets the velocity at the end of the step, and moves the body with this
-/// velocity. So a body that rests on a probe has no velocity.
+/// Makes the second half of a backward Euler step: sets the velocity at the end of the step, and moves the body with
+/// this velocity. So a body that rests on a probe has no velocity.
 void RigidBody::drift(const Vector6d& change, double dt) noexcept {
   if (!change.allFinite()) return step(Vector3d::Zero(), Vector3d::Zero(), dt);
   if (law_.joint == Joint::kHinge) {
@@ -205,7 +205,7 @@ void RigidBody::spin(double dt) noexcept {
   for (int i = 0; i < steps; ++i) {
     turn_.turnBody(top_.bodyTurn(turn_.quaternion().conjugate() * l_, dt / steps));
   }
-  turn_.turnWorld(dt * top_.worldRate() * l_);  // does not change the momentum as seen from the body
+  turn_.turnWorld(dt * top_.worldRate() * l_);  // this turn does not change the momentum as seen from the body
 }
 
 /// Applies angular drag: the momentum about each principal axis decays separately.

@@ -41,7 +41,7 @@ class RigidBody {
  public:
   /// [main] Places a body at rest.
   /// @param position, orientation of the model frame in the world
-  /// @param gravity in the world frame [m/s^2]
+  /// @param gravity acceleration of gravity in the world frame [m/s^2]
   /// @throws std::invalid_argument if the mass or inertia is impossible, or if the axis has no length.
   RigidBody(const RigidBodyLaw& law, const Eigen::Vector3d& position, const Eigen::Quaterniond& orientation,
             const Eigen::Vector3d& gravity);
@@ -59,8 +59,8 @@ class RigidBody {
   /// [rt] Returns the velocity [m/s] of the point of the body that is at `point` [m], in the world frame.
   Eigen::Vector3d velocityAt(const Eigen::Vector3d& point) const noexcept;
 
-  Eigen::Vector3d position() const noexcept;        ///< [rt] of the model frame, in the world [m]
-  Eigen::Quaterniond orientation() const noexcept;  ///< [rt] of the model frame, in the world
+  Eigen::Vector3d position() const noexcept;        ///< [rt] position of the model frame, in the world [m]
+  Eigen::Quaterniond orientation() const noexcept;  ///< [rt] orientation of the model frame, in the world
   /// [rt] velocity of the model frame's origin, in the world [m/s]
   Eigen::Vector3d linear() const noexcept;
   Eigen::Vector3d angular() const noexcept;                      ///< [rt] angular velocity, in the world [rad/s]

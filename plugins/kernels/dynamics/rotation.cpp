@@ -93,7 +93,7 @@ void Rotation::set(const Quaterniond& q) noexcept {
 void Rotation::apply(const Vector3d& v, const Vector3d& rest, double cosine_less_one, bool world) noexcept {
   const Vector4d q = q_.coeffs();
   const Vector3d vec = q.head<3>(), carried = carry_.head<3>(), turned = world ? v : Vector3d(-v);
-  Vector4d change, small;  // small: the terms that are far smaller than `change`
+  Vector4d change, small;  // small: terms that are far smaller than those in `change`
   small.head<3>() = cosine_less_one * vec + q.w() * rest + (world ? rest : Vector3d(-rest)).cross(vec) +
                     carry_.w() * v + turned.cross(carried);
   small.w() = cosine_less_one * q.w() - rest.dot(vec) - v.dot(carried);

@@ -25,7 +25,8 @@ HalfAngle half(double angle) noexcept {
           s / 2 * (1 - s / 12 * (1 - s / 30 * (1 - s / 56 * (1 - s / 90 * (1 - s / 132)))))};
 }
 
-/// Continues `turn` by a turn of `angle` about a body axis, and changes `momentum` to how the body then sees it.
+/// Continues `turn` by a turn of `angle` about a body axis, and changes `momentum` to its components in the axes of the
+/// turned body.
 void about(int axis, double angle, SmallTurn& turn, Vector3d& momentum) noexcept {
   const HalfAngle h = half(angle);
   const int j = (axis + 1) % 3, k = (axis + 2) % 3;

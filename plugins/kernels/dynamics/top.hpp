@@ -22,8 +22,8 @@ class Top {
   /// [rt] Returns the turn in h [s] about the body's axes, without the turn about the momentum. `momentum` is in the
   /// principal axes.
   SmallTurn bodyTurn(Eigen::Vector3d momentum, double h) const noexcept;
-  /// [rt] The same to second order (Strang) in a fifth of the computing time, for steps in which another part is only
-  /// of first order.
+  /// [rt] Returns the same turn as bodyTurn(), but only to second order (Strang). It takes a fifth of the computing
+  /// time, and suffices for steps in which another part is only of first order.
   SmallTurn roughBodyTurn(Eigen::Vector3d momentum, double h) const noexcept;
   double worldRate() const noexcept {
     return world_rate_;

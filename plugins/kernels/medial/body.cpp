@@ -10,9 +10,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kChecksPerInterval = 2;  ///< samples of the monotonicity check in each direction
+/// samples of the monotonicity check per interval of the grid, along each direction
+constexpr int kChecksPerInterval = 2;
 constexpr double kSameValue = 1e-300;
-/// a direction lies fully on one side of a sheet if its cosine to the sheet's normal is above 1 / this
+/// A direction lies fully on one side of a sheet if its cosine to the sheet's normal is above 1 / this.
 constexpr double kSideways = 2;
 
 /// Makes a field from the samples of the grid. The samples of a curve are used for both rows of its surface.

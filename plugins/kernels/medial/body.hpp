@@ -36,7 +36,8 @@ struct FeltOptions {
 struct BodyOptions {
   int degree = 3;
   spline::Form form = spline::Form::kTable;
-  /// distance of the four shear springs' ends, as a share of the parameter range; 0: no shear springs
+  /// distance from a contact to the ends of its four shear springs, as a share of the parameter range; 0: no shear
+  /// springs
   double shear_offset = 0.05;
   /// [m] the same distance along the skeleton; if above 0, it replaces shear_offset (see press())
   double shear_distance = 0;
@@ -57,7 +58,8 @@ struct BodyForce {
 /// The result of the test that the force grows with depth at every examined place.
 struct MonotonicityReport {
   double slope = 1;  ///< least slope of the force, divided by the stiffness of the normal spring at the same place
-  /// at that place: rest length over least length of the worst spring; the greatest allowed value of `ratio`
+  /// ratio: rest length over least length of the worst spring at that place; limit: the greatest allowed value of
+  /// `ratio`
   double ratio = 1, limit = 1;
   double u = 0, v = 0;  ///< parameters of that place
   bool holds() const noexcept { return slope > 0; }
@@ -87,12 +89,12 @@ class Body {
   /// cases
   void placeOf(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, Envelope envelope,
                double direct, FeltPlace& place) const noexcept;
-  /// [any] nullptr if the deformation is only seen
+  /// [any] Returns the felt surface; nullptr if the deformation is only drawn and not felt.
   FeltSurface* feltSurface() noexcept { return felt_ ? &*felt_ : nullptr; }
   /// [main] Checks at samples all over the skeleton, on both sides, that the force grows with depth.
   MonotonicityReport checkMonotonicity() const;
-  /// [any] Upper bound of the slope of the force over depth [N/m]: that of the normal spring with the four others in
-  /// line with it.
+  /// [any] Returns an upper bound of the slope of the force over depth [N/m]: the slope of the normal spring with the
+  /// four others in line with it.
   double greatestStiffness() const noexcept {
     return (options_.shear_offset > 0 && !turns() ? 5 : 1) * stiffness_.greatest();
   }
@@ -104,7 +106,7 @@ class Body {
     std::size_t count = 0;
   };
   /// [any] True if the springs along the surface only turn the force. If false, they add to the normal spring, as in
-  /// the paper.
+  /// Corso et al. 2002.
   bool turns() const noexcept { return options_.shear_distance > 0; }
   /// Returns the differences of the parameter to a neighbour along u (index 0) and v (index 1); 0 if there is no
   /// neighbour.

@@ -6,7 +6,7 @@ namespace hapticd::medial {
 
 /// [m] if the probe is nearer to the skeleton than this, its direction from the skeleton is not reliable
 inline constexpr double kNearAxis = 1e-4;
-/// slopes of the radius above this count as this; from 1 on, spheres lie inside their neighbours
+/// A greater slope of the radius is reduced to this. With a slope of 1 or more, spheres lie inside their neighbours.
 inline constexpr double kSteepestRadius = 0.99;
 
 }  // namespace hapticd::medial

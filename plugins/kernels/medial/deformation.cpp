@@ -71,6 +71,7 @@ struct Shares {
   std::array<double, kWidest> value{}, slope{};
   int first = 0, count = 0;
 
+  /// Adds `part` times the basis functions of one place.
   /// @param rate derivative of the place of `basis` over the foot's parameter
   void add(const Basis& basis, double part, double rate) noexcept {
     const int from = basis.first - first;

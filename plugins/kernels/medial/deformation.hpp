@@ -23,7 +23,7 @@ struct Press {
 
 class Deformation : public Nodes {
  public:
-  /// [main] Takes in `material` one entry per control point, or one for all.
+  /// [main] Allocates all memory. @param material one entry per control point, or one for all
   /// @throws std::invalid_argument for a negative or non-finite number.
   Deformation(const Skeleton& skeleton, const std::vector<Oscillator>& material, const DeformationOptions& options);
 

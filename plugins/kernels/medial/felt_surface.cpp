@@ -14,12 +14,13 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-/// greatest slope of a dent; on the inside of a bend the foot may run without limit, and the slope with it
+/// Greatest slope of a dent that is used. On the inside of a bend the foot may move at any speed, and without this
+/// limit the slope would grow with it.
 constexpr double kSteepestDent = 1;
 constexpr uint32_t kLooksForSleep = 8;  ///< number of ticks between two searches for nodes that have come to rest
 constexpr double kNearby = 1e-6;        ///< [m] a probe that is nearer to the surface than this touches it
 constexpr int kMostSweeps = 64;         ///< most passes over several contacts
-/// [N] the passes end if no force changes by more than this, plus kSameForce of the force
+/// [N] The passes end if no force changes by more than this plus kSameForce times the force.
 constexpr double kSettled = 1e-15;
 constexpr double kSameForce = 1e-13;
 
@@ -285,7 +286,8 @@ bool FeltSurface::letSleep() noexcept {
   return some;
 }
 
-/// The displacement s(u, v, normal) changes with the foot and with the direction from the foot to the probe.
+/// Returns the gradient of the displacement s(u, v, normal) over the position of the probe. The displacement changes
+/// with the foot and with the direction from the foot to the probe.
 Vector3d FeltSurface::slopeAt(const FeltPlace& place) const noexcept {
   Vector4d here = Vector4d::Zero(), along_u = Vector4d::Zero(), along_v = Vector4d::Zero();
   for (std::size_t i = 0; i < place.count; ++i) {

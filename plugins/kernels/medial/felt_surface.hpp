@@ -31,7 +31,7 @@ struct FeltPlace {
   std::array<PlaceNode, kMost> nodes;
   std::size_t count = 0;
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< outward, unit
-  double stiffness = 0;                               ///< [N/m] for a held press here
+  double stiffness = 0;                               ///< [N/m] stiffness that a held press feels here
   /// [1/m] gradients of the foot's u and v over the probe's position
   Eigen::Vector3d toward_u{0, 0, 0}, toward_v{0, 0, 0};
   Eigen::Vector3d tangent_u{0, 0, 0}, tangent_v{0, 0, 0};  ///< [m] tangents of the skeleton along u and v
@@ -64,7 +64,7 @@ struct FeltContact {
 
 class FeltSurface {
  public:
-  /// [main] Takes the materials.
+  /// [main] Prepares the steps of all materials.
   /// @param tissue one per node, or one for all
   /// @param compliance one per node; with it the displacement of most places is nearly right even without `scale`
   /// @param ratio see elementOf()
@@ -76,7 +76,7 @@ class FeltSurface {
   /// [rt] Advances all moving nodes by one tick of dt [s] under all contacts. dt = 0 computes only the present forces.
   void advance(double dt, std::span<FeltContact> contacts) noexcept;
   void reset() noexcept;  ///< [rt] puts all nodes back to rest
-  /// [rt] Kinetic and elastic energy [J] of nodes and contact springs.
+  /// [rt] Returns the kinetic and elastic energy [J] of nodes and contact springs.
   double energy(std::span<const FeltContact> contacts) const noexcept;
   /// [any] Returns the stiffness of the contact spring divided by that of a held press.
   double contactRatio() const noexcept { return ratio_ * (1 + share_); }

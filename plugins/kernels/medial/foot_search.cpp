@@ -17,10 +17,10 @@ using Eigen::Vector3d;
 constexpr double kLeastCurvature = 0.05;
 /// [m] a query that is nearer to the skeleton than this lies on it, and d has no direction
 constexpr double kOnSkeleton = 1e-9;
-/// [m] if a query is nearer than this, the remaining error of the search shows in the direction of d
+/// [m] If a query is nearer to the skeleton than this, the remaining error of the search shows in the direction of d.
 constexpr double kNearSkeleton = 1e-6;
 constexpr double kRemainders = 10;  ///< the same limit as a multiple of the remaining Newton step
-/// share of the trace that is added so that a collapsed direction stays solvable
+/// share of the trace that is added to the diagonal, so that a collapsed direction stays solvable
 constexpr double kSingular = 1e-14;
 
 using Box = std::array<std::array<double, 2>, 2>;

@@ -37,7 +37,7 @@ Influence influence(std::span<const double> basis, int span, int p_prime, Choice
 /// toward the contact (negative: away from it).
 struct Split {
   double skeleton = 0;  ///< [m] motion of the skeleton along the inward normal of the contact
-  double radius = 0;    ///< [m] by which the radius shrinks
+  double radius = 0;    ///< [m] length by which the radius shrinks
 };
 
 /// [any] Returns the shares for the paper's factor g = `split`. 0: only the radius gives way; 1/2: the opposite side

@@ -16,7 +16,7 @@ constexpr double kDeepest = 20;
 constexpr int kWavesAUnit = 16;      ///< steps per unit of the integral over wave numbers
 constexpr double kLeastWave = 1e-3;  ///< for a smaller x, sinh(2x) - 2x loses all digits if nu is 1/2
 
-/// Returns 1 minus the ratio of two compliances to a wave of pressure: of the layer, and of a half-space.
+/// Returns 1 minus the ratio of two compliances to a wave of pressure: that of the layer over that of a half-space.
 /// @param x wave number times thickness
 double missing(double x, double nu) {
   if (x < kLeastWave) {  // the first term of the series

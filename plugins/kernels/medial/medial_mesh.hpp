@@ -48,8 +48,8 @@ class MedialMesh {
   /// limit of a search in one tick; it takes half of a 1 kHz tick in the worst case, when all parts are equally near
   static constexpr int kMostVisits = 6000;
 
-  /// [main] Edges of triangles are part of their slabs and make no cones; vertices of edges make no spheres of their
-  /// own.
+  /// [main] Builds the tree. Edges of triangles are part of their slabs and make no cones of their own; vertices of
+  /// edges make no spheres of their own.
   /// @throws std::invalid_argument for no vertices, indices out of range or repeated, numbers that are not finite.
   explicit MedialMesh(const MeshData& data);
 

@@ -24,7 +24,8 @@ constexpr double kApart = 0.1;
 constexpr double kOneTube = 0.5;  ///< [rad] joined parts that turn by less than this are one tube or sheet
 /// share of the radius; feet that are nearer to each other than this count as one
 constexpr double kRoundingOfFeet = 1e-6;
-/// a rival foot whose normal is farther away than acos(1 / this - 1) counts less and less
+/// If 1 + cosine of the normals of the nearest foot and a rival (a foot on another part of the body) is below 1 / this,
+/// the rival counts less; it does not count if the normals are opposite.
 constexpr double kOpposite = 4;
 
 /// Checks the values of a material. If all vertices have the same value, returns only this one.

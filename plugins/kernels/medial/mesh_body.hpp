@@ -95,9 +95,9 @@ class MeshBody {
   /// `closing_speed` [m/s].
   BodyForce press(const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;
-  /// [rt] The same for a probe at `p`, with springs along the surface to points of the contour at the distance
-  /// `shear_distance`, which may lie on other cones and slabs. The springs turn the force toward the stiffer neighbour;
-  /// its part along the normal stays the same.
+  /// [rt] Returns the same force for a probe at `p`, plus that of springs along the surface to points of the contour at
+  /// the distance `shear_distance`, which may lie on other cones and slabs. These springs turn the force toward the
+  /// stiffer neighbour; its part along the normal stays the same.
   BodyForce press(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;
   /// [rt] Describes to a felt surface the place where a probe at `p` touches the body.
@@ -105,9 +105,9 @@ class MeshBody {
   /// cases
   void placeOf(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, double direct,
                FeltPlace& place) noexcept;
-  /// [any] nullptr if the deformation is only seen
+  /// [any] Returns the felt surface; nullptr if the deformation is only drawn and not felt.
   FeltSurface* feltSurface() noexcept { return felt_ ? &*felt_ : nullptr; }
-  double greatestStiffness() const noexcept;  ///< [any] [N/m] of the stiffest vertex
+  double greatestStiffness() const noexcept;  ///< [any] [N/m] stiffness of the stiffest vertex
   double stiffness(std::size_t vertex) const noexcept { return stiffness_[stiffness_.size() == 1 ? 0 : vertex]; }
   std::size_t bytes() const noexcept;
 

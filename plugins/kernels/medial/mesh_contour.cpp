@@ -77,8 +77,8 @@ void MeshContour::cut(const Cell& cell) {
   }
 }
 
-/// Expects corners that span a positive volume: the crossings on 0-1, 0-2 and 0-3 are then counter-clockwise if seen
-/// from beyond them.
+/// Adds the triangles of one tetrahedron. Its corners must span a positive volume: the crossings on the edges 0-1, 0-2
+/// and 0-3 are then counter-clockwise if seen from beyond them.
 void MeshContour::tetrahedron(const std::array<Cell, 4>& corners, const std::array<double, 4>& distances) {
   std::array<std::size_t, 4> inside{}, outside{};
   std::size_t in = 0, out = 0;

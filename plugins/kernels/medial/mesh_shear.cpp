@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 
 /// most nodes of the tree that are visited for one neighbour; near the surface some tens suffice
 constexpr int kMostVisits = 400;
-/// least sine of the angle between an axis of the model frame and the normal for which the axis has a direction along
-/// the surface
+/// If the sine of the angle between an axis of the model frame and the normal is below this, the axis has no direction
+/// along the surface.
 constexpr double kLeastAside = 1e-6;
 
 }  // namespace

@@ -13,7 +13,7 @@ using Displacements = std::vector<Eigen::Vector4f>;
 
 class MovingMesh {
  public:
-  virtual ~MovingMesh() = default;  ///< its owners do not know the derived class
+  virtual ~MovingMesh() = default;  ///< virtual, because owners do not know the derived class
 
   std::size_t vertexCount() const noexcept { return vertices_.size(); }
   /// Three vertices per triangle, counter-clockwise if seen from outside.
@@ -46,8 +46,8 @@ class MovingMesh {
   /// [any] Returns six times the volume [m^3] between the origin and the triangles `first` to `last` - 1. Summed over
   /// all triangles it is six times the volume of the body.
   double sixVolumes(const float* xyz, std::size_t first, std::size_t last) const noexcept;
-  double volume(const std::vector<float>& xyz) const noexcept;  ///< [any] [m^3] of the displaced mesh
-  double area(const std::vector<float>& xyz) const noexcept;    ///< [any] [m^2] of the displaced mesh
+  double volume(const std::vector<float>& xyz) const noexcept;  ///< [any] [m^3] volume of the displaced mesh
+  double area(const std::vector<float>& xyz) const noexcept;    ///< [any] [m^2] area of the displaced mesh
   std::size_t bytes() const noexcept;
 
  protected:

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector4d;
 
-constexpr double kLargest = 1.0;  ///< [m] amplitude at which settle times begin
+constexpr double kLargest = 1.0;  ///< [m] settle times are those of a motion that begins with this amplitude
 
 void requireMaterial(const Oscillator& o, std::size_t i) {
   const auto bad = [](double x) { return !(x >= 0) || !std::isfinite(x); };

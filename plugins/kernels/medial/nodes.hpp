@@ -52,9 +52,9 @@ class Nodes {
   double energy() const noexcept;
   std::size_t awake() const noexcept { return awake_.size(); }  ///< [rt] number of nodes in motion
   std::size_t count() const noexcept { return nodes_.size(); }
-  /// [any] Displacement [m] of node i: x, y, z of its position, then its radius.
+  /// [any] Returns the displacement [m] of node i: x, y, z of its position, then its radius.
   const Eigen::Vector4d& displacement(std::size_t i) const noexcept { return nodes_[i].x; }
-  /// [any] rate of change of displacement(i) [m/s]
+  /// [any] Returns the rate of change of displacement(i) [m/s].
   const Eigen::Vector4d& rate(std::size_t i) const noexcept { return nodes_[i].v; }
   /// [any] Sets displacement and rate of node i, such as the values of a saved scene.
   void place(std::size_t i, const Eigen::Vector4d& displacement, const Eigen::Vector4d& rate) noexcept;
@@ -70,7 +70,7 @@ class Nodes {
   /// A contact at which the probe holds the contour.
   struct Hold {
     Eigen::Vector3d normal;  ///< outward unit normal
-    double depth, speed;     ///< [m] of the probe below the contour at rest; [m/s] at which it goes deeper
+    double depth, speed;     ///< [m] depth of the probe below the contour at rest; [m/s] speed at which it grows
   };
   void clear() noexcept;  ///< [rt] puts all nodes to rest; the bulge stays
   const DeformationOptions& options() const noexcept { return options_; }
@@ -104,7 +104,7 @@ class Nodes {
 };
 
 inline constexpr int kMaxContacts = 16;  ///< most contacts of one body in one tick
-/// number of passes over several contacts; after each pass the contour is nearer to the probes
+/// Number of passes over several contacts. After each pass the contour is nearer to the probes.
 inline constexpr int kSweeps = 8;
 
 }  // namespace hapticd::medial

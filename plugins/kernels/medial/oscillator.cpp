@@ -16,8 +16,9 @@ Pair underdamped(long double a, long double w2, long double t) {
   return {decay * std::cos(w * t), w > 0 ? decay * std::sin(w * t) / w : decay * t};
 }
 
-/// Uses two falling exponentials instead of a growing hyperbolic function times a falling exponential. The slow root is
-/// stiffness / (mass * fast root), because a - q would lose precision if the damping is large.
+/// Returns both in the overdamped case. It uses two falling exponentials instead of a growing hyperbolic function times
+/// a falling exponential. The slow root is stiffness / (mass * fast root), because a - q would lose precision if the
+/// damping is large.
 Pair overdamped(long double a, long double q, long double w0_squared, long double t) {
   const long double fast = a + q, slow = w0_squared / fast;
   const long double e_fast = std::exp(-fast * t), e_slow = std::exp(-slow * t);

@@ -13,7 +13,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int kAngles = 100;  ///< number of angles in half a turn that are tried
-/// additional angles on each side of the resonance, each at half the distance of the one before
+/// number of additional angles on each side of the resonance, each at half the distance of the one before
 constexpr int kNarrow = 30;
 constexpr int kSections = 40;  ///< golden-section steps about the greatest value
 constexpr double kGolden = 0.381966;

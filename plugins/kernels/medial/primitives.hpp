@@ -12,7 +12,7 @@ namespace hapticd::medial {
 
 struct Sphere {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< [m]
-  double radius = 0;                                 ///< [m] not negative
+  double radius = 0;                                 ///< [m] radius, not negative
 };
 
 /// The foot of a point on a hull.

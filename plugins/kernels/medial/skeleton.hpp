@@ -40,8 +40,8 @@ struct SkeletonFoot {
 /// What "nearest sphere" means for a point Q, a place S of the skeleton and its radius r.
 enum class Envelope {
   kExact,  ///< the union of the spheres: the place S with the least |Q - S| - r
-  /// the paper's test: the place S with the least |Q - S|, then the radius there. The body is too small by the factor
-  /// 1/sqrt(1 - r'^2) where radii vary
+  /// the test of Corso et al. 2002: the place S with the least |Q - S|, then the radius there. The body is too small by
+  /// the factor 1/sqrt(1 - r'^2) where radii vary
   kFoot
 };
 
@@ -56,7 +56,7 @@ struct NewtonOptions {
 /// The control points that a deformation moves, with knots and degrees. A curve has one row, of degree 0.
 struct ControlGrid {
   std::array<int, 2> count{0, 0}, degree{0, 0};
-  /// greville: the parameter at which each control point acts (Greville abscissa)
+  /// greville: the parameter at which each control point acts most (its Greville abscissa)
   std::array<std::vector<double>, 2> knots, greville;
   std::vector<Eigen::Vector3d> points;  ///< [m]
 };
@@ -78,7 +78,8 @@ class Skeleton {
   SkeletonFoot nearest(const Eigen::Vector3d& p, double u, double v, const NewtonOptions& options) const noexcept;
   /// [any] Returns the foot of p if no start is known: Newton iterations from the best samples of the whole skeleton.
   SkeletonFoot search(const Eigen::Vector3d& p, const NewtonOptions& options) const noexcept;
-  /// [any] The paper's binary search, nested so that it also works on skew skeletons: in each of the `halvings` steps
+  /// [any] Returns the foot of p by the binary search of Corso et al. 2002. It is nested, so that it also works on skew
+  /// skeletons: in each of the `halvings` steps
   /// along u it makes as many steps along v. It assumes one minimum along each line.
   SkeletonFoot bisect(const Eigen::Vector3d& p, Envelope envelope, int halvings) const noexcept;
   /// [any] Returns a lower bound of the distance from p to the body [m]; 0 inside the bounding box.
@@ -86,7 +87,7 @@ class Skeleton {
 
   const spline::Surface& surface() const noexcept { return *surface_; }
   const ScalarField& radius() const noexcept { return radius_; }
-  /// true if the grid has only one row of points
+  /// [any] Returns true if the grid has only one row of points.
   bool curve() const noexcept { return curve_; }
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }  ///< box of all spheres
   /// [main] Returns the greatest slope of the radius, found at samples between all points of the grid. From a slope of

@@ -18,7 +18,7 @@ struct Field {
   Array3d gradient = Array3d::Zero();
 };
 
-/// Rises from 0 to 1, with zero slope at both ends.
+/// Returns a value that rises from 0 to 1 as t does, with zero slope at both ends.
 double smooth(double t) noexcept {
   return t * t * (3 - 2 * t);
 }

@@ -5,8 +5,8 @@
 
 namespace hapticd::medial {
 
-/// [rt] The mean force [N] of the contact spring over a tick. Its energy at the depth d is U(d) = stiffness / 2 *
-/// max(d, 0)^2, and the force is the discrete gradient (U(d1) - U(d0)) / (d1 - d0) (Gonzalez 1996). During a contact
+/// [rt] Returns the mean force [N] of the contact spring over a tick. Its energy at the depth d is U(d) = stiffness / 2
+/// * max(d, 0)^2, and the force is the discrete gradient (U(d1) - U(d0)) / (d1 - d0) (Gonzalez 1996). During a contact
 /// this is the midpoint rule; if the contact begins or ends within the tick, the energy is still exact.
 /// @param stiffness [N/m]  @param before d0 [m], the depth of the probe below the surface at the last tick
 /// @param ahead [m] the depth that it would have now without a force  @param give [m/N], >= 0, displacement of the

@@ -53,7 +53,7 @@ Matrix exponential(Matrix a) noexcept {
   return sum;
 }
 
-/// The step of an element without mass, which creeps: its rate is not a state.
+/// Returns the step of an element without mass, which creeps: its rate is not a state.
 ViscoelasticStep creep(const SurfaceElement& e, double dt) noexcept {
   ViscoelasticStep step{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
   if (!(e.stiffness > 0)) return step;
@@ -68,8 +68,8 @@ ViscoelasticStep swing(const SurfaceElement& e, double dt) noexcept {
   return {o.xx, o.xv, 0, o.xf, o.vx, o.vv, 0, o.vf, 0, 0, 0, 0};
 }
 
-/// The step of an element with a branch: the exponential of the whole system. Without mass, the rate follows from the
-/// other states.
+/// Returns the step of an element with a branch, from the exponential of the whole system. Without mass, the rate
+/// follows from the other states.
 ViscoelasticStep relax(const SurfaceElement& e, double dt) noexcept {
   Matrix a{};
   const long double k = static_cast<long double>(e.stiffness) + e.branch, k1 = e.branch, b = e.damping, m = e.mass;

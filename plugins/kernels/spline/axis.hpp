@@ -22,7 +22,7 @@ struct Cell {
 class Axis {
  public:
   Axis() = default;
-  /// [main] The knots must have passed validateKnots().
+  /// [main] @param knots the knots, which must have passed validateKnots()
   Axis(int degree, const std::vector<double>& knots);
 
   /// [any] Finds the cell that contains t. @param hint in: the cell to try first (any value is allowed); out: the index

@@ -14,7 +14,7 @@ struct CurveData {
   std::vector<double> knots;            ///< number of points + degree + 1 values, non-decreasing
   std::vector<Eigen::Vector3d> points;  ///< [m]
   std::vector<double> weights;          ///< one per point; empty for a polynomial curve
-  std::string name;                     ///< for messages
+  std::string name;                     ///< name for messages
 
   /// [any] Returns the parameter range [lo, hi]. The data must have passed validate().
   std::array<double, 2> domain() const noexcept {

@@ -59,7 +59,8 @@ std::vector<double> accumulate(const std::vector<double>& lengths, const char* w
   parameters.back() = 1;
   for (std::size_t i = 1; i < parameters.size(); ++i) {
     if (!(parameters[i] > parameters[i - 1])) {
-      fail(std::string(what) + " " + std::to_string(i - 1) + " and " + std::to_string(i) + " coincide");
+      fail(std::string(what) + " " + std::to_string(i - 1) + " and " + std::to_string(i) +
+           " coincide; move one of them, or leave it out");
     }
   }
   return parameters;

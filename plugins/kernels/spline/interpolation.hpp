@@ -23,9 +23,9 @@ struct GridFit {
   Eigen::MatrixXd control;
 };
 
-/// [main] Chord-length parameters (Piegl & Tiller 9.5), 0 to 1. @param chord_dimensions number of first columns that
-/// are positions; distances are measured in these columns, so that radii or stiffnesses in later columns do not stretch
-/// the parameters. 0 means all columns.
+/// [main] Returns chord-length parameters (Piegl & Tiller 9.5), 0 to 1. @param chord_dimensions how many of the first
+/// columns are positions; distances are measured in these columns, so that radii or stiffnesses in later columns do not
+/// stretch the parameters. 0 means all columns.
 /// @throws std::invalid_argument if two neighbours coincide or a number is not finite.
 std::vector<double> chordParameters(const Eigen::MatrixXd& data, int chord_dimensions = 3);
 

@@ -30,6 +30,7 @@ struct NetWindow {
 /// served by the processor's store buffer.
 inline constexpr int kOutStride = 4;
 using NetKernel = void (*)(const NetWindow& net, double u, double v, double* out) noexcept;
+/// Evaluates one cell of a table at (s, t), measured from the point about which it is expanded.
 /// @param cell the local origin, then size_u x size_v coefficients of s^i t^j, i-major
 using TableKernel = void (*)(const Quad* cell, int size_u, int size_v, double s, double t, double* out) noexcept;
 

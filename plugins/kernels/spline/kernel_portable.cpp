@@ -6,7 +6,7 @@ namespace hapticd::spline {
 #include "kernels/spline/kernel_common.inl"
 #include "kernels/spline/kernel_net.inl"
 #include "kernels/spline/kernel_table.inl"
-// After the others, because it lists their functions.
+// kernel_set.inl comes after the others, because it lists their functions.
 #include "kernels/spline/kernel_set.inl"
 
 const KernelSet& portableKernels() noexcept {

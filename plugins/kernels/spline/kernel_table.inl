@@ -14,8 +14,8 @@ struct Powers {
   explicit Powers(double t) : x(splat(t)), xx(x * x), twice_x(x + x), thrice_x(twice_x + x), thrice_xx(thrice_x * x) {}
 };
 
-/// Horner's rule for `count` coefficients from coefficient(0) on. The derivatives are computed in the same loop, one
-/// step behind.
+/// Applies Horner's rule to `count` coefficients, of which coefficient(0) is the constant one. The
+/// same loop computes the derivatives, one step behind.
 template <int kOrder, class Coefficient>
 inline Row horner(int count, V4 x, Coefficient coefficient) {
   Row row{coefficient(count - 1), splat(0), splat(0)};

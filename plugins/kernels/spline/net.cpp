@@ -8,8 +8,8 @@ namespace hapticd::spline {
 namespace {
 
 /// If the binary exponent of the largest coordinate is outside these limits, all coordinates are scaled so that the
-/// largest is about 1. Then no sum overflows and no product becomes subnormal. Other coordinates are not scaled, which
-/// costs no time.
+/// largest is about 1. Then no sum overflows and no product becomes subnormal. Within these limits nothing is
+/// scaled, which saves time.
 constexpr int kLargestExponent = 200;
 constexpr int kSmallestExponent = -200;
 

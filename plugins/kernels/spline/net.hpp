@@ -16,7 +16,7 @@ struct Net {
   bool rational() const noexcept { return weights != Weights::kNone; }
 };
 
-/// [main] The points and weights must have passed validatePoints().
+/// [main] Returns the net of points and weights, which must have passed validatePoints().
 Net makeNet(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& weights);
 
 }  // namespace hapticd::spline

@@ -43,7 +43,7 @@ void checkMultiplicity(const std::vector<double>& knots, int degree, const std::
   const auto order = static_cast<std::size_t>(degree) + 1;
   for (std::size_t i = order; i + order + 1 < knots.size(); ++i) {
     if (knots[i] == knots[i + order] && knots[i] > knots[order - 1] && knots[i] < knots[knots.size() - order]) {
-      fail(what + "[" + std::to_string(i) + "]", "the knot " + number(knots[i]) + " stands more than " +
+      fail(what + "[" + std::to_string(i) + "]", "the knot " + number(knots[i]) + " occurs more than " +
                                                      std::to_string(order) +
                                                      " times; expected at most degree + 1 inside the domain");
     }

@@ -26,7 +26,7 @@ struct SurfaceData {
   std::vector<Eigen::Vector3d> points;       ///< [m] u-major: index = i * count(1) + j
   std::vector<double> weights;               ///< one per point; empty for a polynomial surface
   bool reversed = false;                     ///< true if the outward normal is -(Su x Sv)
-  std::string name;                          ///< for messages
+  std::string name;                          ///< name for messages
 
   /// [any] Returns the number of control points along an axis, which follows from the number of knots.
   int count(int axis) const noexcept {

@@ -19,8 +19,8 @@ struct Table {
   std::vector<Quad> cells;  ///< u-major; each cell is its local origin, then its coefficients
   int size_u = 0, size_v = 0;
   int shape = 0;                  ///< index into KernelSet::table
-  std::ptrdiff_t stride = 0;      ///< from a cell to the next along v, in Quads
-  std::ptrdiff_t row_stride = 0;  ///< from a cell to the next along u, in Quads
+  std::ptrdiff_t stride = 0;      ///< distance from a cell to the next one along v, in Quads
+  std::ptrdiff_t row_stride = 0;  ///< distance from a cell to the next one along u, in Quads
 };
 
 /// [main] Moves the expansion points of cells at collapsed sides onto these sides, so that tangents next to a pole keep

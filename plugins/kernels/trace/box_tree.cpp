@@ -93,7 +93,7 @@ double turn(const Piece& piece, int axis) {
 }
 
 /// Returns an estimate [rad] of the largest angle between `normal` and the normals of a nearly flat piece: the largest
-/// angle over the meshes of its control net, plus a quarter. Returns pi if a mesh has no normal.
+/// angle over the meshes of its control net, plus a quarter, plus 0.02 rad. Returns pi if a mesh has no normal.
 double turnOfNormal(const Piece& piece, const Vector3d& normal) {
   constexpr double kMore = 1.25, kLeast = 0.02;
   double widest = 0;
@@ -109,7 +109,7 @@ double turnOfNormal(const Piece& piece, const Vector3d& normal) {
   return kMore * widest + kLeast;
 }
 
-constexpr int kMaxHalvings = 7;  // per Bezier piece, which gives at most 128 leaves
+constexpr int kMaxHalvings = 7;  // most halvings of one Bezier piece, which give at most 128 leaves
 
 void addLeaves(const Piece& piece, int patch, double flat, int halvings, std::vector<Leaf>& leaves) {
   const double turn_u = turn(piece, 0), turn_v = turn(piece, 1);
@@ -201,7 +201,8 @@ struct BoxTree::Query {
   std::span<const int> parts;
   std::vector<double> upper;  ///< [m] for each part, an upper bound of the distance to it
   std::vector<LeafHit>& hits;
-  std::vector<std::pair<double, int>> open;  ///< squared distance of a node's box, and the node
+  /// nodes still to be examined: squared distance [m^2] of the box, and index
+  std::vector<std::pair<double, int>> open;
 
   /// Returns the squared distance [m^2] beyond which boxes of a part are left out.
   double limit2(int part) const {
@@ -235,7 +236,7 @@ void BoxTree::lookAt(int root, Query& query) const {
       if (!(leaf2 <= limit2)) continue;
       query.hits.push_back({leaf2, i});
       double& upper = query.upper[static_cast<std::size_t>(part)];
-      const double center = (query.p - leaf(i).center).norm();  // distance of a point of the surface
+      const double center = (query.p - leaf(i).center).norm();  // distance to a point of the surface, so an upper bound
       if (center >= upper) continue;
       upper = center;
       limit2 = query.limit2(part);

@@ -36,7 +36,8 @@ struct LeafHit {
 
 class BoxTree {
  public:
-  /// 1 - cos of 14 degrees, for which Newton's method goes directly from the middle to the foot.
+  /// 1 - cos of 14 degrees. If the tangents of a leaf turn by no more than this, Newton's method goes directly from
+  /// the middle of the leaf to the foot.
   static constexpr double kFlat = 0.03;
   /// [main] Cuts a patch into leaves and stores them. @param flat 1 - cos of the largest angle between the tangents of
   /// a leaf and their mean

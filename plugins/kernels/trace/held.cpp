@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The foot of a held contact: finds where the path of the probe meets a surface, and moves the foot on over edges.
+/// Follows the foot of a held contact over edges, and finds where the path of the probe meets a surface.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 constexpr double kMet = 1e-8;       ///< [m] a point that is nearer to a surface than this counts as on it
 constexpr int kMostCandidates = 8;  ///< most surfaces that are tested for a crossing
-/// Relative to the path: a crossing that is before or after it by less than this still counts.
+/// Share of the path: a crossing that lies before its start or beyond its end by less than this still counts.
 constexpr double kBeyond = 1e-9;
 
 /// A point where a straight path meets a patch.
@@ -137,7 +137,7 @@ int Tracer::slideOver(int track, int side, const Vector3d& p, const TraceOptions
 }
 
 /// Finds the first surface that the straight path from `from` to p enters through a side that is felt. @param touching
-/// if `from` lies on a surface, the side of the surface to which it counts
+/// the side (1 front, -1 back) on which `from` counts if it lies on a surface
 Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vector3d& p, double touching,
                                        const TraceOptions& options) noexcept {
   const double length = (p - from).norm();

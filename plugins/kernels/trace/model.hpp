@@ -47,8 +47,8 @@ struct Found {
 /// thread while a Tracer steps.
 class Model {
  public:
-  /// [m] By how much the difference of two distances can change before the next search: 10 ms at 2 m/s, toward one
-  /// surface and away from the other.
+  /// [m] By how much the difference of two distances can change before the next search, 5 ms later, if the probe moves
+  /// at 2 m/s toward one surface and away from the other: 10 mm each.
   static constexpr double kSoon = 0.02;
   static constexpr int kMaxParts = 8;
 
@@ -56,16 +56,16 @@ class Model {
   /// @throws std::invalid_argument that names the surface and says what was expected.
   explicit Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOptions& options = {});
 
-  /// [sim] Global search: finds every surface within `radius` [m] of `p` (model frame), nearest first. The nearest
-  /// surface of each part, and surfaces at most kSoon farther, come with their global foot. The others come with a
-  /// lower bound of the distance and parameters to start from. Rivals are other local minima of the distance on the
-  /// same surfaces, at most kSoon farther than the nearest foot of the part.
+  /// [sim] Makes a global search: finds every surface within `radius` [m] of `p` (model frame), nearest first. The
+  /// nearest surface of each part, and surfaces at most kSoon farther, come with their global foot. The others come
+  /// with a lower bound of the distance and parameters to start from. Rivals are other local minima of the distance on
+  /// the same surfaces, at most kSoon farther than the nearest foot of the part.
   void search(const Eigen::Vector3d& p, double radius, Found& found) const;
-  /// [sim] The same as search(), but without rivals. Writes at most `cap` records. Returns the number of surfaces
-  /// within the radius, which may be larger than `cap`.
+  /// [sim] Makes the same search as search(), but returns no rivals. Writes at most `cap` records. Returns the number
+  /// of surfaces within the radius, which may be larger than `cap`.
   std::int64_t nearby(const Eigen::Vector3d& p, double radius, Near* out, std::size_t cap) const;
 
-  /// [any] Number of surfaces in the model file. A surface with creases has several patches.
+  /// [any] Returns the number of surfaces in the model file. A surface with creases has several patches.
   int surfaceCount() const noexcept { return static_cast<int>(first_patch_.size()) - 1; }
   int patchCount() const noexcept { return static_cast<int>(patches_.size()); }
   const Patch& patch(int index) const noexcept { return patches_[static_cast<std::size_t>(index)]; }
@@ -76,8 +76,8 @@ class Model {
   int shellCount() const noexcept { return static_cast<int>(shell_closed_.size()); }
   /// [any] True if the shell has no free side, so that it bounds a solid.
   bool closed(int shell) const noexcept { return shell_closed_[static_cast<std::size_t>(shell)] != 0; }
-  /// [any] Angle-weighted mean of the outward normals around a corner (Baerentzen & Aanaes 2005): if the nearest point
-  /// is that corner, this normal decides whether the probe is outside.
+  /// [any] Returns the angle-weighted mean of the outward normals around a corner (Baerentzen & Aanaes 2005): if the
+  /// nearest point is that corner, this normal decides whether the probe is outside.
   const Eigen::Vector3d& vertexNormal(int vertex) const noexcept {
     return vertex_normal_[static_cast<std::size_t>(vertex)];
   }
@@ -89,8 +89,8 @@ class Model {
   const PoleFan& pole(int index) const noexcept { return poles_[static_cast<std::size_t>(index)]; }
 
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }
-  /// [main] Warnings for the user about this model: T-junctions, edges of three surfaces, neighbours with opposite
-  /// normals.
+  /// [main] Returns warnings for the user about this model: T-junctions, edges of three surfaces, neighbours with
+  /// opposite normals.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
   std::size_t bytes() const noexcept;
 

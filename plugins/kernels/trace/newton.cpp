@@ -32,8 +32,8 @@ struct QuadraticModel {
   Vector2d escape{0, 0};  ///< direction of negative curvature, unit length in space
 };
 
-/// Orthonormal frame of the tangent plane: (Su Sv) = Q L^T with L lower triangular (Gram-Schmidt). So curvatures are
-/// per metre, and an ill-scaled or sheared parameterisation does no harm.
+/// The orthonormal frame of the tangent plane: (Su Sv) = Q L^T with L lower triangular (Gram-Schmidt). In this frame
+/// curvatures are per metre, and an ill-scaled or sheared parameterisation does no harm.
 struct TangentFrame {
   double l11, l21, l22;
 };
@@ -47,7 +47,8 @@ TangentFrame tangentFrame(const Vector3d& Su, const Vector3d& Sv) noexcept {
   return L;
 }
 
-/// First-order model (Gauss-Newton) with enough damping to be regular where tangents vanish.
+/// Returns the Hessian of the first-order model (Gauss-Newton), with enough damping to be regular where tangents
+/// vanish.
 Matrix2d damped(const spline::SurfacePoint& E) noexcept {
   Matrix2d G;
   G << E.Su.squaredNorm(), E.Su.dot(E.Sv), 0, E.Sv.squaredNorm();

@@ -14,7 +14,7 @@ namespace hapticd::trace {
 /// from this point without a new evaluation; the evaluation of that tick is done at the end of the step.
 struct Iterate {
   enum class Known : std::uint8_t {
-    kParameters,  ///< only uv
+    kParameters,  ///< only uv is known
     kPoint,       ///< uv, and E, the point there
     kAll          ///< uv, E, and the state, which belongs to E
   };
@@ -43,9 +43,9 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Rounding error of the difference of two points, relative to the size of the coordinates.
 inline constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 
-/// [rt] The parts of newtonFoot() that most ticks do not need. startNewton() prepares quick steps. mayStepAgain()
-/// counts a quick step that found no foot, and returns true if another one makes sense. descend() finds the foot from
-/// any point.
+/// [rt] These functions are the parts of newtonFoot() that most ticks do not need. startNewton() prepares quick steps.
+/// mayStepAgain() counts a quick step that found no foot, and returns true if another one makes sense. descend() finds
+/// the foot from any point.
 void startNewton(const Patch& patch, Iterate& at, LocalFoot& foot) noexcept;
 bool mayStepAgain(const Patch& patch, QuickResult result, Iterate& at, LocalFoot& foot) noexcept;
 void descend(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
@@ -82,9 +82,10 @@ inline LocalFoot newtonFoot(const Patch& patch, const Eigen::Vector3d& p, Iterat
   return foot;
 }
 
-/// [rt] Direct parametric tracing (Thompson et al. 1999, Eq. 1-3, with the exact rational derivative instead of that of
-/// the refined polygon). It makes `steps` first-order steps (projection onto the tangent plane), each clamped to the
-/// rectangle, or fewer if `max_evaluations` is reached. The residual is the length of the last step.
+/// [rt] Finds a foot by direct parametric tracing (Thompson et al. 1999, Eq. 1-3, with the exact rational derivative
+/// instead of that of the refined polygon). It makes `steps` first-order steps (projection onto the tangent plane),
+/// each clamped to the rectangle, or fewer if `max_evaluations` is reached. The residual is the length of the last
+/// step.
 void directFoot(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, int steps, int max_evaluations,
                 LocalFoot& foot) noexcept;
 

@@ -13,9 +13,9 @@ using Eigen::Array2d;
 using Eigen::Vector3d;
 
 constexpr int kFine = 8, kCoarse = 4;  // cells along each side of the grid by which a patch is approximated
-constexpr double kInside = 0.75;       // winding numbers; on a surface the winding number is 0.5
-constexpr double kOutside = 0.25;
-constexpr std::size_t kMostWork = 20'000'000;  // solid angles that are computed, which takes about a second
+constexpr double kInside = 0.75;       // a point with a greater winding number is well inside (on a surface it is 0.5)
+constexpr double kOutside = 0.25;      // a point with a smaller winding number is well outside
+constexpr std::size_t kMostWork = 20'000'000;  // most solid angles that are computed, in about a second
 constexpr std::size_t kFinePatches = 64;       // if there are more patches, the coarse grid is used
 
 struct Triangle {
@@ -132,8 +132,8 @@ class Grouping {
     return number;
   }
 
-  static constexpr double kFar = 2;  // in diagonals of the shell's box; beyond it a shell is treated as a dipole
-  static constexpr std::size_t kDipoles = 16;  // dipoles or boxes that take as long as one solid angle
+  static constexpr double kFar = 2;  // in diagonals of the shell's box; a farther shell is treated as a dipole
+  static constexpr std::size_t kDipoles = 16;  // so many dipoles or boxes take as long as one solid angle
   const std::vector<Sketch>& shells_;
   std::vector<Part> parts_;
   std::size_t work_ = 0;

@@ -93,7 +93,8 @@ struct Patch {
   double atLeast(const Eigen::Vector3d& p) const noexcept {
     return (low - p.array()).max(p.array() - high).max(0).matrix().norm();
   }
-  /// [any] Outward unit normal. If the tangents vanish (at a pole), returns the normal a little further inside.
+  /// [any] Returns the outward unit normal. If the tangents vanish (at a pole), returns the normal a little further
+  /// inside.
   Eigen::Vector3d normalAt(const Eigen::Array2d& uv) const noexcept;
 };
 

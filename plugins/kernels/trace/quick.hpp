@@ -16,7 +16,8 @@ enum class QuickResult : std::uint8_t;
 /// `state`. Returns false, and changes nothing, if (u, v) is not inside the patch.
 using QuickEvaluate = bool (*)(QuickState& state, double u, double v, double* E) noexcept;
 
-/// @param p [m] the probe
+/// Makes one step of Newton's method from the last evaluated point toward the foot of p.
+/// @param p [m] position of the probe
 /// @param tolerance2 [m^2] square of the allowed error of the foot
 /// @param uv, E, state in: the last evaluated point; out: the new one
 /// @param foot becomes uv; S; the outward unit normal; then distance, residual and height of the probe over the tangent
@@ -32,7 +33,7 @@ struct alignas(32) QuickState {
   double shrink;          ///< 1 / |Su x Sv|
   double bend[3][2];      ///< second-order part of the gradient along u and v: coefficients of du^2, du dv, dv^2 [m^2]
   spline::TableCell cell;
-  double calm2;            ///< [m^2] square of a length; a shorter step is not bent
+  double calm2;            ///< [m^2] square of a length; a shorter step is not bent (corrected to second order)
   double sign;             ///< outward normal = sign * (Su x Sv), normalized
   QuickEvaluate evaluate;  ///< used outside the cell
   const void* patch;

@@ -7,7 +7,7 @@ using spline::kOutStride;
 using spline::Quad;
 
 #include "kernels/spline/kernel_common.inl"
-// After kernel_common.inl, because it uses the functions there.
+// quick.inl comes after kernel_common.inl, because it uses the functions there.
 #include "kernels/trace/quick.inl"
 
 const QuickKernels& portableQuick() noexcept {

@@ -90,7 +90,7 @@ class Search {
   void lookForValley(const Leaf& leaf) {
     if (!leaf.mayFace(p_) && !atFreeSide(leaf)) return;
     constexpr int kFirst = 2, kEvaluations = 20;
-    const double kNear = 2;  // in half widths of the leaf
+    const double kNear = 2;  // distance from the middle of the leaf, in half widths of the leaf
     const auto strays = [&leaf, kNear](const LocalFoot& foot) {
       return ((foot.uv - leaf.middle).abs() > kNear * leaf.half).any();
     };
@@ -113,7 +113,7 @@ class Search {
 
   void keepValley(int patch, const LocalFoot& foot) {
     const Patch& piece = model_.patch(patch);
-    // not a minimum if the distance still falls beyond a common side
+    // this foot is not a minimum if the distance still falls beyond a common side
     if (!foot.converged || piece.goesOn(foot.sides)) return;
     for (const Valley& valley : valleys_)
       if (valley.near.surface == piece.source && (valley.point - foot.S).norm() < same_) return;

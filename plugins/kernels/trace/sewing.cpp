@@ -16,7 +16,7 @@ namespace {
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
-constexpr double kSewShare = 1e-5;  // relative to the model's diagonal
+constexpr double kSewShare = 1e-5;  // default tolerance, relative to the model's diagonal
 constexpr int kMaxWarnings = 100;
 
 Array2d cornerUv(const Patch& patch, int corner) {
@@ -229,7 +229,8 @@ void Sewing::reportTJunctions() {
       const double there = nearestFraction(other, open[j]->side, middle, 0.5);
       if ((pointOnSide(other, open[j]->side, there) - middle).norm() <= tolerance_)
         model_.warnings_.push_back("T-junction: " + describe(open[i]->patch, open[i]->side) + " covers a part of " +
-                                   describe(open[j]->patch, open[j]->side) + "; both sides are left open");
+                                   describe(open[j]->patch, open[j]->side) +
+                                   "; both sides are left open; to join them, split the longer one there");
     }
 }
 

@@ -47,7 +47,8 @@ double nearestFraction(const Patch& patch, int side, const Vector3d& p, double s
 }
 
 PoleFan fanOf(const Patch& patch, int side) noexcept {
-  // relative to the parameter range; the direction to a point there is defined even if Sv vanishes
+  // parameter distance from the pole, as a share of the range; the direction to a point there is defined even if the
+  // tangent at the pole vanishes
   constexpr double kInward = 1e-3;
   PoleFan fan;
   const int axis = Patch::axisOf(side);
@@ -77,7 +78,7 @@ Vector3d fanNormal(const Patch& patch, int side, const PoleFan& fan) noexcept {
 }
 
 double cornerAngle(const Patch& patch, int corner) noexcept {
-  constexpr double kAside = 1e-3;  // relative to the range; chords are used instead of tangents, which may vanish
+  constexpr double kAside = 1e-3;  // share of the range; chords of this length are used, because tangents may vanish
   const Array2d range = patch.hi - patch.lo;
   const Array2d at{corner % 2 == 0 ? patch.lo[0] : patch.hi[0], corner / 2 == 0 ? patch.lo[1] : patch.hi[1]};
   const Array2d inward{(corner % 2 == 0 ? kAside : -kAside) * range[0],

@@ -14,7 +14,7 @@ constexpr double kFarthest = 1e150;  ///< [m] squares of larger coordinates over
 /// [m] a neighbour that the host did not activate is dropped beyond this distance.
 constexpr double kNeighbourReach = 0.15;
 
-/// Returns a foot without a place. Kept out of the code of the usual tick.
+/// Returns a foot without a place. The attributes keep it out of the code of the usual tick.
 [[gnu::cold, gnu::noinline]] Foot nothing(FootStatus status) noexcept {
   Foot foot;
   foot.status = status;
@@ -118,7 +118,7 @@ int Tracer::refine(int track, const Vector3d& p, const TraceOptions& options) no
   return note(track);
 }
 
-/// True if the nearest foot is the foot of this tick, and the state of the contact does not change.
+/// True if the state of the contact does not change, so that the nearest foot is the result of this tick.
 inline bool Tracer::goesOn(const Vector3d& p, const Vector3d& last, const TraceOptions& options) noexcept {
   Contact& contact = contacts_[0];
   const LocalFoot& foot = tracks_[nearest_].foot;
@@ -219,13 +219,14 @@ int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions
   return nearest == crossed ? nearest : cross(nearest, p, options);
 }
 
-/// True if a rival cannot become the nearest before the next search, or has moved on to another patch, which follows
-/// it.
+/// True if a rival cannot become the nearest before the next search, or if it has reached a side beyond which the
+/// neighbouring patch follows this foot.
 bool Tracer::isHopeless(const Track& rival, double best) const noexcept {
   return rival.foot.distance > best + Model::kSoon || model_.patch(rival.patch).goesOn(rival.foot.sides);
 }
 
-/// Replaces a foot by the foot found from (u, v) on the same patch, if the new foot is nearer. Returns true if so.
+/// Replaces a foot by the foot found from (u, v) on the same patch, if the new foot is nearer. Returns true if it was
+/// replaced.
 bool Tracer::tryFrom(int track, const Array2d& uv, const Vector3d& p, const TraceOptions& options) noexcept {
   if (budget_ <= 0) return false;
   Track& t = tracks_[track];
@@ -269,7 +270,7 @@ void Tracer::crossSeams(int track, const Vector3d& p, const TraceOptions& option
 /// from its own foot. This is so if its own foot is farther from the probe, far from `there`, and was not refined in
 /// this tick.
 bool Tracer::isFarther(int patch, const Array2d& uv, const LocalFoot& there, const Vector3d& p) const noexcept {
-  constexpr double kAway = 0.05;  // relative to the range of the parameters
+  constexpr double kAway = 0.05;  // difference of parameters, relative to their range
   const Track& t = tracks_[patch];
   if (t.tick == tracks_.tick() || t.held) return false;
   if (t.at.known == Iterate::Known::kParameters)

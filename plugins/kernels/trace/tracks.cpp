@@ -51,7 +51,7 @@ void Tracks::offer(int patch, const Array2d& uv, double distance, double best, b
     set(patch, inside, bound);
     return;
   }
-  // outside this patch, so the foot belongs to another patch of the surface
+  // a foot that is too far away, or that is outside this patch and so belongs to another patch of the surface
   if (distance > best + Model::kSoon || (inside != uv).any()) return;
   if (follows(patch, inside, bound)) return;
   for (int i = patch; i >= 0; i = (*this)[i].rival)

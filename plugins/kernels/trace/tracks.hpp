@@ -120,7 +120,7 @@ class Tracks {
 
  private:
   static constexpr int kRivals = 32;
-  /// [m] at this length of the path, way_ is reset to 0 and the keys are reduced by it, to keep their digits.
+  /// [m] At this length of the path, way_ is reset to 0 and the keys are reduced by it, to keep their digits.
   static constexpr double kLongestWay = 1e4;
 
   void append(int index, double bound) noexcept;

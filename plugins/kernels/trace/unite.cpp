@@ -23,7 +23,7 @@ struct Wall {
 /// face each other there may be no way out, or only one so long that the planes no longer approximate the surfaces. So
 /// the motion is at most kLongestWay times the greatest depth. @param pushes becomes the contribution of each wall
 Vector3d wayOut(const Wall* walls, int count, double deepest, double* pushes) noexcept {
-  constexpr double kLongestWay = 2;  // reached if walls meet at 60 degrees
+  constexpr double kLongestWay = 2;  // multiple of the greatest depth; reached if walls meet at 60 degrees
   constexpr int kSweeps = 32;        // between walls that meet at 20 degrees, 10 % of the depth remains
   Vector3d way = Vector3d::Zero();
   std::fill_n(pushes, count, 0.0);
@@ -38,7 +38,8 @@ Vector3d wayOut(const Wall* walls, int count, double deepest, double* pushes) no
   return way;
 }
 
-constexpr double kSteepest = 1.5;  ///< depth per motion of the probe; behind a bevelled edge it is at most sqrt(2)
+/// greatest gain of depth per motion of the probe; behind a bevelled edge it is at most sqrt(2)
+constexpr double kSteepest = 1.5;
 
 double behindPlane(const Foot& foot) noexcept {
   return foot.behind - foot.aside;  // beside a free edge the plane ends in a bevel of 45 degrees

@@ -181,7 +181,7 @@ def forgotten(daemon):
             time.sleep(0.05)
             return h._line.ended()
         check("a silent client makes room", until(full, 60))
-        check("and is told why", raises(h.status, "others waited for its place"))
+        check("and is told why", raises(h.status, "other programs needed its place"))
         for line in lines:
             line.close()
 

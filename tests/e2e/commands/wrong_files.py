@@ -103,7 +103,7 @@ with tempfile.TemporaryDirectory() as folder:
     done = imported("--fit", "0.06", "--center", "--up", "z")
     check("triangles are fitted and turned", done.returncode == 0 and "0.06 x 0 x 0.06 m" in done.stdout, (done.stdout, done.stderr))
     done = imported("--outward", "normal")
-    check("what means nothing for triangles is refused", done.returncode == 2 and "--outward is for .bpt files" in done.stderr, done.stderr)
+    check("what means nothing for triangles is refused", done.returncode == 2 and "--outward has an effect only with .bpt files" in done.stderr, done.stderr)
     stl = os.path.join(folder, "cube.stl")
     open(stl, "w").write("solid\nendsolid\n")
     with open(scene, "w") as out:

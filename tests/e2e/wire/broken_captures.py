@@ -81,7 +81,7 @@ code, rows, err = decode(raw[: 17 * 120 + 14] + raw[17 * 121 :])
 bad = [r for r in rows if r["verdict"] != "good"]
 check("a short report in the middle costs one", code == 1 and len(rows) == COUNT and len(bad) == 1 and bad[0]["verdict"] == "size", (len(rows), bad, err))
 code, rows, err = decode(raw[: 17 * 120] + b"\x00\x00" + raw[17 * 120 :])
-check("two bytes too many cost nothing", len(rows) == COUNT and "2 bytes of no report" in err, err)
+check("two bytes too many cost nothing", len(rows) == COUNT and "2 bytes outside of any report" in err, err)
 flipped = bytearray(raw)
 flipped[17 * 50 + 6] ^= 1
 flipped[17 * 51 + 6] ^= 1

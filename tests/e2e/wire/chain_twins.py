@@ -66,5 +66,5 @@ with tempfile.TemporaryDirectory() as folder:
     out = new("--kind", "delta")
     check("nor one of a delta, which has none", "device twin" not in out and "device calibrate" in out, out)
     check("that the tip rests in front of the origin is said of a phantom alone",
-          "puts the tip at rest" not in open(arm).read() and (new("--kind", "phantom"), "puts the tip at rest" in open(arm).read())[1])
+          "here the resting tip is" not in open(arm).read() and (new("--kind", "phantom"), "here the resting tip is" in open(arm).read())[1])
 finish()

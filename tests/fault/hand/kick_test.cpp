@@ -124,7 +124,7 @@ TEST(KickOnPurpose, ThatIsNotReportedIsToldWithItsSizeItsTimeAndTheCure) {
   EXPECT_NEAR(model.pull.t, 0.1, 2e-3) << "after a hundred ticks of peace";
   const std::string why = silenceReason(model);
   EXPECT_NE(why.find(", the largest by 8 N at 0.1"), std::string::npos) << why;
-  EXPECT_NE(why.find("if on purpose: reportJumps(report, 8)"), std::string::npos) << why;
+  EXPECT_NE(why.find("if on purpose, call reportJumps(report, 8)"), std::string::npos) << why;
   Kicked reported(kicking(kSteps, 8, 8));
   EXPECT_EQ(reported.scenario.core().models()[0].guard.trouble(), Trouble::kNone) << "the cure holds";
 }

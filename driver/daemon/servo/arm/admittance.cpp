@@ -67,7 +67,7 @@ void Admittance::follow(double dt) noexcept HSP_RT {
   if ((x_ - tip_).norm() > kReached) keepTo(tip_);
 }
 
-/// Puts the virtual mass at `where`. Of its velocity only the part that leads back to `where` is kept.
+/// Puts the virtual mass at `where`. Removes the part of its velocity that leads away from `where`.
 void Admittance::keepTo(const Vector3d& where) noexcept HSP_RT {
   const Vector3d beyond = x_ - where;
   const double out = v_.dot(beyond);

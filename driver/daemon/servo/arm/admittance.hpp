@@ -15,7 +15,7 @@ namespace hapticd::servo {
 class Admittance {
  public:
   static constexpr double kMaxLead = 0.02;  ///< [m] the virtual mass waits for an arm that lags farther behind
-  /// [1/s] rate at which joints that the tip does not need return to their first place
+  /// [1/s] rate at which joints return to their positions at the start, as far as the tip does not move
   static constexpr double kHoming = 1;
 
   /// [main] Returns why compliance control is impossible with this device, or "" if it is possible.
@@ -32,10 +32,11 @@ class Admittance {
   /// tick, and the motion under it is exact. All vectors are in the device frame. @param measured tip of the arm [m]
   void step(const Eigen::Vector3d& force, const Eigen::Vector3d& measured, double dt) noexcept HSP_RT;
 
-  const JointVector& joints() const noexcept { return q_; }              ///< joint positions that the arm must follow
-  const Eigen::Vector3d& position() const noexcept { return x_; }        ///< position of the virtual mass [m]
-  const Eigen::Vector3d& velocity() const noexcept { return v_; }        ///< velocity of the virtual mass [m/s]
-  const Eigen::Vector4d& orientation() const noexcept { return turn_; }  ///< of the tip at joints(): w, x, y, z
+  const JointVector& joints() const noexcept { return q_; }        ///< joint positions that the arm must follow
+  const Eigen::Vector3d& position() const noexcept { return x_; }  ///< position of the virtual mass [m]
+  const Eigen::Vector3d& velocity() const noexcept { return v_; }  ///< velocity of the virtual mass [m/s]
+  /// orientation of the tip at joints(): w, x, y, z
+  const Eigen::Vector4d& orientation() const noexcept { return turn_; }
 
  private:
   bool locate() noexcept HSP_RT;

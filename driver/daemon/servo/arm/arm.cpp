@@ -20,7 +20,7 @@ constexpr double kFastestTip = 5;  ///< [m/s] speed limit of a real arm if limit
 /// The Jacobian, in the memory layout that the kinematics extension of a device writes.
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HDV_MAX_JOINTS>;
 
-/// [kg] a light arm, if the mass is unknown: the passivity controller then adds only little damping
+/// [kg] mass of a light arm, used if the arm's mass is unknown: the passivity controller then adds only little damping
 constexpr double kAssumedMass = 0.05;
 
 /// True if this arm may use its full force at any rate: a simulated arm hurts nobody, and a replay must repeat the
@@ -29,8 +29,8 @@ bool pushesInFull(const hdv_info& info, const ArmOptions& options) {
   return options.full_when_slow || (info.capabilities & HDV_C_SIMULATED) != 0;
 }
 
-/// Limits of the device file, made stricter for this arm: an arm with at most three joints can only push, and a slow
-/// real arm pushes less.
+/// Returns the limits of the device file, made stricter for this arm: an arm with at most three joints can only push,
+/// and a slow real arm pushes less.
 scene::Limits limitsOf(const scene::Limits& described, const hdv_info& info, const ArmOptions& options) {
   scene::Limits limits = described;
   if (info.joint_count <= 3) limits.torque_slew = 0;
@@ -42,7 +42,7 @@ scene::Limits limitsOf(const scene::Limits& described, const hdv_info& info, con
   return limits;
 }
 
-/// [N] Largest force by the device and its file, before a slow rate reduces it; 0 if it is unknown.
+/// Returns the largest force [N] that the device and its file allow, before a slow rate reduces it; 0 if it is unknown.
 double fullForce(const scene::Limits& limits, const hdv_info& info) {
   return Limiter(limits, info.max_force).maxForce();
 }

@@ -28,10 +28,10 @@
 namespace hapticd::servo {
 
 struct ArmOptions {
-  double rate = 1000;                        ///< [Hz] of the servo
+  double rate = 1000;                        ///< [Hz] rate of the servo
   bool needs_velocity = false;               ///< true if the velocity of the tip must be estimated
   const host::Playback* playback = nullptr;  ///< replay: samples from a recording, instead of the hardware
-  scene::Clients clients = {};               ///< whether and how hard programs may push on it
+  scene::Clients clients = {};               ///< settings for programs that push on the arm
   bool found_pressed = false;     ///< for old recordings: a hold button that was down before the run enables forces
   bool full_when_slow = false;    ///< for old recordings: a slow real arm pushes with its full force
   bool former_passivity = false;  ///< for old recordings: a program's steady push counts as created energy
@@ -59,17 +59,17 @@ class Arm {
              passivity::Exchange exchange = {}) noexcept HSP_RT;
 
   /// [any] Frees the motors at once, while the servo is stuck or dying; async-signal-safe. The motors stay free until
-  /// clear(). @param after [s] for which the servo was stuck
+  /// clear(). @param after [s] how long the servo was stuck
   void cut(double after) noexcept;
   /// [any] True if the last cut has been sent to the hardware, as far as the module knows; async-signal-safe.
   bool cutLeft() const noexcept { return device_->cutLeft(); }
-  /// [rt] @param wanted true if something in the scene can be felt. Otherwise the motors do not even carry the arm's
-  /// weight.
+  /// [rt] Sets whether the motors carry the arm's weight. @param wanted true if something in the scene can be felt;
+  /// otherwise they do not
   void carryWeight(bool wanted) noexcept HSP_RT { weight_.carry(wanted); }
   /// [rt] Clears the latched fault, and a cut, because the user asked for it.
   void clear() noexcept HSP_RT;
 
-  /// At which moment of a tick the servo finds that its motors were cut. A replay must find it at the same moment.
+  /// The moment of a tick at which the servo finds that its motors were cut. A replay must find it at the same moment.
   enum class CutFound : uint8_t { kNo, kInWrite, kInRead };
   /// [rt] Returns the moment at which a cut was found since the last call, or kNo.
   CutFound takeCutFound() noexcept HSP_RT { return std::exchange(cut_found_, CutFound::kNo); }
@@ -93,8 +93,8 @@ class Arm {
   const Limiter& limiter() const noexcept { return limiter_; }
   const Eigen::Vector3d& force() const noexcept { return force_; }  ///< [N] world frame, as sent to the device
   const Probe& probe() const noexcept { return probe_; }
-  const hdv_sample& sample() const noexcept { return sample_; }     ///< as the last read() got it
-  const hdv_command& command() const noexcept { return command_; }  ///< as the last write() sent it
+  const hdv_sample& sample() const noexcept { return sample_; }     ///< sample that the last read() got
+  const hdv_command& command() const noexcept { return command_; }  ///< command that the last write() sent
   const MotorHeat& heat() const noexcept { return heat_; }
   LedHand& hand() noexcept { return hand_; }  ///< the hand that holds a simulated arm
   const LedHand& hand() const noexcept { return hand_; }
@@ -126,11 +126,11 @@ class Arm {
   /// links, or if they are unknown now.
   uint32_t links(std::array<LinkEnd, HDV_MAX_LINKS>& ends) const noexcept HSP_RT;
   const Eigen::Matrix3d& mount() const noexcept { return R_world_device_; }
-  /// [m] of the device frame, in the world
+  /// [m] origin of the device frame, world frame
   const Eigen::Vector3d& origin() const noexcept { return origin_world_; }
   bool estimatesVelocity() const { return velocity_.has_value(); }
   bool simulated() const noexcept { return (device_->info().capabilities & HDV_C_SIMULATED) != 0; }
-  double rampOut() const noexcept { return limiter_.rampOut(); }  ///< [s] from full force to none
+  double rampOut() const noexcept { return limiter_.rampOut(); }  ///< [s] time from full force to none
 
  private:
   Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter,
@@ -167,13 +167,13 @@ class Arm {
   MotorHeat heat_;
   Weight weight_;
   std::string slowness_;
-  std::string name_, stuck_words_;  // of the device; what is told where its module kept the tick
+  std::string name_, stuck_words_;  // name of the device; text of the fault if its module did not return from a call
   std::atomic<bool> stuck_here_{false};
-  std::atomic<bool> cut_{false}, taken_{false};  // held while a thread is inside the module
+  std::atomic<bool> cut_{false}, taken_{false};  // the motors were cut; a thread is inside the module
   std::atomic<double> cut_after_{0};
   std::atomic<bool> found_pressed_{false};
   bool as_found_ = false;          // ArmOptions::found_pressed
-  bool former_passivity_ = false;  // likewise
+  bool former_passivity_ = false;  // ArmOptions::former_passivity
   CutFound cut_found_ = CutFound::kNo;
   bool cut_known_ = false, cut_in_write_ = false;
   hdv_sample sample_{};
@@ -189,7 +189,7 @@ class Arm {
   bool fresh_ = false;      // the sample of this tick is new
   bool watches_jumps_ = false, tip_known_ = false;
   double fastest_ = 0;        // [m/s] a larger speed between two samples is a jump; 0: unbounded
-  double sample_period_ = 0;  // [s] between two samples of the arm; 0: unknown
+  double sample_period_ = 0;  // [s] time between two samples of the arm; 0: unknown
   SampleSpeed sample_speed_{0, 0};
   Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();  // [m] tip at the last good sample, world frame
   Probe probe_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// From a sample to a probe: whether the sample can be trusted, where the tip is, and when forces may come back.
+/// Turns a sample into a probe: decides whether the sample can be trusted, where the tip is, and when forces may come
+/// back.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,12 +11,14 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr double kCalmFor = 0.5;           ///< [s] for which a device must be well before its force comes back
-constexpr double kCalmTravel = 0.02;       ///< [m] largest motion of the tip in that time, if a force waits for it
-constexpr double kStaleAfter = 0.05;       ///< [s] without a new sample: the position is too old for a force
-constexpr double kPeriodsTrusted = 2.001;  ///< periods without a new sample until the force fades: one may be late
-constexpr double kTrustFades = 2e-3;       ///< [s] duration of this fade
-constexpr double kPairWithin = 2e-3;       ///< [s] how much closer two samples may arrive than they were measured
+constexpr double kCalmFor = 0.5;      ///< [s] a device must be well for this time before its force comes back
+constexpr double kCalmTravel = 0.02;  ///< [m] largest motion of the tip in that time, if a force waits for it
+constexpr double kStaleAfter = 0.05;  ///< [s] after this time without a new sample, the position is too old for a force
+/// [periods] without a new sample for this time, the force fades: one sample may be late
+constexpr double kPeriodsTrusted = 2.001;
+constexpr double kTrustFades = 2e-3;  ///< [s] duration of this fade
+constexpr double kPairWithin = 2e-3;  ///< [s] least time that counts between two samples, because they may arrive
+                                      ///< closer together than they were measured
 
 }  // namespace
 

@@ -15,12 +15,13 @@ namespace hapticd::servo {
 
 class ClientForces {
  public:
-  static constexpr uint32_t kMost = 8;  ///< programs that can push on one arm at a time
+  static constexpr uint32_t kMost = 8;  ///< most programs that can push on one arm at a time
   /// [s] a program's force ramps out from this time after its last answer
   static constexpr double kSilentAfter = 3e-3;
-  static constexpr double kFadeOut = 17e-3;  ///< [s] from full force to none: the force is zero 20 ms after the answer
-  static constexpr double kFadeIn = 50e-3;   ///< [s] from none to full force
-  static constexpr double kOldest = 20e-3;   ///< [s] an answer to a tick older than this does not count
+  /// [s] time from full force to none: the force is zero 20 ms after the last answer
+  static constexpr double kFadeOut = 17e-3;
+  static constexpr double kFadeIn = 50e-3;  ///< [s] time from none to full force
+  static constexpr double kOldest = 20e-3;  ///< [s] an answer to a tick older than this does not count
   static constexpr double kLargestNumber = link::kLargestPush;  ///< [N], [N m] a larger number is refused as an error
 
   /// Why an answer was refused. kAhead: it answers a tick that has not begun.
@@ -55,7 +56,8 @@ class ClientForces {
 
   bool possible() const noexcept { return mode_ != scene::ClientMode::kOff; }  ///< true if programs may push
 
-  /// [rt] A program begins to push. @param slot its memory, valid until end() @param place a free one, below kMost
+  /// [rt] A program begins to push. @param slot its memory, valid until end() @param place index of a free place, below
+  /// kMost
   void begin(uint32_t place, const link::PushSlot& slot) noexcept HSP_RT;
   void end(uint32_t place) noexcept HSP_RT;  ///< [rt] the program has gone
 

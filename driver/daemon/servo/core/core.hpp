@@ -54,21 +54,21 @@ struct ModelState {
   std::array<hsp_change, 8> changes{};  ///< values of live parameters for the next step
   uint32_t change_count = 0;
   uint32_t active_surfaces = 0;  ///< traced surfaces, all probes together
-  bool always = false;           ///< stepped in every tick, because it traces itself or moves by itself
-  bool moves = false;            ///< true if its pose may change
+  bool always = false;  ///< stepped in every tick, because it finds its foot points by itself, or moves by itself
+  bool moves = false;   ///< true if its pose may change
   hsp_status status = HSP_OK;
-  hsp_status failed_status = HSP_OK;  ///< the first status not allowed by the ABI that step() returned
+  hsp_status failed_status = HSP_OK;  ///< the first status that step() returned and that the ABI does not allow
   Pull pull;                          ///< the pull for which it was silenced, or the largest jump of its force
   Guard guard;
   ClaimBounds claims;         ///< how fast its force may change
-  bool overran = false;       ///< its last step took too long, and was counted as a strike
+  bool overran = false;       ///< its last step took too long, and was counted against it (Guard::strike())
   bool overran_then = false;  ///< replay: it overran in this tick of the recorded run
   uint64_t step_ns = 0;       ///< time of the last step; 0 if not measured
   bool cpu_timed = false;     ///< step_ns is CPU time of the thread, without interruptions
   // Its accuracy: reduced while ticks take too long, see load_shedding.hpp.
   uint32_t level = 0, coarsest = 0;  ///< Accuracy level now, and the coarsest one so far
   uint64_t finer_ns = 0;             ///< time of a step before the level was last lowered
-  double rested = 0;                 ///< [s] since its last step
+  double rested = 0;                 ///< [s] time since its last step
   uint64_t degraded_ticks = 0;
   double degraded_residual = 0;  ///< [m] largest error that a degraded answer reported
   LedPose lead;                  ///< a leader's motion of a kinematic model; it overrides glide and path
@@ -79,8 +79,8 @@ struct CoreSettings {
   double max_probe_speed = 20;  ///< [m/s] a faster probe is treated as a jump
   uint32_t spare_models = 0;    ///< empty places for models that are added during the run
   bool measure = false;         ///< measure the time of each step
-  double evaluation_ns = 0;     ///< if > 0, a step costs its evaluations times this, not its real time
-  bool former_claims = false;   ///< for old recordings: torques and steps after a set parameter are not bounded
+  double evaluation_ns = 0;    ///< [ns] if > 0, the cost of a step is its evaluations times this, not its measured time
+  bool former_claims = false;  ///< for old recordings: torques and steps after a set parameter are not bounded
 };
 
 /// Which results of a tick the arms use; set before the first tick. Other results are not computed.
@@ -89,7 +89,7 @@ struct Uses {
   bool exchange = true;  ///< true if an arm has a passivity controller
   /// [N] Largest force that each arm lets through, by probe; 0 or missing: unknown.
   std::vector<double> max_force = {};
-  std::vector<double> max_torque = {};  ///< [N m] the same for torques
+  std::vector<double> max_torque = {};  ///< [N m] largest torque that each arm lets through, by probe
 };
 
 class Core {
@@ -127,7 +127,7 @@ class Core {
   /// Sums of the forces [N] and torques [N m] of all models on a probe, world frame.
   const Vector3d& force(uint32_t probe) const noexcept { return forces_[probe]; }
   const Vector3d& torque(uint32_t probe) const noexcept { return torques_[probe]; }
-  /// Energy that moving models gave to a probe since the last tick, and that its contacts can still give back.
+  /// Energy that moving models gave to a probe since the last tick, and energy that its contacts can still give back.
   const passivity::Exchange& exchange(uint32_t probe) const noexcept { return exchanges_[probe]; }
   std::span<const ModelState> models() const noexcept { return models_; }
   const Contact& contact(uint32_t model, uint32_t probe) const noexcept {
@@ -198,8 +198,8 @@ class Core {
   // Bounded, so that many records at once do not make a tick late: the rest waits for the next tick.
   std::array<link::ActivationRecord, 1024> received_;
   size_t received_count_ = 0;
-  std::vector<Vector3d> last_position_;               // at the last good sample, by probe
-  std::vector<Eigen::Quaterniond> last_orientation_;  // the same
+  std::vector<Vector3d> last_position_;               // position at the last good sample, by probe
+  std::vector<Eigen::Quaterniond> last_orientation_;  // orientation at the last good sample, by probe
   std::vector<uint8_t> jumped_, seen_;
   std::vector<Vector3d> forces_, torques_;
   std::vector<passivity::Exchange> exchanges_;

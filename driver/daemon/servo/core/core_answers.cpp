@@ -22,7 +22,7 @@ bool finite(const double* values, size_t count) noexcept HSP_RT {
   return true;
 }
 
-/// Adjacent numbers of an answer. Wrench: force and torque. Foot: foot point, normal and depth.
+/// Groups of adjacent numbers in an answer: Wrench is force and torque; Foot is foot point, normal and depth.
 using Wrench = Eigen::Map<const Eigen::Matrix<double, 6, 1>>;
 using Foot = Eigen::Map<const Eigen::Matrix<double, 7, 1>>;
 static_assert(offsetof(hsp_contact, torque) == offsetof(hsp_contact, force) + 3 * sizeof(double));
@@ -38,8 +38,8 @@ bool finite(const hsp_contact& c) noexcept HSP_RT {
 
 }  // namespace
 
-/// Reduces the torque of the answer to this probe to the claim, and returns true if it was larger. Call it before the
-/// force is judged, because judging the force stores the place of the probe.
+/// Reduces the torque of the answer to this probe to what the claim allows, and returns true if it was larger. Call it
+/// before the force is judged, because judging the force stores the place of the probe.
 bool Core::holdTorque(const ModelState& model, Claim& claim, uint32_t probe, double dt) noexcept HSP_RT {
   ClaimStep& step = claim_step_;
   hsp_contact& out = outputs_[probe];
@@ -59,8 +59,8 @@ namespace {
 /// [s] a model counts as free after this time; a search runs every 5 ms, less often on a busy machine
 constexpr double kFreeFor = 0.05;
 
-/// Keeps the largest jump of force so far, as the number that the plugin must report to be allowed it. The caller adds
-/// the time.
+/// Keeps the largest jump of force so far, as the max_jump that the plugin would have to report so that this jump is
+/// allowed. The caller adds the time.
 void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, const hsp_contact& out) noexcept HSP_RT {
   const double size = step.force.norm();
   const double felt = step.max_force > 0 && size > step.max_force ? step.max_force / size : 1;
@@ -72,9 +72,9 @@ void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, con
 
 }  // namespace
 
-/// Reduces force and torque of the answer to this probe to the claim, and returns which of them was larger. This
-/// function and its caller are inlined into judge(): they run for every answer in every tick, and a call costs as much
-/// as they do.
+/// Reduces force and torque of the answer to this probe to what the claim allows, and returns which of them was larger.
+/// This function and its caller are inlined into judge(): they run for every answer in every tick, and a call costs as
+/// much as they do.
 [[gnu::always_inline]] inline Trouble Core::holdToClaim(ModelState& model, uint32_t index, uint32_t probe,
                                                         double dt) noexcept HSP_RT {
   hsp_contact& out = outputs_[probe];
@@ -158,8 +158,8 @@ bool Core::pulls(ModelState& model) noexcept HSP_RT {
   return false;
 }
 
-/// Adds the work that a moving model did on the probe: the force of the last tick times the motion of the surface
-/// since.
+/// Adds the work that a moving model did on the probe: the force of the last tick times the motion of the surface since
+/// then.
 void Core::bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     const Contact& held = contacts_[size_t{index} * probe_count_ + i];

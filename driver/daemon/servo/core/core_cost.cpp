@@ -29,7 +29,8 @@ Core::Begun Core::beginCost() const noexcept HSP_RT {
 }
 
 void Core::takeCost(ModelState& model, const Begun& begun) noexcept HSP_RT {
-  constexpr uint32_t kSuspicion = 100;  // [ticks] for which CPU time is measured after a tick that was too long
+  // [ticks] CPU time is measured for this many ticks after a tick that was too long
+  constexpr uint32_t kSuspicion = 100;
   model.step_ns = monotonicNow() - begun.wall;
   model.cpu_timed = begun.cpu != 0;
   if (settings_.evaluation_ns > 0) {

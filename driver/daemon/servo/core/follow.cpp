@@ -49,7 +49,8 @@ Quaterniond turnBy(const Vector3d& rotation) noexcept HSP_RT {
   return turn;
 }
 
-/// Returns for how many seconds of its twist a target has moved on, `age` [s] after its time: the twist fades.
+/// Returns for how many seconds at its full twist a target has moved on, `age` [s] after the time of its record. This
+/// is less than `age` once the twist fades.
 double reachOf(double age) noexcept HSP_RT {
   const double fading = std::clamp(age - Follow::kTwistHolds, 0.0, Follow::kTwistFades);
   return std::min(age, Follow::kTwistHolds) + fading * (1 - 0.5 * fading / Follow::kTwistFades);
@@ -59,11 +60,11 @@ struct Bounds {
   double speed, acceleration;
 };
 
-/// Motion of the pose and of its target: of the position, or of the rotation.
+/// Velocities of the pose and of its target, and the error between them, for the position or for the rotation.
 struct Motion {
   Vector3d velocity;   ///< now
   Vector3d of_target;  ///< mean velocity of the target over this tick
-  Vector3d error;      ///< from the pose now to the target after this tick
+  Vector3d error;      ///< difference from the pose now to the target after this tick
 };
 
 /// True if the pose has reached a resting target, so that the motion can end. An exponential approach never ends.

@@ -18,8 +18,8 @@ class Follow {
   static constexpr double kMostTurn = 3.141593;
   static constexpr double kMostTurnAcceleration = 60;  ///< [rad/s^2] highest angular acceleration
   static constexpr double kCloseIn = 0.02;             ///< [s] time constant with which an error decreases
-  static constexpr double kTwistHolds = 0.1;           ///< [s] for which the twist of a record is used
-  /// [s] in which the twist then fades to zero: two lost frames of 60 Hz are bridged
+  static constexpr double kTwistHolds = 0.1;           ///< [s] time for which the twist of a record is used
+  /// [s] time in which the twist then fades to zero: two lost frames of 60 Hz are bridged
   static constexpr double kTwistFades = 0.05;
   /// [m] a target farther from the world's origin is refused: no arm reaches so far
   static constexpr double kFarthest = 10;

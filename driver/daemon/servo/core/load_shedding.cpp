@@ -39,14 +39,14 @@ std::span<const LoadShedding::Change> LoadShedding::judge(std::span<const Load> 
   return {changes_.data(), count_};
 }
 
-/// True if a shape may be lowered now. A shape in contact is lowered only after a lasting overload: a short one may be
-/// an interruption.
+/// True if the accuracy of a shape may be lowered now; in contact only after a lasting overload, because a short one
+/// may be an interruption.
 bool LoadShedding::mayLower(const Load& load) const noexcept HSP_RT {
   return lowers(load) && (load.importance <= 0 || over_ >= kWeight * kLasting);
 }
 
-/// True if a shape takes too long by itself, without interruptions, and the overload is not the first: it is lowered
-/// without waiting, even in contact.
+/// True if a shape takes too long by itself, without interruptions, and the overload is not the first: its accuracy is
+/// then lowered without waiting, even in contact.
 bool LoadShedding::isProven(const Load& load) const noexcept HSP_RT {
   return load.proven && lowers(load) && over_ >= 2 * kWeight;
 }
@@ -56,8 +56,8 @@ bool LoadShedding::changed(uint32_t model) const noexcept HSP_RT {
                      [&](const Change& c) { return c.model == model; });
 }
 
-/// Lowers the least important shape first. A shape that alone takes more than the whole budget goes to the coarsest
-/// level at once.
+/// Lowers the accuracy of the least important shape first. A shape that alone takes more than the whole budget goes to
+/// the coarsest level at once.
 void LoadShedding::lower(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT {
   for (const Load& load : loads)
     if (load.step_ns > budget_ns && (mayLower(load) || isProven(load)) && count_ < kMostChanges)
@@ -67,13 +67,14 @@ void LoadShedding::lower(std::span<const Load> loads, uint64_t spent, uint64_t b
     for (const Load& load : loads)
       if (mayLower(load) && !changed(load.model) && (least == nullptr || load.importance < least->importance))
         least = &load;
-    if (least == nullptr) return;  // no shape can be lowered further: ticks will be late, and are counted
+    if (least == nullptr) return;  // no accuracy can be lowered further: ticks will be late, and are counted
     changes_[count_++] = {least->model, least->level + 1};
     spent -= std::min(spent, least->step_ns / 2);  // estimated saving of one level
   }
 }
 
-/// Raises the most important shape, if its former cost fits into the budget, or after a long time even if it does not.
+/// Raises the accuracy of the most important shape, if its former cost fits into the budget, or after a long time even
+/// if it does not.
 void LoadShedding::raise(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT {
   const Load* best = nullptr;
   for (const Load& load : loads)

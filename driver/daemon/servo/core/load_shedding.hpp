@@ -10,13 +10,13 @@
 
 namespace hapticd::servo {
 
-/// How exactly a shape must answer. Level 0: as its parameters say. No level uses a first-order method, because far
-/// from a curved surface a first-order step loses the foot, and the probe would seem to be inside.
+/// How exactly a shape must answer. At level 0 it answers as its parameters say. No level uses a first-order method,
+/// because far from a curved surface a first-order step loses the foot, and the probe would seem to be inside.
 struct Accuracy {
   static constexpr uint32_t kCoarsest = 3;
-  /// at the coarsest level, a shape out of reach answers in one of this many ticks
+  /// At the coarsest level, a shape that no probe can reach soon answers only once in this many ticks.
   static constexpr uint32_t kTurns = 4;
-  uint32_t max_iterations = 0, order = 0;  ///< as in hsp_step
+  uint32_t max_iterations = 0, order = 0;  ///< see hsp_step
 
   static constexpr Accuracy of(uint32_t level) noexcept {
     constexpr Accuracy kLevels[kCoarsest + 1] = {{0, 0}, {4, 0}, {2, 0}, {1, 0}};
@@ -37,17 +37,20 @@ struct Load {
 /// counted costs instead of measured ones.
 class LoadShedding {
  public:
-  static constexpr size_t kMostChanges = 4;     ///< changes in one tick
-  static constexpr double kComfort = 0.8;       ///< accuracy is raised only below this share of the budget
-  static constexpr uint32_t kLasting = 20;      ///< [ticks] of overload in a row before a shape in contact is lowered
-  static constexpr uint32_t kPatience = 200;    ///< [ticks] of low load before accuracy is raised
-  static constexpr uint32_t kLongest = 20'000;  ///< [ticks] longest such wait, after raises that were too much
+  static constexpr size_t kMostChanges = 4;  ///< most changes in one tick
+  static constexpr double kComfort = 0.8;    ///< accuracy is raised only below this share of the budget
+  /// [ticks] so many ticks of overload lower the accuracy of a shape in contact
+  static constexpr uint32_t kLasting = 20;
+  static constexpr uint32_t kPatience = 200;  ///< [ticks] so many ticks of low load in a row raise the accuracy
+  /// [ticks] longest wait before accuracy is raised; the wait doubles after each raise that was too much
+  static constexpr uint32_t kLongest = 20'000;
 
   struct Change {
     uint32_t model = 0, level = 0;
   };
 
-  /// [rt] @param loads costs of the shapes that were stepped @param budget_ns time for all shapes together
+  /// [rt] Returns the changes of accuracy for the next tick. @param loads costs of the shapes that were stepped
+  /// @param budget_ns time for all shapes together
   std::span<const Change> judge(std::span<const Load> loads, uint64_t budget_ns) noexcept HSP_RT;
 
  private:

@@ -24,7 +24,7 @@ struct Order {
     kRelease,  ///< the model fades out and leaves its place
     // Decisions of the servo itself. They depend on measured times, which a replay cannot repeat, so they are recorded.
     kAccuracy,  ///< the accuracy level of a model changed
-    kOverran,   ///< the model's step took too long, and was counted as a strike
+    kOverran,   ///< the model's step took too long, and was counted against it (Guard::strike())
     kCut,       ///< the watchdog cut the arm's motors
     // Leads of other programs.
     kLead,   ///< a leader begins; `param` says what it leads
@@ -43,12 +43,12 @@ struct Order {
   uint32_t param = 0;   ///< kSet: the parameter; leads: Led; kEnable: kOnceFree, or 0 in older recordings
   uint32_t ticket = 0;  ///< number of the request, for the answer
   uint32_t place = 0;   ///< leads of a force: place of the program in the arm's ClientForces
-  double value = 0;     ///< kSet: new value; kAccuracy: level; kCut: 1 found before the tick's read, 0 at its write
-  double seconds = 0;   ///< kMove: shortest duration, 0: the servo chooses; kCut: how long the servo was stuck
+  double value = 0;  ///< kSet: new value; kAccuracy: level; kCut: 1 if found before the tick's read, 0 if at its write
+  double seconds = 0;  ///< kMove: shortest duration, 0: the servo chooses; kCut: how long the servo was stuck
   double position[3] = {}, orientation[4] = {1, 0, 0, 0};  ///< kMove: world frame; four zeros keep the orientation
   ModelState* model = nullptr;                             ///< kAdopt: swapped with the empty place
   const link::PoseSlot* slot = nullptr;  ///< kLead: the leader's memory, valid until kUnlead was obeyed
-  const link::PushSlot* push = nullptr;  ///< kLead of a force: likewise
+  const link::PushSlot* push = nullptr;  ///< kLead of a force: the program's memory, valid until kUnlead was obeyed
 };
 
 }  // namespace hapticd::servo

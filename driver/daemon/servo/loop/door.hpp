@@ -17,13 +17,13 @@ namespace hapticd::servo {
 struct TickTime {
   uint64_t number = 0;
   Nanoseconds time = 0;
-  double t = 0, dt = 0;  ///< [s] since the first tick; [s] since the last tick
+  double t = 0, dt = 0;  ///< [s] time since the first tick; [s] time since the last tick
 };
 
 class Door {
  public:
   static constexpr uint32_t kStateAt = sizeof(hapticd_state_page);  ///< [bytes] offset of the first arm
-  static constexpr uint32_t kStateStride = 1152;  ///< [bytes] from one arm to the next: whole cache lines
+  static constexpr uint32_t kStateStride = 1152;  ///< [bytes] distance from one arm to the next: whole cache lines
   static constexpr int kMostWoken = 16;  ///< programs woken in one tick, because waking many would delay the tick
 
   static constexpr size_t stateBytes(size_t arms) { return kStateAt + arms * kStateStride; }

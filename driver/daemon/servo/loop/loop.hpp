@@ -68,7 +68,7 @@ class Loop {
   /// [any] Returns the CLOCK_MONOTONIC time of the first stop(), or 0 if there was none.
   Nanoseconds stopAsked() const noexcept { return stop_asked_.load(std::memory_order_relaxed); }
 
-  /// [any] Returns the part that other programs see in addition to rows.
+  /// [any] Returns the interface through which other programs see the arms, in addition to rows.
   Door& door() noexcept { return door_; }
 
   /// [any] Returns how many dry cycles began at least one period late. Final once the first tick has begun.

@@ -14,7 +14,7 @@ namespace hapticd::servo {
 /// then the loop continues with the old sample. Several samples that come together make one tick.
 class PacedClock final : public Clock {
  public:
-  /// @param clock of the run  @param arm must outlive this object, and canPace() must be true
+  /// @param clock clock of the run  @param arm must outlive this object, and canPace() must be true
   PacedClock(std::unique_ptr<Clock> clock, host::DeviceInstance& arm, Nanoseconds period)
       : clock_(std::move(clock)), arm_(arm), period_(period) {}
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The interface through which the loop reports every tick and every order. Files and status pages are on the other
-/// side.
+/// The interface through which the loop reports every tick and every order. An implementation writes them to files and
+/// status pages.
 #pragma once
 #include <cstdint>
 #include <memory>

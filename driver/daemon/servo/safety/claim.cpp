@@ -18,7 +18,7 @@ Vector3d nearestPart(const Vector3d& of, const Vector3d& to) noexcept HSP_RT {
   return std::clamp(to.dot(of) / square, 0.0, 1.0) * of;
 }
 
-/// [N/m] Largest stiffness that a contact law may have at its steepest place.
+/// Returns the largest stiffness [N/m] that a contact law may have at its steepest place.
 double stiffnessOf(const ClaimBounds& bounds) noexcept HSP_RT {
   return Claim::kMargin * (bounds.stiffness > 0 ? bounds.stiffness : Claim::kUnclaimed);
 }
@@ -36,7 +36,7 @@ Vector3d Claim::judge(const ClaimStep& step, const ClaimBounds& bounds, double d
   finds_anew_ -= dt;
   held = false;
   Vector3d from = let;
-  double follows = 1;  // share of the change by which explained_ follows
+  double follows = 1;  // share of the change by which explained_ moves toward the new force
   if (known_ && (step.in & (HSP_IN_JUMP | HSP_IN_INVALID)) == 0) {
     const double turned = step.turn != nullptr ? turn(explained_, *step.turn, bounds, dt) : 0;
     from = nearestPart(explained_, let);
@@ -61,7 +61,7 @@ bool Claim::surelyExplained(double square, const ClaimStep& step, const ClaimBou
 }
 
 /// Moves `let` back toward `from` until the change fits `room`. @return the share of the change by which the explained
-/// force follows
+/// force moves toward the new one
 double Claim::holdBack(Vector3d& let, const Vector3d& from, const Vector3d& change, const Room& room,
                        const ClaimStep& step, double dt, bool& held) noexcept HSP_RT {
   const double size = change.norm(), most = room.moved + room.jump, follows = room.moved + room.drift;
@@ -81,8 +81,8 @@ bool Claim::mayJump(const ClaimStep& step) noexcept HSP_RT {
   return jumps_ = true;
 }
 
-/// [N] or [N m] Change that the turn of the model since the last step explains. If the host turns the model, the
-/// explained force turns with it; if the shape turns itself, the change is bounded and returned.
+/// Returns the change [N] or [N m] that the turn of the model since the last step explains. If the host turns the
+/// model, the explained force turns with it, and the result is 0. If the shape turns itself, the result is bounded.
 double Claim::turn(Vector3d& explained, const Eigen::Matrix3d& turn, const ClaimBounds& bounds,
                    double dt) noexcept HSP_RT {
   const Vector3d carried = turn * explained;
@@ -91,7 +91,7 @@ double Claim::turn(Vector3d& explained, const Eigen::Matrix3d& turn, const Claim
   return 0;
 }
 
-/// [N] Largest change of the force that the motion of probe and model since the last step explains.
+/// Returns the largest change [N] of the force that the motion of probe and model since the last step explains.
 double Claim::explained(const ClaimStep& step, const ClaimBounds& bounds, double dt) const noexcept HSP_RT {
   double way = (step.p_model - p_model_).norm(), speed = std::max(step.velocity.norm(), velocity_.norm());
   double change = (step.velocity - velocity_).norm();
@@ -105,8 +105,8 @@ double Claim::explained(const ClaimStep& step, const ClaimBounds& bounds, double
   return stiffnessOf(bounds) * way + std::max(kDamping * change, kMargin * bounds.damping * speed);
 }
 
-/// [m] How far the surface at the probe may have moved by the pose that the shape reports: bounded by kOwnSpeed and
-/// kOwnTurn, so that a model that spins about the probe explains next to nothing.
+/// Returns how far [m] the surface at the probe may have moved by the pose that the shape reports. It is bounded by
+/// kOwnSpeed and kOwnTurn, so that a model that spins about the probe explains next to nothing.
 double Claim::ownWay(const ClaimStep& step, double dt) const noexcept HSP_RT {
   const double along = std::min((step.origin - origin_).norm(), kOwnSpeed * dt);
   if (step.turn == nullptr) return along;
@@ -142,7 +142,7 @@ Vector3d Claim::judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, do
   if (const double size = let.norm(); step.max_torque > 0 && size > step.max_torque) let *= step.max_torque / size;
   held = false;
   Vector3d from = let;
-  double follows = 1;  // share of the change by which explained_torque_ follows
+  double follows = 1;  // share of the change by which explained_torque_ moves toward the new torque
   if (torque_known_ && (step.in & (HSP_IN_JUMP | HSP_IN_INVALID)) == 0) {
     const double turned = step.turn != nullptr ? turn(explained_torque_, *step.turn, bounds, dt) : 0;
     from = nearestPart(explained_torque_, let);
@@ -158,11 +158,12 @@ Vector3d Claim::judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, do
   return held ? let : step.torque;
 }
 
-/// [rad] How far the probe turned in the frame of the model since the last step, not overestimated. A turn that the
-/// shape itself reports does not count here: explained() covers the motion of its surface.
+/// Returns by how much [rad] the probe turned in the frame of the model since the last step. It is never overestimated.
+/// A turn that the shape itself reports does not count here: explained() covers the motion of its surface.
 double Claim::angle(const ClaimStep& step, const ClaimBounds& bounds) const noexcept HSP_RT {
-  constexpr double kOfChord = 2.3;    // angle of up to half a turn, per distance between two quaternions
-  constexpr double kOfMatrix = 0.72;  // small angle, per distance between two matrices
+  // [rad] an angle of up to half a turn, divided by the distance between the quaternions
+  constexpr double kOfChord = 2.3;
+  constexpr double kOfMatrix = 0.72;  // [rad] a small angle, divided by the distance between the rotation matrices
   const double chord = std::min((step.orientation - orientation_).norm(), (step.orientation + orientation_).norm());
   const bool carried = step.turn != nullptr && !bounds.moves_itself;
   return kOfChord * chord + (carried ? kOfMatrix * (*step.turn - Eigen::Matrix3d::Identity()).norm() : 0);

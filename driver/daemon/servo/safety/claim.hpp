@@ -21,7 +21,7 @@ struct ClaimBounds {
 /// One answer of a shape to one probe, in the world frame unless a comment says otherwise. `normal` is only used if a
 /// surface is traced; `p_world` and `origin` are only used if the shape moves itself.
 struct ClaimStep {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< [N] on the probe
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< [N] force on the probe
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< outward unit normal, if a surface is traced
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();   ///< [m] position of the probe
   Eigen::Vector3d p_model = Eigen::Vector3d::Zero();   ///< [m] the probe in the frame of the model, after the step
@@ -32,7 +32,7 @@ struct ClaimStep {
   double max_force = 0;
   uint32_t in = 0, out = 0;  ///< HSP_IN_*, HSP_OUT_*
   // Only judgeTorque() uses these.
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m] on the probe
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m] torque on the probe
   /// Orientation x y z w of the probe in the world; constant if the shape does not use the orientation.
   Eigen::Vector4d orientation = Eigen::Vector4d::UnitW();
   /// [N m] largest torque that the arm lets through, 0: unknown; larger ones are reduced to it first
@@ -47,11 +47,11 @@ class Claim {
   static constexpr double kMargin = 10;
   static constexpr double kStep = 2;          ///< [N] a force may always jump by this much, as for a click
   static constexpr double kUnclaimed = 2000;  ///< [N/m] stiffness that is assumed if none is claimed
-  /// [N s/m] allowed to every shape, because friction and inertia act like damping
+  /// [N s/m] damping that every shape may have without a claim, because friction and inertia act like damping
   static constexpr double kDamping = 100;
   static constexpr double kDrift = 100;   ///< [N/s] a force may always change at this rate
   static constexpr double kOwnSpeed = 5;  ///< [m/s] highest speed that is believed of a shape that moves itself
-  static constexpr double kOwnTurn = 50;  ///< [rad/s] the same for its turning
+  static constexpr double kOwnTurn = 50;  ///< [rad/s] highest angular velocity that is believed of such a shape
   /// The force changes at once if a surface is newly found under the probe, or if the foot goes over an edge. kPasses
   /// such changes may come in a row, and then kPassesPerSecond per second.
   static constexpr double kPasses = 3, kPassesPerSecond = 20;
@@ -75,7 +75,7 @@ class Claim {
   /// @param dt [s] since the last step  @param held becomes true if the force was held back
   Eigen::Vector3d judge(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
-  /// [rt] Does the same for the torque of `step`. Call it before judge(), because judge() stores the place of the
+  /// [rt] Like judge(), but for the torque of `step`. Call it before judge(), because judge() stores the place of the
   /// probe.
   Eigen::Vector3d judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
@@ -110,9 +110,9 @@ class Claim {
 
   bool known_ = false, traced_ = false;
   bool torque_known_ = false;
-  bool asked_ = false, jumps_ = false;  // in this step: a parameter was set; a jump is allowed
+  bool asked_ = false, jumps_ = false;  // a parameter was set before this step; this step may jump
   double passes_ = kPasses, asked_passes_ = kAsked;
-  double excused_ = 0, finds_anew_ = 0;  // [s] how long excused(), and kFindsAnew, still hold
+  double excused_ = 0, finds_anew_ = 0;  // [s] remaining times of excused() and of kFindsAnew
   /// [N] The force that motion explains, world frame. The force that passes is at most one jump away from it.
   Eigen::Vector3d explained_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_world_ = Eigen::Vector3d::Zero(), p_model_ = Eigen::Vector3d::Zero();
@@ -122,11 +122,11 @@ class Claim {
   Eigen::Vector4d orientation_ = Eigen::Vector4d::UnitW();
 };
 
-/// A pull by a surface that claims to push only.
+/// A pull by a surface that claims to push only, or the largest jump of a model's force.
 struct Pull {
   double t = -1;      ///< [s] time since the start of the run; negative: unknown
-  double depth = -1;  ///< [m] as the shape reported it; negative: unknown or outside
-  double force = 0;   ///< [N] with which it pulled
+  double depth = -1;  ///< [m] depth that the shape reported; negative: unknown or outside
+  double force = 0;   ///< [N] force with which it pulled, or size of the jump
 };
 
 /// [rt] True if the force of a contact pulls the probe deeper in, or from outside toward the surface, by more than

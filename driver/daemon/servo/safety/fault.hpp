@@ -18,7 +18,7 @@ enum class Fault : uint8_t {
   kTooFast,        ///< the tip moved faster than the limit [m/s]
   kLate,           ///< too many ticks were missed in a row [s]
   kNotCalibrated,  ///< the device must be calibrated before it may push
-  kStopped,        ///< the daemon is stopping
+  kStopped,        ///< a user holds the arm, or the run ends
   kStuck,          ///< a tick did not end and the watchdog cut the motors [s]
   kOverheated,     ///< a motor is hotter than allowed, by the model of its heat [degC]
   kJumped,         ///< two positions are farther apart than a hand can move [m/s]

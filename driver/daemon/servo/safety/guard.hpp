@@ -27,7 +27,7 @@ class Guard {
   /// [s] The force of a failed shape is zero after this time. Until then a tip that nobody holds gains energy, see
   /// Limiter::kFaultRamp.
   static constexpr double kFadeOut = 0.002;
-  static constexpr double kLeave = 0.02;  ///< [s] the same for a model that is disabled on request
+  static constexpr double kLeave = 0.02;  ///< [s] time in which the force ends if the model is disabled on request
   /// [s] duration of a fade-in, so that a surface that is found again does not kick
   static constexpr double kFadeIn = 0.05;
   /// [s] Duration of the fade-in of a model that is added during a run and pushes without a surface: no hand can be
@@ -41,7 +41,7 @@ class Guard {
   Trouble enter(Trouble trouble) noexcept HSP_RT;
 
   /// [rt] Notes that one step took too long, or that one force was beyond the claim. This becomes a trouble if it
-  /// happens `strikes` times within a hundred ticks, or for long more often than once in a hundred ticks.
+  /// happens `strikes` times within a hundred ticks, or, over a longer time, more often than once in a hundred ticks.
   Trouble strike(Trouble trouble, int strikes) noexcept HSP_RT;
 
   /// [rt] Returns the factor for the force of this tick. @param good true if the step succeeded @param wanted true if
@@ -57,7 +57,7 @@ class Guard {
   Trouble trouble() const noexcept { return trouble_; }  ///< the trouble that quarantined it, else the last one
 
  private:
-  static constexpr int kForgivenAfter = 100;  ///< [ticks] in which one strike is forgiven
+  static constexpr int kForgivenAfter = 100;  ///< [ticks] after this many ticks one strike is forgiven
   int strikes_ = 0;
   // starts at 1, because the first contact begins with zero force anyway (Eq. 4 of Thompson et al. 1999)
   double gain_ = 1;

@@ -11,7 +11,7 @@ namespace hapticd::servo {
 constexpr double kHeldInFull = 2.8e-3;
 /// [s] In this time 8.5 N move this tip by 0.93 mm. This bounds the force of a command that is held for longer.
 constexpr double kHeldForWay = 3.6e-3;
-/// [N] Largest force of the arm of these calculations. A stronger arm is heavier too.
+/// [N] Largest force of the arm for which the times above were calculated. A stronger arm is heavier too.
 constexpr double kReckonedForce = 8.5;
 
 /// [any] Returns how long [s] a command may stay on after a single fault: until the next tick, or until a sample shows

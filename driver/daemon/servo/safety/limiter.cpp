@@ -90,7 +90,7 @@ void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position,
   last_torque_ = torque;
 }
 
-/// [s] Duration of the ramp after a fault; longer for a planned end.
+/// Returns the duration [s] of the ramp to zero after a fault; it is longer for a planned end.
 double Limiter::faultRamp() const noexcept HSP_RT {
   return fault() == Fault::kStopped ? limits_.ramp_out : std::min(limits_.ramp_out, kFaultRamp);
 }
@@ -122,7 +122,7 @@ void Limiter::limit(Vector3d& force, Vector3d& torque, const Vector3d& position,
   const double window = std::max(dt, kSlewWindow);
   if (limits_.slew > 0 && limitSlew(force, slow_force_, limits_.slew * window)) count(Limit::kSlew);
   if (limits_.torque_slew > 0 && limitSlew(torque, slow_torque_, limits_.torque_slew * window)) count(Limit::kSlew);
-  if (limits_.power > 0) limitPower(force);  // after slew, which may turn the force to where the hand does not move
+  if (limits_.power > 0) limitPower(force);  // after the slew limit, which may turn the force
 }
 
 void Limiter::limitPower(Vector3d& force) noexcept HSP_RT {
@@ -136,7 +136,7 @@ void Limiter::limitImpulse(Vector3d& force, double dt) noexcept HSP_RT {
   // integrator holds at the end plus what leaked meanwhile, so at most twice its largest value. So half the limit as
   // the largest value bounds every window, wherever it begins. The cap falls as the integrator fills, so that a held
   // force settles at size / window without a step.
-  constexpr double kApproach = 0.01;  // [s]
+  constexpr double kApproach = 0.01;  // [s] the impulse that is left may be used up in this time
   const double size = limits_.impulse / 2, booked = std::min(impulse_, size);
   const double most = (size - booked) / std::max(kApproach, dt) + booked / kImpulseWindow;
   if (cap(force, most)) count(Limit::kImpulse);

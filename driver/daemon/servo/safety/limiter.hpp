@@ -23,7 +23,7 @@ const char* nameOf(Limit limit);  ///< such as "force" for limits.force
 /// Counts in how many ticks each limit made the force smaller.
 struct Clips {
   std::array<uint64_t, kLimitCount> ticks{};
-  uint64_t any = 0;  ///< ticks in which at least one limit did
+  uint64_t any = 0;  ///< ticks in which at least one limit made it smaller
 };
 
 class Limiter {
@@ -89,8 +89,8 @@ class Limiter {
   bool enabled() const noexcept { return enabled_; }  ///< true if there is no enable switch, or it enables forces
   /// true if the enable switch was down at the start and has not been released since
   bool foundPressed() const noexcept { return found_pressed_; }
-  double rampOut() const noexcept { return limits_.ramp_out; }  ///< [s] from full force to zero, at a planned end
-  const Clips& clips() const noexcept { return clips_; }        ///< [main] after the run
+  double rampOut() const noexcept { return limits_.ramp_out; }  ///< [s] time from full force to zero, at a planned end
+  const Clips& clips() const noexcept { return clips_; }        ///< [main] only after the run
   double maxForce() const noexcept { return max_force_; }       ///< [N] 0: no limit
   double maxTorque() const noexcept { return limits_.torque; }  ///< [N m] 0: no limit
   /// [rt] Returns the share of a full force that the ramps allow in this tick, 0 to 1. Call it after apply().
@@ -119,7 +119,8 @@ class Limiter {
   bool clipped_ = false;  // a limit has reduced the force of this tick
   bool cleared_ = false;  // cleared by the user while the force was still ramping down
   double heat_factor_ = 1, impulse_ = 0;
-  double trusted_ = 1, fresh_ = 1;  // factors for the age of the sample: now; and while it grows back
+  // factors for the age of the sample: the one allowed now; the one in use, which grows back slowly
+  double trusted_ = 1, fresh_ = 1;
   Clips clips_;
   PowerBound power_;
   Vector3d fault_force_ = Vector3d::Zero(), fault_torque_ = Vector3d::Zero();

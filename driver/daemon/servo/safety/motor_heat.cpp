@@ -8,9 +8,10 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr double kCopper = 0.00393;   ///< [1/K] relative rise of the resistance of copper
-constexpr double kRatedAt = 25;       ///< [degC] temperature at which data sheets give the resistance
-constexpr double kOvershoot = 5;      ///< [K] above the limit: overheated; a held force alone never reaches this
+constexpr double kCopper = 0.00393;  ///< [1/K] relative rise of the resistance of copper
+constexpr double kRatedAt = 25;      ///< [degC] temperature at which data sheets give the resistance
+/// [K] a winding this far above its limit is overheated; a held force alone never heats it so far
+constexpr double kOvershoot = 5;
 constexpr double kLongestHold = 0.1;  ///< [s] longest time of one torque; longer gaps cause other faults
 
 }  // namespace

@@ -20,7 +20,7 @@ class MotorHeat {
   bool empty() const noexcept { return count_ == 0; }
   size_t count() const noexcept { return count_; }  ///< number of joints whose motors are modelled
 
-  /// [rt] Calculates the heat of torques [N m] at the joints that are held for dt [s].
+  /// [rt] Calculates how torques [N m] at the joints, held for dt [s], heat the motors.
   void heat(const double* torque, double dt) noexcept HSP_RT;
 
   /// Returns the share of every force that the hottest motor allows: 1 while it is cool, 0 at its limit.
@@ -30,7 +30,8 @@ class MotorHeat {
   /// True if a winding is more than 5 K beyond its limit. Then something other than forces heats it, such as gravity
   /// compensation.
   bool overheated() const noexcept { return overheated_; }
-  double winding(size_t joint) const noexcept { return bodies_[joint].winding; }  ///< [degC] of one motor's winding
+  /// [degC] temperature of one motor's winding
+  double winding(size_t joint) const noexcept { return bodies_[joint].winding; }
 
  private:
   struct Bodies {

@@ -12,7 +12,7 @@ namespace hapticd::servo {
 class PowerBound {
  public:
   static constexpr double kMargin = 1.5;     ///< factor on the largest recent acceleration: the next may be larger
-  static constexpr double kRemember = 0.02;  ///< [s] after which an acceleration is forgotten
+  static constexpr double kRemember = 0.02;  ///< [s] time after which an acceleration is forgotten
 
   /// [main] @param lag [s] of the velocity estimate  @param mass [kg] of the arm at its tip; 0: do not count how the
   /// force accelerates the arm

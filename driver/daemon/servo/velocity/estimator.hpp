@@ -9,9 +9,9 @@
 
 namespace hapticd::velocity {
 
-constexpr double kResolution = 30e-6;  ///< [m] of a PHANToM Premium; assumed if the device reports none
+constexpr double kResolution = 30e-6;  ///< [m] resolution of a PHANToM Premium; assumed if the device reports none
 
-/// One of the estimators. Copies are independent.
+/// A velocity estimator of any kind. Copies are independent.
 class VelocityEstimator {
  public:
   using Filter = std::variant<Window, Butterworth, AdaptiveWindow, LeastSquares, Kalman>;

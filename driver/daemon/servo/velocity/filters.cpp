@@ -97,7 +97,7 @@ Vector3d Kalman::update(const Vector3d& position, double dt) noexcept {
     x_ = position;
     v_.setZero();
     a_.setZero();
-    // for a hand: 1 m/s, 10 m/s^2
+    // standard deviations of the motion of a hand: 1 m/s, 10 m/s^2
     covariance_ = Vector3d(variance_, 1, 100).asDiagonal();
     return v_;
   }

@@ -11,7 +11,7 @@ class History {
  public:
   explicit History(int capacity) : samples_(static_cast<size_t>(capacity)) {}  ///< [main] allocates
 
-  /// [rt] @param dt [s] since the last sample
+  /// [rt] Adds a position. @param dt [s] since the last one
   void push(const Eigen::Vector3d& position, double dt) noexcept {
     newest_ = newest_ == 0 ? samples_.size() - 1 : newest_ - 1;
     samples_[newest_] = {position, dt};
@@ -19,7 +19,7 @@ class History {
   }
   /// [rt] Returns a position; age 0 is the newest.
   const Eigen::Vector3d& position(int age) const noexcept { return at(age).position; }
-  double step(int age) const noexcept { return at(age).dt; }  ///< [rt] [s] from the sample before to sample `age`
+  double step(int age) const noexcept { return at(age).dt; }  ///< [rt] [s] time from the sample before to sample `age`
   int count() const noexcept { return count_; }
   void clear() noexcept { count_ = 0; }
 

@@ -14,7 +14,8 @@ using velocity::VelocityEstimator;
 
 inline constexpr double kMaxProbeSpeed = 20;  ///< [m/s] twice the speed of a hand; a faster sample is a jump
 
-/// [main] @param rate [Hz] of the samples  @param resolution [m] of a position; 0: unknown
+/// [main] Makes the estimator that servo.velocity names. @param rate [Hz] of the samples @param resolution [m] of a
+/// position; 0: unknown
 inline Result<VelocityEstimator> makeEstimator(const scene::Velocity& how, double rate, double resolution = 0) {
   try {
     return velocity::make(how.estimator, how.parameter, rate, resolution > 0 ? resolution : velocity::kResolution);
@@ -23,8 +24,8 @@ inline Result<VelocityEstimator> makeEstimator(const scene::Velocity& how, doubl
   }
 }
 
-/// Estimates the velocity, and restarts after a gap or a jump: a difference across one would give a wrong velocity, and
-/// a damper would push with it for as long as the estimator remembers.
+/// Estimates the velocity, and restarts after a gap or a jump: a difference across it would give a wrong velocity, with
+/// which a damper would push for as long as the estimator remembers it.
 class ProbeVelocity {
  public:
   explicit ProbeVelocity(const VelocityEstimator& estimator) : estimator_(estimator) {}
@@ -45,7 +46,7 @@ class ProbeVelocity {
     estimator_.reset();
   }
 
-  /// [rt] [m/s] from the last sample to this one, also at a jump
+  /// [rt] Returns the speed [m/s] from the last sample to this one, also at a jump.
   double speed() const noexcept { return speed_; }
 
  private:

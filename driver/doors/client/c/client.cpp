@@ -124,7 +124,8 @@ std::byte* hapticd_client::page(const char* request, hapticd::client::Mapping& k
 /// Reports why there was no answer: the daemon has ended, it has closed this connection, or it takes too long.
 void hapticd_client::tellOfSilence(const std::string& problem, hapticd_error* error) {
   if (!line.ended()) return tell(error, "timeout", problem);
-  constexpr useconds_t kMeanwhile = 20'000;  // [us] a daemon that ends closes its connections first
+  // [us] wait before the check, because a daemon that ends closes its connections first.
+  constexpr useconds_t kMeanwhile = 20'000;
   usleep(kMeanwhile);
   if (ended() || access((base + ".sock").c_str(), F_OK) != 0) return tell(error, "gone", problem);
   tell(error, "too_many",
@@ -160,10 +161,12 @@ void hapticd_close(hapticd_client* client) {
 }
 
 int hapticd_alive(hapticd_client* client) {
-  if (client->line.ended() && !client->rows.isFile(client->base + ".blackbox.h5")) return 0;  // another has its name
+  // If the black box was replaced, another daemon has this name.
+  if (client->line.ended() && !client->rows.isFile(client->base + ".blackbox.h5")) return 0;
   const std::string file = client->base + ".lock";
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  // The lock file of another user cannot be opened. Then the socket tells: it disappears when the daemon ends.
+  // The lock file of another user cannot be opened. Then the socket shows it: the socket disappears when the daemon
+  // ends.
   if (fd < 0) return errno == EACCES && access((client->base + ".sock").c_str(), F_OK) == 0 ? 1 : 0;
   const bool free = flock(fd, LOCK_SH | LOCK_NB) == 0;
   close(fd);

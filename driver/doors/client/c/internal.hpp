@@ -49,7 +49,7 @@ class Mapping {
 /// One stream of the black box.
 struct Stream {
   std::string name;
-  uint64_t* written = nullptr;  ///< in the mapping
+  uint64_t* written = nullptr;  ///< number of rows written so far, in the memory of the daemon
   uint64_t* rows = nullptr;
   uint64_t handed = 0;  ///< number of rows that some thread has read already
   uint64_t capacity = 0;
@@ -67,7 +67,7 @@ class Rows {
   /// Returns the time [ns] from one tick to the next.
   int64_t period() const { return period_; }
   std::vector<Stream>& streams() { return streams_; }
-  /// True if `file` is still the file that was opened; another daemon of this name would have replaced the file.
+  /// Tells whether `file` is still the file that was opened. Another daemon of this name would have replaced the file.
   bool isFile(const std::string& file) const;
   static uint64_t written(const Stream& stream);
   static long read(const Stream& stream, uint64_t& row, void* rows, size_t most);
@@ -93,23 +93,25 @@ struct Answer {
 /// Fills in `error`, which may be nullptr.
 void tell(hapticd_error* error, const char* code, const std::string& text);
 
-/// Ends a lead with a request, before the client ends.
+/// Ends a lead with a request, so that it ends in order. Called before the client ends.
 void endInOrder(hapticd_client& client, const hapticd_lead& lead);
 
 }  // namespace hapticd::client
 
-/// The client of client.h.
+/// The client of client.h: the connection, the black box, and the memory that requests returned.
 struct hapticd_client {
   hapticd_client(std::string where, hapticd::control::Client on, hapticd::client::Rows box)
       : base(std::move(where)), line(std::move(on)), rows(std::move(box)) {}
-  /// Sends a request and reads the answer. False if it was refused, or if no answer came; `error` says why.
+  /// Sends a request and reads the answer. Returns false if the request was refused or no answer came; `error` says
+  /// why.
   bool ask(const std::string& request, hapticd::client::Answer& answer, hapticd_error* error);
   /// Sends a request without waiting for the answer.
   void leave(const std::string& request);
-  /// Returns the memory that comes with the answer to a request, mapped once, or nullptr if it is not available.
+  /// Returns the memory that comes with the answer to a request, or nullptr if it is not available. The memory is
+  /// mapped at the first call, and kept in `kept`.
   std::byte* page(const char* request, hapticd::client::Mapping& kept, size_t least, int protection);
 
-  /// [any] True if the daemon of this client has ended, so that its rows and states are old.
+  /// [any] Tells whether the daemon of this client has ended, so that its rows and states are old.
   bool ended();
   void tellOfSilence(const std::string& problem, hapticd_error* error);
 

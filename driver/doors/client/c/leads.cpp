@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Leads: memory that this program writes and the servo reads once per tick.
+/// The functions of client.h for leads. A lead is memory that this program writes and the servo reads once per tick.
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@ namespace {
 using hapticd::client::Answer;
 using hapticd::client::tell;
 
-/// Returns the daemon's reason why the arm gets no force, or "" if the arm gets the force.
+/// Returns why the arm gets no force, as the daemon reports it, or "" if the arm gets the force.
 std::string noForce(const std::string& answer) {
   const auto json = nlohmann::json::parse(answer, nullptr, false);
   return json.is_object() && json.contains("no_force") ? json["no_force"].get<std::string>() : "";
@@ -30,7 +30,7 @@ hapticd_lead* leadOf(hapticd_client* client, const char* what, const char* name,
   const std::string begin = requestOf("lead", what, name), end = requestOf("unlead", what, name);
   Answer answer;
   if (!client->ask(begin, answer, told)) {
-    if (std::strcmp(told->code, "timeout") == 0) client->leave(end);  // the lead may have begun: ends it
+    if (std::strcmp(told->code, "timeout") == 0) client->leave(end);  // the lead may have begun, so it is ended
     return nullptr;
   }
   hapticd::client::Mapping memory(answer.descriptor.get(), HAPTICD_LEAD_BYTES, PROT_READ | PROT_WRITE);
@@ -66,7 +66,8 @@ int hapticd_lead_put(hapticd_lead* lead, const hapticd_target* target) {
 
 int hapticd_lead_push(hapticd_lead* lead, const hapticd_push* push) {
   if (!lead->pushes || lead->client->line.ended()) return -1;
-  // Checked here, because the daemon would refuse and count such a record without an answer to this program.
+  // The numbers are checked here, because the daemon would refuse and count such a record without an answer to this
+  // program.
   for (const double* numbers : {push->force, push->torque})
     for (int i = 0; i < 3; ++i)
       if (!(std::abs(numbers[i]) <= hapticd::link::kLargestPush)) return -1;

@@ -115,7 +115,8 @@ long Rows::read(const Stream& stream, uint64_t& row, void* rows, size_t most) {
         std::memcpy(to, &value, 8);
       }
     }
-    if (count > 0 && written(stream) - first >= stream.capacity) continue;  // overwritten meanwhile: reads newer rows
+    // The rows were overwritten meanwhile: reads newer ones.
+    if (count > 0 && written(stream) - first >= stream.capacity) continue;
     row = first + count;
     return static_cast<long>(count);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Waits for the rows and for the states of a tick, with the bell (hapticd_bell).
+/// The functions of client.h that wait for the rows or for the state of a tick. They use the bell (hapticd_bell).
 #include <linux/futex.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -39,8 +39,8 @@ void sleepOn(uint32_t& word, uint32_t& waiting, uint32_t seen, long ms) {
   syscall(SYS_futex, &word, FUTEX_WAIT, seen, &limit, nullptr, 0);
 }
 
-/// Calls `there` after each wake-up until it returns true, or until nowMs() is `end`. @return 1 if it returned true, 0
-/// if not in time, -1 if the daemon has ended
+/// Calls `there` after each wake-up until it returns true, or until nowMs() is `end`. @return 1 if `there` returned
+/// true, 0 if it did not in time, -1 if the daemon has ended
 template <class There>
 int waitFor(hapticd_client* client, uint32_t& word, uint32_t& waiting, long end, There&& there) {
   constexpr long kLongest = 100;  // [ms] a wake-up may be lost if another program writes to the bell
@@ -64,14 +64,15 @@ template <class Record>
 bool newest(std::byte* at, Record& record) {
   constexpr int kTries = 1000;
   for (int i = 0; i < kTries; ++i) {
-    uint64_t seen = 0;  // the count of a record that was never written
+    uint64_t seen = 0;  // the value of the count before the first record is written
     if (reinterpret_cast<hapticd::link::LeadSlot<Record>*>(at)->take(seen, record)) return true;
     if (std::atomic_ref<uint64_t>(*reinterpret_cast<uint64_t*>(at)).load() == 0) return false;
   }
   return false;
 }
 
-/// Polls around the time at which the tick after `state` is due. @return true if a tick after `after` came
+/// Polls from `before` [ns] before the time at which the tick after `state` is due until `before` after it. @return
+/// true if a tick after `after` came
 bool listen(std::byte* at, int64_t period, int64_t before, uint64_t after, hapticd_state& state) {
   const int64_t due = static_cast<int64_t>(state.time_ns) + period, now = nowNs();
   // In virtual time, or after a pause of the daemon, the time of the next tick is unknown.

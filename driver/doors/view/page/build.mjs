@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Bundles the page into ../bundle, or into the folder given: three.js and uPlot with what is used of them, no source
-// maps, nothing that depends on the machine.
+// Bundles the page into ../bundle, or into the given folder. The bundle contains the used parts of three.js and uPlot, no
+// source maps, and nothing that depends on the machine.
 import {build} from 'esbuild';
 import {copyFileSync, mkdirSync, readFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
@@ -9,7 +9,7 @@ import {fileURLToPath} from 'node:url';
 const here = dirname(fileURLToPath(import.meta.url));
 const out = process.argv[2] ?? join(here, '..', 'bundle');
 mkdirSync(out, {recursive: true});
-/** A package's licence as a comment: copies must carry it. */
+/** Returns a package's licence as a comment, because copies must carry it. */
 const licence = (name) => `/* ${name}\n${readFileSync(join(here, 'node_modules', name, 'LICENSE'), 'utf8').trim()}\n*/`;
 await build({
   absWorkingDir: here,

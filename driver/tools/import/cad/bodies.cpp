@@ -42,8 +42,8 @@ bool bounds(const TopoDS_Edge& edge) {
   return edge.Orientation() == TopAbs_FORWARD || edge.Orientation() == TopAbs_REVERSED;
 }
 
-/// Returns the edges of a wire, so that each starts where the one before ends. If this loses edges, returns them in the
-/// order of the file.
+/// Returns the edges of a wire in an order in which each starts where the one before ends. If this would lose edges,
+/// returns them in the order of the file.
 std::vector<TopoDS_Edge> inOrder(const TopoDS_Wire& wire, const TopoDS_Face& face, const brep::Face& range) {
   std::vector<TopoDS_Edge> all, ordered;
   for (TopoDS_Iterator at(wire); at.More(); at.Next())
@@ -182,6 +182,7 @@ void BodyBuilder::addLoop(const TopoDS_Face& face, const TopoDS_Shape& wire, con
   if (loop.count > 0) part_.loops.push_back(loop);
 }
 
+/// Adds a face with its surface and loops. Throws Unkept if it cannot be kept.
 /// @param shape the recognised surface; nullptr to keep the surface of the face
 void BodyBuilder::addFace(const TopoDS_Face& oriented, const brep::Surface* shape) {
   const TopoDS_Face face = TopoDS::Face(oriented.Oriented(TopAbs_FORWARD));

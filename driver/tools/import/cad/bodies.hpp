@@ -21,7 +21,7 @@ class BodyBuilder {
 
   /// [main] Appends the body and returns its index. Faces that cannot be kept become losses.
   std::uint32_t add(const TopoDS_Shape& shape, std::uint32_t name, std::uint32_t colour);
-  /// Returns how many of its spline faces were found to be planes, cylinders, cones or spheres.
+  /// Returns how many spline faces of the body were found to be planes, cylinders, cones or spheres.
   std::size_t recognisedFaces() const { return recognised_; }
 
  private:

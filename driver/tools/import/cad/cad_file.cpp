@@ -29,7 +29,7 @@ Handle(TDocStd_Document) newDocument() {
   return document;
 }
 
-/// Returns the name of a unit as this project's files write it.
+/// Returns the short name of a unit, such as "mm" for "millimetre"; an unknown unit is returned in lower case.
 std::string shortUnit(std::string unit) {
   std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) { return std::tolower(c); });
   const std::pair<const char*, const char*> known[] = {{"millimetre", "mm"}, {"millimeter", "mm"}, {"centimetre", "cm"},

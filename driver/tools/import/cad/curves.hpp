@@ -16,7 +16,7 @@ inline constexpr double kMetres = 1e-3;
 
 inline constexpr double kFullTurn = 2 * std::numbers::pi;  ///< [rad]
 
-/// The reason why a face or a curve cannot be kept. The text of the user has the name in front of it.
+/// The reason why a face or a curve cannot be kept. In the report, the name of the face stands in front of this text.
 struct Unkept : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -32,7 +32,7 @@ struct Kept {
 /// Unkept
 Kept addCurve(const Handle(Geom_Curve) & curve, double t0, double t1, brep::Part& part);
 
-/// [main] Does the same for a curve in the parameter plane of a surface (a pcurve). @throws Unkept
+/// [main] Does the same as addCurve() for a curve in the parameter plane of a surface (a pcurve). @throws Unkept
 Kept addPlaneCurve(const Handle(Geom2d_Curve) & curve, double t0, double t1, brep::Part& part);
 
 /// [main] Converts a point or vector from millimetres to metres.

@@ -25,10 +25,10 @@
 namespace hapticd::cad {
 namespace {
 
-constexpr double kLongest = 10;     ///< [s] for fixing a body, and for one run of sewing
-constexpr double kFirstGap = 1e-6;  ///< [mm] first tolerance of sewing; raised 100-fold while edges stay free
-constexpr double kWidestGap = 1e-2;
-constexpr double kGapShare = 1e-3;  ///< share of the diagonal: sewing never closes wider gaps
+constexpr double kLongest = 10;      ///< [s] for fixing a body, and for one run of sewing
+constexpr double kFirstGap = 1e-6;   ///< [mm] first tolerance of sewing; raised 100-fold while edges stay free
+constexpr double kWidestGap = 1e-2;  ///< [mm] largest tolerance of sewing
+constexpr double kGapShare = 1e-3;   ///< share of the body's diagonal: sewing never closes wider gaps
 
 double diagonalOf(const TopoDS_Shape& shape) {
   Bnd_Box box;
@@ -63,7 +63,7 @@ TopoDS_Shape fixed(const TopoDS_Shape& shape, const std::string& body, Colours& 
   for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
     moveColour(face.Current(), fix->Context()->Apply(face.Current()), colours);
   const bool valid = BRepCheck_Analyzer(result).IsValid();
-  steps.push_back(body + (valid ? ": was not valid, healed" : ": is not valid, also after healing"));
+  steps.push_back(body + (valid ? ": was not valid, healed" : ": is not valid, even after healing"));
   return result;
 }
 

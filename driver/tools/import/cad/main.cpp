@@ -90,10 +90,10 @@ int main(int argc, char** argv) {
       "Converts CAD files (STEP, IGES, BREP) into parts. hapticd import starts it.", "hapticd-import");
   hapticd::cad::Options options;
   app.addOption("file", options.file, ".step, .stp, .iges, .igs, .brep or .rle").required();
-  app.addOption("-o,--out", options.out, "the part file, .hpart");
-  app.addOption("--memory", options.memory_mb, "most memory [MB]");
-  app.addOption("--time", options.time_s, "most time of the processor [s]");
-  app.addFlag("--check", options.check, "write nothing, say what would be lost");
+  app.addOption("-o,--out", options.out, "the part file to write (.hpart)");
+  app.addOption("--memory", options.memory_mb, "largest memory that the import may use [MB]");
+  app.addOption("--time", options.time_s, "largest processor time that the import may use [s]");
+  app.addFlag("--check", options.check, "write no file, only report what would be lost");
   app.addFlag("--json", options.json, "report as JSON");
   if (const auto ended = app.parse(argc, argv)) return *ended;
   hapticd::cad::setLimits(options);

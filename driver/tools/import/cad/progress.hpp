@@ -7,7 +7,7 @@
 
 namespace hapticd::cad {
 
-/// Open CASCADE asks this object while it works; it shows the progress, and stops the work after a time.
+/// Open CASCADE calls this object while it works. The object shows the progress, and stops the work after a given time.
 class Progress : public Message_ProgressIndicator {
  public:
   /// @param what name of the step, for the terminal @param seconds time after which the step is stopped; 0 means no

@@ -96,8 +96,8 @@ std::optional<Surface> planeOf(const Handle(Geom_BSplineSurface) & spline, const
   return s;
 }
 
-/// Finds centre c and radius r with P = c + r n for all points, by least squares, in the directions that `keep`
-/// selects.
+/// Finds the centre c and the radius r with P = c + r n for all points P with normals n, by least squares. Only the
+/// directions onto which `keep` projects count. Returns false if there is no solution.
 bool center(const Cloud& cloud, const Matrix3d& keep, Vector3d& c, double& r) {
   const Vector3d p0 = mean(cloud.points), n0 = mean(cloud.normals);
   double pn = 0, nn = 0;

@@ -60,7 +60,7 @@ std::string textOf(const Part& part, const Report& report, const std::string& ou
   };
   if (report.recognised > 0)
     add(plural(report.recognised, "spline face is", "spline faces are") +
-        " in fact of a simpler kind (plane, cylinder, cone or sphere), and converted");
+        " in fact of a simpler kind (plane, cylinder, cone or sphere), and converted to it");
   for (const std::string& step : report.steps) add(step);
   for (const std::string& warning : part.warnings) add(warning);
   for (const brep::Loss& loss : part.losses)

@@ -34,7 +34,7 @@ Vector plain(const gp_XYZ& v) {
   return {v.X(), v.Y(), v.Z()};
 }
 
-/// Makes a surface of revolution with the given axes. `along` is in metres per unit of v.
+/// Makes a cylinder, cone, sphere or torus with the given axes. `along` is in metres per unit of v.
 Surface framed(SurfaceKind kind, const gp_Ax3& axes, double along, double r0, double r1) {
   Surface s;
   s.kind = kind;
@@ -129,7 +129,8 @@ Surface planeRecord(const gp_Ax3& axes) {
   return s;
 }
 
-/// Adds extrusions, revolutions and offsets, after the curve or surface that they are made of.
+/// Converts extrusions, revolutions and offsets. Appends first the curve or surface that they are made of. Returns
+/// false for other kinds.
 bool swept(const Handle(Geom_Surface) & surface, const Vector2& lo, const Vector2& hi, Part& part, Surface& s,
            double& error) {
   if (const auto extrusion = Handle(Geom_SurfaceOfLinearExtrusion)::DownCast(surface); !extrusion.IsNull()) {

@@ -13,9 +13,10 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using Triangle = std::array<Vector3d, 3>;
 
-constexpr double kNothing = 1e-9;  ///< share of a triangle's size: a nearer corner lies on the plane
+constexpr double kNothing = 1e-9;  ///< share of a triangle's size; a corner nearer to its plane counts as on the plane
 
-/// Returns where the line from a to b passes through a triangle. A line that ends on its plane only touches it.
+/// Returns where the line from a to b passes through a triangle. A line that ends on the plane of the triangle only
+/// touches it, so nothing is returned.
 std::optional<Vector3d> pierces(const Vector3d& a, const Vector3d& b, const Triangle& t) {
   const Vector3d u = t[1] - t[0], v = t[2] - t[0], n = u.cross(v);
   const double size = std::max(u.norm(), v.norm()), least = kNothing * size * n.norm();
@@ -43,9 +44,9 @@ class Sweep {
     for (std::size_t t = 0; t < corners.size(); ++t) boxes_[shell[t]].extend(boxOf(t));
   }
 
-  /// Sorts the triangles along x, and tries each with those that begin before it ends.
+  /// Sorts the triangles along x, and tries each with the triangles that begin before it ends in x.
   Crossings run() {
-    constexpr std::size_t kMost = 200'000'000;  // pairs, which take some seconds
+    constexpr std::size_t kMost = 200'000'000;  // [pairs] to try so many takes some seconds
     take();
     Crossings found;
     std::size_t tried = 0;

@@ -13,7 +13,7 @@ struct MeshEdge {
   std::uint32_t code;  ///< 4 * triangle + edge
 };
 
-/// [main]
+/// [main] Returns the edges of all triangles, sorted by their points.
 inline std::vector<MeshEdge> meshEdges(const std::vector<std::array<std::uint32_t, 3>>& corners) {
   std::vector<MeshEdge> edges;
   edges.reserve(3 * corners.size());

@@ -24,12 +24,12 @@ struct MeshFile {
 /// Errors give the line if there are lines.
 Result<MeshFile> parseMesh(std::string_view bytes, const std::string& name);
 
-/// [main] Read one format each.
+/// [main] Each of these reads a mesh of one format.
 Result<MeshFile> parseObjMesh(std::string_view bytes, const std::string& name);
 Result<MeshFile> parseStlMesh(std::string_view bytes, const std::string& name);
 Result<MeshFile> parsePlyMesh(std::string_view bytes, const std::string& name);
 
-/// [any] True if a file name has the ending of a mesh.
+/// [any] Tells whether a file name has the ending of a mesh.
 bool isMeshFile(const std::string& name);
 
 }  // namespace hapticd::importing

@@ -170,7 +170,7 @@ std::string counted(std::size_t count, const char* one, const char* many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
-/// "0.01, 0, 0.02 m"
+/// Returns a point as text, such as "0.01, 0, 0.02 m".
 std::string where(const Vector3d& p) {
   std::string text;
   for (int k = 0; k < 3; ++k) {
@@ -239,7 +239,8 @@ std::vector<std::string> linesOf(const MeshReport& r) {
         counted(r.shells, "shell", "shells") + " pass through each other: " +
         counted(c.pairs, "pair of triangles crosses", "pairs of triangles cross") + ", the first at " + where(c.first) +
         "; the faces inside are felt as well: unite the bodies in the program that wrote the file (boolean union)");
-  if (!r.crossings.all_tried) lines.emplace_back("whether its shells pass through each other was not tried to the end");
+  if (!r.crossings.all_tried)
+    lines.emplace_back("not all pairs of triangles were tried, so its shells may pass through each other");
   if (r.holes > 0)
     lines.push_back(counted(r.holes, "hole", "holes") + " with " + counted(r.free_edges, "free edge", "free edges"));
   return lines;

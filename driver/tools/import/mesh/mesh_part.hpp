@@ -10,7 +10,7 @@ namespace hapticd::importing {
 struct MeshOptions {
   double scale = 1;         ///< metres per unit of the file
   double smooth_angle = 0;  ///< [rad] normals are interpolated over edges that bend by less than this
-  std::string unit{"m"};    ///< the unit that was assumed for the file's numbers, as the part notes it
+  std::string unit{"m"};    ///< the unit that was assumed for the file's numbers; it is written into the part
 };
 
 /// What was found in a mesh, and what was done about it.
@@ -18,7 +18,7 @@ struct MeshReport {
   std::size_t triangles = 0, points = 0;  ///< numbers of triangles and points that were kept
   std::size_t degenerate = 0;             ///< triangles that were left out because they have no area
   std::size_t duplicates = 0;    ///< triangles that were left out because they have the same three corners as another
-  std::size_t flipped = 0;       ///< triangles that were reversed, to agree or to enclose a positive volume
+  std::size_t flipped = 0;       ///< triangles that were reversed to agree with others, or to make the volume positive
   std::size_t non_manifold = 0;  ///< edges with more than two triangles
   std::size_t unorientable = 0;  ///< edges whose two triangles cannot be given the same outward side
   std::size_t free_edges = 0, holes = 0;  ///< edges with only one triangle, and the closed chains that they form
@@ -29,8 +29,8 @@ struct MeshReport {
   Crossings crossings;                    ///< shells that pass through each other
 };
 
-/// [main] Makes a part with one body of triangles, and notes `file_name` in it. @throws std::invalid_argument if no
-/// triangle can be kept.
+/// [main] Makes a part with one body of triangles, and writes `file_name` into it as its source. @throws
+/// std::invalid_argument if no triangle can be kept.
 brep::Part meshPart(const MeshFile& mesh, const MeshOptions& options, const std::string& file_name, MeshReport& report);
 
 /// [main] Returns the report as lines for a person. Counts that are zero are left out.

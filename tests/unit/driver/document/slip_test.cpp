@@ -22,11 +22,12 @@ TEST(Slip, NamesTheBracketOrTheQuoteThatIsOpen) {
   EXPECT_EQ(told("a: {b: 1}}\n"),
             "t.yaml:1:10: not YAML: the } closes nothing; remove it, or add the bracket that it closes");
   EXPECT_EQ(told("a: \"b\nc: 1\n"),
-            "t.yaml:1:4: not YAML: the \" that begins here is never closed, expected another one");
+            "t.yaml:1:4: not YAML: the \" that begins here is never closed, expected the closing one");
   EXPECT_EQ(told("a: 'it''s\nc: 1\n"),
-            "t.yaml:1:4: not YAML: the ' that begins here is never closed, expected another one");
-  EXPECT_EQ(told("a: \"b\nc: \"d\"\n"),
-            "t.yaml:1:4: not YAML: the \" that begins here is closed only in line 2, expected another one in line 1");
+            "t.yaml:1:4: not YAML: the ' that begins here is never closed, expected the closing one");
+  EXPECT_EQ(
+      told("a: \"b\nc: \"d\"\n"),
+      "t.yaml:1:4: not YAML: the \" that begins here is closed only in line 2, expected the closing quote in line 1");
 }
 
 TEST(Slip, SaysWhatWasMeantInPlainWords) {

@@ -13,7 +13,7 @@ struct WindowCoefficient {
   double value;  ///< c_n = (1 - min D_n) / (2n): damping B of the wall needs device damping c_n B
   double theta;  ///< the worst frequency, as w T [rad]
 };
-/// [any] @param n samples of the window, >= 1
+/// [any] Returns the worst frequency of a velocity window, and its coefficient. @param n samples of the window, >= 1
 WindowCoefficient windowCoefficient(int n) noexcept;
 
 /// [any] Returns the damping [N s/m] that the device must have for a wall without delay: K T/2 + c_n B, or K T/2 + |B|

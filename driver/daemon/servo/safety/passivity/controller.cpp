@@ -10,15 +10,15 @@ namespace {
 
 constexpr double kSmoothing = 2.5e-3;  ///< [s] time constant of each of two stages that smooth the velocity: one
                                        ///< encoder count in a tick is not yet motion
-constexpr double kRepayment = 5e-3;    ///< [s] in which the damping must pay an energy debt back
+constexpr double kRepayment = 5e-3;    ///< [s] time in which the damping must pay an energy debt back
 constexpr double kRise = 5e-3;         ///< [s] rise time of the damping while there is a debt
-/// [s] fall time of the damping once it is paid: longer than one period of a vibration that a hand feels
+/// [s] fall time of the damping once the debt is paid: longer than one period of a vibration that a hand feels
 constexpr double kFall = 0.1;
-constexpr double kMemory = 0.1;  ///< [s] for which a debt is remembered after the contact
+constexpr double kMemory = 0.1;  ///< [s] time for which a debt is remembered after the contact
 
 // These hold while a program pushes:
 constexpr double kSteady = 0.1;  ///< [s] changes of force slower than this may give energy
-/// [s] memory of the energy of swinging parts, so that encoder counts do not add up to a vibration
+/// [s] time in which the energy of swinging parts is forgotten, so that encoder counts do not add up to a vibration
 constexpr double kSwingMemory = 0.5;
 constexpr double kFirm = 1;       ///< [N] the work of this force over one encoder step is not yet a debt
 constexpr double kPlay = 1.5;     ///< encoder steps to and fro that do not count as motion
@@ -79,8 +79,8 @@ void PassivityController::follow(const Eigen::Vector3d& way, double dt) noexcept
   velocity_ += share * (smoothed_ - velocity_);
 }
 
-/// Returns the part of the way that damping must resist. Under a push, encoder steps to and fro do not count: the
-/// damping lags behind such a flicker, and would feed it instead of ending it.
+/// Returns the part of the motion `way` that damping must resist. While a program pushes, encoder steps to and fro do
+/// not count: the damping lags behind such a flicker, and would feed it instead of ending it.
 Eigen::Vector3d PassivityController::moved(const Eigen::Vector3d& way, double dt, bool pushed) noexcept {
   if (!pushed || (position_ - rest_).norm() > kPlay * resolution_) {
     rest_ = position_;
@@ -111,8 +111,9 @@ void PassivityController::bookSwing(const Eigen::Vector3d& way, double dt, const
   swing_ *= 1 - part(dt, kSwingMemory);
 }
 
-/// Called without contact: a credit is forgotten at once, but a debt is remembered for a while, because a wall that
-/// throws the hand off and is met again at once is the vibration that must end.
+/// Called without contact: a positive energy sum (a credit) is forgotten at once, but a negative one (a debt) is
+/// remembered for a while, because a wall that throws the hand off and is met again at once is the vibration that must
+/// end.
 void PassivityController::leaveContact(double dt) noexcept {
   energy_ = std::min(0.0, energy_) * (1 - part(dt, kMemory));
   swing_ = std::min(0.0, swing_);

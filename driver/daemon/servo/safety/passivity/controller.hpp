@@ -44,7 +44,7 @@ class PassivityController {
   void reset() noexcept;  ///< [rt]
 
   double energy() const noexcept { return energy_; }  ///< [rt] [J] energy put in minus given back, since contact began
-  double swing() const noexcept { return swing_; }    ///< [rt] [J] the same for the swinging part under a push
+  double swing() const noexcept { return swing_; }    ///< [rt] [J] energy of the swinging parts while a program pushes
   double damping() const noexcept { return damping_; }        ///< [rt] [N s/m] present damping
   double dissipated() const noexcept { return dissipated_; }  ///< [rt] [J] energy that the controller took so far
 

@@ -8,8 +8,8 @@ namespace hapticd::passivity {
 /// uses the velocity window of n samples (Eq. 5 of Thompson et al. 1999). The force is held between samples.
 bool stableAlone(double mass, double stiffness, double damping, int n, double period) noexcept;
 
-/// [any] Returns the largest stiffness [N/m] that is stable in this sense with the best damping. A stiffer wall needs
-/// friction or a hand to be stable.
+/// [any] Returns the largest stiffness [N/m] that is stable without friction and without a hand, with the best damping.
+/// A stiffer wall needs friction or a hand to be stable.
 double maxStiffnessAlone(double mass, int n, double period) noexcept;
 
 }  // namespace hapticd::passivity

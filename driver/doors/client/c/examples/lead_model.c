@@ -28,14 +28,15 @@ static long place(hapticd_client* client, int stream, const char* name) {
   return -1;
 }
 
-/* Reads where a model is from the answer to `snapshot`, which is JSON without spaces. Returns 0 if it is not there. */
+/* Reads where a model is from the answer to `snapshot`, which is JSON without spaces. Returns 0 if the answer has no
+ * such model. */
 static int pose_of(hapticd_client* client, const char* model, hapticd_target* pose, hapticd_error* error) {
   static char answer[1 << 20];
   char name[256];
   double *p = pose->position, *q = pose->orientation;
   const long length = hapticd_ask(client, "{\"do\":\"snapshot\"}", answer, sizeof answer, error);
   if (length < 0) return 0;
-  snprintf(error->text, sizeof error->text, "the daemon does not tell where %s is", model);
+  snprintf(error->text, sizeof error->text, "the daemon does not report a pose of the model %s", model);
   snprintf(name, sizeof name, "{\"name\":\"%s\",", model);
   const char* at = strstr(answer, name);
   at = at != NULL ? strstr(at, "\"position\":[") : NULL;

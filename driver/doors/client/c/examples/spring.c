@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
 
   if (client == NULL) return fprintf(stderr, "error: %s\n", error.text), 1;
   if (hapticd_next_state(client, 0, UINT64_MAX, 1000, &first) != 1) {
-    fprintf(stderr, "error: the daemon tells of no arm\n");
+    fprintf(stderr, "error: the daemon has no arm\n");
     hapticd_close(client);
     return 1;
   }
@@ -40,7 +40,8 @@ int main(int argc, char** argv) {
     return 1;
   }
   if (sched_setscheduler(0, SCHED_FIFO, &priority) != 0)
-    fprintf(stderr, "warning: no real-time priority: answers may come late, and late ones ramp out\n");
+    fprintf(stderr,
+            "warning: no real-time priority: answers may come late, and the force ramps out while they are late\n");
 
   hapticd_listen(client, argc > 4 ? (unsigned)atoi(argv[4]) : 0);
   state = first;

@@ -26,7 +26,7 @@ _MOST_LINE = 1 << 24
 
 
 def _in_memory(folder: str) -> bool:
-    """True if the folder is on a file system in memory, as the daemon requires for its folder."""
+    """Tells whether the folder is on a file system in memory, as the daemon requires for its runtime folder."""
     try:
         with open("/proc/self/mountinfo", encoding="utf-8") as mounts:
             best, kind = "", ""
@@ -55,7 +55,7 @@ def runtime_folder(name: str) -> str:
                 return folder
         except OSError:
             continue
-    raise HapticdError(f"no daemon named {name} shows itself in {', '.join(folders)}\n"
+    raise HapticdError(f"there is no socket of a daemon named {name} in {', '.join(folders)}\n"
                        "  fix: start one with hapticd run, or name it: hapticd.connect(NAME)")
 
 
@@ -69,8 +69,8 @@ class _Line:
         except OSError as error:
             self._socket.close()
             raise HapticdError(f"no daemon answers at {file}: {error.strerror}") from None
-        self._begun = b""  # the beginning of a line whose end has not come yet
-        self._begun_with: list[int] = []  # the descriptors that came with it
+        self._begun = b""  # the beginning of a line that is not yet complete
+        self._begun_with: list[int] = []  # the descriptors that came with this beginning
         self._lines: deque[tuple[bytes, list[int]]] = deque()
         self._descriptors: list[int] = []  # descriptors of the last line that was returned
 
@@ -91,7 +91,7 @@ class _Line:
             if self._socket.fileno() < 0:
                 return None
             left = None if end is None else max(end - time.monotonic(), 0)
-            ready = select.poll()  # select.select() takes no descriptor beyond 1023
+            ready = select.poll()  # select.select() cannot wait for a descriptor above 1023
             ready.register(self._socket, select.POLLIN)
             if not ready.poll(None if left is None else math.ceil(left * 1e3)):
                 return None
@@ -114,7 +114,7 @@ class _Line:
             raise HapticdError("the daemon is gone")
         *whole, rest = data.split(b"\n")
         for number, part in enumerate(whole):
-            # a descriptor comes with the first byte of its line, and nothing behind that message with it
+            # A descriptor arrives with the first byte of its line, so it belongs to the last line of this message.
             last = not rest and number + 1 == len(whole)
             self._lines.append((self._begun + part, self._begun_with + (list(fds) if last else [])))
             self._begun, self._begun_with = b"", []
@@ -123,7 +123,7 @@ class _Line:
             self._begun_with += fds
 
     def ended(self) -> bool:
-        """True if the other end is closed. The kernel reports this at once, even if the process was killed."""
+        """Tells whether the other end is closed. The kernel reports this at once, even if the process was killed."""
         if self._socket.fileno() < 0:
             return False
         socket_ = select.poll()
@@ -133,7 +133,7 @@ class _Line:
     def descriptor(self) -> int:
         """Returns the descriptor that came with the last line."""
         if not self._descriptors:
-            raise HapticdError("the daemon sent no memory along with its answer")
+            raise HapticdError("the daemon sent no memory with its answer")
         return self._descriptors.pop(0)
 
     def _forget(self) -> None:
@@ -213,7 +213,7 @@ class Client:
         return self._box.streams
 
     def rows(self, stream: str = "ticks", last: int = 1000) -> Any:
-        """The newest rows of a stream, oldest first: a numpy structured array. Raises HapticdError if the daemon has
+        """Returns the newest rows of a stream, oldest first, as a numpy structured array. Raises HapticdError if the daemon has
         ended, because its rows are old then (`streams[stream].last(last)` still reads them)."""
         self._check()
         return self._box.streams[stream].last(last)
@@ -238,12 +238,12 @@ class Client:
                 time.sleep(pause)
 
     def alive(self) -> bool:
-        """True if the daemon runs: it holds the lock on its name."""
+        """Tells whether the daemon runs: a running daemon holds the lock on its name."""
         try:
             with open(self._base + ".lock", "rb") as lock:
                 fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
                 return False
-        except PermissionError:  # the lock of another user: only the socket tells
+        except PermissionError:  # the lock belongs to another user, so only the socket shows whether the daemon runs
             return os.path.exists(self._base + ".sock")
         except BlockingIOError:
             return True
@@ -258,16 +258,16 @@ class Client:
             return None
 
     def ended(self) -> bool:
-        """True if the daemon of this client has ended, even if another daemon has its name now."""
+        """Tells whether the daemon of this client has ended, even if another daemon has its name now."""
         return self._line.ended() and (self._file_of_box() != self._box_file or not self.alive())
 
     def died(self) -> bool:
-        """True if the daemon ended without removing its files: it was killed, or it crashed."""
+        """Tells whether the daemon ended without removing its files, because it was killed or crashed."""
         return self.ended() and os.path.exists(self._base + ".sock")
 
     def _gone(self) -> str:
         return (f"the daemon is gone: {self.name} " + ("was killed, or it crashed" if self.died() else "has ended")
-                + "\n  fix: start it again with hapticd run, then connect anew")
+                + "\n  fix: start it again with hapticd run, then connect again")
 
     def _check(self) -> None:
         if self.ended():
@@ -306,15 +306,15 @@ class Client:
         return Named("model", {facts["name"]: Model(self, facts) for facts in self.ask(do="list")["models"]})
 
     def status(self) -> dict[str, Any]:
-        """The daemon's status: time, missed ticks, devices with their faults, models that are not felt."""
+        """Returns the daemon's status: time, missed ticks, devices with their faults, models that are not felt."""
         return self.ask(do="status")
 
     def snapshot(self) -> dict[str, Any]:
-        """A point at which to begin to read: the next row of each stream, every model with its pose, every device."""
+        """Returns a point at which to begin to read: the next row of each stream, every model with its pose, every device."""
         return self.ask(do="snapshot")
 
     def hold(self, device: Optional[str] = None) -> None:
-        """Ramps the force of a device out until it is cleared. Without a name, of all devices."""
+        """Ramps the force of a device out until the hold is cleared. Without a name, it does so for all devices."""
         self.ask(do="hold", **({"device": device} if device else {}))
 
     def clear(self, device: Optional[str] = None) -> None:
@@ -322,9 +322,9 @@ class Client:
         self.ask(do="clear", **({"device": device} if device else {}))
 
     def events(self, timeout: Optional[float] = None) -> "Events":
-        """Events from now on, as an iterator over dicts with `event`, `tick`, `t` and further keys of the event. It ends
-        with the daemon, or if no event came for `timeout` seconds. It raises HapticdError if the daemon was killed or
-        crashed. It uses a separate connection."""
+        """Returns the events from now on, as an iterator over dicts with `event`, `tick`, `t` and further keys of the
+        event. It ends with the daemon, or if no event came for `timeout` seconds. It raises HapticdError if the
+        daemon was killed or crashed. It uses a separate connection."""
         return Events(_Line(self._base + ".sock"), self.timeout, timeout, self.died)
 
     # ---- leads
@@ -348,7 +348,7 @@ class Client:
             raise
         except HapticdError:
             if not self._line.ended():
-                self._line.say({"do": "unlead", **target})  # the lead may have begun: ends it
+                self._line.say({"do": "unlead", **target})  # the lead may have begun, so it is ended
             raise
 
     def lead_force(self, device: str) -> ForceLead:
@@ -364,7 +364,7 @@ class Client:
         """Returns why the leads of this connection have no effect any more, or "" if they have."""
         if not self._line.ended():
             return ""
-        return self._gone() if self.ended() else "the daemon ended the connection, and with it this lead; connect anew"
+        return self._gone() if self.ended() else "the daemon closed the connection, which ended this lead; connect again"
 
     def _lost(self) -> str:
         """Returns why no answer can come on this connection, or "" if one may still come."""
@@ -373,8 +373,8 @@ class Client:
         time.sleep(0.02)  # a daemon that ends closes its connections first
         if self.ended() or not os.path.exists(self._base + ".sock"):
             return self._gone()
-        return ("the daemon ended this connection, because others waited for its place while it was silent\n"
-                "  fix: connect anew")
+        return ("the daemon closed this connection, because it was silent and other programs needed its place\n"
+                "  fix: connect again")
 
     def _no_force(self, device: str) -> str:
         """[any thread] Returns the daemon's reason why an arm gets no force now, or "" if it gets its force."""
@@ -421,7 +421,7 @@ class Client:
 
     @property
     def devices(self) -> list[str]:
-        """Names of the arms, in the order of the columns arm0_, arm1_, ..."""
+        """The names of the arms, in the order of the columns arm0_, arm1_, ..."""
         return [d["name"] for d in self.about["devices"]]
 
     def wait(self, tick: int, timeout: float = 1.0) -> bool:

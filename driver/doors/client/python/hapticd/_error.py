@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What can go wrong."""
+"""The exceptions and warnings of this package."""
 from __future__ import annotations
 
 

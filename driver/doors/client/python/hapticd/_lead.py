@@ -16,9 +16,9 @@ _PUSH = struct.Struct("<Q6dQQ")
 _COUNT = struct.Struct("<Q")
 
 
-_UNIT = 1e-3  # of a quaternion's length, as the daemon has it
-_FAR = 10.0  # m, as the daemon has it
-_LARGEST = 1e6  # N and N m, as the daemon has it
+_UNIT = 1e-3  # largest error of a quaternion's length, as in the daemon
+_FAR = 10.0  # m: largest coordinate of a position, as in the daemon
+_LARGEST = 1e6  # N and N m: largest number of a force or torque, as in the daemon
 
 
 def _finite(what: str, *numbers: float) -> None:
@@ -27,7 +27,7 @@ def _finite(what: str, *numbers: float) -> None:
 
 
 class _Slot:
-    """A record behind a count that is odd while the record is written."""
+    """The memory of a lead: a count, which is odd while the record is being written, and then the record."""
 
     def __init__(self, fd: int, size: int) -> None:
         try:
@@ -37,7 +37,8 @@ class _Slot:
         self._count = _COUNT.unpack_from(self._memory, 0)[0]
 
     def put(self, record: bytes) -> None:
-        # Plain stores: ordered as written on x86-64; elsewhere a torn record is refused or followed within its bounds.
+        # These are plain stores. On x86-64 they are seen in this order. On other processors the
+        # daemon may read a half-written record, which it refuses or follows within its bounds.
         even = (self._count + 1) & ~1
         _COUNT.pack_into(self._memory, 0, even + 1)
         self._memory[8:8 + len(record)] = record
@@ -59,7 +60,7 @@ class Ending:
             self.end()
         except HapticdError:
             if kind is None:
-                raise  # only then, so that the first error is not hidden
+                raise  # only if there is no other error, so that the first error is not hidden
 
 
 class Lead(Ending):
@@ -69,7 +70,7 @@ class Lead(Ending):
                  lost: Callable[[], str] = lambda: "") -> None:
         self._slot: Optional[_Slot] = _Slot(fd, size)
         self._unlead = unlead
-        self._lost = lost  # why the lead has no effect any more, or ""
+        self._lost = lost  # returns why the lead has no effect any more, or ""
 
     def _put(self, record: bytes) -> None:
         if self._slot is None:
@@ -110,7 +111,7 @@ class PoseLead(Lead):
         _finite("the target", *position, *orientation, *linear, *angular, stamp)
         if max(map(abs, position)) > _FAR:
             raise ValueError(f"the position {list(position)} is farther than {_FAR:g} m from the world's origin; the daemon would "
-                             f"refuse it: is it in m?")
+                             f"refuse it; the position must be in m")
         if abs(math.hypot(*orientation) - 1) > _UNIT:
             raise ValueError(f"the orientation {list(orientation)} has length {math.hypot(*orientation):g}, expected a "
                              f"unit quaternion w, x, y, z")
@@ -125,7 +126,7 @@ class ForceLead(Lead):
 
     def put(self, tick: int, force: Sequence[float], torque: Sequence[float] = (0.0, 0.0, 0.0),
             woke_ns: int = 0) -> None:
-        """The answer to a tick (the `tick` of the newest state): force [N] and torque [N m] on the hand, world frame.
+        """Answers a tick (the `tick` of the newest state) with a force [N] and a torque [N m] on the hand, world frame.
         `woke_ns` is time.monotonic_ns() when the program learnt of that tick, for the recording."""
         try:
             record = _PUSH.pack(tick, *force, *torque, woke_ns, time.monotonic_ns())
@@ -135,7 +136,7 @@ class ForceLead(Lead):
         _finite("the force or torque", *force, *torque)
         if max(map(abs, (*force, *torque))) > _LARGEST:
             raise ValueError(f"{list(force)} N and {list(torque)} N m: a number is beyond {_LARGEST:g}; the daemon would refuse "
-                             f"it: is it in N?")
+                             f"it; the force must be in N")
         self._put(record)
 
     def __enter__(self) -> "ForceLead":

@@ -26,7 +26,7 @@ class Parameter:
 
 
 class Model:
-    """A model, in its state at the time of the request."""
+    """A model, with its state at the time of the request."""
 
     def __init__(self, client: "Client", facts: dict[str, Any]) -> None:
         self._client = client

@@ -17,9 +17,9 @@ from ._state import FAULTS, Bell, State, StatePage
 if TYPE_CHECKING:
     from ._client import Client
 
-_TOO_OLD = 20_000_000  # ns: an answer that comes later after its tick is ignored
-_STOPPED = 8  # the fault of an arm that is held, or whose run ends
-_PATIENCE = 0.1  # s between two checks whether the daemon and the main thread are alive
+_TOO_OLD = 20_000_000  # ns: the daemon ignores an answer that comes later than this after its tick
+_STOPPED = 8  # number of the fault of an arm that is held, or whose run ends
+_PATIENCE = 0.1  # s: time between two checks whether the daemon still runs
 
 Force = Sequence[float]
 
@@ -52,10 +52,10 @@ class ForceThread(Ending):
             os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(self._priority))  # 0 means this thread only
             self.real_time = True
         except OSError:
-            pass  # without priority it works too, but late answers ramp the force out
+            pass  # it also works without priority, but the force ramps out while answers are late
         try:
             self._answer()
-        except BaseException as error:  # noqa: B902 - told at once, and raised in end()
+        except BaseException as error:  # noqa: B902 - printed at once, and raised in end()
             self._tell(error)
             self.error = error
         finally:
@@ -63,13 +63,13 @@ class ForceThread(Ending):
             self._page.close()
 
     def _tell(self, error: BaseException) -> None:
-        """Reports an error at once, because the main thread may not ask for it for a long time."""
+        """Prints an error at once, because the main thread may call end() only much later."""
         shown = None if isinstance(error, HapticdError) else error.__traceback__
         text = "".join(traceback.format_exception(type(error), error, shown))
         print(f"hapticd: the push on {self._device} has ended, and its force ramps out:\n{text}", end="", file=sys.stderr)
 
     def _watch(self, state: State) -> None:
-        """Warns of a fault that begins, outside the ticks, because the text of the fault needs a request."""
+        """Warns if a fault begins. Another thread does it, because the text of the fault needs a request, which takes time."""
         if state.fault != self._fault and state.fault != 0:
             threading.Thread(target=self._tell_fault, args=(state.fault,), daemon=True).start()
         self._fault = state.fault
@@ -77,14 +77,14 @@ class ForceThread(Ending):
     def _tell_fault(self, fault: int) -> None:
         time.sleep(_PATIENCE)
         if self._client.ended():
-            return  # it ramped its forces out as it ended, which is told as such
+            return  # the daemon ramped its forces out because it ended, which is reported elsewhere
         try:
             why = self._client._no_force(self._device)
         except (HapticdError, OSError):
             why = ""
         if not why and fault == _STOPPED:
-            return  # it is about to end
-        # without a registry: also the second time
+            return  # the daemon is about to end
+        # Without a registry the same warning is shown each time.
         warnings.warn_explicit(why or f"device {self._device}: a fault ({FAULTS[fault] if fault < len(FAULTS) else fault}) ended its forces; see: hapticd ctl status",
                                NoForceWarning, __file__, 0)
 
@@ -106,15 +106,15 @@ class ForceThread(Ending):
                 self.unanswered += 1
                 continue
             if not hasattr(force, "__len__"):
-                raise ValueError(f"the callback gave back {force!r}, expected 3 numbers (force in N, [x, y, z]) or 6 (and torque in N m)")
+                raise ValueError(f"the callback returned {force!r}, expected 3 numbers (force in N, [x, y, z]) or 6 (and torque in N m)")
             if len(force) not in (3, 6):
-                raise ValueError(f"the callback gave back {len(force)} numbers, expected 3 (force in N) or 6 (and torque in N m)")
+                raise ValueError(f"the callback returned {len(force)} numbers, expected 3 (force in N) or 6 (and torque in N m)")
             self._lead.put(state.tick, force[:3], force[3:] if len(force) == 6 else (0.0, 0.0, 0.0), woke)
             self.answers += 1
             self.late += time.monotonic_ns() - woke > _TOO_OLD
 
     def end(self) -> None:
-        """Ends the push: the force ramps out. Raises what the callback raised."""
+        """Ends the push: the force ramps out. If the callback raised an exception, raises it again."""
         self._stop.set()
         if threading.current_thread() is not self._thread:
             self._thread.join()
@@ -126,8 +126,8 @@ class ForceThread(Ending):
         if self.error is not None:
             raise self.error
         if self.answers == 0 and self.unanswered > 0:
-            warnings.warn(f"the callback gave back None for all {self.unanswered} ticks, so nothing was pushed: is a "
-                          "return missing?", stacklevel=2)
+            warnings.warn(f"the callback returned None for all {self.unanswered} ticks, so nothing was pushed: a "
+                          "return statement may be missing", stacklevel=2)
         if self.late > 0:
             warnings.warn(f"{self.late} of {self.answers} answers came more than 20 ms after their tick and were "
                           "ignored: the callback takes too long", stacklevel=2)

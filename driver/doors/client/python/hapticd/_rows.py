@@ -13,7 +13,7 @@ from ._error import HapticdError, Named
 
 try:
     import numpy
-except ImportError:  # then the row classes below are used
+except ImportError:  # without numpy the row classes below are used
     numpy = None  # type: ignore[assignment]
 
 _HEADER_AT = 512  # see recording.md, "Layout for other writers and readers"
@@ -37,7 +37,7 @@ class Column:
 
 
 class Row(tuple):
-    """A row without numpy: a tuple whose numbers have names too, `row["t"]`."""
+    """A row, if there is no numpy: a tuple whose numbers can also be read by name, `row["t"]`."""
 
     places: dict[str, int] = {}
 
@@ -46,7 +46,7 @@ class Row(tuple):
 
 
 class Rows(list):
-    """Rows without numpy: a list of them, whose columns have names, `rows["t"]`."""
+    """Rows, if there is no numpy: a list whose columns can be read by name, `rows["t"]`."""
 
     def __getitem__(self, key: Any) -> Any:
         return [row[key] for row in self] if isinstance(key, str) else list.__getitem__(self, key)
@@ -69,16 +69,16 @@ class Stream:
 
     @property
     def written(self) -> int:
-        """Number of rows written so far, which is the number of the next row."""
+        """The number of rows written so far, which is also the number of the next row."""
         return struct.unpack_from("<Q", self._memory, self._count_at)[0]
 
     def _kept(self, first: int, written: int) -> int:
-        # the slot behind the newest row may be half overwritten already
+        # the slot after the newest row may already be half overwritten
         return max(first, written - self.capacity + 1, 0)
 
     def read(self, first: int, most: Optional[int] = None) -> tuple[int, Any]:
-        """Returns rows from number `first` on, at most `most`. Rows that are no longer kept are left out, so it returns
-        the number of the first row that it has, and the rows. It never waits."""
+        """Returns rows from number `first` on, at most `most`. Rows that are no longer kept are left out, so the
+        result is the number of the first returned row, and the rows. It never waits."""
         if first < 0 or (most is not None and most < 0):
             raise ValueError(f"rows are counted from 0: read({first}, {most}); the newest n are last(n)")
         while True:
@@ -90,7 +90,7 @@ class Stream:
                 return first, self._parsed(data, count)
 
     def last(self, count: int) -> Any:
-        """The newest rows, oldest first."""
+        """Returns the newest rows, oldest first."""
         if count < 0:
             raise ValueError(f"last={count}: expected how many of the newest rows, 0 or more")
         return self.read(max(self.written - count, 0))[1]
@@ -112,7 +112,7 @@ class Stream:
 
 
 class BlackBox:
-    """The whole file: its description and its streams."""
+    """A black box: its description and its streams."""
 
     def __init__(self, file: str) -> None:
         try:
@@ -129,7 +129,7 @@ class BlackBox:
             raise HapticdError(f"{file}: is too short for a black box")
         magic, count, ring, _, _, about_at, about_bytes, blocks_at = _HEADER.unpack_from(self._memory, _HEADER_AT)
         if not magic.startswith(b"hapticd-recording/1") or not ring:
-            raise HapticdError(f"{file}: is no black box of a daemon that this package knows")
+            raise HapticdError(f"{file}: is not a black box that this version of the package can read")
         self.about: dict[str, Any] = json.loads(bytes(self._memory[about_at:about_at + about_bytes]))
         places = self._rows_of(blocks_at, count)
         self.streams: dict[str, Stream] = Named("stream")

@@ -17,7 +17,7 @@ _COUNT = struct.Struct("<Q")
 _STATE = struct.Struct("<QQdd3d4d3d16d3dIIII")
 _FUTEX_WAIT = 0
 _FUTEX = {"x86_64": 202, "aarch64": 98, "riscv64": 98}  # number of the system call
-_WORD = {"rows": 0, "state": 64}  # places in hapticd_bell, each with its flag behind it
+_WORD = {"rows": 0, "state": 64}  # offset of each word in hapticd_bell [bytes]; its flag `..._waiting` follows it
 
 
 #: Words for the numbers of `State.fault` and of `code` in events of kind `fault`.
@@ -31,7 +31,7 @@ class State(NamedTuple):
     tick: int
     time_ns: int  #: CLOCK_MONOTONIC of the tick's deadline
     t: float  #: s since the first tick
-    dt: float  #: s since the tick before
+    dt: float  #: s since the previous tick
     position: tuple[float, float, float]  #: m, position of the tip
     orientation: tuple[float, float, float, float]  #: w, x, y, z
     velocity: tuple[float, float, float]  #: m/s
@@ -43,12 +43,12 @@ class State(NamedTuple):
 
     @property
     def fault_name(self) -> str:
-        """"too fast", ...; "": a force flows. `h.status()` has the whole reason and its cure, as `no_force`."""
+        """Why the arm gets no force, such as "too fast"; "" if it gets its force. `no_force` in `status()` says more."""
         return FAULTS[self.fault] if self.fault < len(FAULTS) else f"fault {self.fault}"
 
 
 class StatePage:
-    """Memory that the servo writes once a tick."""
+    """The memory with the states of the arms, which the servo writes once per tick."""
 
     def __init__(self, fd: int, size: int) -> None:
         try:
@@ -77,7 +77,7 @@ class StatePage:
 
 
 class Bell:
-    """Words that the servo counts up. It wakes programs that wait for them."""
+    """The memory with the words that the servo counts up. The servo wakes programs that wait for a word to change."""
 
     def __init__(self, fd: int, size: int) -> None:
         try:
@@ -86,20 +86,21 @@ class Bell:
             os.close(fd)
         self._number = _FUTEX.get(platform.machine())
         if self._number is None:
-            raise HapticdError(f"waiting for ticks is not known on {platform.machine()}; ask for rows now and then instead")
+            raise HapticdError(f"this package cannot wait for ticks on {platform.machine()}\n  fix: read the rows from time to time instead")
         self._libc = ctypes.CDLL(None, use_errno=True)
         self._words = {name: (ctypes.c_uint32.from_buffer(self._memory, at),
                               ctypes.c_uint32.from_buffer(self._memory, at + 4)) for name, at in _WORD.items()}
 
     def wait(self, which: str, seen: int, timeout: float) -> int:
-        """Sleeps until the word is not `seen` (low 32 bits of the ticks told), at most `timeout` seconds; gives it back."""
+        """Sleeps until the word (the low 32 bits of a count of ticks) is not `seen`, at most `timeout` seconds. Returns
+        the word."""
         word, waiting = self._words[which]
         seen &= 0xFFFFFFFF
         if word.value == seen:
             waiting.value = 1
             seconds = int(timeout)
             limit = struct.pack("@ll", seconds, int((timeout - seconds) * 1e9))
-            # the kernel looks at the word again, behind a full barrier; the call lets other Python threads run
+            # The kernel reads the word again, after a full memory barrier. Other Python threads run meanwhile.
             self._libc.syscall(ctypes.c_long(self._number), ctypes.byref(word), _FUTEX_WAIT, ctypes.c_uint32(seen), limit,
                                None, 0)
         return word.value

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* hd.h - the HDAPI over hapticd: link -lHD, run with `hapticd client PROGRAM`. */
+/* hd.h - the HDAPI for arms of hapticd. Link with -lHD, and run with `hapticd client PROGRAM`. */
 #ifndef HAPTICD_HD_H
 #define HAPTICD_HD_H
 #include <HD/hdDefines.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* hdDefine.h - another name of hdDefines.h. */
+/* hdDefine.h - the same as hdDefines.h, under another name. */
 #ifndef HAPTICD_HD_DEFINE_H
 #define HAPTICD_HD_DEFINE_H
 #include <HD/hdDefines.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* hdDefines.h - types and constants of the HDAPI as libHD.so of hapticd has them. C89 and newer, C++98 and newer.
- * Values of the HD_ constants: constants.csv beside the tests, from which this part of the file is checked. */
+/* hdDefines.h - types and constants of the HDAPI, as libHD.so of hapticd uses them. C89 and newer, C++98 and newer.
+ * A test compares the values of the HD_ constants with the file constants.csv beside the tests. */
 #ifndef HAPTICD_HD_DEFINES_H
 #define HAPTICD_HD_DEFINES_H
 #include <limits.h>
@@ -23,7 +23,7 @@ typedef unsigned long HDSchedulerHandle;
 typedef unsigned int HDCallbackCode;
 typedef unsigned int HDWaitCode;
 
-/* An error: what, the system's own number of it (errno) or 0, and of which device. */
+/* An error: its code, the number that the operating system gave it (errno) or 0, and the handle of the device. */
 typedef struct {
   HDerror errorCode;
   int internalErrorCode;

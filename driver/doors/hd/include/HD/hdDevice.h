@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* hdDevice.h - devices, frames, values, errors and calibration of the HDAPI. Units: mm, mm/s, rad, N, mN m.
- * Any thread may call these functions; driver/docs/hdapi.md says what each rule is. */
+ * Any thread may call these functions; driver/docs/hdapi.md has the rules. */
 #ifndef HAPTICD_HD_DEVICE_H
 #define HAPTICD_HD_DEVICE_H
 #include <HD/hdDefines.h>
@@ -9,19 +9,21 @@
 extern "C" {
 #endif
 
-/* Opens an arm of the daemon that runs as $HAPTICD_NAME ("hapticd" where it is not set). NULL, "", "Default Device" and
- * "Default PHANToM": its first arm; else the arm of that name. HD_INVALID_HANDLE: there is none, stderr says why. */
+/* Opens an arm of the daemon that runs as $HAPTICD_NAME ("hapticd" if it is not set). NULL, "", "Default Device" and
+ * "Default PHANToM" mean the first arm; any other name means the arm of that name. Returns HD_INVALID_HANDLE if there
+ * is no such arm, and prints the reason on stderr. */
 HAPTICD_HD_API HHD hdInitDevice(HDstring name);
 HAPTICD_HD_API void hdDisableDevice(HHD device);
-/* Functions without a handle speak of the current device: the one that was opened or made current or framed last. */
+/* Functions without a handle use the current device. It is the device that was last opened, made current, or used in
+ * hdBeginFrame. */
 HAPTICD_HD_API void hdMakeCurrentDevice(HHD device);
 HAPTICD_HD_API HHD hdGetCurrentDevice(void);
 
-/* A frame: the state of one tick and the force that answers it. */
+/* Begins a frame, which holds the state of one tick and the force that answers it. hdEndFrame sends the force. */
 HAPTICD_HD_API void hdBeginFrame(HHD device);
 HAPTICD_HD_API void hdEndFrame(HHD device);
 
-/* Takes the newest error off the stack; HD_SUCCESS: there is none. */
+/* Takes the newest error off the stack. Its code is HD_SUCCESS if there is no error. */
 HAPTICD_HD_API HDErrorInfo hdGetError(void);
 HAPTICD_HD_API HDstring hdGetErrorString(HDerror error);
 
@@ -47,9 +49,9 @@ HAPTICD_HD_API HDenum hdCheckCalibrationStyle(void);
 HAPTICD_HD_API void hdUpdateCalibration(HDenum style);
 HAPTICD_HD_API void hdUpdateCalibrationMessage(HDenum style);
 
-/* The current transform with the angles of its rotation about y, x and z (in this order) scaled. */
+/* Writes the current transform with scaled angles: those of its rotations about y, x and z, in this order. */
 HAPTICD_HD_API void hdScaleGimbalAngles(HDdouble scale_0, HDdouble scale_1, HDdouble scale_2, HDdouble transform[16]);
-/* HD_TRUE: no licence is needed. */
+/* Returns HD_TRUE always, because no licence is needed. */
 HAPTICD_HD_API HDboolean hdDeploymentLicense(const char* vendor, const char* application, const char* password);
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* hdu.h - all that HDU has. */
+/* hdu.h - includes all headers of HDU. */
 #ifndef HAPTICD_HDU_H
 #define HAPTICD_HDU_H
 #include <HDU/hduBoundBox.h>

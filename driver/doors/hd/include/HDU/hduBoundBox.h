@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* hduBoundBox.h - boxes along the axes. C++98 and newer. The names are those that published programs write. */
+/* hduBoundBox.h - boxes along the axes. C++98 and newer. The names are those that published programs use. */
 #ifndef HAPTICD_HDU_BOUND_BOX_H
 #define HAPTICD_HDU_BOUND_BOX_H
 #include <HDU/hduMath.h>

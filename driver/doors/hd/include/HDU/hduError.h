@@ -13,14 +13,14 @@
 extern "C" {
 #endif
 
-/* "MESSAGE", and a line each for the device, the error and its number. */
+/* Prints "MESSAGE", and then one line each for the device, the error and its internal number. */
 HAPTICD_HDU_UNUSED static void hduPrintError(FILE* stream, const HDErrorInfo* error, const char* message) {
   fprintf(stream, "%s\nDevice: %u\nError: %s (0x%04x)\nInternal error: %d\n", message, error->hHD,
           hdGetErrorString(error->errorCode), error->errorCode, error->internalErrorCode);
   fflush(stream);
 }
 
-/* Something about forces, of which a program goes on. */
+/* Tells whether the error is about forces, so that the program can go on. */
 HAPTICD_HDU_UNUSED static HDboolean hduIsForceError(const HDErrorInfo* error) {
   switch (error->errorCode) {
     case HD_FORCE_ERROR:
@@ -34,7 +34,7 @@ HAPTICD_HDU_UNUSED static HDboolean hduIsForceError(const HDErrorInfo* error) {
   }
 }
 
-/* The servo loop cannot go on: the device or the scheduler is at fault. */
+/* Tells whether the error is one of the device or the scheduler, so that the servo loop cannot go on. */
 HAPTICD_HDU_UNUSED static HDboolean hduIsSchedulerError(const HDErrorInfo* error) {
   switch (error->errorCode) {
     case HD_COMM_ERROR:

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* hduMath.h - small functions of numbers. C++98 and newer. */
+/* hduMath.h - small functions for numbers. C++98 and newer. */
 #ifndef HAPTICD_HDU_MATH_H
 #define HAPTICD_HDU_MATH_H
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* hduMatrix.h - poses as HD_CURRENT_TRANSFORM gives them: 16 numbers, m[3][0] to m[3][2] the place. Points are rows:
- * p' = p m, so that a * b does a first. C++98 and newer. */
+/* hduMatrix.h - poses as HD_CURRENT_TRANSFORM gives them: 16 numbers, with the position in m[3][0] to m[3][2]. Points
+ * are rows: p' = p m, so a * b applies a first. C++98 and newer. */
 #ifndef HAPTICD_HDU_MATRIX_H
 #define HAPTICD_HDU_MATRIX_H
 #ifdef __cplusplus
@@ -34,7 +34,7 @@ class hduMatrix {
     m[0][0] = x, m[1][1] = y, m[2][2] = z;
     return m;
   }
-  /* By the right hand about an axis of any length; a turn of a point is a row times the matrix. [rad] */
+  /* Makes the rotation by an angle [rad] about an axis of any length, by the right-hand rule. Points are rows: p m. */
   static hduMatrix createRotation(const hduVector3Dd& axis, HDdouble angle) {
     const hduVector3Dd n = axis.normalized();
     const HDdouble c = cos(angle), s = sin(angle);
@@ -91,7 +91,7 @@ class hduMatrix {
     return true;
   }
   friend bool operator!=(const hduMatrix& a, const hduMatrix& b) { return !(a == b); }
-  /* A point, and a direction, which does not move. */
+  /* multVecMatrix transforms a point; multDirMatrix transforms a direction, so it does not add the translation. */
   void multVecMatrix(const hduVector3Dd& from, hduVector3Dd& to) const {
     const hduVector3Dd place(values_[3][0], values_[3][1], values_[3][2]);
     hduVector3Dd turned;
@@ -123,7 +123,7 @@ class hduMatrix {
     to = m;
   }
   hduVector3Dd getTranslation() const { return hduVector3Dd(values_[3]); }
-  /* False: there is no inverse, and nothing changes. Gauss-Jordan with the largest pivot. */
+  /* Computes the inverse (Gauss-Jordan, with the largest pivot). Returns false and changes nothing if there is none. */
   bool getInverse(hduMatrix& inverse) const {
     hduMatrix a(*this), b;
     for (int k = 0; k < 4; ++k) {

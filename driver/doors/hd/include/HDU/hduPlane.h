@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* hduPlane.h - planes. C++98 and newer. The names are those that published programs write; the rest is ours. */
+/* hduPlane.h - planes. C++98 and newer. The names are those that published programs use. */
 #ifndef HAPTICD_HDU_PLANE_H
 #define HAPTICD_HDU_PLANE_H
 #include <HDU/hduVector.h>
 
 #ifdef __cplusplus
-/* The points p with normal . p + d = 0. The normal has length 1, unless it was none. */
+/* A plane: all points p with normal . p + d = 0. The normal is scaled to length 1, unless its length is 0. */
 template <class T>
 class hduPlane {
  public:
@@ -17,7 +17,7 @@ class hduPlane {
   hduPlane(const VecType& normal, const VecType& point) : normal_(normal), d_(-normal.dotProduct(point)) {
     normalize();
   }
-  /* Through three points; the normal points to where they run round against the clock. */
+  /* Makes the plane through three points. Seen from the side to which the normal points, they run counter-clockwise. */
   hduPlane(const VecType& p1, const VecType& p2, const VecType& p3)
       : normal_((p2 - p1).crossProduct(p3 - p1)), d_(-normal_.dotProduct(p1)) {
     normalize();
@@ -25,7 +25,7 @@ class hduPlane {
 
   const VecType& normal() const { return normal_; }
   T d() const { return d_; }
-  /* Less than 0 behind the plane. */
+  /* Returns the distance from the plane. It is negative on the side away from the normal. */
   T perpDistance(const VecType& point) const { return normal_.dotProduct(point) + d_; }
   VecType projectPoint(const VecType& point) const { return point - perpDistance(point) * normal_; }
 

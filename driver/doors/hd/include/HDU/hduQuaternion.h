@@ -11,10 +11,10 @@ class hduQuaternion {
   hduQuaternion() : s_(1) {}
   hduQuaternion(HDdouble s, const hduVector3Dd& v) : s_(s), v_(v) {}
   hduQuaternion(HDdouble s, HDdouble x, HDdouble y, HDdouble z) : s_(s), v_(x, y, z) {}
-  /* By the right hand about an axis of any length. [rad] */
+  /* Makes the rotation by an angle [rad] about an axis of any length, by the right-hand rule. */
   hduQuaternion(const hduVector3Dd& axis, HDdouble angle)
       : s_(cos(angle / 2)), v_(axis.normalized() * sin(angle / 2)) {}
-  /* The turn of a pose; from its largest part, which no rounding can reach. */
+  /* Makes the rotation of a pose. It is computed from the largest component, which keeps rounding errors small. */
   hduQuaternion(const hduMatrix& m) {
     const HDdouble four[4] = {1 + m[0][0] + m[1][1] + m[2][2], 1 + m[0][0] - m[1][1] - m[2][2],
                               1 - m[0][0] + m[1][1] - m[2][2], 1 - m[0][0] - m[1][1] + m[2][2]};
@@ -37,7 +37,7 @@ class hduQuaternion {
   hduVector3Dd& v() { return v_; }
   void set(HDdouble s, const hduVector3Dd& v) { s_ = s, v_ = v; }
 
-  /* The turn of b, then that of a. */
+  /* Returns the rotation that first rotates by b and then by a. */
   friend hduQuaternion operator*(const hduQuaternion& a, const hduQuaternion& b) {
     return hduQuaternion(a.s_ * b.s_ - a.v_.dotProduct(b.v_), a.s_ * b.v_ + b.s_ * a.v_ + a.v_.crossProduct(b.v_));
   }

@@ -76,7 +76,7 @@ class hduVector3D {
   }
 
   void set(T x, T y, T z) { values_[0] = x, values_[1] = y, values_[2] = z; }
-  /* A template, so that no index has to be converted and no pointer is preferred. */
+  /* This is a template for any type of index; otherwise a[i] would be ambiguous with the conversion to a pointer. */
   template <class Index>
   T& operator[](Index i) {
     return values_[i];

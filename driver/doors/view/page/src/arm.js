@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-/** Where the links of an arm are, from the description of its mechanism and its joints: the PHANToM's parallelogram, the
- * delta and serial chains, as devices/support/kinematics has them. An arm whose mechanism is none of these has no
- * links to draw. Vectors are in the device frame until the end. */
+/** Computes where the links of an arm are, from the description of its mechanism and its joint positions. It knows the
+ * PHANToM's parallelogram, the delta and serial chains, as devices/support/kinematics does. For any other mechanism no
+ * links are drawn. Vectors are in the device frame; ArmModel converts the results to the world. */
 import {Matrix4, Quaternion, Vector3} from 'three';
 
-/** Choices of arm.kind, by module. */
+/** The words of the parameter arm.kind, by module. The index of a word is the value of the parameter. */
 const kKinds = {simulated: ['phantom', 'chain'], usb_hid: ['phantom', 'delta', 'chain'], usb_bulk: ['phantom', 'delta', 'chain'], vme: ['phantom', 'delta', 'chain']};
 const kPhantomLengths = [0.215, 0.17, 0.0325]; // m: upper arm, forearm, short side (Cavusoglu et al. 2002)
-const kOpening = 55 * Math.PI / 180, kClosing = 65 * Math.PI / 180; // between the PHANToM's links
+const kOpening = 55 * Math.PI / 180, kClosing = 65 * Math.PI / 180; // rad: limits of the angle between the PHANToM's links
 const kDelta = {lengths: [0.06, 0.1025, 0.01443, 0.01125, 0.01125, -0.025, 0.04, -0.02309], angles: [105, -15, -135].map((a) => a * Math.PI / 180)};
-const kFar = 0.0005; // m: a tip that is farther from its row means that the mechanism is another
-const kFarBehind = 0.03; // m: of compliance control the rows have the virtual mass, and the arm follows it
-const kSamples = 4000; // poses that the box of the workspace is made of
+const kFar = 0.0005; // m: if the computed tip is farther from the recorded one, the mechanism is another one
+const kFarBehind = 0.03; // m: same with compliance control, where the rows hold the virtual mass that the arm follows
+const kSamples = 4000; // number of poses from which the box of the workspace is computed
 
 const vector = (list) => new Vector3(...(list ?? [0, 0, 0]));
 
@@ -25,7 +25,7 @@ function parametersOf(device) {
 
 const kPointed = true;
 
-/** A link between two places with a radius [m], which grows thin toward its end where it is pointed. */
+/** Makes a link between two places, with a radius [m]. A pointed link becomes thinner toward its end. */
 const link = (from, to, radius, pointed = false) => ({from, to, radius, pointed});
 
 class Phantom {
@@ -51,7 +51,7 @@ class Phantom {
       link(shoulder.clone().add(new Vector3(0, -0.35 * this.upper, 0)), shoulder, 1.9 * thick),
       link(shoulder, elbow, thick), link(elbow, tip, 0.8 * thick, kPointed),
     ];
-    if (this.short > 0) { // the crank that drives the forearm, and its rod
+    if (this.short > 0) { // draws the crank that drives the forearm, and its rod
       const crank = shoulder.clone().addScaledVector(along, -this.short), end = elbow.clone().addScaledVector(along, -this.short);
       links.push(link(shoulder, crank, 0.6 * thick), link(crank, end, 0.45 * thick), link(end, elbow, 0.75 * thick));
     }
@@ -71,7 +71,7 @@ class Chain {
     this.tool = vector(of.list('arm.tool_position'));
   }
 
-  /** The frame before the first joint and after each. */
+  /** Returns the frame before the first joint, and the frame after each joint. */
   #frames(q) {
     const frames = [this.base.clone()];
     this.rows.forEach(([a, alpha, d, theta], i) => {
@@ -88,7 +88,7 @@ class Chain {
     const frames = this.#frames(q), places = frames.map((f) => new Vector3().setFromMatrixPosition(f)), links = [];
     let from = places[0];
     for (const to of places.slice(1)) {
-      if (to.distanceTo(from) < 1e-4) continue; // axes that meet in one point
+      if (to.distanceTo(from) < 1e-4) continue; // the axes meet in one point, so there is no link between them
       links.push(link(from, to, 0.055 * to.distanceTo(from)));
       from = to;
     }
@@ -97,7 +97,8 @@ class Chain {
     return [...links, ...(finger ? this.#hand(frames[last - 1], frames[last]) : [link(from, tip, 0.06 * tip.distanceTo(from), kPointed)])];
   }
 
-  /** A last joint that turns in place is a finger: the palm and the thumb stand with the frame before it. */
+  /** Draws a hand, for an arm whose last joint turns in place: this joint moves a finger. The palm and the thumb do not
+   * move with it. */
   #hand(palm, finger) {
     const size = this.tool.length(), along = this.tool, across = new Vector3(-along.y, along.x, 0).setLength(size);
     if (!(across.length() > 0)) across.set(0, size, 0);
@@ -119,7 +120,7 @@ class Delta {
     this.toArm = this.base.clone().invert();
   }
 
-  tip() { return null; } // in closed form only the other way round: the row has it
+  tip() { return null; } // not computed: a delta has a closed form only for the inverse, and the row holds the tip
 
   links(q, row) {
     const p = row.clone().applyMatrix4(this.toArm), thick = 0.07 * this.a, tip = row.clone(), links = [];
@@ -135,7 +136,8 @@ class Delta {
 }
 
 export class ArmModel {
-  /** @param device of the scene in `about` @param info of the opened device */
+  /** @param device description of the device, from the scene in `about` @param info what the opened device reports
+   * (hdv_info) */
   constructor(device, info) {
     const of = parametersOf(device), kind = kKinds[device?.module]?.[of.number('arm.kind')];
     this.mechanism = kind === 'phantom' ? new Phantom(of) : kind === 'chain' ? new Chain(of) : kind === 'delta' ? new Delta(of) : null;
@@ -147,7 +149,7 @@ export class ArmModel {
     this.far = device?.admittance ? kFarBehind : kFar;
   }
 
-  /** Links in the world; none where they would not end at the tip of the row. */
+  /** Returns the links in the world frame. Returns none if they would not end at the tip of the row. */
   links(joints, position) {
     if (!this.mechanism) return [];
     const row = vector(position).applyMatrix4(this.toDevice), tip = this.mechanism.tip(joints);
@@ -157,7 +159,8 @@ export class ArmModel {
     return links;
   }
 
-  /** Corners {min, max} of the box of the world that the tip can be in, or null. */
+  /** Returns the box {min, max} in the world frame that contains every place that the tip can reach, or null if it is
+   * unknown. */
   workspace() {
     const {joint_count: count, position_min: low, position_max: high} = this.info;
     if (!this.mechanism || this.mechanism instanceof Delta || !count) return null;
@@ -165,7 +168,7 @@ export class ArmModel {
     let seed = 1;
     const chance = () => (seed = seed * 48271 % 0x7fffffff) / 0x7fffffff;
     for (let sample = 0; sample < kSamples; ++sample) {
-      // stops are where extremes are: half of the joints of a pose stand at one
+      // The tip is farthest out when joints are at their limits, so half of the joints are placed at a limit.
       const q = Array.from({length: count}, (_, i) => Number(low[i]) + (Number(high[i]) - Number(low[i])) * (chance() < 0.5 ? Math.round(chance()) : chance()));
       if (!q.every(Number.isFinite) || (this.mechanism.allowed && !this.mechanism.allowed(q))) continue;
       const tip = this.mechanism.tip(q).applyMatrix4(this.mount);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-/** The camera turns about a point; mouse, touch and keys move it alike. */
+/** The camera, which turns about a point. Mouse, touch and keys move it in the same way. */
 import {Box3, MathUtils, PerspectiveCamera, Spherical, Vector3} from 'three';
 
 const kFieldOfView = 32; // degrees
 const kViews = {front: [0, Math.PI / 2], right: [Math.PI / 2, Math.PI / 2], top: [0, 0.001], start: [0.6, 1.12]};
 const kNearest = 0.01, kFarthest = 100; // m
-const kPole = 0.001; // rad: straight up and down have no direction to the right
+const kPole = 0.001; // rad: least angle to the vertical, because a vertical view has no direction to the right
 
 export class OrbitCamera {
   constructor() {
@@ -45,20 +45,20 @@ export class OrbitCamera {
   up() { return new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1); }
   forward() { return this.camera.getWorldDirection(new Vector3()); }
 
-  /** Moves the view by pixels of a canvas of that height. */
+  /** Moves the view by a number of pixels. @param height height of the canvas in pixels */
   pan(dx, dy, height) {
     const scale = this.metresPerPixel(this.center, height);
     this.center.addScaledVector(this.right(), -dx * scale).addScaledVector(this.up(), dy * scale);
     this.apply();
   }
 
-  /** Metres that a pixel covers at a point. */
+  /** Returns how many metres a pixel covers at a point. */
   metresPerPixel(point, height) {
     const distance = point.clone().sub(this.camera.position).dot(this.forward());
     return 2 * distance * Math.tan(MathUtils.degToRad(kFieldOfView / 2)) / height;
   }
 
-  /** Shows all of a box. */
+  /** Moves the camera so that it shows all of a box. */
   fit(box) {
     const all = box.isEmpty() ? new Box3(new Vector3(-0.1, -0.1, -0.1), new Vector3(0.1, 0.1, 0.1)) : box;
     all.getCenter(this.center);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-/** The WebSocket to hapticd-view: requests with answers, and what comes by itself. Connects again when it was lost. */
+/** The WebSocket to hapticd-view. It carries requests and their answers, and messages that the server sends by itself.
+ * It connects again when the connection was lost. */
 
-const kHeadWords = 4; // of a binary message
+const kHeadWords = 4; // number of words at the head of a binary message
 const kMeshMessage = 0x80000000, kVerticesMessage = 0x100;
 const kAgainMs = 1000, kAskWhyAfter = 3;
 
@@ -9,8 +10,8 @@ export class Connection extends EventTarget {
   #socket = null;
   #next = 1;
   #pending = new Map();
-  #failed = 0; // attempts to connect
-  #mesh = null; // comes right before the answer that names it
+  #failed = 0; // failed attempts to connect in a row
+  #mesh = null; // the newest mesh: it comes directly before the answer that names it
 
   constructor(url) {
     super();
@@ -20,7 +21,7 @@ export class Connection extends EventTarget {
 
   get open() { return this.#socket?.readyState === WebSocket.OPEN; }
 
-  /** Sends a request; resolves with its answer {ok, error, ...}. Never rejects. */
+  /** Sends a request. The promise resolves to its answer {ok, error, ...}, and is never rejected. */
   ask(request) {
     if (!this.open) return Promise.resolve({ok: false, error: 'not connected'});
     const id = this.#next++;
@@ -48,11 +49,11 @@ export class Connection extends EventTarget {
     this.#socket = socket;
   }
 
-  /** A WebSocket that is refused does not say why; a request does. */
+  /** Asks the server why it refuses the WebSocket: a browser does not tell this, but a plain request does. */
   async #askWhy() {
     const answer = await fetch('./', {method: 'HEAD', cache: 'no-store'}).catch(() => null);
-    if (answer?.status === 401) this.#tell('refused', 'hapticd-view was started anew: open the address that it prints');
-    else if (answer?.ok) this.#tell('refused', 'hapticd-view takes no more pages, 8 at a time: close one of them');
+    if (answer?.status === 401) this.#tell('refused', 'hapticd-view was started again: open the address that it printed');
+    else if (answer?.ok) this.#tell('refused', 'hapticd-view serves at most 8 pages at a time: close one of them');
     else this.#tell('refused', 'The run and its view have ended. To begin again: hapticd run SCENE --view');
   }
 

@@ -1,31 +1,34 @@
 // SPDX-License-Identifier: MIT
-/** What happened, newest first: orders, faults, contacts, clicks, models and clients that came and went. */
+/** The list of what happened, newest first: orders, faults, contacts, clicks, and models and programs that came or
+ * left. */
 import {clock, element, short} from './format.js';
 import {reader} from './rows.js';
 
 const kMost = 300;
-const kOrders = ['', 'enabled', 'disabled', 'moved', 'parameter set', 'fault cleared', 'held', 'added', 'removed', 'answered coarser', 'overran', 'motors cut', 'led', 'no longer led'];
-const kToldAsEvents = new Set([5, 6, 7, 8, 9, 10, 12, 13]); // orders that events tell of, and those of the servo itself
-const kHeld = 8; // a person's hold is no failure
+const kOrders = ['', 'enabled', 'disabled', 'moved', 'parameter set', 'fault cleared', 'held', 'added', 'removed', 'computed less accurately', 'overran', 'motors cut', 'led', 'no longer led'];
+/** Numbers of the orders that are not listed: events report the same, or the servo itself gave them. */
+const kToldAsEvents = new Set([5, 6, 7, 8, 9, 10, 12, 13]);
+const kHeld = 8; // number of the fault of an arm that a person holds; it is not shown as a failure
 const kOfArm = new Set([5, 6, 11]);
 const kFaults = ['no fault any more', 'a force or position was not a number', 'the device is gone', 'the device reports a fault', 'no new sample came', 'the tip was too fast',
   'too many ticks were missed', 'not calibrated', 'held', 'a tick was stuck', 'a motor is too hot', 'the position jumped'];
 const kFaultUnits = {4: 's', 5: 'm/s', 6: 's', 9: 's', 10: '°C', 11: 'm/s'};
-const kSilenced = ['', 'it lost its track', 'its force or pose was not a number', 'it answered an unknown status', 'its steps took too long', 'its force jumped beyond its stiffness'];
+const kSilenced = ['', 'it lost the surface', 'its force or pose was not a number', 'it returned an unknown status', 'its steps took too long', 'its force jumped beyond its stiffness'];
 const kLed = ['', 'the hand', 'a force'];
-/** What is said of each event; e has code and value. Its sort sets colour, sound and mark. */
+/** The text for each kind of event; e has the code and the value of the event. `sort` decides the colour, the sound and
+ * the mark. */
 const kEvents = {
   click: {sort: 'click', text: () => 'click'},
   touch: {sort: 'contact', text: (e) => `touched, ${short(e.value)} N`},
   fault: {sort: 'fault', text: (e) => `${kFaults[e.code] ?? `fault ${e.code}`}${kFaultUnits[e.code] ? ` (${short(e.value)} ${kFaultUnits[e.code]})` : ''}`},
   cleared: {sort: 'order', text: () => 'no fault any more'},
   silenced: {sort: 'fault', text: (e) => `not felt any more: ${kSilenced[e.code] || 'it is not trusted'}`},
-  degraded: {sort: 'late', text: () => 'answers coarser, for lack of time'},
-  restored: {sort: 'order', text: () => 'answers as exactly as before'},
-  came: {sort: 'order', text: () => 'came'},
-  left: {sort: 'order', text: () => 'left'},
+  degraded: {sort: 'late', text: () => 'computes less accurately, because time is short'},
+  restored: {sort: 'order', text: () => 'computes at full accuracy again'},
+  came: {sort: 'order', text: () => 'was added'},
+  left: {sort: 'order', text: () => 'was removed'},
   joined: {sort: 'order', text: (e) => `a program leads ${kLed[e.code] ?? ''}`.trimEnd()},
-  lost: {sort: 'order', text: () => 'is led no longer'},
+  lost: {sort: 'order', text: () => 'is no longer led by a program'},
   refused: {sort: 'fault', text: (e) => `${e.value} records of its leader were refused so far`},
   quarantined: {sort: 'fault', text: () => 'models were left out: their plugin ended an earlier run'},
 };
@@ -41,7 +44,7 @@ export class Events {
     this.read = readers('orders', ['tick', 'kind', 'target', 'value']);
     this.event = readers('events', ['t', 'kind', 'model', 'probe', 'code', 'value']);
     this.kinds = about.events ?? [];
-    this.told = 'events' in columns; // older recordings have none
+    this.told = 'events' in columns; // older recordings have no stream of events
     this.faults = [];
     this.touching = new Set();
     this.clear();
@@ -80,8 +83,8 @@ export class Events {
     }
   }
 
-  /** Of a recording without a stream of events, what follows from the rows of now: faults that latched or went,
-   * contacts that began. */
+  /** For a recording without a stream of events: finds events in the present rows, namely faults that began or ended
+   * and contacts that began. */
   look(now) {
     if (this.told) return;
     now.arms.forEach((arm, i) => {

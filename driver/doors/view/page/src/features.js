@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: MIT
-/** What the features of contacts are called, asked for once each: of a part, instance and face. */
+/** The names of the features of contacts; for a part, a name consists of instance and face. Each name is requested
+ * once. */
 
 const kMostKept = 4096;
 
 export class Features {
-  /** @param ask sends a request and promises the answer */
+  /** @param ask function that sends a request and returns a promise of the answer */
   constructor(ask) {
     this.ask = ask;
     this.clear();
   }
 
-  /** The models are others now. */
+  /** Forgets all names, because the models have changed. */
   clear() {
     this.names = new Map(); // "model/feature" -> name; '' until it is known
     this.nameless = new Set(); // models whose plugin has no names
   }
 
-  /** @returns '' where it has no name, or none yet */
+  /** Returns the name of a feature; '' if it has no name, or if the name has not come yet. */
   name(model, feature) {
     const key = `${model}/${feature}`, {names, nameless} = this, known = names.get(key);
     if (known !== undefined || model === undefined || nameless.has(model)) return known ?? '';

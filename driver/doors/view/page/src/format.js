@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-/** Numbers as people read them, and elements of the page. */
+/** Formats numbers for people, and makes elements of the page. */
 
 export const norm = (v) => Math.hypot(...v);
 export const fileName = (path) => (path ?? '').split('/').pop();
 
-/** A number with about three digits, never "-0". */
+/** Returns a number as text with about three digits, never "-0". */
 export function short(value, digits = 3) {
   if (!Number.isFinite(value)) return '–';
   const size = Math.abs(value);
@@ -13,17 +13,17 @@ export function short(value, digits = 3) {
   return Number(text) === 0 ? (0).toFixed(decimals) : text;
 }
 
-/** A bound as it is written: 1e-12, 0.001, 10000. */
+/** Returns a bound as people write it: 1e-12, 0.001, 10000. */
 export const exact = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(6))) : '–');
 
-/** Seconds as m:ss.ss. */
+/** Returns a time in seconds as m:ss.ss. */
 export function clock(t) {
   if (!Number.isFinite(t)) return '–';
   const minutes = Math.floor(t / 60);
   return `${minutes}:${(t - 60 * minutes).toFixed(2).padStart(5, '0')}`;
 }
 
-/** An element with properties and children. */
+/** Makes an element with properties and children. */
 export function element(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
   for (const [key, value] of Object.entries(properties)) {
@@ -36,10 +36,10 @@ export function element(tag, properties = {}, ...children) {
   return made;
 }
 
-/** A colour of the page's theme. */
+/** Returns a colour of the page's theme. */
 export const themeColor = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-/** Saves bytes as a file of the user's. */
+/** Lets the user save bytes as a file. */
 export function save(blob, name) {
   const link = element('a', {href: URL.createObjectURL(blob), download: name});
   link.click();

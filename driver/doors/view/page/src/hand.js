@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
-/** The hand of people who have no arm: the tip is dragged in the plane that faces the viewer, and onto the models that the
- * pointer is over; the wheel moves it deeper. What is sent is a wish; the simulated hand's mass and spring, and the shapes, decide what comes of it. */
+/** Leads the hand of a simulated arm, for people who have no arm. The user drags the tip in the plane that faces the
+ * viewer, and onto the models under the pointer; the wheel moves it deeper. Only the wanted position (the wish) is
+ * sent. The mass and spring of the simulated hand, and the shapes, decide how the tip moves. */
 import {Raycaster, Vector2, Vector3} from 'three';
 
-const kGrabPixels = 34; // about the tip; a finger is not finer
-const kStep = 0.001, kFineStep = 0.0001; // m a key
-const kWheelStep = 0.0015; // m a notch
-const kPress = 0.004; // m that a hand over a model wishes to be behind its surface
-const kTurn = 0.06; // rad a key
+const kGrabPixels = 34; // radius about the tip in which it can be grabbed, wide enough for a finger
+const kStep = 0.001, kFineStep = 0.0001; // m per press of a key
+const kWheelStep = 0.0015; // m per notch of the wheel
+const kPress = 0.004; // m: depth of the wish behind the surface of the model under the pointer
+const kTurn = 0.06; // rad per press of a key
 const kLost = 'The connection is lost: no hand can be led until it is back';
-const kAgainMs = 50; // a wish is told again so often while it is led
+const kAgainMs = 50; // the wish is sent again after this time while the hand is led
 
-/** A target as the daemon takes it: f64 position[3], orientation[4], linear[3], angular[3], time; 0: when it is read. */
+/** Makes the message with a target in the daemon's form: f64 position[3], orientation[4], linear[3], angular[3], time.
+ * The time 0 means: when the daemon reads it. */
 function targetBytes(lead, position) {
   const bytes = new ArrayBuffer(8 + 14 * 8), view = new DataView(bytes);
   view.setUint32(0, lead, true);
@@ -23,20 +25,20 @@ export class Hand {
   #lead = null; // number of the lead
   #asking = false;
   #wish = null;
-  #drag = null; // what the pointer does: {kind, x, y, ...}
+  #drag = null; // what the pointer does now: {kind, ...}
   #pointers = new Map();
   #sent = 0;
-  #turn = 0; // grows when a lead is given up: what was asked before counts no more
+  #turn = 0; // grows when a lead is given up, so that later answers to earlier requests are ignored
 
-  /** @param connection to the server @param view the scene */
+  /** @param connection connection to the server @param view view of the scene */
   constructor(connection, view) {
     this.connection = connection;
     this.view = view;
     this.arm = 0;
     this.devices = [];
     this.reaches = [];
-    this.obstacle = kLost; // why nothing can be led, '' where it can
-    this.used = false; // the view or the hand was moved by the user: the camera is theirs
+    this.obstacle = kLost; // why no hand can be led; '' if one can be led
+    this.used = false; // true after the user has moved the view or the hand: the camera no longer moves by itself
     this.onRefused = () => {};
     const {canvas} = view;
     canvas.addEventListener('pointerdown', (e) => this.#down(e));
@@ -47,8 +49,9 @@ export class Hand {
     canvas.addEventListener('contextmenu', (e) => e.preventDefault());
   }
 
-  /** A run: nothing is led. @param devices names @param reaches [m] how far from the tip each hand pulls at most
-   * @param obstacle why none may be led, or '' @param again the run is that of before: who still holds the tip goes on */
+  /** Called when a run was found. No hand is led then. @param devices names of the devices @param reaches [m] largest
+   * distance of each hand's wish from the tip @param obstacle why no hand may be led, or '' @param again true if it is
+   * the same run as before: a drag that still lasts goes on */
   begin(devices, reaches, obstacle, again = false) {
     const held = again && obstacle === '' && this.#drag?.kind === 'hand' ? this.#wish : null;
     this.lose();
@@ -64,7 +67,7 @@ export class Hand {
     if (!again) this.arm = 0;
   }
 
-  /** The connection is gone, and every lead with it. Returns whether a hand was led. */
+  /** Called when the connection was lost, which ends every lead. Returns true if a hand was led. */
   lose() {
     const led = this.#lead !== null;
     ++this.#turn;
@@ -75,7 +78,7 @@ export class Hand {
     return led;
   }
 
-  /** Where the led hand of an arm wants to be, or null. */
+  /** Returns the wanted position of the hand of an arm, or null if the hand is not led. */
   wish(arm) { return arm === this.arm ? this.#wish : null; }
 
   get possible() { return this.obstacle === ''; }
@@ -94,8 +97,8 @@ export class Hand {
     return best;
   }
 
-  /** The place under the pointer: in the plane through `through` that faces the viewer, or just behind the surface of the
-   * model that the pointer is over, whichever is deeper. */
+  /** Returns the place under the pointer. It is in the plane through `through` that faces the viewer, or just behind
+   * the surface of the model under the pointer, whichever is deeper. */
   #placeAt(x, y, through) {
     const {canvas, orbit, models} = this.view, caster = new Raycaster(), {ray} = caster;
     caster.setFromCamera(new Vector2(2 * x / canvas.clientWidth - 1, 1 - 2 * y / canvas.clientHeight), orbit.camera);
@@ -134,7 +137,7 @@ export class Hand {
     last.x = e.offsetX, last.y = e.offsetY;
     const {orbit, canvas} = this.view, drag = this.#drag;
     if (!drag) return;
-    if (drag.kind === 'hand' && !this.possible) return; // until the connection is back
+    if (drag.kind === 'hand' && !this.possible) return; // waits until the connection is back
     if (drag.kind === 'hand') this.#want(this.#placeAt(e.offsetX + drag.dx, e.offsetY + drag.dy, drag.plane));
     else if (drag.kind === 'turn') orbit.turn(-dx * 0.008, -dy * 0.008);
     else if (drag.kind === 'pan') orbit.pan(dx, dy, canvas.clientHeight);
@@ -187,7 +190,7 @@ export class Hand {
     this.view.dirty = true;
   }
 
-  /** The keys move the next arm from now on. Returns its name. */
+  /** From now on the keys move the next arm. Returns its name. */
   next() {
     if (this.devices.length > 1) this.#release((this.arm + 1) % this.devices.length);
     return this.devices[this.arm];
@@ -201,14 +204,14 @@ export class Hand {
     this.arm = arm;
   }
 
-  /** The hand is to be there. The first wish asks for the lead. */
+  /** Sets the wanted position of the hand. The first call asks for the lead. */
   async #want(place) {
     this.#wish = place;
     this.#send();
     if (this.#lead !== null || this.#asking) return;
     this.#asking = true;
     const turn = this.#turn, answer = await this.connection.ask({do: 'lead', hand: this.devices[this.arm]});
-    if (turn !== this.#turn) { // meant for a hand that is not wanted any more
+    if (turn !== this.#turn) { // the hand was given up before this answer came
       if (answer.ok) this.connection.ask({do: 'unlead', lead: answer.lead});
       return;
     }
@@ -229,7 +232,8 @@ export class Hand {
     this.#sent = performance.now();
   }
 
-  /** A hand that is stronger than the arm would push the tip through every wall: it pulls no harder than the arm does. */
+  /** Returns the wish, but not farther from the tip than the arm can hold against. A stronger hand would push the tip
+   * through every wall. */
   #pulled() {
     const tip = this.view.probes[this.arm]?.tipPlace, reach = this.reaches[this.arm];
     if (!tip || !this.#beyond()) return this.#wish;
@@ -238,7 +242,7 @@ export class Hand {
 
   #beyond() { return this.#wish !== null && this.#wish.distanceTo(this.view.probes[this.arm].tipPlace) > this.reaches[this.arm]; }
 
-  /** Called each frame: what may have been lost is told again, and a hand that is far behind is pulled on. */
+  /** Called in each frame. Sends the wish again in case a message was lost, and while the tip is far behind the wish. */
   look(now) {
     if (this.#lead !== null && (now - this.#sent > kAgainMs || this.#beyond())) this.#send();
   }

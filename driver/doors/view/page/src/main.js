@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/** The page of hapticd-view: brings what comes over the connection to the scene, the plots and the panels. */
+/** The page of hapticd-view. It passes the messages of the connection on to the scene, the plots and the panels. */
 import {ArmModel} from './arm.js';
 import {Connection} from './connection.js';
 import {Events} from './events.js';
@@ -16,20 +16,21 @@ import {Timeline} from './timeline.js';
 const $ = (id) => document.getElementById(id);
 const kFullStain = 0.003; // m: depth of the strongest colour
 const kNoticeMs = 6000;
-const kHandStiffness = 500; // N/m, where a device file gives none
-const kShareOfLimit = 0.8; // of the arm's greatest force: what is left holds the tip outside
-const kGuided = 7; // of hand.script: a hand that waits for a leader
-const kStopMs = 3000; // a question is taken back after it
-const kTakesSpace = 'input:not([type=number], [type=range]), textarea, select'; // everywhere else it holds
-const kHeldFault = 8; // number of the fault that a person's hold is
+const kHandStiffness = 500; // N/m: stiffness of the hand if the device file gives none
+const kShareOfLimit = 0.8; // the hand pulls with at most this share of the arm's largest force, so that shapes can keep the tip outside
+const kGuided = 7; // value of hand.script for a hand that a program leads
+const kStopMs = 3000; // time after which the question "End the run?" is taken back
+/** Elements that use the space key themselves; everywhere else it holds the arms. */
+const kTakesSpace = 'input:not([type=number], [type=range]), textarea, select';
+const kHeldFault = 8; // number of the fault of an arm that a person holds
 
-/** [N] What the limiter of an arm lets through at most, or null. */
+/** Returns the largest force [N] that an arm may get, or null if it is unknown. */
 function greatestForce(about, arm) {
   const bounds = [about.scene?.devices?.[arm]?.limits?.force, about.devices?.[arm]?.info?.max_force].map(Number).filter((force) => force > 0);
   return bounds.length > 0 ? Math.min(...bounds) : null;
 }
 
-/** [m] How far a simulated hand's spring stretches with the force that the arm can hold against. */
+/** Returns how far [m] the spring of a simulated hand stretches under the force that the arm can hold against. */
 function handReach(device, limit) {
   const stiffness = Number(device?.parameters?.find((p) => p.id === 'hand.stiffness')?.number ?? kHandStiffness);
   return limit > 0 && stiffness > 0 ? kShareOfLimit * limit / stiffness : Infinity;
@@ -37,7 +38,7 @@ function handReach(device, limit) {
 
 class Page {
   constructor() {
-    // the token has done its work: it need not stay in the address
+    // The token in the address is no longer needed, so it is removed.
     if (location.search) history.replaceState(null, '', location.pathname);
     this.connection = new Connection(`ws://${location.host}/`);
     this.ask = (request) => this.connection.ask(request);
@@ -51,12 +52,12 @@ class Page {
     this.hello = null;
     this.status = {};
     this.pendingList = null;
-    this.drawn = new Map(); // name -> index of models whose triangles came or come
+    this.drawn = new Map(); // name -> index of the models whose triangles were requested
     this.paints = {first: performance.now(), scene: 0};
     this.#listen();
     this.#buttons();
     this.#theme(localStorage.getItem('theme') ?? (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light'));
-    // the page first, the scene one frame later
+    // The page is drawn first, and the scene one frame later.
     requestAnimationFrame(() => setTimeout(() => this.#startView()));
   }
 
@@ -99,13 +100,15 @@ class Page {
     on('refused', (why) => { this.whyLost = why; this.notice(why); });
   }
 
-  /** The daemon brakes a hand whose leader is gone. The picture stays, and what is held is led on when the connection is back. */
+  /** Called when the connection was lost. The daemon then stops the hand. The picture stays, and a tip that is still
+   * held is led again when the connection is back. */
   #lost() {
     this.#lamp('bad', this.whyLost ?? 'The connection is lost: trying again');
     if (this.hand?.lose()) this.ledWhenLost = true;
   }
 
-  /** @param again the run is that of before the connection was lost */
+  /** Shows or hides the hint how to move the hand. @param again true if it is the same run as before the connection was
+   * lost */
   #invite(again) {
     const {about, control} = this.hello, script = about.scene?.devices?.[0]?.parameters?.find((p) => p.id === 'hand.script');
     const resting = again && this.ledWhenLost;
@@ -115,7 +118,7 @@ class Page {
     if (again) this.notice('The connection is back', true);
   }
 
-  /** A run was found, or found again. */
+  /** Called when a run was found, or found again. @param hello the server's description of the run */
   #begin(hello) {
     const {about, streams, control, recorded} = hello, identity = JSON.stringify(about), again = identity === this.identity;
     this.identity = identity;
@@ -136,7 +139,7 @@ class Page {
     this.drawn.clear();
     this.view.arms(this.now.arms.length);
     this.armModels = this.now.arms.map((_, i) => new ArmModel(about.scene?.devices?.[i], about.devices?.[i]?.info));
-    this.fitted = again; // nobody wants another camera because of a connection
+    this.fitted = again; // the camera does not move because of a lost connection
     this.fitWhenTip = false;
     if (!again) this.hand.used = false;
     this.panel.folder = about.folder ?? '';
@@ -154,10 +157,10 @@ class Page {
     })));
     $('pick').replaceChildren(new Option('none', ''), ...(this.plots?.columns() ?? []).map((c) => new Option(c.unit ? `${c.name} [${c.unit}]` : c.name, c.name)));
     this.#drawModels((about.scene?.models ?? about.models ?? []).map((m, i) => ({...m, index: i})));
-    if (this.pendingList) this.#list(this.pendingList); // it came before there was a view
+    if (this.pendingList) this.#list(this.pendingList); // the list came before there was a view
   }
 
-  /** Asks for the triangles of models that are new. */
+  /** Requests the triangles of new models. */
   async #drawModels(models) {
     const begun = this.now, scene = this.now.about.scene?.models ?? [];
     const fresh = models.filter((m) => this.drawn.get(m.name) !== m.index);
@@ -187,18 +190,18 @@ class Page {
       if (!models.some((m) => m.name === name && m.index === index)) {
         if (this.view.models.byIndex.get(index)?.name === name) this.view.models.remove(index);
         this.drawn.delete(name);
-        this.features.clear(); // another part may come under its name
+        this.features.clear(); // another part may be added under the same name
       }
     for (const model of models) {
       this.events.names[model.index] = model.name;
-      // what moved and rests has no rows any more
+      // A model that has moved and now rests has no rows any more, so its pose comes from the list.
       if (model.pose && !this.now.poses.has(model.index)) this.view.models.move(new Map([[model.index, model.pose]]));
     }
     this.view.dirty = true;
     this.#drawModels(models);
   }
 
-  /** Where the daemon does not tell the values in force, those of the scene are a start. */
+  /** Adds the values of parameters: if the daemon does not report the present value, the value of the scene is taken. */
   #withValues(models) {
     const scene = this.now.about.scene?.models ?? [];
     for (const model of models)
@@ -254,7 +257,7 @@ class Page {
     if (this.hand.leads) $('hint').hidden = true;
   }
 
-  /** Which instance and face the deepest contact is on, where the plugin has names. */
+  /** Shows on which instance and face the deepest contact is, if the plugin has names for them. */
   #showFoot(contacts) {
     const deepest = contacts.reduce((a, b) => (b.depth > (a?.depth ?? 0) ? b : a), null);
     const name = deepest ? this.features.name(this.events.names[deepest.model], deepest.feature) : '';
@@ -262,7 +265,8 @@ class Page {
     $('foot').hidden = name === '';
   }
 
-  /** [m/s] Of the tip: from its places, since the daemon estimates a velocity only where a model needs one. */
+  /** Returns the speed of the tip [m/s]. It is computed from positions, because the daemon estimates a velocity only if
+   * a model needs one. */
   #speed(arm) {
     const {tick, t} = this.now.tick, before = this.before;
     if (arm && (!before || t - before.t > 0.02 || t < before.t)) {
@@ -311,7 +315,7 @@ class Page {
     this.notice(answer.ok ? done?.(answer) : answer.error, answer.ok);
   }
 
-  /** The first click asks, the second ends the run. */
+  /** Handles a click on Stop: the first click asks, the second ends the run. */
   #stop() {
     const asked = this.stopTimer, calm = () => { this.stopTimer = undefined; $('stop').textContent = 'Stop'; };
     clearTimeout(asked);
@@ -345,7 +349,7 @@ class Page {
     $('save-picture').onclick = async () => save(await this.view.picture(), 'hapticd.png');
     $('save-report').onclick = () => save(new Blob([JSON.stringify(this.report(), null, 2)], {type: 'application/json'}), 'hapticd-report.json');
     document.addEventListener('keydown', (e) => this.#key(e));
-    // Space holds wherever the focus is: a button is pressed by Enter
+    // The space key holds the arms wherever the focus is, so only Enter presses a button.
     document.addEventListener('keyup', (e) => { if (e.key === ' ' && e.target.matches('button')) e.preventDefault(); });
   }
 
@@ -381,7 +385,7 @@ class Page {
     this.view?.theme({panel: themeColor('--panel'), line: themeColor('--line'), accent: themeColor('--accent'), force: themeColor('--force'), tip: dark ? '#f2f5f8' : '#1d2730', link: dark ? '#5b6a7a' : '#c3ccd6'});
   }
 
-  /** What was seen: the status, the models and the extremes of the plots. */
+  /** Returns a report of what the page shows: the status, the models and the extremes of the plots. */
   report() {
     const extremes = Object.fromEntries((this.plots?.all ?? []).map((p) => [p.root.querySelector('span').textContent, {
       unit: p.unit, min: Math.min(...p.extremes.low.filter((v) => v !== null)), max: Math.max(...p.extremes.high.filter((v) => v !== null)),

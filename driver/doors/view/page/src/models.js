@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-/** The models of the scene as they are felt: the plugin's own triangles and normals, live where a body deforms, and a
- * stain on the surface where the probe is in contact. */
+/** Draws the models of the scene with the plugin's own triangles and normals, so that they look as they feel. A body
+ * that deforms is updated. A stain of colour shows where the probe touches a surface. */
 import {Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh,
   MeshLambertMaterial, Vector4, WireframeGeometry} from 'three';
 import {toCreasedNormals} from 'three/addons/utils/BufferGeometryUtils.js';
 
 const kColors = {nurbs_rigid: '#a3b8c9', mat_deformable: '#e0a08c', push_button: '#8fb0dc', pendulum: '#cdb27a'};
 const kOther = ['#a7c4a0', '#c3a6cf', '#9fc6c4', '#d3bd94'];
-const kCrease = Math.PI / 5; // where a plugin gives no normals: sharper edges than this stay sharp
-const kStains = 4; // contacts that colour a surface at a time
+const kCrease = Math.PI / 5; // rad: if a plugin gives no normals, edges that bend by more than this stay sharp
+const kStains = 4; // largest number of contacts that colour one surface at a time
 
-/** Colour of a model, by its plugin. */
+/** Returns the colour of a model, which depends on its plugin. */
 export function colorOf(plugin, index) {
   return kColors[plugin] ?? kOther[index % kOther.length];
 }
@@ -29,7 +29,8 @@ const kFragmentStain = `
   outgoingLight = mix(outgoingLight, stainColor, stain);
   #include <opaque_fragment>`;
 
-/** Lambert's shading, and a warm stain about each contact: a place in the world and a strength. */
+/** Makes a material with Lambert's shading and a warm stain about each contact. A stain has a place in the world and a
+ * strength. */
 function stainedMaterial(color) {
   const material = new MeshLambertMaterial({color, side: DoubleSide});
   const uniforms = {
@@ -53,7 +54,7 @@ export class Models {
     this.byIndex = new Map();
   }
 
-  /** Forgets all of them. */
+  /** Removes all models. */
   clear() {
     for (const index of [...this.byIndex.keys()]) this.remove(index);
   }
@@ -70,7 +71,7 @@ export class Models {
   /** Adds a model with its triangles {xyz, normals, corners} and pose {position, orientation}. */
   add(index, {name, plugin, pose}, triangles) {
     this.remove(index);
-    const live = new BufferGeometry(); // what vertices of a deforming body go to
+    const live = new BufferGeometry(); // gets the new vertices of a body that deforms
     live.setAttribute('position', new BufferAttribute(triangles.xyz, 3));
     live.setIndex(new BufferAttribute(triangles.corners, 1));
     if (triangles.normals) live.setAttribute('normal', new BufferAttribute(triangles.normals, 3));
@@ -82,7 +83,7 @@ export class Models {
     this.group.add(mesh);
   }
 
-  /** New vertices of a body that deforms. */
+  /** Sets the new vertices of a body that deforms. */
   deform(index, xyz) {
     const model = this.byIndex.get(index);
     const position = model?.live.getAttribute('position');
@@ -96,7 +97,7 @@ export class Models {
     model.live.computeBoundingSphere();
   }
 
-  /** The newest poses of those that move: Map of index -> {position, orientation}. */
+  /** Sets the newest poses of the models that move. @param poses Map of index -> {position, orientation} */
   move(poses) {
     for (const [index, pose] of poses) {
       const model = this.byIndex.get(index);
@@ -104,7 +105,7 @@ export class Models {
     }
   }
 
-  /** Colours surfaces about the contacts of now; `full` [m] is the depth of the strongest colour. */
+  /** Colours the surfaces about the present contacts. @param full [m] depth at which the colour is strongest */
   stain(contacts, full) {
     for (const [index, model] of this.byIndex) {
       const mine = contacts.filter((c) => c.model === index && c.depth > 0);

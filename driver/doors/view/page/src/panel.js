@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-/** The models and a form of what of them may change: fields come from the plugin's own table, with unit, range and
- * documentation. What a hand may feel suddenly asks for consent. */
+/** The list of models, with a form for their live parameters. The fields come from the plugin's own table, with unit,
+ * range and documentation. A change that a hand may feel suddenly needs consent. */
 import {element, exact, short} from './format.js';
 import {colorOf} from './models.js';
 
-const kOpenModels = 3; // more of them are folded
+const kOpenModels = 3; // if there are more models, their parameters are folded
 
 const $ = (id) => document.getElementById(id);
 
-/** Asks whether whoever holds the arm agrees. */
+/** Asks whether the person who holds the arm agrees. */
 function consent(text) {
   const dialog = $('consent');
   $('consent-text').textContent = text;
@@ -17,29 +17,31 @@ function consent(text) {
   return new Promise((resolve) => dialog.addEventListener('close', () => resolve(dialog.returnValue === 'yes'), {once: true}));
 }
 
-/** A range that a slider can walk: a table says 0 to 1e5 where 800 stands, so the slider spans about the value. */
+/** Returns the range of a slider. It is chosen by the present value, because the range in the table is often too wide:
+ * 0 to 1e5 for a value of 800. */
 function sliderSpan(parameter, value) {
   const about = Math.max(Math.abs(value), (parameter.max - parameter.min) * 1e-3, 1e-9);
   return {min: Math.max(parameter.min, value < 0 ? -4 * about : 0, parameter.min), max: Math.min(parameter.max, 4 * about)};
 }
 
 export class Panel {
-  /** @param ask sends a request, gives a promise of the answer */
+  /** @param ask function that sends a request and returns a promise of the answer */
   constructor(ask) {
     this.ask = ask;
     this.control = false;
     this.models = [];
     this.undrawn = new Map(); // name -> why a model is felt but not seen
-    this.folder = ''; // of the scene
+    this.folder = ''; // folder of the scene file
     this.signature = '';
     $('add-form').addEventListener('submit', (event) => {
       event.preventDefault();
-      const file = $('add-file').value.trim(); // a path like those in the scene is relative to its folder
+      const file = $('add-file').value.trim(); // a relative path begins at the folder of the scene, as in the scene itself
       this.#do({do: 'add', file: file.startsWith('/') ? file : `${this.folder}/${file}`}).then((answer) => { if (answer.ok) $('add-file').value = ''; });
     });
   }
 
-  /** @param models of the answer of `list` @param control whether anything may change */
+  /** Shows the models. @param models the models in the answer to `list` @param control true if the page may change the
+   * run */
   show(models, control) {
     const shape = JSON.stringify([control, models.map((m) => [m.name, m.plugin, m.enabled, (m.live_parameters ?? []).map((p) => p.id)])]);
     this.models = models;
@@ -57,13 +59,13 @@ export class Panel {
 
   #controlsOf(model) { return document.querySelector(`[data-model="${CSS.escape(model)}"]`)?.querySelectorAll('button, input, summary'); }
 
-  /** Which control of which model has the focus: keys go on where they were when the panel is made anew. */
+  /** Returns which control of which model has the focus, so that it gets the focus again when the panel is rebuilt. */
   #focused() {
     const model = document.activeElement?.closest('[data-model]')?.dataset.model;
     return model === undefined ? null : {model, place: [...this.#controlsOf(model)].indexOf(document.activeElement)};
   }
 
-  /** Tells beside each model that is not felt why. @param list {model, why} of the status */
+  /** Shows beside each model that is not felt why it is not felt. @param list the list of {model, why} in the status */
   silenced(list) {
     for (const article of document.querySelectorAll('[data-model]')) {
       const why = list.find((s) => s.model === article.dataset.model)?.why ?? '';
@@ -73,7 +75,7 @@ export class Panel {
     }
   }
 
-  /** Tells beside a model, for as long as it is there, why nothing of it is seen. @param why '' where it is drawn */
+  /** Shows beside a model why it is not drawn. @param why the reason, or '' if the model is drawn */
   notDrawn(name, why) {
     if ((this.undrawn.get(name) ?? '') === why) return;
     this.undrawn.set(name, why);
@@ -146,7 +148,7 @@ export class Panel {
     return field;
   }
 
-  /** Shows the value in force, unless somebody is typing another. */
+  /** Shows the present value, unless somebody is typing another one. */
   #refresh(model, parameter, force = false) {
     const field = document.querySelector(`[data-model="${CSS.escape(model.name)}"] [data-parameter="${CSS.escape(parameter.id)}"]`);
     if (!field || !Number.isFinite(parameter.value)) return;

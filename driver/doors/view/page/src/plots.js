@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-/** Plots over the last seconds. A column of pixels shows the extremes of its ticks, not a sample of them: a single late
- * tick stays to be seen. */
+/** Plots of the last seconds. A column of pixels shows the least and the greatest value of its ticks, so that even a
+ * single late tick can be seen. */
 import uPlot from 'uplot';
 import {element, norm, short, themeColor} from './format.js';
 import {reader, vectorReader} from './rows.js';
 
 const kSeconds = 10;
-const kBuckets = 640; // over kSeconds: about 16 ticks of 1 kHz each
+const kBuckets = 640; // number of intervals in kSeconds; each contains about 16 ticks at 1 kHz
 const kRedrawMs = 90;
 
-/** The extremes of one quantity in buckets of time. */
+/** The least and the greatest value of one quantity in each interval of time (bucket). */
 class Extremes {
   constructor(read, readTime) {
     this.read = read;
@@ -65,7 +65,7 @@ class Plot {
     this.extremes = new Extremes((view, at) => scale * read(view, at), plots.readTime);
     this.color = color;
     this.zero = zero;
-    this.least = least; // span that an axis has at least: noise is not blown up
+    this.least = least; // least span of the axis, so that noise is not magnified
     this.#chart();
     this.#fill();
   }
@@ -86,7 +86,7 @@ class Plot {
     }, [[0, 1], [null, null], [null, null]], this.chartBox);
   }
 
-  /** A dashed line at the limit, a line at each mark (fault, order). */
+  /** Draws a dashed line at the limit, and a line at each mark (fault, order). */
   #marks(u) {
     const {ctx} = u, {left, top, width, height} = u.bbox;
     ctx.save();
@@ -113,7 +113,8 @@ class Plot {
     ctx.restore();
   }
 
-  /** From the rows that are kept: a column that was picked shows at once what has been. */
+  /** Fills the plot from the rows that are kept, so that a column that was just picked shows the last seconds at
+   * once. */
   #fill() {
     const {table} = this.plots;
     for (let row = table.begin; row < table.end; ++row) this.extremes.add(table.view, table.at(row));
@@ -138,7 +139,8 @@ class Plot {
 }
 
 export class Plots {
-  /** @param arms {name, limit} of each: the greatest force [N] or null @param period [s] of a tick */
+  /** @param arms {name, limit} of each arm; limit is its largest force [N] or null @param period [s] duration of a
+   * tick */
   constructor(parent, table, {arms, period}) {
     parent.replaceChildren();
     this.parent = parent;
@@ -161,10 +163,10 @@ export class Plots {
     this.next = 0;
   }
 
-  /** Columns that may be picked. */
+  /** Returns the columns that the user may pick. */
   columns() { return this.table.columns.filter((c) => !/reserved|^tick$|_ns$/.test(c.name)); }
 
-  /** Shows a column of the user's choice; null: none. */
+  /** Shows the column that the user picked. @param name name of the column, or '' for none */
   pick(name) {
     this.own?.destroy();
     const column = this.table.columns.find((c) => c.name === name);
@@ -187,7 +189,7 @@ export class Plots {
     for (const plot of this.all) plot.extremes.clear();
   }
 
-  /** Draws anew, some ten times a second. @param t newest time [s] */
+  /** Draws the plots again, about ten times per second. @param t newest time [s] */
   redraw(t, now) {
     if (now < this.next || !Number.isFinite(t)) return;
     this.next = now + kRedrawMs;

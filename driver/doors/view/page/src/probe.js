@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-/** One arm in the scene: tip, foot point and normal, force arrow, ghost of what a led hand wants, and its links. */
+/** Draws one arm in the scene: its tip, the foot point and the normal there, an arrow for the force, the wanted
+ * position of a led hand (the ghost), and the links. */
 import {BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Group, Line, LineBasicMaterial, Mesh,
   MeshBasicMaterial, MeshLambertMaterial, RingGeometry, SphereGeometry, Vector3} from 'three';
 import {norm} from './format.js';
 
-const kMetresPerNewton = 0.012; // for a tip of kUsualTip; the arrow grows with the tip
-const kUsualTip = 0.0035; // m
-const kSmallForce = 0.02; // N: below it there is no arrow
+const kMetresPerNewton = 0.012; // length of the force arrow for a tip of kUsualTip; the arrow grows with the tip
+const kUsualTip = 0.0035; // m: usual radius of the drawn tip
+const kSmallForce = 0.02; // N: a smaller force has no arrow
 const kUp = new Vector3(0, 1, 0), kForward = new Vector3(0, 0, 1);
 
-/** A cylinder of height 1 is laid from one point to another. */
+/** Places a cylinder of height 1 so that it reaches from one point to another. */
 function span(mesh, from, to, radius) {
   const along = to.clone().sub(from), length = along.length();
   mesh.visible = length > 1e-6;
@@ -55,7 +56,7 @@ export class Probe {
     this.resize(kUsualTip);
   }
 
-  /** @param size [m] radius of the tip as drawn */
+  /** Sets the size of the tip. @param size [m] radius of the drawn tip */
   resize(size) {
     this.size = size;
     this.tip.scale.setScalar(size);
@@ -70,7 +71,8 @@ export class Probe {
     this.shaft.material.color.set(force);
   }
 
-  /** @param now of the arm @param contacts of this probe @param wish where the led hand wants to be, or null */
+  /** Draws the present state. @param now newest state of the arm @param contacts contacts of this probe @param wish
+   * wanted position of the led hand, or null */
   update(now, contacts, wish) {
     this.tip.visible = now.valid;
     this.tipPlace.set(...now.position);
@@ -96,7 +98,7 @@ export class Probe {
     this.head.scale.set(this.size * 0.72, head, this.size * 0.72);
   }
 
-  /** The deepest, or nearest, foot that is traced. */
+  /** Draws the foot point with the greatest depth; outside of contact this is the nearest one. */
   #foot(contacts) {
     const best = contacts.reduce((a, b) => (!a || b.depth > a.depth ? b : a), null);
     const near = best !== null && best.depth > -12 * this.size && norm(best.normal) > 0.5;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/** Rows as the daemon records them: a table for each stream, the newest rows kept raw, numbers read by the name of a
- * column. */
+/** Rows as the daemon records them. Each stream has a table, which keeps the newest rows as bytes. Numbers are read by
+ * the name of their column. */
 
 const kReaders = {
   f8: (view, at) => view.getFloat64(at, true),
@@ -12,7 +12,8 @@ const kReaders = {
 const kKeptSeconds = 11, kMostBytes = 24 << 20;
 const kQuaternion = ['w', 'x', 'y', 'z'];
 
-/** Reads a column of a row that begins at `at`; a column that is not there reads as not a number. */
+/** Returns a function that reads a column of the row that begins at `at`. If there is no such column, the function
+ * returns NaN. */
 export function reader(columns, name) {
   const column = columns.find((c) => c.name === name);
   if (!column) return () => NaN;
@@ -20,13 +21,13 @@ export function reader(columns, name) {
   return (view, at) => read(view, at + offset);
 }
 
-/** Columns with a common prefix as a list of numbers. */
+/** Returns a function that reads columns with a common prefix as a list of numbers. */
 export function vectorReader(columns, prefix, names = ['x', 'y', 'z']) {
   const readers = names.map((n) => reader(columns, prefix + n));
   return (view, at) => readers.map((read) => read(view, at));
 }
 
-/** The newest rows of one stream in a circle. */
+/** The newest rows of one stream, in a ring buffer. */
 export class Table {
   constructor(name, columns, rowBytes, capacity) {
     this.name = name;
@@ -35,7 +36,7 @@ export class Table {
     this.capacity = capacity;
     this.bytes = new Uint8Array(capacity * rowBytes);
     this.view = new DataView(this.bytes.buffer);
-    this.end = 0; // rows that ever came
+    this.end = 0; // number of all rows that have come so far
   }
 
   clear() { this.end = 0; }
@@ -68,7 +69,7 @@ function armReaders(columns, prefix, device) {
   };
 }
 
-/** What ticks, contacts and poses say of now, taken from each batch of rows as it comes. */
+/** The present state: the newest tick, contacts and poses. They are taken from each batch of rows as it comes. */
 export class Now {
   constructor(about, streams) {
     const columns = (name) => about.columns?.[name] ?? [];
@@ -101,7 +102,7 @@ export class Now {
     this.tick.tick = -1;
   }
 
-  /** Takes a message of rows; returns the table that they went to. */
+  /** Takes a message of rows. Returns the table to which the rows were added. */
   take({stream, rowBytes, count, bytes}) {
     const table = this.tables[stream];
     if (!table || table.rowBytes !== rowBytes) return null;
@@ -145,7 +146,7 @@ export class Now {
     }
   }
 
-  /** Contacts of the newest tick. */
+  /** Returns the contacts of the newest tick. */
   current() {
     return [...this.contacts.values()].filter((c) => this.tick.tick - c.tick <= 1);
   }

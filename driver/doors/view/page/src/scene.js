@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/** The scene on a canvas. Draws when something changed, at most once a frame of the display, and coarser where the
- * machine is slow: a processor that plays the graphics card has few pixels to give. */
+/** Draws the scene on a canvas. It draws only when something has changed, and at most once per frame of the display. On
+ * a slow machine without a graphics card it draws with fewer pixels. */
 import {Box3, Box3Helper, BufferGeometry, Color, DirectionalLight, GridHelper, Group, HemisphereLight, LineBasicMaterial, LineLoop, Scene,
   Vector3, WebGLRenderer} from 'three';
 import {OrbitCamera} from './camera.js';
@@ -9,9 +9,9 @@ import {Probe} from './probe.js';
 
 const kSlowMs = 55, kFastMs = 24, kCoarsest = 0.56;
 const kGridStep = 0.02; // m
-const kEmptyExtent = 0.15; // m: of a scene without a model
+const kEmptyExtent = 0.15; // m: size of a scene without a model
 
-/** True where a processor draws instead of a graphics card. */
+/** Tells whether the processor draws instead of a graphics card. */
 function drawsInSoftware() {
   const probe = document.createElement('canvas').getContext('webgl2');
   const info = probe?.getExtension('WEBGL_debug_renderer_info');
@@ -42,7 +42,8 @@ export class View {
     this.resize();
   }
 
-  /** Right before the next picture: a canvas of another size is empty until it is drawn on. */
+  /** Notes the new size of the canvas. It is applied directly before the next picture, because a canvas is empty after
+   * a change of its size. */
   resize() {
     const {clientWidth: width, clientHeight: height} = this.canvas.parentElement;
     this.size = [width, height];
@@ -66,7 +67,7 @@ export class View {
     this.dirty = true;
   }
 
-  /** As many probes as arms. */
+  /** Makes one probe for each arm. */
   arms(count) {
     for (const probe of this.probes) this.scene.remove(probe.group);
     this.probes = Array.from({length: count}, () => {
@@ -77,7 +78,7 @@ export class View {
     });
   }
 
-  /** Size of tip, floor and stains follow from the size of the scene. */
+  /** Sets the sizes of tip, floor and stains by the size of the scene. */
   measure() {
     const box = this.models.box();
     this.extent = box.isEmpty() ? kEmptyExtent : box.getSize(new Vector3()).length();
@@ -100,8 +101,8 @@ export class View {
     this.scene.add(this.grid);
   }
 
-  /** What each arm can reach, and how far from its base it may go: a box {min, max}, and three great circles of a
-   * radius [m] about a centre, or 0. */
+  /** Draws the workspaces. @param spaces for each arm: `box`, the places that it can reach as {min, max}; and `center`
+   * and `radius` [m] of the sphere outside of which forces fade, drawn as three great circles (0: no limit) */
   setWorkspaces(spaces) {
     if (this.workspace) this.scene.remove(this.workspace);
     this.workspace = new Group();
@@ -146,7 +147,7 @@ export class View {
     this.dirty = true;
   }
 
-  /** Draws if there is something new. Returns true if it drew. */
+  /** Draws if something has changed. Returns true if it drew. */
   draw() {
     if (!this.dirty) return false;
     this.dirty = false;
@@ -161,7 +162,7 @@ export class View {
     return true;
   }
 
-  /** The time between two drawn frames sets how fine the next are. */
+  /** Chooses the resolution of the next frames by the time [ms] between the last two. */
   pace(ms) {
     if (!this.software || ms > 500) return;
     this.average += 0.06 * (ms - this.average);
@@ -173,13 +174,13 @@ export class View {
     this.resize();
   }
 
-  /** Where a point of the world is on the canvas, in CSS pixels. */
+  /** Returns where a point of the world is on the canvas, in CSS pixels. */
   project(point) {
     const p = point.clone().project(this.orbit.camera);
     return {x: (p.x + 1) / 2 * this.canvas.clientWidth, y: (1 - p.y) / 2 * this.canvas.clientHeight, inFront: p.z < 1};
   }
 
-  /** A picture of now, PNG. */
+  /** Returns a picture of the present scene (PNG). */
   picture() {
     this.#applySize();
     this.renderer.render(this.scene, this.orbit.camera);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/** Short sounds of clicks and contacts, for who wants them. */
+/** Plays short sounds of clicks, contacts and faults, if the user switches them on. */
 
 const kSounds = {click: {hertz: 2100, seconds: 0.025, loud: 0.35}, contact: {hertz: 420, seconds: 0.06, loud: 0.18}, fault: {hertz: 190, seconds: 0.3, loud: 0.25}};
 
@@ -7,7 +7,8 @@ export class Sound {
   on = false;
   #context = null;
 
-  /** Only after a gesture of the user: browsers keep pages silent until then. */
+  /** Switches the sounds on or off. Call it from a click or a key of the user, because browsers keep pages silent
+   * before. */
   enable(on) {
     this.on = on;
     if (on) this.#context ??= new AudioContext();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/** Time of a recording: play, pause, place, speed, loop. */
+/** The controls for the playback of a recording: play, pause, place, speed, loop. */
 
 const $ = (id) => document.getElementById(id);
 
@@ -7,8 +7,8 @@ export class Timeline {
   constructor(ask) {
     this.ask = ask;
     this.state = null;
-    this.mode = {playing: true, speed: 1, loop: true}; // as it was asked for
-    this.held = false; // the slider is in somebody's hand
+    this.mode = {playing: true, speed: 1, loop: true}; // what the user asked for last
+    this.held = false; // true while the user drags the slider
     const seek = $('seek');
     $('play').onclick = () => this.toggle();
     seek.addEventListener('pointerdown', () => { this.held = true; });
@@ -29,15 +29,17 @@ export class Timeline {
     return this.ask({do: 'play', speed: this.mode.speed, loop: this.mode.loop});
   }
 
-  /** A new connection begins the recording anew: goes on as it was with the one before. */
+  /** Restores the playback after the connection was lost, because a new connection begins at the start of the
+   * recording. */
   async restore() {
     const {playing, speed, loop} = this.mode, t = Number($('seek').value);
     await this.ask({do: 'play', speed, loop});
     if (!playing) await this.ask({do: 'pause'});
-    await this.ask({do: 'seek', t}); // last: it went on meanwhile
+    await this.ask({do: 'seek', t}); // sent last, because the playback went on meanwhile
   }
 
-  /** One seek at a time is under way; the last that was asked for meanwhile follows. */
+  /** Seeks to a time. Only one request is sent at a time; after its answer, the newest time that was wanted meanwhile
+   * is requested. */
   async #seek(t) {
     this.wanted = t;
     if (this.seeking) return;
@@ -50,7 +52,7 @@ export class Timeline {
     this.seeking = false;
   }
 
-  /** @param state {from, to, t, playing, speed, loop}, or null: of a daemon */
+  /** Shows the state of the playback. @param state {from, to, t, playing, speed, loop}, or null for a running daemon */
   show(state) {
     this.state = state;
     $('timeline').hidden = state === null;
@@ -61,7 +63,7 @@ export class Timeline {
     this.at(state.t);
   }
 
-  /** The time of the newest row. */
+  /** Shows the time of the newest row. */
   at(t) {
     if (!this.state || !Number.isFinite(t)) return;
     if (!this.held) $('seek').value = t;

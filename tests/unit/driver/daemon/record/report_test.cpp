@@ -289,9 +289,9 @@ TEST_F(Report, TellsAResidualInAUnitThatReadsWell) {
   RunReport report = sample();
   report.models[0].degraded_ticks = 3;
   report.models[0].residual_m = 7.39e-3;
-  EXPECT_NE(summary(report).find("residual up to 7.39 mm"), std::string::npos) << summary(report);
+  EXPECT_NE(summary(report).find("error up to 7.39 mm"), std::string::npos) << summary(report);
   report.models[0].residual_m = 12e-6;
-  EXPECT_NE(summary(report).find("residual up to 12 um"), std::string::npos) << summary(report);
+  EXPECT_NE(summary(report).find("error up to 12 um"), std::string::npos) << summary(report);
 }
 
 TEST_F(Report, DrawsEveryPeakAndEscapesNames) {

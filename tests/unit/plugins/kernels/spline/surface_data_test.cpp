@@ -30,7 +30,7 @@ const Fault kFaults[] = {
     {"knots[v][3]: nan is not a parameter", [](SurfaceData& d) { d.knots[1][3] = std::nan(""); }},
     {"knots[v][9]: inf", [](SurfaceData& d) { d.knots[1][9] = std::numeric_limits<double>::infinity(); }},
     {"knots[u]: the domain from knot 3 to knot 6 is empty", [](SurfaceData& d) { d.knots[0].assign(10, 0.5); }},
-    {"stands more than 4 times",
+    {"occurs more than 4 times",
      [](SurfaceData& d) {
        d.knots[0] = {0, 0, 0, 0, .5, .5, .5, .5, .5, 1, 1, 1, 1};
        d.points.assign(9 * 6, Eigen::Vector3d::Zero());
