@@ -131,7 +131,10 @@ void addUnusual(const scene::Scene& scene, const ModelBoxes& boxes, const Unread
                 document::Problems& warnings) {
   document::Problems more = unusualValues(scene, boxes, catalog(), unread);
   for (const document::Problem& one : unusualSettings(scene, boxes))
-    if (!unread.has(one.key) && !(one.key == "clients.answer_time" && unread.has("servo.rate"))) more.push_back(one);
+    // What is judged of arms is read: judgeDraft() leaves out arms with problems.
+    if ((one.key.starts_with("devices[") || !unread.has(one.key)) &&
+        !(one.key == "clients.answer_time" && unread.has("servo.rate")))
+      more.push_back(one);
   const size_t before = warnings.size();
   for (const document::Problem& one : more)
     if (std::none_of(warnings.begin(), warnings.begin() + static_cast<std::ptrdiff_t>(before),

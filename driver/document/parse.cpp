@@ -208,20 +208,10 @@ Place placeOf(const YAML::Mark& mark, const std::string& file) {
   return {file, std::max(mark.line, 0) + 1, std::max(mark.column, 0) + 1};
 }
 
-}  // namespace
-
-std::optional<Node> parseText(const std::string& text, const std::string& file, Problems& problems) {
-  if (const std::string foreign = foreignFile(text, file); !foreign.empty()) {
-    report(problems, file, 1, 1, "", foreign);
-    return std::nullopt;
-  }
-  if (const size_t bad = firstBadByte(text); bad != std::string::npos) {
-    report(problems, placeOf(text, bad, file), "",
-           "a byte that is not text (code " + std::to_string(static_cast<unsigned char>(text[bad])) +
-               "), expected YAML in UTF-8");
-    if (const std::string readable = withoutLatin(text); !readable.empty()) return parseText(readable, file, problems);
-    return std::nullopt;
-  }
+/// Reads a text of valid UTF-8. @param repairs how many unknown aliases may be replaced by those that were probably
+/// meant
+std::optional<Node> parseRepaired(const std::string& text, const std::string& file, Problems& problems, int repairs) {
+  const size_t before = problems.size();
   Builder builder(file, maxNodes(text.size()), problems);
   try {
     std::istringstream stream(text);
@@ -248,13 +238,32 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
     report(problems, placeOf(refused.mark, file), "", refused.what);
   } catch (const YAML::Exception& error) {
     const Place place = placeOf(error.mark, file);
+    const std::string meant = withAliasMeant(text, place, error.msg);
+    const bool again = repairs > 0 && !meant.empty();
+    if (again) problems.resize(before);  // they are found again
     problems.push_back(slipIn(text, place, error.msg));
-    if (const std::string meant = withAliasMeant(text, place, error.msg); !meant.empty())
-      return parseText(meant, file, problems);
+    if (again) return parseRepaired(meant, file, problems, repairs - 1);
   } catch (const std::exception& error) {
     report(problems, file, 1, 1, "", std::string("not YAML: ") + error.what());
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Node> parseText(const std::string& text, const std::string& file, Problems& problems) {
+  constexpr int kRepairs = 8;
+  if (const std::string foreign = foreignFile(text, file); !foreign.empty()) {
+    report(problems, file, 1, 1, "", foreign);
+    return std::nullopt;
+  }
+  const size_t bad = firstBadByte(text);
+  if (bad == std::string::npos) return parseRepaired(text, file, problems, kRepairs);
+  report(problems, placeOf(text, bad, file), "",
+         "a byte that is not text (code " + std::to_string(static_cast<unsigned char>(text[bad])) +
+             "), expected YAML in UTF-8");
+  const std::string readable = withoutLatin(text);
+  return readable.empty() ? std::nullopt : parseRepaired(readable, file, problems, kRepairs);
 }
 
 std::optional<std::string> readFile(const std::filesystem::path& file, size_t max_bytes, Problems& problems) {

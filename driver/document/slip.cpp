@@ -176,7 +176,8 @@ Alias aliasAt(const std::string& text, const Place& place) {
   const size_t star = std::min(text.find('*', offsetOf(text, place)), text.size() - 1);
   Alias alias{star + 1, nameAt(text, star + 1), ""};
   std::vector<std::string> marked;
-  for (size_t at = text.find('&'); at < star; at = text.find('&', at + 1)) marked.push_back(nameAt(text, at + 1));
+  for (size_t at = text.find('&'); at < star; at = text.find('&', at + 1))
+    if (std::string name = nameAt(text, at + 1); name != alias.name) marked.push_back(std::move(name));
   alias.meant = nearest(alias.name, marked);
   return alias;
 }
