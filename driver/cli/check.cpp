@@ -75,8 +75,9 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
   document::Problems unread;
   if (const auto root = document::parseFile(verdict.file, unread)) adviseZeros(*root, verdict.file, more);
   if (!options.files_only && verdict.problems.empty())  // these run the scene
-    for (const auto& found_by : {&unreachableRows, &adviseHands})
-      for (const document::Problem& one : found_by(full)) more.push_back(one);
+    for (const document::Problems& found :
+         {unreachableRows(full), adviseHands(full, strayModels(full, trial.boxes, catalog()))})
+      more.insert(more.end(), found.begin(), found.end());
   if (!options.files_only || !options.device.empty())  // what the check of the device file itself says
     for (const scene::Device& device : full.devices)
       for (const document::Problem& one : adviseDevice(device.file, catalog()))

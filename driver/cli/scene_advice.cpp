@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/scene_advice.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -47,11 +49,15 @@ scene::Scene withArm(scene::Scene scene) {
 document::Problems farModels(const scene::Scene& scene) {
   constexpr double kFar = 10;  // [m]
   document::Problems warnings;
-  for (size_t i = 0; i < scene.models.size(); ++i)
-    if (const double away = scene.models[i].pose.position.norm(); away > kFar)
-      document::report(
-          warnings, scene.models[i].place, "models[" + std::to_string(i) + "].pose.position",
-          document::numberText(away) + " m from the world's origin, where no arm reaches; the position must be in m");
+  for (size_t i = 0; i < scene.models.size(); ++i) {
+    const Eigen::Vector3d& position = scene.models[i].pose.position;
+    double away = position.norm();
+    for (const scene::Device& device : scene.devices) away = std::min(away, (position - device.mount.position).norm());
+    if (away > kFar)
+      document::report(warnings, scene.models[i].place, "models[" + std::to_string(i) + "].pose.position",
+                       fmt::format("{:.4g} m from the world's origin, where no arm reaches; the position must be in m",
+                                   position.norm()));
+  }
   return warnings;
 }
 
@@ -125,7 +131,10 @@ void addUnusual(const scene::Scene& scene, const ModelBoxes& boxes, const Unread
                 document::Problems& warnings) {
   document::Problems more = unusualValues(scene, boxes, catalog(), unread);
   for (const document::Problem& one : unusualSettings(scene, boxes))
-    if (!unread.has(one.key)) more.push_back(one);
+    // What is judged of arms is read: judgeDraft() leaves out arms with problems.
+    if ((one.key.starts_with("devices[") || !unread.has(one.key)) &&
+        !(one.key == "clients.answer_time" && unread.has("servo.rate")))
+      more.push_back(one);
   const size_t before = warnings.size();
   for (const document::Problem& one : more)
     if (std::none_of(warnings.begin(), warnings.begin() + static_cast<std::ptrdiff_t>(before),
@@ -138,14 +147,15 @@ void addUnusual(const scene::Scene& scene, const ModelBoxes& boxes, const Unread
 
 std::vector<std::string> adviceOnModels(const servo::Runner& runner, const scene::Scene& models,
                                         const std::vector<double>& stiffness) {
-  document::Problems all = farModels(models);
+  scene::Scene scene = models;
+  scene.servo = runner.scene().servo;
+  scene.devices = runner.scene().devices;
+  document::Problems all = farModels(scene);
   const auto add = [&all](document::Problems more) {
     for (document::Problem& one : more) all.push_back(std::move(one));
   };
   add(softModels(models));
   add(tune::fastPaths(models));
-  scene::Scene scene = models;
-  scene.servo = runner.scene().servo;
   add(unusualValues(scene, {}, catalog()));
   for (size_t i = 0; i < runner.arms().size(); ++i)
     add(tune::unstableSettings(scene, runner.scene().devices[i], runner.arms()[i]->info(), stiffness));

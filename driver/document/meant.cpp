@@ -172,7 +172,10 @@ std::string mappingMeant(const Node& node) {
 }
 
 std::string keyMeant(std::string_view key) {
-  if (toNumber(key)) return " (there is a comma before it: write decimals with a point, such as 0.5)";
+  const bool digits = !key.empty() && std::all_of(key.begin(), key.end(), isDigit);
+  if (digits || toNumber(key))
+    return " (there is a comma before it: write decimals with a point, such as 0." +
+           (digits ? std::string(key.substr(0, kLongest)) : "5") + ")";
   const size_t colon = key.find(':');
   if (colon != key.npos && colon > 0 && colon + 1 < key.size())
     return " (no blank after the colon, expected \"" + std::string(key.substr(0, colon)) + ": " +

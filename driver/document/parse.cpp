@@ -167,10 +167,10 @@ class Builder final : public YAML::EventHandler {
   size_t nodes_ = 0, most_nodes_;
 };
 
-/// Returns the offset of the first byte that is not valid UTF-8, or npos. Overlong forms are accepted, because nothing
-/// here decodes them.
-size_t firstBadByte(const std::string& text) {
-  for (size_t i = 0; i < text.size();) {
+/// Returns the offset of the first byte at or after `from` that is not valid UTF-8, or npos. Overlong forms are
+/// accepted, because nothing here decodes them.
+size_t firstBadByte(const std::string& text, size_t from = 0) {
+  for (size_t i = from; i < text.size();) {
     const auto c = static_cast<unsigned char>(text[i]);
     const size_t length = c < 0x80                ? 1
                           : c >= 0xC2 && c < 0xE0 ? 2
@@ -186,6 +186,17 @@ size_t firstBadByte(const std::string& text) {
   return std::string::npos;
 }
 
+/// Returns a text of Latin-1 with question marks for its letters that are not ASCII, so that the rest can be read; ""
+/// for any other text.
+std::string withoutLatin(std::string text) {
+  constexpr unsigned char kFirstLetter = 0xA0;  // of Latin-1
+  for (size_t bad = firstBadByte(text); bad != std::string::npos; bad = firstBadByte(text, bad)) {
+    if (static_cast<unsigned char>(text[bad]) < kFirstLetter) return "";
+    text[bad] = '?';
+  }
+  return text;
+}
+
 Place placeOf(const std::string& text, size_t offset, const std::string& file) {
   const std::string_view before = std::string_view(text).substr(0, offset);
   const size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
@@ -197,19 +208,10 @@ Place placeOf(const YAML::Mark& mark, const std::string& file) {
   return {file, std::max(mark.line, 0) + 1, std::max(mark.column, 0) + 1};
 }
 
-}  // namespace
-
-std::optional<Node> parseText(const std::string& text, const std::string& file, Problems& problems) {
-  if (const std::string foreign = foreignFile(text, file); !foreign.empty()) {
-    report(problems, file, 1, 1, "", foreign);
-    return std::nullopt;
-  }
-  if (const size_t bad = firstBadByte(text); bad != std::string::npos) {
-    report(problems, placeOf(text, bad, file), "",
-           "a byte that is not text (code " + std::to_string(static_cast<unsigned char>(text[bad])) +
-               "), expected YAML in UTF-8");
-    return std::nullopt;
-  }
+/// Reads a text of valid UTF-8. @param repairs how many unknown aliases may be replaced by those that were probably
+/// meant
+std::optional<Node> parseRepaired(const std::string& text, const std::string& file, Problems& problems, int repairs) {
+  const size_t before = problems.size();
   Builder builder(file, maxNodes(text.size()), problems);
   try {
     std::istringstream stream(text);
@@ -235,11 +237,33 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
   } catch (const Refused& refused) {
     report(problems, placeOf(refused.mark, file), "", refused.what);
   } catch (const YAML::Exception& error) {
-    problems.push_back(slipIn(text, placeOf(error.mark, file), error.msg));
+    const Place place = placeOf(error.mark, file);
+    const std::string meant = withAliasMeant(text, place, error.msg);
+    const bool again = repairs > 0 && !meant.empty();
+    if (again) problems.resize(before);  // they are found again
+    problems.push_back(slipIn(text, place, error.msg));
+    if (again) return parseRepaired(meant, file, problems, repairs - 1);
   } catch (const std::exception& error) {
     report(problems, file, 1, 1, "", std::string("not YAML: ") + error.what());
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Node> parseText(const std::string& text, const std::string& file, Problems& problems) {
+  constexpr int kRepairs = 8;
+  if (const std::string foreign = foreignFile(text, file); !foreign.empty()) {
+    report(problems, file, 1, 1, "", foreign);
+    return std::nullopt;
+  }
+  const size_t bad = firstBadByte(text);
+  if (bad == std::string::npos) return parseRepaired(text, file, problems, kRepairs);
+  report(problems, placeOf(text, bad, file), "",
+         "a byte that is not text (code " + std::to_string(static_cast<unsigned char>(text[bad])) +
+             "), expected YAML in UTF-8");
+  const std::string readable = withoutLatin(text);
+  return readable.empty() ? std::nullopt : parseRepaired(readable, file, problems, kRepairs);
 }
 
 std::optional<std::string> readFile(const std::filesystem::path& file, size_t max_bytes, Problems& problems) {

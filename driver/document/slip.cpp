@@ -6,6 +6,7 @@
 #include <sstream>
 #include <vector>
 
+#include "document/suggestion.hpp"
 #include "document/yaml_scan.hpp"
 
 namespace hapticd::document {
@@ -143,15 +144,42 @@ std::optional<Problem> wrongPair(const std::string& text, const std::string& fil
   return std::nullopt;
 }
 
-/// Returns the character at a place.
-char charAt(const std::string& text, const Place& place) {
+/// Returns the offset of a place in the text.
+size_t offsetOf(const std::string& text, const Place& place) {
   size_t start = 0;
   for (int line = 1; line < place.line && start != std::string::npos; ++line) {
     start = text.find('\n', start);
     if (start != std::string::npos) ++start;
   }
-  const size_t offset = start == std::string::npos ? text.size() : start + static_cast<size_t>(place.column) - 1;
+  return std::min(start == std::string::npos ? text.size() : start + static_cast<size_t>(place.column) - 1,
+                  text.size());
+}
+
+/// Returns the character at a place.
+char charAt(const std::string& text, const Place& place) {
+  const size_t offset = offsetOf(text, place);
   return offset < text.size() ? text[offset] : '\0';
+}
+
+/// Returns the characters of a name from an offset on: the name of an anchor or an alias.
+std::string nameAt(const std::string& text, size_t offset) {
+  return text.substr(offset, text.find_first_of(" \t\r\n,[]{}", offset) - offset);
+}
+
+/// The name after an asterisk, and the marked name before it that resembles it.
+struct Alias {
+  size_t begin = 0;
+  std::string name, meant;
+};
+
+Alias aliasAt(const std::string& text, const Place& place) {
+  const size_t star = std::min(text.find('*', offsetOf(text, place)), text.size() - 1);
+  Alias alias{star + 1, nameAt(text, star + 1), ""};
+  std::vector<std::string> marked;
+  for (size_t at = text.find('&'); at < star; at = text.find('&', at + 1))
+    if (std::string name = nameAt(text, at + 1); name != alias.name) marked.push_back(std::move(name));
+  alias.meant = nearest(alias.name, marked);
+  return alias;
 }
 
 /// Translates the parser's message into plain words.
@@ -160,9 +188,12 @@ std::string plainWords(const std::string& text, const Place& place, const std::s
   const auto begins = [&words](const char* with) { return words.rfind(with, 0) == 0; };
   if (begins("unknown token") && here > ' ')
     return std::string("a text cannot begin with ") + here + ", expected it in quotes";
-  if (begins("the referenced anchor"))
-    return "a text that begins with * stands for one marked with & before, but there is none of this name; to write an "
-           "ordinary text that begins with *, put it in quotes";
+  if (begins("the referenced anchor")) {
+    const Alias alias = aliasAt(text, place);
+    return "a text that begins with * stands for one marked with & before, but there is no &" + alias.name +
+           (alias.meant.empty() ? "; to write an ordinary text that begins with *, put it in quotes"
+                                : " (did you mean *" + alias.meant + "?)");
+  }
   if (begins("unknown escape character"))
     return "a \\ within \"...\" begins an escape sequence, and " + words.substr(words.find_last_of(' ') + 1) +
            " is not one; expected / in a path, or '...' around the text";
@@ -184,6 +215,13 @@ std::optional<Problem> openQuote(const std::string& text, const Place& last_quot
   if (!open || open->line != last_quoted.line || open->column != last_quoted.column) return std::nullopt;
   return at(*open, last_quoted.file,
             std::string("the ") + open->what + " that begins here is never closed, expected the closing one");
+}
+
+std::string withAliasMeant(const std::string& text, const Place& place, const std::string& words) {
+  if (words.rfind("the referenced anchor", 0) != 0 || text.empty()) return "";
+  const Alias alias = aliasAt(text, place);
+  if (alias.meant.empty()) return "";
+  return std::string(text).replace(alias.begin, alias.name.size(), alias.meant);
 }
 
 Problem slipIn(const std::string& text, const Place& place, const std::string& words) {

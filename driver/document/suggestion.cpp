@@ -51,7 +51,9 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 }
 
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
-  if (const std::string slip = keyMeant(word); !slip.empty()) return slip;
+  const std::string_view own = word.substr(word.rfind('.') + 1);  // without the names of groups
+  for (const std::string_view key : {word, own})
+    if (const std::string slip = keyMeant(key); !slip.empty()) return slip;
   const std::string meant = nearest(word, candidates);
   return meant.empty() ? "" : " (did you mean \"" + meant + "\"?)";
 }

@@ -9,6 +9,7 @@
 
 #include "kernels/medial/passive.hpp"
 #include "mat_deformable.hpp"
+#include "traced_shape/model_file.hpp"
 
 namespace hapticd {
 namespace {
@@ -123,6 +124,15 @@ double usual(std::string_view id) {
 
 void MatDeformable::say(int level, const std::string& text) const {
   if (host() != nullptr && host()->log != nullptr) host()->log(host(), level, text.c_str());
+}
+
+MedialFile MatDeformable::readFile() const {
+  try {
+    return readMedialFile(geometry_, {stiffness_, damping_, mass_, probe_radius_});
+  } catch (const ModelFileError& error) {
+    for (const std::string& odd : error.odd) say(HSP_LOG_WARNING, "geometry: " + odd);
+    throw;
+  }
 }
 
 void MatDeformable::describe(const MedialFile& file, double tick) const {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "ma_file.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <string_view>
 
 #include "mat_deformable/medial_file.hpp"
@@ -59,11 +61,27 @@ class MaReader {
       at = end + 1;
     }
     if (problems_ < kMostProblems) finish();
-    if (problems_ > 0) throw ModelFileError(found_);
+    if (problems_ > 0) throwAll();
     return std::move(data_);
   }
 
  private:
+  /// Throws all problems, with a warning about millimetres.
+  [[noreturn]] void throwAll() const {
+    constexpr double kLarge = 1.5;  // [m] a longer body is unusual
+    Eigen::AlignedBox3d box;
+    for (const medial::Sphere& sphere : data_.vertices)
+      if (sphere.center.allFinite()) box.extend(sphere.center);
+    ModelFileError error(found_);
+    if (const double size = box.isEmpty() ? 0 : box.sizes().maxCoeff(); size > kLarge) {
+      char text[160];
+      std::snprintf(text, sizeof text, ": the body is %.3g m long; lengths must be in m: is the file in millimetres?",
+                    size);
+      error.odd.push_back(file_ + text);
+    }
+    throw error;
+  }
+
   void problem(const std::string& what) {
     found_ += (problems_ > 0 ? "\n" : "") + file_ + ":" + std::to_string(std::max<std::size_t>(line_, 1)) + ": " + what;
     ++problems_;

@@ -101,7 +101,7 @@ uint32_t MatDeformable::openDisplay() {
 }
 
 void MatDeformable::activate(const hsp_activation& activation, hsp_report& report) {
-  const MedialFile file = readMedialFile(geometry_, {stiffness_, damping_, mass_, probe_radius_});
+  const MedialFile file = readFile();
   const uint32_t probes = std::max(activation.max_probes, 1u);
   openBody(file, activation.rate_hz);
   openContacts(probes);

@@ -155,6 +155,8 @@ class MatDeformable final : public Shape {
   medial::BodyOptions bodyOptions(const MedialFile& file, double rate_hz) const;
   Dynamics dynamicsOf(const MedialFile& file) const;
   void openBody(const MedialFile& file, double rate_hz);
+  /// [main] Reads the geometry file, and logs what is doubtful in one with problems. @throws ModelFileError
+  MedialFile readFile() const;
   void openContacts(uint32_t probes);
   uint32_t openDisplay();    ///< @return the number of moving vertices; 0 if none are drawn
   std::size_t openVolume();  ///< @return bytes of the volume keeper; 0 if the volume is not kept

@@ -298,8 +298,8 @@ MedialFile parseMedialFile(const std::string& text, const std::string& name, con
     const Json root = parseDocument(text, name);
     Problems problems(name, text);
     Reader(problems, material).read(root, file);
-    problems.throwIfAny();
-    file.odd = adviseMedial(file, root["medial"], text, name);
+    if (problems.any()) problems.throwIfAny(adviseMedial(file, root, problems, text, name));
+    file.odd = adviseMedial(file, root, problems, text, name);
   }
   const auto some = [](const std::vector<double>& values) {
     return std::any_of(values.begin(), values.end(), [](double x) { return x > 0; });

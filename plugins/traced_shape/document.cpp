@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "document.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "document/node.hpp"
@@ -18,10 +19,12 @@ constexpr std::size_t kMostYaml = 2u << 20, kMostJson = 32u << 20;
 
 constexpr const char* kPartWay = "hapticd import";
 
-[[noreturn]] void throwAll(const document::Problems& problems) {
+[[noreturn]] void throwAll(const document::Problems& problems, std::vector<std::string> odd = {}) {
   std::string all;
   for (const document::Problem& problem : problems) all.append(all.empty() ? "" : "\n").append(problem.text());
-  throw ModelFileError(all);
+  ModelFileError error(all);
+  error.odd = std::move(odd);
+  throw error;
 }
 
 [[noreturn]] void throwOne(const std::string& file, const std::string& what) {
@@ -122,8 +125,15 @@ std::vector<std::string> Problems::texts() const {
   return all;
 }
 
-void Problems::throwIfAny() const {
-  if (!found_.empty()) throwAll(placed());
+bool Problems::about(const std::string& key) const {
+  return std::any_of(found_.begin(), found_.end(), [&key](const Problem& problem) {
+    return std::any_of(problem.path.begin(), problem.path.end(),
+                       [&key](const PathStep& step) { return step.key == key; });
+  });
+}
+
+void Problems::throwIfAny(std::vector<std::string> odd) const {
+  if (!found_.empty()) throwAll(placed(), std::move(odd));
 }
 
 std::string readModelText(const std::string& path) {

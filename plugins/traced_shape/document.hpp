@@ -24,11 +24,14 @@ class Problems {
   Problems(std::string file, const std::string& text) : file_(std::move(file)), text_(text) {}
   void add(const Path& path, const std::string& what);
   bool any() const { return !found_.empty(); }
+  std::size_t count() const { return found_.size(); }
+  /// Returns true if a problem is about this key, in the whole file or a part of it.
+  bool about(const std::string& key) const;
   bool full() const;
   /// [main] Returns the problems, each as `file:line:column: key: what`.
   std::vector<std::string> texts() const;
-  /// [main] @throws ModelFileError with all problems, if there are any.
-  void throwIfAny() const;
+  /// [main] @throws ModelFileError with all problems, if there are any. @param odd warnings about the other values
+  void throwIfAny(std::vector<std::string> odd = {}) const;
 
  private:
   std::vector<document::Problem> placed() const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "model_advice.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -30,9 +31,8 @@ Path surfaceAt(std::size_t surface, const char* key = nullptr) {
   return path;
 }
 
-void adviseSize(const trace::Model& model, Problems& odd) {
-  constexpr double kHuge = 5, kTiny = 1e-3;  // [m] sizes beyond these are unusual
-  const double size = model.bounds().diagonal().norm();
+void adviseSize(double size, Problems& odd) {
+  constexpr double kHuge = 5, kTiny = 1e-3;        // [m] sizes beyond these are unusual
   if (size > kHuge || (size > 0 && size < kTiny))  // a size of 0 is reported as surfaces without area
     odd.add({{"surfaces", 0}}, written("the model is %.3g m large; a hand feels models from 0.001 to 5 m, and lengths "
                                        "must be in m: %.3g mm is %.3g m",
@@ -110,6 +110,43 @@ void adviseOrder(const SurfaceData& surface, std::size_t index, Problems& odd) {
             written("run to and fro: the net of %zu by %zu is %.3g times as long as it would be if u ran fastest; "
                     "expected all points of the first u, then of the next: v runs fastest",
                     rows, columns, as_read / turned));
+}
+
+/// Warns of a control point that is far away from all its neighbours: a coordinate with its decimal point elsewhere.
+void adviseSpikes(const SurfaceData& surface, std::size_t index, Problems& odd) {
+  constexpr double kTimes = 4;  // the longest line of the rest of the net
+  const auto rows = static_cast<std::size_t>(surface.count(0)), columns = static_cast<std::size_t>(surface.count(1));
+  struct Line {
+    std::size_t a, b;
+    double length;
+  };
+  std::vector<Line> lines;
+  const auto add = [&](std::size_t a, std::size_t b) {
+    lines.push_back({a, b, (surface.points[a] - surface.points[b]).norm()});
+  };
+  for (std::size_t i = 0; i < rows; ++i)
+    for (std::size_t j = 0; j < columns; ++j) {
+      if (i + 1 < rows) add(i * columns + j, (i + 1) * columns + j);
+      if (j + 1 < columns) add(i * columns + j, i * columns + j + 1);
+    }
+  if (rows < 3 || columns < 3) return;
+  // Only an end of the longest line can be such a point.
+  const Line longest =
+      *std::max_element(lines.begin(), lines.end(), [](const Line& a, const Line& b) { return a.length < b.length; });
+  for (const std::size_t point : {longest.a, longest.b}) {
+    double own = longest.length, other = 0;
+    for (const Line& line : lines)
+      if (line.a == point || line.b == point)
+        own = std::min(own, line.length);
+      else
+        other = std::max(other, line.length);
+    if (own <= kTimes * other || !(other > 0)) continue;
+    Path at = surfaceAt(index, "points");
+    at.push_back({"", point});
+    return odd.add(at, written("lies %.3g m away from its neighbours, which are at most %.3g m apart; is its decimal "
+                               "point in the right place?",
+                               own, other));
+  }
 }
 
 /// Finds two sides that begin at a common corner and end near each other: their other corners were probably meant to be
@@ -214,17 +251,39 @@ class Gaps {
 
 }  // namespace
 
+namespace {
+
+/// Judges one surface by itself.
+void adviseSurface(const SurfaceData& surface, std::size_t index, Problems& odd) {
+  if (hasNoArea(surface))
+    odd.add(surfaceAt(index, "points"),
+            "all points lie in one place or on one line, so the surface has no area and cannot be felt");
+  adviseOrder(surface, index, odd);
+  adviseSpikes(surface, index, odd);
+  if (!surface.weights.empty()) adviseWeights(surface, index, odd);
+}
+
+}  // namespace
+
+std::vector<std::string> adviseSurfaces(const ModelFile& file, const std::vector<bool>& sound, const std::string& text,
+                                        const std::string& name) {
+  Problems odd(name, text);
+  Eigen::AlignedBox3d box;
+  for (std::size_t i = 0; i < sound.size() && i < file.surfaces.size(); ++i)
+    if (sound[i])
+      for (const Vector3d& point : file.surfaces[i].points) box.extend(point);
+  if (!box.isEmpty()) adviseSize(box.diagonal().norm(), odd);
+  for (std::size_t i = 0; i < sound.size() && i < file.surfaces.size() && !odd.full(); ++i)
+    if (sound[i]) adviseSurface(file.surfaces[i], i, odd);
+  adviseNames(file, odd);
+  return odd.texts();
+}
+
 std::vector<std::string> adviseModel(const ModelFile& file, const trace::Model& model, const std::string& text,
                                      const std::string& name) {
   Problems odd(name, text);
-  adviseSize(model, odd);
-  for (std::size_t i = 0; i < file.surfaces.size() && !odd.full(); ++i) {
-    if (hasNoArea(file.surfaces[i]))
-      odd.add(surfaceAt(i, "points"),
-              "all points lie in one place or on one line, so the surface has no area and cannot be felt");
-    adviseOrder(file.surfaces[i], i, odd);
-    if (!file.surfaces[i].weights.empty()) adviseWeights(file.surfaces[i], i, odd);
-  }
+  adviseSize(model.bounds().diagonal().norm(), odd);
+  for (std::size_t i = 0; i < file.surfaces.size() && !odd.full(); ++i) adviseSurface(file.surfaces[i], i, odd);
   adviseNames(file, odd);
   Gaps(model, file, odd).tell();
   return odd.texts();

@@ -16,4 +16,9 @@ namespace hapticd {
 std::vector<std::string> adviseModel(const ModelFile& file, const trace::Model& model, const std::string& text,
                                      const std::string& name);
 
+/// [main] Does the same for the surfaces of a file with problems. @param sound true for each surface that was read; its
+/// neighbours may be missing
+std::vector<std::string> adviseSurfaces(const ModelFile& file, const std::vector<bool>& sound, const std::string& text,
+                                        const std::string& name);
+
 }  // namespace hapticd

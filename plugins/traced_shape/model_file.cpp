@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "document.hpp"
+#include "model_advice.hpp"
 
 namespace hapticd {
 namespace {
@@ -28,6 +29,9 @@ Path operator/(Path path, std::size_t index) {
 class Reader {
  public:
   explicit Reader(Problems& problems) : problems_(problems) {}
+
+  /// Tells of each surface whether its degrees, knots and points are right. Its weights are empty if they are wrong.
+  const std::vector<bool>& sound() const { return sound_; }
 
   ModelFile read(const Json& root) {
     ModelFile file;
@@ -57,24 +61,27 @@ class Reader {
  private:
   spline::SurfaceData surface(const Json& json, const Path& at) {
     spline::SurfaceData data;
+    sound_.push_back(false);
     if (!json.is_object()) {
       problems_.add(at, "expected a mapping with the keys degree, knots and points");
       return data;
     }
     checkKeys(json, at, {"name", "degree", "knots", "points", "weights", "outward"});
-    const bool had = problems_.any();
     if (const Json* name = member(json, "name")) data.name = nameOf(*name, at / "name");
+    const std::size_t before = problems_.count();
     readDegree(json, at / "degree", data);
     readKnots(json, at / "knots", data);
     readPoints(json, at / "points", data);
-    if (const Json* weights = member(json, "weights"); weights && !weights->is_null())
-      data.weights = numbers(*weights, at / "weights");
+    const std::size_t after = problems_.count();
+    const Json* weights = member(json, "weights");
+    if (weights != nullptr && !weights->is_null()) data.weights = numbers(*weights, at / "weights");
+    if (problems_.count() != after) data.weights.clear();  // wrong weights hide nothing else
     if (const Json* outward = member(json, "outward")) {
       if (*outward != "reversed" && *outward != "forward")
         problems_.add(at / "outward", "expected reversed or forward");
       data.reversed = *outward == "reversed";
     }
-    if (!had && !problems_.any()) checkWhole(data, at);
+    sound_.back() = after == before && !problems_.full() && isWhole(data, at);
     return data;
   }
 
@@ -86,12 +93,34 @@ class Reader {
     return {};
   }
 
-  void checkWhole(const spline::SurfaceData& data, const Path& at) {
-    try {
-      spline::validate(data);
-    } catch (const std::exception& e) {
-      problems_.add(at, e.what());
-    }
+  /// Reports what is wrong with a surface as a whole, with both directions of its knots. @return true if nothing is
+  bool isWhole(const spline::SurfaceData& data, const Path& at) {
+    const std::size_t before = problems_.count();
+    const auto attempt = [&](const auto& check) {
+      try {
+        check();
+      } catch (const std::exception& e) {
+        problems_.add(at, e.what() + otherKnots(data));
+      }
+    };
+    for (const int axis : {0, 1}) attempt([&] { spline::validateKnots(data, axis); });
+    if (problems_.count() == before) attempt([&] { spline::validate(data); });
+    return problems_.count() == before;
+  }
+
+  /// Returns what was probably meant by knots that do not fit the points.
+  static std::string otherKnots(const spline::SurfaceData& data) {
+    const auto fits = [&data](int more, int p, int q) {
+      const int u = static_cast<int>(data.knots[0].size()) + more - p - 1;
+      const int v = static_cast<int>(data.knots[1].size()) + more - q - 1;
+      return u > p && v > q && static_cast<std::size_t>(u) * static_cast<std::size_t>(v) == data.points.size();
+    };
+    const int p = data.degree[0], q = data.degree[1];
+    if (fits(0, p, q)) return "";
+    if (fits(2, p, q)) return "; if the program leaves out the first and the last knot, as Rhino does, give both again";
+    if (p != q && fits(0, q, p))
+      return "; the knots fit degree: [" + std::to_string(q) + ", " + std::to_string(p) + "], along u and v";
+    return "";
   }
 
   void readDegree(const Json& json, const Path& at, spline::SurfaceData& data) {
@@ -145,6 +174,8 @@ class Reader {
       const auto b = edgeEnd((*sides)[1], at / i / "sides" / std::size_t{1}, file);
       const Json* flipped = member(json[i], "flipped");
       if (flipped != nullptr && !flipped->is_boolean()) problems_.add(at / i / "flipped", "expected true or false");
+      if (a && b && a->surface == b->surface && a->side == b->side)
+        problems_.add(at / i / "sides", "joins a side with itself, expected two different sides");
       if (a && b) file.edges.push_back({*a, *b, flipped != nullptr && flipped->is_boolean() && flipped->get<bool>()});
     }
   }
@@ -181,6 +212,10 @@ class Reader {
       problems_.add(at, "expected a list of numbers");
       return all;
     }
+    if (std::any_of(json.begin(), json.end(), [](const Json& item) { return item.is_array(); })) {
+      problems_.add(at, "a list of rows, expected one flat list of numbers");
+      return all;
+    }
     all.reserve(json.size());
     for (std::size_t i = 0; i < json.size() && !problems_.full(); ++i) {
       const Json& value = json[i];
@@ -203,6 +238,7 @@ class Reader {
   }
 
   Problems& problems_;
+  std::vector<bool> sound_;
 };
 
 }  // namespace
@@ -214,8 +250,9 @@ ModelFile readModelFile(const std::string& path) {
 ModelFile parseModelFile(const std::string& text, const std::string& name) {
   const Json root = parseDocument(text, name);
   Problems problems(name, text);
-  ModelFile file = Reader(problems).read(root);
-  problems.throwIfAny();
+  Reader reader(problems);
+  ModelFile file = reader.read(root);
+  if (problems.any()) problems.throwIfAny(adviseSurfaces(file, reader.sound(), text, name));
   return file;
 }
 

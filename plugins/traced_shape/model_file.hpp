@@ -18,7 +18,10 @@ struct ModelFile {
 
 /// All problems of a model file, one per line: `file:line:column: key: what, expected what`.
 class ModelFileError : public std::runtime_error {
+ public:
   using std::runtime_error::runtime_error;
+  /// Warnings about the values of the file that could be read, as adviseModel() and adviseMedial() give them.
+  std::vector<std::string> odd;
 };
 
 /// [main] Reads a model file, YAML or JSON (the same structure).

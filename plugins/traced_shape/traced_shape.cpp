@@ -17,6 +17,17 @@ namespace {
 
 constexpr double kFarthestMesh = 1e-6;  // [m] least chord error of a mesh for drawing
 
+/// Reads a model file, and logs what is doubtful in one with problems.
+ModelFile readLogged(const std::string& text, const std::string& file, const hsp_host* host) {
+  try {
+    return parseModelFile(text, file);
+  } catch (const ModelFileError& error) {
+    for (const std::string& odd : error.odd)
+      if (host != nullptr && host->log != nullptr) host->log(host, HSP_LOG_WARNING, ("geometry: " + odd).c_str());
+    throw;
+  }
+}
+
 }  // namespace
 
 void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
@@ -29,7 +40,7 @@ void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
     throw std::invalid_argument("instance: '" + instance_ + "', but " + geometry_ +
                                 " is a model file, which has no instances; geometry must be a part (.hpart)");
   if (sides_ == kAuto) sides_ = kFront;
-  ModelFile file = parseModelFile(text, geometry_);
+  ModelFile file = readLogged(text, geometry_, host());
   trace::ModelOptions options;
   options.edges = std::move(file.edges);
   options.form = evaluation_ == 0 ? spline::Form::kTable : spline::Form::kNet;

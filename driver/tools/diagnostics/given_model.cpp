@@ -50,7 +50,7 @@ std::string GivenModel::choice(std::string_view id) const {
   return chosen < choices.size() ? choices[chosen] : "";
 }
 
-void GivenModel::warn(std::initializer_list<std::string_view> ids, const std::string& what) const {
+void GivenModel::warn(std::initializer_list<std::string_view> ids, const std::string& what, bool also) const {
   if (unsure_) return;
   const std::string key = "models[" + std::to_string(index_) + "].parameters.";
   const scene::Value* at = nullptr;
@@ -58,7 +58,7 @@ void GivenModel::warn(std::initializer_list<std::string_view> ids, const std::st
     if (at == nullptr) at = given(id);
   const std::string told = key + (at != nullptr ? at->id : std::string(*ids.begin()));
   for (size_t i = first_; i < warnings_.size(); ++i)
-    if (warnings_[i].key == told) return;
+    if (warnings_[i].key == told && !also) return;
   document::report(warnings_, at != nullptr ? at->place : model().place, told, what);
 }
 

@@ -28,6 +28,7 @@ class GivenModel {
         warnings_(warnings),
         first_(warnings.size()) {}
 
+  const scene::Scene& scene() const { return scene_; }
   const scene::Model& model() const { return scene_.models[index_]; }
   Eigen::Vector3d gravity() const;  ///< [m/s^2] in the model's frame, as the model stands at the start
   const host::ClassInfo& plugin() const { return info_; }
@@ -47,7 +48,8 @@ class GivenModel {
 
   /// Adds a warning at the first of these parameters that the file gives; if it gives none, at the model under the name
   /// of the first. Warns only once.
-  void warn(std::initializer_list<std::string_view> ids, const std::string& what) const;
+  /// @param also true for a reason of its own, beside which another warning at the same parameter may stand
+  void warn(std::initializer_list<std::string_view> ids, const std::string& what, bool also = false) const;
 
  private:
   const scene::Value* given(std::string_view id) const;

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "diagnostics/hand_values.hpp"
 #include "document/csv.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
@@ -17,7 +18,6 @@ namespace {
 
 using Kind = HandScript::Kind;
 
-constexpr double kFastestHand = 2;   ///< [m/s] greatest speed of a human hand that strokes, presses or taps
 constexpr double kRiseRatio = 0.31;  ///< ratio of the speed of a stroke's rise to rise times rate, as in the module
 constexpr size_t kMaxPathBytes = size_t{1} << 30;
 
@@ -170,12 +170,20 @@ std::optional<HandScript> handScriptOf(const scene::Device& device) {
 
 document::Problems hastyHands(const scene::Scene& scene, const UnreadKeys& unread) {
   document::Problems warnings;
-  for (const scene::Device& device : scene.devices)
-    if (const auto hand = handScriptOf(device); hand && !judgeSweep(device, *hand, unread, warnings)) {
-      if (unread.has("hand")) continue;
+  for (const scene::Device& device : scene.devices) {
+    const auto hand = handScriptOf(device);
+    if (!hand) continue;
+    const bool wide = judgeSweep(device, *hand, unread, warnings);
+    const size_t before = warnings.size();
+    if (!wide && !unread.has("hand")) {
       judgeSpeed(scene, device, *hand, warnings);
       judgeCrawl(scene, device, *hand, warnings);
     }
+    document::Problems of_values;
+    judgeHandValues(scene, device, *hand, unread, of_values);
+    for (document::Problem& one : of_values)  // a hand that is too fast has a warning already
+      if (warnings.size() == before || one.key != "hand.rate") warnings.push_back(std::move(one));
+  }
   return warnings;
 }
 

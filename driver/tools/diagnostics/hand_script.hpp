@@ -29,6 +29,8 @@ struct HandScript {
   double once() const;   ///< [s] time until it has done its whole motion once
 };
 
+inline constexpr double kFastestHand = 2;  ///< [m/s] greatest speed of a human hand that strokes, presses or taps
+
 /// [main] Returns the value that the files give for a parameter, or nullptr if they give none.
 const scene::Value* givenIn(const std::vector<scene::Value>& values, const char* id);
 
@@ -46,7 +48,7 @@ HandKey keyOfHand(const scene::Scene& scene, const scene::Device& device, std::i
 std::optional<HandScript> handScriptOf(const scene::Device& device);
 
 /// [main] Warns of strokes of more than half a turn to either side, which were meant in degrees, of a hand that is
-/// faster than human hands, and of a path so slow that its times were not meant in s.
+/// faster than human hands, of a path so slow that its times were not meant in s, and of values that no hand has.
 /// @param unread keys with problems, on which no judgement depends
 document::Problems hastyHands(const scene::Scene& scene, const UnreadKeys& unread = {});
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "diagnostics/arm_reach.hpp"
+#include "diagnostics/hand_inside.hpp"
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/key_place.hpp"
 #include "diagnostics/limit_advice.hpp"
@@ -72,24 +73,27 @@ std::optional<Hand> handOf(const scene::Scene& scene, uint32_t index) {
   return hand;
 }
 
-/// Packs model, place of the tip and depth for each tip inside a model, to pass them from the child process. @return
-/// how many there are
-uint32_t packInside(uint32_t models, const servo::Core& core, const std::vector<servo::Probe>& tips,
-                    host::Packer& found) {
-  uint32_t count = 0;
-  host::Packer list;
-  for (uint32_t model = 0; model < models; ++model)
-    for (uint32_t tip = 0; tip < tips.size(); ++tip) {
+/// Finds the tips that are inside a model, and what hints at the cause.
+std::vector<InsideTip> tipsInside(const scene::Scene& scene, const servo::World& world, const servo::Core& core,
+                                  const std::vector<Hand>& hands) {
+  std::vector<InsideTip> all;
+  for (uint32_t model = 0; model < scene.models.size(); ++model)
+    for (uint32_t tip = 0; tip < hands.size(); ++tip) {
       const servo::Contact& contact = core.contact(model, tip);
       if (!contact.traced || !(contact.world.depth_m > 0)) continue;
-      ++count;
-      list.number(model);
-      for (int i = 0; i < 3; ++i) list.number(tips[tip].position[i]);
-      list.number(contact.world.depth_m);
+      const scene::Device& device = scene.devices[hands[tip].device];
+      const host::ShapeInstance& shape = *world.shapes()[model];
+      InsideTip inside{model, hands[tip].device, hands[tip].probe.position, contact.world.depth_m};
+      Eigen::AlignedBox3d box;
+      if (shape.bounds(box.min().data(), box.max().data()))
+        inside.beyond_box = !box.contains(core.models()[model].frame.pointToModel(inside.tip));
+      const auto hand = handScriptOf(device);
+      constexpr double kAbout = 0.3;  // [m] a hand does not go round a larger model
+      inside.round = hand && hand->goes() && hand->radius + inside.depth < kAbout &&
+                     hand->kind != HandScript::Kind::kPath && goesRound(device, *hand, scene.models[model], shape);
+      all.push_back(inside);
     }
-  found.number(count);
-  found.text(list.take());
-  return count;
+  return all;
 }
 
 /// Packs arm, nearest model, distance and reach of each arm that can reach no model. @return how many there are
@@ -133,7 +137,7 @@ document::Problems readProblems(host::Unpacker& in) {
   }
 }
 
-std::string tryTips(const scene::Scene& scene, bool may_walk) {
+std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<bool>& strays) {
   std::vector<Hand> hands;
   std::vector<servo::Probe> tips;
   for (uint32_t device = 0; device < scene.devices.size(); ++device)
@@ -150,16 +154,19 @@ std::string tryTips(const scene::Scene& scene, bool may_walk) {
   core.publish(0, tips);
   lockstep.before(0);
   core.tick(0, 0, tips);
-  const uint32_t inside = packInside(static_cast<uint32_t>(scene.models.size()), core, tips, found);
+  document::Problems warnings;
+  const std::vector<InsideTip> inside = tipsInside(scene, **world, core, hands);
+  for (const InsideTip& one : inside) tellInside(scene, one, warnings);
   const uint32_t far = packFar(scene, **world, core, hands, found);
   std::vector<TipReach> reaches;
   for (const Hand& hand : hands) reaches.push_back({hand.probe.position, hand.reach});
+  packProblems(warnings, found);
   if (far == 0 && tips.size() == scene.devices.size()) packProblems(outOfReach(scene, **world, core, reaches), found);
   packProblems(enclosedModels(scene, **world), found);
   // The hands run their scripts only if they start in the right place, because other warnings would follow from a wrong
   // start.
-  if (inside + far == 0 && may_walk && tips.size() == scene.devices.size())
-    packProblems(adviseWalk(scene, **world), found);
+  if (inside.empty() && far == 0 && may_walk && tips.size() == scene.devices.size())
+    packProblems(adviseWalk(scene, **world, strays), found);
   return found.take();
 }
 
@@ -202,19 +209,6 @@ void tellRefused(const scene::Scene& scene, const scene::Device& device, const s
     begin = next == std::string::npos ? told.size() : next + 2;
   }
   document::report(problems, placeOfHand(device), "hand", told.substr(told.rfind(before, 0) == 0 ? before.size() : 0));
-}
-
-void tellInside(const scene::Scene& scene, const std::string& list, uint32_t count, document::Problems& warnings) {
-  host::Unpacker in(list);
-  for (; count > 0; --count) {
-    const uint32_t model = in.count();
-    const double x = in.real(), y = in.real(), z = in.real(), depth = in.real();
-    if (!in.good() || model >= scene.models.size()) break;
-    document::report(warnings, scene.models[model].place, fmt::format("models[{}].pose", model),
-                     fmt::format("the hand starts inside {}: at [{:.4g}, {:.4g}, {:.4g}] the tip is {:.3g} mm deep; "
-                                 "expected a start outside: move the model, the arm (mount) or the hand (hand)",
-                                 scene.models[model].name, x, y, z, depth * 1e3));
-  }
 }
 
 void tellFar(const scene::Scene& scene, const std::string& list, uint32_t count, document::Problems& warnings) {
@@ -261,16 +255,29 @@ document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog
   return problems;
 }
 
-document::Problems adviseHands(const scene::Scene& scene) {
+namespace {
+
+/// Returns true if the hands of a scene move as their scripts say, at most too often. @param warnings of hastyHands()
+bool moveAsMeant(const scene::Scene& scene, const document::Problems& warnings) {
+  const auto hasty = [](const scene::Device& device) {
+    const auto hand = handScriptOf(device);
+    return hand && hand->speed() > kFastestHand;
+  };
+  return std::all_of(warnings.begin(), warnings.end(),
+                     [](const document::Problem& one) { return one.key == "hand.rate"; }) &&
+         std::none_of(scene.devices.begin(), scene.devices.end(), hasty);
+}
+
+}  // namespace
+
+document::Problems adviseHands(const scene::Scene& scene, const std::vector<bool>& strays) {
   document::Problems warnings;
   if (scene.models.empty() || scene.models.size() > kMostModels || scene.devices.empty()) return warnings;
   warnings = hastyHands(scene);
-  const bool may_walk = warnings.empty();
-  const auto told = host::runInChild([&] { return tryTips(scene, may_walk); }, kHandLimitMs);
+  const bool may_walk = moveAsMeant(scene, warnings);
+  const auto told = host::runInChild([&] { return tryTips(scene, may_walk, strays); }, kHandLimitMs);
   if (!told) return warnings;  // the trial of the models reports a model that crashes
   host::Unpacker in(*told);
-  const uint32_t inside = in.count();
-  tellInside(scene, in.text(), inside, warnings);
   const uint32_t far = in.count();
   tellFar(scene, in.text(), far, warnings);
   for (document::Problem& one : readProblems(in)) warnings.push_back(std::move(one));

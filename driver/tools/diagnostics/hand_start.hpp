@@ -3,6 +3,7 @@
 /// or a force pushes the hand at once.
 #pragma once
 #include <filesystem>
+#include <vector>
 
 #include "description/scene.hpp"
 #include "document/problem.hpp"
@@ -14,7 +15,8 @@ namespace hapticd::diagnostics {
 /// of the models. Simulated hands are where their script begins, other arms in the pose of their calibration. If there
 /// is no such warning and all arms are simulated, their hands then run their scripts through the scene: see
 /// walk_advice.hpp. The models are set up in a child process. @param scene scene with the devices that a run would use
-document::Problems adviseHands(const scene::Scene& scene);
+/// @param strays models that move as nobody meant, as for adviseWalk()
+document::Problems adviseHands(const scene::Scene& scene, const std::vector<bool>& strays = {});
 
 /// [main] Returns a problem for each simulated arm that `run` would refuse, with the text of `run`: an arm that cannot
 /// reach the start of its hand's motion, or that lacks the enable button. The arms are started in a child process.

@@ -2,6 +2,8 @@
 #include "diagnostics/model_trial.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <functional>
 
 #include "host/child.hpp"
 #include "host/shape_instance.hpp"
@@ -98,10 +100,8 @@ void reportEnd(const std::string& how, const host::Trail& trail, const scene::Sc
                        "; hapticd plugin check FILE.so looks for the cause");
 }
 
-/// Packs the box of a model in its own frame; an empty box if its plugin does not report one.
-void packBox(const host::ShapeInstance* shape, host::Packer& out) {
-  Eigen::AlignedBox3d box;
-  if (shape != nullptr && !shape->bounds(box.min().data(), box.max().data())) box.setEmpty();
+/// Packs the box of a model in its own frame; it is empty if the plugin does not report one.
+void packBox(const Eigen::AlignedBox3d& box, host::Packer& out) {
   for (const Eigen::Vector3d& corner : {Eigen::Vector3d(box.min()), Eigen::Vector3d(box.max())})
     for (const double x : corner) out.number(x);
 }
@@ -114,43 +114,83 @@ std::optional<Eigen::AlignedBox3d> readBox(host::Unpacker& in) {
   return box;
 }
 
+/// What the set-up of one model showed.
+struct Tried {
+  std::string error;     ///< why it was refused; "" if it was not
+  double stiffness = 0;  ///< [N/m]
+  bool idle = false, reads_velocity = false;
+  Eigen::AlignedBox3d box;
+};
+
+using Log = std::function<void(int, const std::string&, const std::string&)>;
+
+Tried tryOne(const scene::Scene& scene, const scene::Model& model, uint32_t index, double max_force, const Log& log,
+             host::Trail& trail) {
+  Tried tried;
+  trail.mark(index, "create() or set");
+  auto shape = host::ShapeInstance::create(model, log);
+  if (!shape) {
+    tried.error = shape.error();
+    return tried;
+  }
+  trail.mark(index, "activate");
+  const auto activated = (*shape)->activate(activationOf(scene, model, max_force));
+  if (!activated) {
+    tried.error = activated.error();
+    return tried;
+  }
+  tried.stiffness = (*shape)->report().max_stiffness;
+  tried.reads_velocity = ((*shape)->report().flags & HSP_R_VELOCITY) != 0;
+  const bool may_move = ((*shape)->description().flags & HSP_C_MOVES) != 0;
+  tried.idle = may_move && ((*shape)->report().flags & HSP_R_MOVES) == 0;
+  trail.mark(index, "bounds");
+  if (!(*shape)->bounds(tried.box.min().data(), tried.box.max().data())) tried.box.setEmpty();
+  trail.mark(index, "deactivate() or destroy");
+  return tried;
+}
+
+/// Sets up a refused model without the parameter that the plugin objects to, and again, so that further objections and
+/// the size of the model are known. What would only follow from a missing parameter is not added to the problems.
+Tried tryWithout(const scene::Scene& scene, uint32_t index, double max_force, std::string error, const Log& log,
+                 host::Trail& trail, Remarks& problems) {
+  constexpr int kMost = 3;  // parameters that are left out
+  scene::Model rest = scene.models[index];
+  std::vector<std::string> left_out;
+  Tried tried;
+  for (int round = 0; round < kMost; ++round) {
+    const scene::Value* named = valueNamed(rest, error);
+    if (named == nullptr) break;
+    left_out.push_back(named->id);
+    rest.parameters.erase(rest.parameters.begin() + (named - rest.parameters.data()));
+    tried = tryOne(scene, rest, index, max_force, log, trail);
+    const bool follows = std::any_of(left_out.begin(), left_out.end(), [&tried](const std::string& id) {
+      return tried.error.find(id) != std::string::npos;
+    });
+    if (tried.error.empty() || follows) break;
+    problems.add(index, tried.error);
+    error = tried.error;
+  }
+  tried.stiffness = 0;  // it may depend on what was left out
+  return tried;
+}
+
 std::string tryAll(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound, host::Trail& trail) {
   Remarks problems, warnings;
   host::Packer claims, boxes;
-  for (size_t i = 0; i < scene.models.size(); ++i) {
-    double stiffness = 0;
-    bool idle = false, reads_velocity = false;
-    if (i < unsound.size() && unsound[i]) {
-      claims.number(0.0);
-      claims.number(uint32_t{0});
-      claims.number(uint32_t{0});
-      packBox(nullptr, boxes);
-      continue;
-    }
-    const auto log = [&](int level, const std::string&, const std::string& text) {
+  for (uint32_t i = 0; i < scene.models.size(); ++i) {
+    const Log log = [&](int level, const std::string&, const std::string& text) {
       if (level == HSP_LOG_WARNING) warnings.add(i, text);
     };
-    trail.mark(static_cast<uint32_t>(i), "create() or set");
-    const host::ShapeInstance* active = nullptr;
-    auto shape = host::ShapeInstance::create(scene.models[i], log);
-    if (!shape) {
-      problems.add(i, shape.error());
-    } else if (trail.mark(static_cast<uint32_t>(i), "activate");
-               const auto activated = (*shape)->activate(activationOf(scene, scene.models[i], max_force))) {
-      stiffness = (*shape)->report().max_stiffness;
-      reads_velocity = ((*shape)->report().flags & HSP_R_VELOCITY) != 0;
-      const bool may_move = ((*shape)->description().flags & HSP_C_MOVES) != 0;
-      idle = may_move && ((*shape)->report().flags & HSP_R_MOVES) == 0;
-      trail.mark(static_cast<uint32_t>(i), "bounds");
-      active = shape->get();
-    } else {
-      problems.add(i, activated.error());
+    const bool left_out = i < unsound.size() && unsound[i];
+    Tried tried = left_out ? Tried{} : tryOne(scene, scene.models[i], i, max_force, log, trail);
+    if (!tried.error.empty()) {
+      problems.add(i, tried.error);
+      tried = tryWithout(scene, i, max_force, tried.error, log, trail, problems);
     }
-    claims.number(stiffness);
-    claims.number(uint32_t{idle ? 1u : 0u});
-    claims.number(uint32_t{reads_velocity ? 1u : 0u});
-    packBox(active, boxes);
-    if (active != nullptr) trail.mark(static_cast<uint32_t>(i), "deactivate() or destroy");
+    claims.number(tried.stiffness);
+    claims.number(uint32_t{tried.idle ? 1u : 0u});
+    claims.number(uint32_t{tried.reads_velocity ? 1u : 0u});
+    packBox(tried.box, boxes);
   }
   return problems.take() + warnings.take() + claims.take() + boxes.take();
 }

@@ -80,7 +80,11 @@ document::Problems outOfReach(const scene::Scene& scene, const servo::World& wor
   constexpr double kFar = 10;       // [m] farther positions have their own warning
   document::Problems warnings;
   for (uint32_t i = 0; i < scene.models.size(); ++i) {
-    if (!rests(scene.models[i], *world.shapes()[i]) || scene.models[i].pose.position.norm() > kFar) continue;
+    const auto isFar = [&](const scene::Device& device) {
+      return (scene.models[i].pose.position - device.mount.position).norm() > kFar;
+    };
+    if (!rests(scene.models[i], *world.shapes()[i]) || std::all_of(scene.devices.begin(), scene.devices.end(), isFar))
+      continue;
     std::optional<double> least;  // [m] from the model to the nearest place that an arm reaches
     for (uint32_t tip = 0; tip < tips.size(); ++tip) {
       const auto away = distanceOf(scene, world, core, i, tips[tip].tip, tip);

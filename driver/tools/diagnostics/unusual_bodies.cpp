@@ -70,14 +70,31 @@ void judgeJoint(const GivenModel& given) {
   if (joint == "free" && (pivot != nullptr || axis != nullptr))
     given.warn({pivot != nullptr ? "pivot" : "axis"},
                fmt::format("has no effect: {} is a free body, because no joint is given; add joint: hinge{} beside it",
-                           given.model().name, pivot != nullptr ? "" : " or slider"));
+                           given.model().name, pivot != nullptr ? "" : " or slider"),
+               true);
   if (joint == "slider" && pivot != nullptr && given.vector("pivot").norm() > 0)
     given.warn({"pivot"},
-               "has no effect: a slider moves along its axis and does not turn; to make it turn, set joint: hinge");
+               "has no effect: a slider moves along its axis and does not turn; to make it turn, set joint: hinge",
+               true);
+}
+
+/// Warns of a drag so strong that no hand moves the body.
+void judgeDrag(const GivenModel& given) {
+  constexpr double kMost = 1000, kCalm = 0.1;      // [N s/m]; [m/s]
+  constexpr double kMostTurn = 20, kSlowTurn = 1;  // [N m s/rad]; [rad/s]
+  if (const double drag = given.number("drag"); drag > kMost)
+    given.warn({"drag"}, fmt::format("{0:g} N s/m hold {1} so that {2:g} N move it at only {3:g} m/s; the value must "
+                                     "be in N s/m (1 N s/mm is 1000 N s/m)",
+                                     drag, given.model().name, drag * kCalm, kCalm));
+  given.begin();
+  if (const double drag = given.number("angular_drag"); drag > kMostTurn)
+    given.warn({"angular_drag"}, fmt::format("{0:g} N m s/rad hold {1} so that {2:g} N m turn it at only {3:g} rad/s; "
+                                             "the value must be in N m s/rad (1 mN m s/rad is 0.001)",
+                                             drag, given.model().name, drag * kSlowTurn, kSlowTurn));
 }
 
 void judgeDynamic(const GivenModel& given) {
-  for (const auto& judge : {&judgeJoint, &judgeHold, &judgeCenter}) {
+  for (const auto& judge : {&judgeJoint, &judgeHold, &judgeCenter, &judgeDrag}) {
     given.begin();
     judge(given);
   }

@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "diagnostics/given_model.hpp"
+#include "diagnostics/hand_script.hpp"
 #include "diagnostics/unusual_values.hpp"
 #include "host/catalog.hpp"
+#include "host/device_instance.hpp"
 #include "servo/core/minimum_jerk.hpp"
+#include "servo/velocity/estimator_delay.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -146,14 +150,38 @@ void judgeSpring(const GivenModel& given, const scene::Value& value) {
   judgeStop(given, value);
 }
 
+/// Returns the least felt mass in kg of the scene's arms; 0 if one is unknown.
+double leastMass(const scene::Scene& scene) {
+  double least = scene.devices.empty() ? 0 : HUGE_VAL;
+  for (const scene::Device& device : scene.devices) {
+    const scene::Value* given = givenIn(device.parameters, "device.mass");
+    double mass = given != nullptr ? given->number : 0;
+    auto arm = device.module == "simulated" ? host::DeviceInstance::create(device, nullptr)
+                                            : Result<std::unique_ptr<host::DeviceInstance>>(Error{"not simulated"});
+    if (arm && (*arm)->open()) mass = (*arm)->info().mass_kg;
+    least = std::min(least, mass);
+  }
+  return least;
+}
+
+/// Returns the strongest damper in N s/m that arms of this felt mass keep stable. Its force comes late: by the delay of
+/// the estimated velocity and one and a half ticks.
+double mostDamping(const scene::Scene& scene) {
+  constexpr double kLightArms = 50, kTicks = 1.5;
+  const double late = servo::estimatorDelay(scene.servo.velocity, scene.servo.rate) + kTicks / scene.servo.rate;
+  return std::max(kLightArms, leastMass(scene) / late);
+}
+
 /// Warns of dampers of the surface that hold back a slow hand with a large force.
 void judgeDamper(const GivenModel& given, const scene::Value& value) {
-  constexpr double kMost = 50, kCalm = 0.1;  // [N s/m], [m/s]
-  if (value.number > kMost && (value.id == "damping" || value.id == "viscosity") && given.choice("motion") != "dynamic")
+  constexpr double kUsual = 50, kCalm = 0.1;  // [N s/m], [m/s]
+  if (value.number <= kUsual || (value.id != "damping" && value.id != "viscosity")) return;
+  if (given.choice("motion") == "dynamic") return;
+  if (const double most = mostDamping(given.scene()); value.number > most)
     given.warn({value.id},
                fmt::format("{0:g} N s/m hold back a hand that moves at {1:g} m/s with {2:.3g} N, which most arms "
-                           "cannot render stably; expected at most {3:g} N s/m (1 N s/mm is 1000 N s/m)",
-                           value.number, kCalm, value.number * kCalm, kMost));
+                           "cannot render stably; expected at most {3:.3g} N s/m (1 N s/mm is 1000 N s/m)",
+                           value.number, kCalm, value.number * kCalm, most));
 }
 
 /// Warns of a mass that is both denser than any metal and more than a hand moves with ease. Smaller masses are not
@@ -161,13 +189,15 @@ void judgeDamper(const GivenModel& given, const scene::Value& value) {
 void judgeMass(const GivenModel& given, const scene::Value& value) {
   constexpr double kDensest = 25'000, kEasy = 3, kThin = 0.02;  // [kg/m^3], [kg], share of the size
   if (!given.box() || value.number <= kEasy) return;
-  const Vector3d sides = given.box()->sizes().cwiseMax(kThin * given.size());
+  const bool in_mm = given.size() > kOutOfReach;  // which has a warning of its own
+  const Vector3d sides = given.box()->sizes().cwiseMax(kThin * given.size()) * (in_mm ? kMilli : 1);
   const double density = value.number / sides.prod();
   if (density > kDensest)
     given.warn({value.id},
-               fmt::format("{0:g} kg in a box of {1:.3g} x {2:.3g} x {3:.3g} m is {4:.3g} times as dense as lead; the "
-                           "value must be in kg: {0:g} g is {5:g} kg",
-                           value.number, sides.x(), sides.y(), sides.z(), density / 11'340, value.number * kMilli));
+               fmt::format("{0:g} kg in a box of {1:.3g} x {2:.3g} x {3:.3g} m{6} is {4:.3g} times as dense as lead; "
+                           "the value must be in kg: {0:g} g is {5:g} kg",
+                           value.number, sides.x(), sides.y(), sides.z(), density / 11'340, value.number * kMilli,
+                           in_mm ? " (if its lengths are in mm)" : ""));
 }
 
 void judgeFriction(const GivenModel& given, const scene::Value& value) {

@@ -50,6 +50,17 @@ void judgeServo(const scene::Scene& scene, document::Problems& warnings) {
                                  servo.budget_us, servo.budget_us * 1000));
 }
 
+/// Warns of a wait for programs that is longer than the servo waits.
+void judgeAnswers(const scene::Scene& scene, document::Problems& warnings) {
+  constexpr double kShare = 0.25, kRounding = 1e-9;  // share of the period, as in a run
+  const double period = 1 / scene.servo.rate, most = kShare * period;
+  if (scene.clients.answer_time > (1 + kRounding) * most)
+    document::report(warnings, placeIn(scene, "clients.answer_time"), "clients.answer_time",
+                     fmt::format("{:g} s, but at {:g} Hz the servo waits at most a quarter of its period of {:g} s; "
+                                 "nearest: {:g} s",
+                                 scene.clients.answer_time, scene.servo.rate, period, most));
+}
+
 /// Warns of an origin of HDAPI programs that is far away from all arms.
 void judgeOrigin(const scene::Scene& scene, document::Problems& warnings) {
   constexpr double kFar = 2;  // [m] beyond the reach of arms
@@ -130,6 +141,7 @@ document::Problems unusualSettings(const scene::Scene& scene, const ModelBoxes& 
   document::Problems warnings;
   judgeGravity(scene, warnings);
   judgeServo(scene, warnings);
+  judgeAnswers(scene, warnings);
   judgeOrigin(scene, warnings);
   judgeArms(scene, warnings);
   judgeBases(scene, boxes, warnings);

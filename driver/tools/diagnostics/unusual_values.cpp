@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 
 #include "diagnostics/given_model.hpp"
@@ -115,6 +116,21 @@ document::Problems unusualValues(const scene::Scene& scene, const ModelBoxes& bo
   tellIdlePoses(scene, placed, warnings);
   warnings.insert(warnings.end(), of_values.begin(), of_values.end());
   return warnings;
+}
+
+std::vector<bool> strayModels(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog) {
+  constexpr std::string_view kModels = "models[", kParameters = ".parameters.";
+  std::vector<bool> strays(scene.models.size());
+  for (const document::Problem& one : unusualValues(scene, boxes, catalog)) {
+    const size_t at = one.key.find(kParameters);
+    if (!one.key.starts_with(kModels) || at == std::string::npos) continue;
+    const size_t model = std::strtoul(one.key.c_str() + kModels.size(), nullptr, 10);
+    const std::string id = one.key.substr(at + kParameters.size());
+    for (const char* moves : {"mass", "inertia", "center", "tether", "velocity", "spin", "drag", "joint", "pivot",
+                              "length", "angle", "rate"})
+      if (id == moves && model < strays.size()) strays[model] = true;
+  }
+  return strays;
 }
 
 }  // namespace hapticd::diagnostics

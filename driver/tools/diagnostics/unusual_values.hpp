@@ -19,6 +19,10 @@ class GivenModel;
 document::Problems unusualValues(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog,
                                  const UnreadKeys& unread = {});
 
+/// [main] Tells of each model whether unusualValues() finds a value by which it moves as nobody meant, such as a mass
+/// in grams or a body that falls.
+std::vector<bool> strayModels(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog);
+
 /// Warns of each parameter by itself, by the unit that its plugin gives for it.
 void judgeQuantities(const GivenModel& given);
 

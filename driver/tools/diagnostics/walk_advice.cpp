@@ -8,6 +8,7 @@
 #include <string>
 
 #include "diagnostics/detent_advice.hpp"
+#include "diagnostics/hand_inside.hpp"
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/hand_walk.hpp"
 #include "diagnostics/key_place.hpp"
@@ -16,16 +17,6 @@ namespace hapticd::diagnostics {
 namespace {
 
 constexpr double kContactSeconds = 0.02;  ///< [s] a shorter contact is not judged
-
-/// Returns true if the centre of the hand's motion is inside the box of the model: then the motion is at the right
-/// place, but too wide.
-bool goesRound(const scene::Device& device, const HandScript& hand, const scene::Model& model,
-               const host::ShapeInstance& shape) {
-  Eigen::AlignedBox3d box;
-  if (!shape.bounds(box.min().data(), box.max().data())) return false;
-  const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
-  return box.contains(Eigen::Vector3d(model.pose.orientation.conjugate() * (center - model.pose.position)));
-}
 
 void tellAway(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen,
               const servo::World& world, document::Problems& warnings) {
@@ -38,7 +29,12 @@ void tellAway(const scene::Scene& scene, uint32_t index, const HandScript& hand,
   const std::string what = fmt::format("the hand of {} {}: it feels nothing; expected ", device.name, where);
   if (hand.kind == HandScript::Kind::kPath) {
     const HandKey key = keyOfHand(scene, device, {"hand.path"});
-    return document::report(warnings, key.place, key.id, what + "a path through a model, in m of the device frame");
+    const Eigen::Vector3d mount = device.mount.position, pose = nearest.pose.position;
+    return document::report(
+        warnings, key.place, key.id,
+        what + fmt::format("a path through a model, in m of the device frame; mount.position of {} is [{:.3g}, {:.3g}, "
+                           "{:.3g}], and pose.position of {} is [{:.3g}, {:.3g}, {:.3g}]: is one of them wrong?",
+                           device.name, mount.x(), mount.y(), mount.z(), nearest.name, pose.x(), pose.y(), pose.z()));
   }
   if (goesRound(device, hand, nearest, *world.shapes()[seen.nearest])) {
     const HandKey key = keyOfHand(scene, device, {"hand.radius", "hand.rise", "hand.script"});
@@ -152,16 +148,19 @@ void tellCut(const scene::Scene& scene, const scene::Device& device, const HandS
 }
 
 void judgeArm(const scene::Scene& scene, uint32_t index, const Walk& walk, const servo::World& world,
-              document::Problems& warnings) {
+              const std::vector<bool>& strays, document::Problems& warnings) {
   constexpr double kOften = 0.05;  // share of the ticks with a force
+  const auto strayed = [&strays](size_t model) { return model < strays.size() && strays[model]; };
   const WalkedArm& seen = walk.arms[index];
   const auto hand = handScriptOf(scene.devices[index]);
   if (!hand || !hand->goes()) return;
   if (tellFault(scene.devices[index], walk.limiters[index], warnings)) return;
   if (!seen.touched) {
-    if (walk.whole && std::isfinite(seen.away)) tellAway(scene, index, *hand, seen, world, warnings);
+    if (walk.whole && std::isfinite(seen.away) && !strayed(seen.nearest))
+      tellAway(scene, index, *hand, seen, world, warnings);
     return;
   }
+  if (strayed(seen.deepest)) return;
   const auto ticks = [](uint64_t count) { return static_cast<double>(count); };
   if (ticks(seen.cut) * walk.period > kContactSeconds && ticks(seen.cut) > kOften * ticks(seen.contact))
     tellCut(scene, scene.devices[index], *hand, seen, walk.limiters[index], warnings);
@@ -178,12 +177,12 @@ void judgeModel(const scene::Scene& scene, size_t index, const Walk& walk, const
 
 }  // namespace
 
-document::Problems adviseWalk(const scene::Scene& scene, servo::World& world) {
+document::Problems adviseWalk(const scene::Scene& scene, servo::World& world, const std::vector<bool>& strays) {
   document::Problems warnings;
   const auto walk = walkHands(scene, world);
   if (!walk) return warnings;
   for (size_t i = 0; i < scene.models.size(); ++i) judgeModel(scene, i, *walk, world, warnings);
-  for (uint32_t i = 0; i < scene.devices.size(); ++i) judgeArm(scene, i, *walk, world, warnings);
+  for (uint32_t i = 0; i < scene.devices.size(); ++i) judgeArm(scene, i, *walk, world, strays, warnings);
   return warnings;
 }
 

@@ -98,15 +98,22 @@ void validatePoints(const std::vector<Eigen::Vector3d>& points, const std::vecto
   }
 }
 
+/// Returns a text such as "surface 'lid'".
+static std::string nameOf(const SurfaceData& data) {
+  return "surface '" + (data.name.empty() ? std::string("unnamed") : data.name) + "'";
+}
+
+void validateKnots(const SurfaceData& data, int axis) {
+  const auto a = static_cast<std::size_t>(axis);
+  const int degree = data.degree[a];
+  const std::string knots = nameOf(data) + ": knots[" + (axis == 0 ? "u" : "v") + "]";
+  const int count = degree >= 1 && degree <= kMaxDegree ? data.count(axis) : 0;
+  validateKnots(data.knots[a], degree, static_cast<std::size_t>(std::max(count, 0)), knots);
+}
+
 void validate(const SurfaceData& data) {
-  const std::string what = "surface '" + (data.name.empty() ? std::string("unnamed") : data.name) + "'";
-  for (int axis = 0; axis < 2; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    const int degree = data.degree[a];
-    const std::string knots = what + ": knots[" + (axis == 0 ? "u" : "v") + "]";
-    const int count = degree >= 1 && degree <= kMaxDegree ? data.count(axis) : 0;
-    validateKnots(data.knots[a], degree, static_cast<std::size_t>(std::max(count, 0)), knots);
-  }
+  const std::string what = nameOf(data);
+  for (const int axis : {0, 1}) validateKnots(data, axis);
   const auto count_u = static_cast<std::size_t>(data.count(0)), count_v = static_cast<std::size_t>(data.count(1));
   if (data.points.size() != count_u * count_v) {
     fail(what + ": points", std::to_string(data.points.size()) + " points; knots and degrees state " +

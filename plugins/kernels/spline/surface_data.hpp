@@ -45,6 +45,10 @@ struct SurfaceData {
 /// expected.
 void validate(const SurfaceData& data);
 
+/// [main] Checks degree, number and order of the knots along one axis.
+/// @throws std::invalid_argument
+void validateKnots(const SurfaceData& data, int axis);
+
 /// [main] Checks one knot vector for `count` control points. @param what the message begins with this text, such as
 /// "surface 'lid': knots[u]"
 /// @throws std::invalid_argument

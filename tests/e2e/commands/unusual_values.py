@@ -70,6 +70,8 @@ SCENES = [
     ("a centre in mm", body(MASS + "tether: 200, center: |[0, 30, 0]", geometry=BOX), P + "center", "30 mm is 0.03 m"),
     ("a centre in another frame", body("mass: 1, gravity: false, tether: 50, center: |[0, 0, 0.3]", geometry=BOX), P + "center",
      "0.25 m outside the surfaces"),
+    ("a drag in N s/mm", body(MASS + "tether: 20, gravity: false, drag: |4000", geometry=BOX), P + "drag", "400 N move it"),
+    ("a drag of turns in mN m", body(MASS + "tether: 20, gravity: false, angular_drag: |100", geometry=BOX), P + "angular_drag", "100 N m turn it"),
     ("an inertia in kg mm^2", body(MASS + "tether: 200, inertia: |[8, 8, 8]", geometry=BOX), P + "inertia", "1 kg mm^2 is 1e-6"),
     ("degrees", pendulum("pivot: [0, 0.25, 0], angle: |45"), P + "angle", "if you meant 45 degrees, write 0.7854"),
     ("an axis along gravity", pendulum("pivot: [0, 0.25, 0], axis: |[0, 1, 0]"), P + "axis", "along gravity"),
@@ -99,6 +101,22 @@ SCENES = [
      "hand.path", "has no effect"),
     ("two arms in one place", scene(model("stiffness: 800"), top=f"devices:\n  - {{file: {ARM}, name: left}}\n  - |{{file: {ARM}, name: right}}\n"),
      "devices[1].mount", "right is in the same place as left"),
+    ("presses a minute", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{script: press, radius: 0.05, rate: |60}}\n"), "hand.rate",
+     "60 times a minute is 1 Hz"),
+    ("a hand on a spring in N/mm", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{radius: 0.046, stiffness: |0.5}}\n"), "hand.stiffness",
+     "does not follow its script"),
+    ("a hand of 70 kg", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{radius: 0.046, mass: |70}}\n"), "hand.mass", "70 g is 0.07 kg"),
+    ("a tremor in mN", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{radius: 0.046, tremor: |5}}\n"), "hand.tremor", "5 mN is 0.005 N"),
+    ("unrest in mN", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{radius: 0.046, wander: |10}}\n"), "hand.wander", "10 mN is 0.01 N"),
+    ("a lead-in in ms", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{radius: 0.046, lead_in: |50}}\n"), "hand.lead_in", "50 ms is 0.05 s"),
+    ("a wait of four ticks", scene(model("stiffness: 800"), top="servo: {rate: 20000}\nclients: {mode: add, answer_time: |0.0002}\n"),
+     "clients.answer_time", "a quarter of its period"),
+    ("a model felt from its back", scene(model("stiffness: 800, sides: |back"), top=f"device: {ARM}\nhand: {{radius: 0.046}}\n"), P + "sides", "from their other side"),
+    ("a hand that begins inside", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{script: tap, radius: |0.02, rise: 0.005}}\n"), "hand.radius",
+     "greater by more than"),
+    ("far away", scene(model("stiffness: 800", name="two") + "    pose: {position: |[40, 2, 30]}\n"), "models[0].pose.position", "50.04 m from"),
+    ("a damper too strong for a strong arm", scene(model("stiffness: 800, damping: |900"), top=f"device: {SARCOS}\nhand: {{script: none}}\n"), P + "damping",
+     "0.1 m/s with 90 N"),
     ("a mass that no arm follows", scene(model("stiffness: 800"), top="servo: {rate: 1500}\ndevices:\n"
      f"  - {{file: {SARCOS}, admittance: {{mass: |0.003, damping: 0}}, hand: {{script: hold}}}}\n"),
      "devices[0].admittance.mass", "cannot follow so light a mass"),
@@ -151,6 +169,15 @@ def bulge(turned):
             f"    points: |{listed}\n")
 
 
+def flat_net(step):
+    return "[" + ", ".join(f"[{step * i:g}, {step * j:g}, 0]" for i in range(5) for j in range(4)) + "]"
+
+
+def net(degree, knots, more="", points=flat_net(0.02), form=1):
+    return f"format: hapticd-model/{form}\nsurfaces:\n  - name: net\n    degree: {degree}\n    knots: {knots}\n    points: {points}\n{more}"
+
+
+CUBIC, QUADRIC = "[0, 0, 0, 0, 0.5, 1, 1, 1, 1]", "[0, 0, 0, 0.5, 1, 1, 1]"
 SOFT = "format: hapticd-model/2\nmedial:\n  points: [[[-0.04, 0, 0], [0, 0, 0], [0.04, 0, 0]]]\n  radius: [[0.02, 0.02, 0.02]]\n"
 MODELS = [
     ("a cube in mm", "nurbs_rigid", cube(half=50).replace("  - name: right", "  |- name: right"), "173 mm is 0.173 m"),
@@ -160,6 +187,7 @@ MODELS = [
     ("a corner mistyped", "nurbs_rigid", cube(mistyped), "their other ends are 5 mm apart"),
     ("a face beside its place", "nurbs_rigid", cube(shifted), "joins none of the 4 surfaces"),
     ("points with u fastest", "nurbs_rigid", bulge(True), "v runs fastest"),
+    ("a decimal point elsewhere", "nurbs_rigid", net([3, 2], f"[{CUBIC}, {QUADRIC}]", points=flat_net(0.02).replace("[0.04, 0.02, 0]", "|[0.04, 0.02, 0.2]")), "decimal point"),
     ("a weight of 800000", "nurbs_rigid", cube(folded), "8e+05 times the neighbouring weight"),
     ("a soft body in g", "mat_deformable", SOFT + "  stiffness: 300\n  damping: 2\n  mass: |10\n", "10 g is 0.01 kg"),
     ("a reach in mm", "mat_deformable", SOFT + "  stiffness: 300\n  shear_reach: |3\n", "3 mm is 0.003 m"),
@@ -193,6 +221,11 @@ RIGHT = {
     "button.yaml": scene(model("axis: [0, 0, -1], stiffness: 3000, end_stiffness: 4000", "push_button", BOX)),
     "cut-in.yaml": scene(model("texture: {amplitude: 0.0001, wavelength: 0.02}", geometry=BOX)),
     "origin-at-the-arm.yaml": scene(model("stiffness: 800"), top="clients: {mode: add, origin: [0, 0.1, 0.3]}\n"),
+    "far-away-with-its-arm.yaml": scene(model("stiffness: 800") + "    pose: {position: [40, 2, 30]}\n", top=f"devices:\n"
+     f"  - {{file: {ARM}, name: a, mount: {{position: [40, 2, 30.09]}}, hand: {{script: none}}}}\n"),
+    "honey-on-a-strong-arm.yaml": scene(model("stiffness: 800, damping: 60"), top=f"device: {SARCOS}\nhand: {{script: none}}\n"),
+    "own-hand.yaml": scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{radius: 0.046, mass: 2, stiffness: 100, tremor: 0.3, wander: 0.5, lead_in: 5, rate: 3}}\n"),
+    "waits-for-programs.yaml": scene(model("stiffness: 800"), top="servo: {rate: 4000}\nclients: {mode: add, answer_time: 60e-6}\n"),
     "rod.yaml": pendulum("pivot: [0, 0.25, 0], length: 0.2, inertia: 0.02, mass: 0.4"),
 }
 
@@ -210,14 +243,20 @@ LATE = [
      ["a cut-off of 3 Hz lags"]),
     ("programs: seconds, newtons, metres", scene(model("stiffness: 800"), top="clients: {mode: add, answer_time: 0.1, max_force: |85, origin: |[0, 0, 90]}\n"),
      ["gives 8.5 N at most", "90 mm is 0.09 m"]),
-    ("one arm and a list, of one name", scene(model("stiffness: 800"), top=f"device: {ARM}\ndevices:\n  - {ARM}\n  - |{ARM}\n"), ["another device is named"]),
+    ("one arm and a list, of one name", scene(model("stiffness: 800"), top=f"device: {ARM}\ndevices:\n  - {ARM}\n  - ||{ARM}\n"), ["another device is named", "in the same place"]),
     ("one name twice, in one place", scene(model("stiffness: 800"), model("stiffness: 700").replace("  - n", "  - |n")), ["the same geometry"]),
     ("a hand: a script, and degrees", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{script: strokes, sweep: |52, rise: 8}}\n"), ["52 degrees is"]),
     ("a hand whose axis is no direction", scene(model("stifness: 800"), top=f"device: {ARM}\nhand: {{radius: 0.046, normal: |[0, 0, 0]}}\n"), ["is zero"]),
     ("of another plugin, and a model file of another", scene(model("young: 20000", "mat_deformable").replace("  - n", "  - |n")), ["medial: expected"]),
+    ("a joint forgotten, and mm", body(MASS + "tether: 20, gravity: false, dampnig: 1, pivot: ||[5, 0, 0], axis: [0, 1, 0]", geometry=BOX),
+     ["5 mm is 0.005 m", "add joint: hinge"]),
     ("a body: degrees, grams and a name", body("joint: slide, tether: 20000, mass: |500, spin: |[360, 0, 0]"), ["500 g is 0.5 kg", "360 degrees/s"]),
+    ("a curve of a button with two mistakes", scene(model("axis: [0, 0, -1], detent: |[[0, 1], [0.003, 4], [0.004, -2], [0.005, 3]]", "push_button", BOX)),
+     ["begin at travel 0"]),
     ("a pendulum: an axis along gravity, a pivot below", pendulum("stifness: 900, pivot: |[0, -0.25, 0], length: 0.25, axis: |[0, 1, 0]"),
      ["expected a pivot above them", "along gravity"]),
+    ("what a plugin refuses, and a wave in mm", scene(model("friction_dynamic: |0.3, texture: {amplitude: 0.0001, wavelength: |0.5}")),
+     ["more than friction_static", "0.5 mm is 0.0005 m"]),
     ("what is stiff beside a typo", scene(model("dampnig: 3, stiffness: |80000")), ["stable up to"]),
 ]
 # What follows only from a value that was not read is not told.
@@ -235,6 +274,24 @@ FOLLOWS = [
     ("a joint misspelt", body(MASS + "tether: 20, gravity: false, joint: hinges, pivot: [0.05, 0, 0]"), "add joint"),
     ("a stiffness misspelt", scene(model("axis: [0, 0, -1], stifness: 100, end_stiffness: 800", "push_button", BOX)), "too soft for a stop"),
 ]
+
+
+GRID = "format: hapticd-model/2\nmedial:\n  points: [[[-0.04, 0, 0], [0, 0, 0], [0.04, 0, 0]]]\n  radius: [[0.02, 0.02, 0.02]]\n"
+# In model files, too, with the words of all that is told.
+LATE_MODELS = [
+    ("weights in rows, degrees turned round", "nurbs_rigid", net([2, 3], f"[{CUBIC}, {QUADRIC}]", "    weights: [[1, 1, 1, 1]]\n"),
+     ["one flat list", "the knots fit degree: [3, 2]"]),
+    ("knots of Rhino, and another format", "nurbs_rigid", net([3, 2], f"[{CUBIC.replace('0, 0', '0', 1).replace('1, 1]', '1]')}, "
+     f"{QUADRIC.replace('0, 0', '0', 1).replace('1, 1]', '1]')}]", form=2), ["expected hapticd-model/1", "knots[u]", "knots[v]", "as Rhino does"]),
+    ("a typo and mm", "nurbs_rigid", net([3, 2], f"[{CUBIC}, {QUADRIC}]", "    outwards: forward\n", flat_net(20)), ["unknown key", "m large"]),
+    ("names of edges", "nurbs_rigid", net([3, 2], f"[{CUBIC}, {QUADRIC}]", "edges:\n  - sides: [[nett, u0], [net, u1]]\n  - sides: [[net, v0], [net, v0]]\n"),
+     ["a name or index", "a side with itself"]),
+    ("percent, kPa and mm", "mat_deformable", GRID + "  young: 10\n  poisson: 45\n  thickness: 20\n", ["expected 0 to 0.5", "softer than any tissue", "20 mm is 0.02 m"]),
+    ("a typo, and g", "mat_deformable", GRID + "  stiffness: 300\n  dampnig: 1\n  mass: 10\n", ["unknown key", "10 g is 0.01 kg"]),
+    ("indices from 1 in mm", "mat_deformable", "2 1 0\nv 0 0 0 10\nv 40 0 0 12\ne 1 2\n", ["different vertices", "in millimetres?"]),
+]
+LATE_MODELS_FOLLOW = [("a stiffness misspelt", "mat_deformable", GRID + "  stiffnes: 300\n", "cannot be felt"),
+                      ("a radius of no number", "mat_deformable", GRID.replace("[[0.02, 0.02, 0.02]]", "thick") + "  stiffness: 300\n  mass: 1\n", "kg in all")]
 
 
 def write(folder, name, text):
@@ -312,6 +369,14 @@ def late(folder):
         for place, word in zip(places_of_bars(text), words, strict=True):
             check(f"{name}: {word}: told at once, at its place",
                   any((one["line"], one["column"]) == place and word in one["what"] for one in told), (place, texts(told)))
+    for i, (name, plugin, text, words) in enumerate(LATE_MODELS):
+        file, *_ = write(folder, f"late{i}.{'ma' if text[0].isdigit() else 'yaml'}", text)
+        told = " ".join(texts(told_of(folder, "late_model.yaml", scene(model("", plugin, geometry=file)))))
+        check(f"{name}: told at once", all(word in told for word in words), told)
+    for i, (name, plugin, text, word) in enumerate(LATE_MODELS_FOLLOW):
+        file, *_ = write(folder, f"follows_model{i}.yaml", text)
+        told = texts(told_of(folder, "late_model.yaml", scene(model("", plugin, geometry=file))))
+        check(f"{name}: nothing that only follows", not any(word in one for one in told), told)
     for i, (name, text, word) in enumerate(FOLLOWS):
         told = told_of(folder, f"follows{i}.yaml", text)
         check(f"{name}: nothing that only follows", not any(word in one["what"] for one in told), texts(told))

@@ -42,6 +42,32 @@ TEST(Slip, SaysWhatWasMeantInPlainWords) {
   for (const auto& [text, words] : cases) EXPECT_NE(told(text).find(words), std::string::npos) << text << told(text);
 }
 
+TEST(Slip, ReadsOnAfterAnUnknownAlias) {
+  Problems problems;
+  const auto root = parseText("a: &base {x: 1}\nb:\n  <<: *bass\n  y: 2\nc: 1\nc: 2\n", "t.yaml", problems);
+  ASSERT_EQ(problems.size(), 2u);
+  EXPECT_NE(problems[0].text().find("there is no &bass (did you mean *base?)"), std::string::npos)
+      << problems[0].text();
+  EXPECT_NE(problems[1].text().find("given twice"), std::string::npos) << problems[1].text();
+  ASSERT_TRUE(root);
+  EXPECT_NE(root->find("b")->find("x"), nullptr);
+  Problems in_comments;  // names that mark nothing
+  EXPECT_FALSE(parseText("# &bas1 &bas2\na: *bas3\n", "t.yaml", in_comments));
+  EXPECT_LT(in_comments.size(), 12u);
+}
+
+TEST(Slip, ReadsOnInLatin1) {
+  Problems problems;
+  parseText("a: gr\xfcn\nb:\n\tc: 1\n", "t.yaml", problems);
+  ASSERT_EQ(problems.size(), 2u);
+  EXPECT_NE(problems[0].text().find("1:6: a byte that is not text (code 252)"), std::string::npos)
+      << problems[0].text();
+  EXPECT_NE(problems[1].text().find("a tab"), std::string::npos) << problems[1].text();
+  Problems binary;
+  EXPECT_FALSE(parseText(std::string("a: \x01\x02\xff\n"), "t.yaml", binary));
+  EXPECT_EQ(binary.size(), 1u);
+}
+
 TEST(Slip, LeavesGoodTextsAlone) {
   const char* const good[] = {"a: it's 5 o'clock\n",
                               "a: \"x\\\"y\"\nb: 'it''s'\n",

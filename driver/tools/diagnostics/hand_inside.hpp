@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+/// Warnings about hands that start inside a model, with the likely cause.
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "description/scene.hpp"
+#include "diagnostics/hand_script.hpp"
+#include "document/problem.hpp"
+
+namespace hapticd::diagnostics {
+
+/// A tip that is inside a model at the first tick.
+struct InsideTip {
+  size_t model = 0, device = 0;
+  Eigen::Vector3d tip;      ///< [m] world
+  double depth = 0;         ///< [m]
+  bool beyond_box = false;  ///< the tip is outside the box round the model's surfaces
+  bool round = false;       ///< the centre of the hand's script is inside that box
+};
+
+/// Returns true if the centre of the hand's script lies in the box of the model: the hand then moves round the model.
+bool goesRound(const scene::Device& device, const HandScript& hand, const scene::Model& model,
+               const host::ShapeInstance& shape);
+
+/// [main] Warns of one such tip: at the surfaces if they face the wrong way, at the radius of the hand if it is too
+/// small, otherwise at the pose of the model.
+void tellInside(const scene::Scene& scene, const InsideTip& inside, document::Problems& warnings);
+
+}  // namespace hapticd::diagnostics

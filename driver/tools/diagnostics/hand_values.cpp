@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/hand_values.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace hapticd::diagnostics {
+namespace {
+
+constexpr double kThousandth = 1e-3;
+
+/// The values of one hand.
+class HandValues {
+ public:
+  HandValues(const scene::Scene& scene, const scene::Device& device, const UnreadKeys& unread,
+             document::Problems& warnings)
+      : scene_(scene), device_(device), unread_(unread), warnings_(warnings) {}
+
+  /// Returns the value that the files give; nullptr if they give none, or a wrong one.
+  const scene::Value* read(const char* id) const { return unread_.has(id) ? nullptr : givenIn(device_.parameters, id); }
+
+  bool isAbove(const char* id, double most) const {
+    const scene::Value* value = read(id);
+    return value != nullptr && value->number > most;
+  }
+
+  void tell(const char* id, const std::string& what) const {
+    const HandKey key = keyOfHand(scene_, device_, {id});
+    document::report(warnings_, key.place, key.id, what);
+  }
+
+  /// Warns of a force of the hand's unrest that was given in mN.
+  void judgeUnrest(const char* id, double most, double usual) const {
+    if (!isAbove(id, most)) return;
+    const double force = read(id)->number;
+    tell(id, fmt::format("{0:g} N shakes the hand far more than a person's hand (about {1:g} N); the value must be in "
+                         "N: {0:g} mN is {2:g} N",
+                         force, usual, force * kThousandth));
+  }
+
+ private:
+  const scene::Scene& scene_;
+  const scene::Device& device_;
+  const UnreadKeys& unread_;
+  document::Problems& warnings_;
+};
+
+bool isRepeated(const HandScript& hand) {
+  return hand.kind == HandScript::Kind::kStroke || hand.kind == HandScript::Kind::kCircle || hand.presses();
+}
+
+void judgeRate(const HandValues& values, const HandScript& hand) {
+  constexpr double kOften = 12;  // [Hz] nobody moves a hand so often
+  if (!isRepeated(hand) || !values.isAbove("hand.rate", kOften)) return;
+  values.tell("hand.rate", fmt::format("{0:g} times a second is more often than a person moves a hand; the value must "
+                                       "be in Hz: {0:g} times a minute is {1:.3g} Hz",
+                                       hand.rate, hand.rate / 60));
+}
+
+void judgeSpring(const HandValues& values, const HandScript& hand) {
+  constexpr double kSoft = 5, kAway = 0.01;  // [N/m]; [m]
+  const scene::Value* spring = values.read("hand.stiffness");
+  const bool moves = isRepeated(hand) || hand.kind == HandScript::Kind::kPath;
+  if (!moves || spring == nullptr || spring->number >= kSoft) return;
+  values.tell("hand.stiffness",
+              fmt::format("{0:g} N/m is so soft that the hand does not follow its script: {1:g} mm away from it, the "
+                          "spring pulls with {2:g} N; the value must be in N/m (1 N/mm is 1000 N/m)",
+                          spring->number, kAway / kThousandth, spring->number * kAway));
+}
+
+}  // namespace
+
+void judgeHandValues(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
+                     const UnreadKeys& unread, document::Problems& warnings) {
+  constexpr double kHeavy = 5, kLong = 10;                   // [kg] heavier than a forearm; [s] that check watches
+  constexpr double kTremor = 1, kWander = 2;                 // [N]
+  constexpr double kUsualTremor = 0.05, kUsualWander = 0.1;  // [N] the module's defaults
+  if (!hand.goes()) return;
+  const HandValues values(scene, device, unread, warnings);
+  if (values.isAbove("hand.mass", kHeavy))
+    values.tell("hand.mass",
+                fmt::format("{0:g} kg is more than a hand and its forearm weigh at the tip (about 0.2 to "
+                            "1 kg); the value must be in kg: {0:g} g is {1:g} kg",
+                            values.read("hand.mass")->number, values.read("hand.mass")->number * kThousandth));
+  values.judgeUnrest("hand.tremor", kTremor, kUsualTremor);
+  values.judgeUnrest("hand.wander", kWander, kUsualWander);
+  if (values.isAbove("hand.lead_in", kLong))
+    values.tell("hand.lead_in", fmt::format("{0:g} s pass before the script begins; the value must be in s: {0:g} ms "
+                                            "is {1:g} s",
+                                            hand.lead_in, hand.lead_in * kThousandth));
+  if (unread.has("hand.script")) return;
+  judgeRate(values, hand);
+  judgeSpring(values, hand);
+}
+
+}  // namespace hapticd::diagnostics
