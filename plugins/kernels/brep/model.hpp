@@ -19,7 +19,7 @@
 namespace hapticd::brep {
 
 struct ModelOptions {
-  spline::Form form = spline::Form::kTable;  ///< how spline surfaces are stored
+  spline::Form form = spline::Form::kTable;  ///< how spline surfaces and edges are stored
   /// Name of one instance or assembly, or its path "assembly/sub/part"; empty for the whole part. It keeps its pose in
   /// the part.
   std::string instance;
