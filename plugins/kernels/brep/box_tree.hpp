@@ -55,7 +55,7 @@ class BoxTree {
   const std::vector<std::uint32_t>& order() const noexcept { return order_; }
   /// [main] Frees order() and the spare memory of the nodes.
   void forgetOrder() {
-    order_ = {};
+    order_ = std::vector<std::uint32_t>();  // "= {}" would keep the memory
     nodes_.shrink_to_fit();
   }
   bool empty() const noexcept { return nodes_.empty(); }

@@ -89,7 +89,7 @@ Geometry::Geometry(const Part& part, spline::Form form) : part_(part) {
   for (const Curve3& c : part.curves3) {
     const bool is_spline = c.kind == CurveKind::kSpline;
     curve_slot_.push_back(is_spline ? static_cast<std::int32_t>(spline_curves_.size()) : -1);
-    if (is_spline) spline_curves_.emplace_back(splineOf(part, c));
+    if (is_spline) spline_curves_.emplace_back(splineOf(part, c), form);
   }
   for (const Curve2& c : part.curves2) {
     const bool is_spline = c.kind == CurveKind::kSpline;

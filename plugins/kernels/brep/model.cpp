@@ -37,6 +37,7 @@ class ModelBuilder {
     for (std::uint32_t b = 0; b < part_.bodies.size(); ++b) plantTree(b);
     placeBodies();
     warn();
+    forgetNumbers();
   }
 
  private:
@@ -245,6 +246,28 @@ class ModelBuilder {
       model_.open_ = model_.open_ || !place.solid;
     }
     if (model_.placements_.size() > 1) model_.placement_tree_.build(boxes, 1);
+  }
+
+  /// Keeps only the numbers of splines in parameter planes, which are evaluated from there. The geometry has copied
+  /// those of surfaces and edges.
+  void forgetNumbers() {
+    std::vector<double> kept;
+    for (const bool counting : {true, false}) {
+      std::size_t size = 0;
+      for (Curve2& c : part_.curves2) {
+        if (c.kind != CurveKind::kSpline) continue;
+        const std::size_t numbers = c.count * ((c.flags & kRational) != 0 ? 4ul : 3ul) + c.degree + 1;
+        const auto first = part_.reals.begin() + static_cast<std::ptrdiff_t>(c.data);
+        if (!counting) kept.insert(kept.end(), first, first + static_cast<std::ptrdiff_t>(numbers));
+        if (!counting) c.data = size;
+        size += numbers;
+      }
+      if (size > part_.reals.size()) return;  // curves of this part share numbers
+      kept.reserve(size);
+    }
+    part_.reals = std::move(kept);
+    for (Surface& s : part_.surfaces) s.data = 0, s.count = {0, 0};
+    for (Curve3& c : part_.curves3) c.data = 0, c.count = 0;
   }
 
   void warn() {

@@ -19,7 +19,7 @@
 namespace hapticd::brep {
 
 struct ModelOptions {
-  spline::Form form = spline::Form::kTable;  ///< how spline surfaces are stored
+  spline::Form form = spline::Form::kTable;  ///< how spline surfaces and edges are stored
   /// Name of one instance or assembly, or its path "assembly/sub/part"; empty for the whole part. It keeps its pose in
   /// the part.
   std::string instance;
@@ -89,6 +89,8 @@ class Model {
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 
+  /// [any] The part without the numbers of the splines of surfaces and edges: their `count` is 0. So no second model
+  /// can be made from it.
   const Part& part() const noexcept { return part_; }
   const Geometry& geometry() const noexcept { return *geometry_; }
   const FaceShape& face(std::uint32_t index) const noexcept { return faces_[index]; }

@@ -25,7 +25,7 @@ class TrimBuilder {
   void run() {
     trim_.pieces_ = trimPieces(*trim_.geometry_, face_, trim_.gaps_);
     if (isBox()) {
-      trim_.pieces_ = {};
+      trim_.pieces_ = std::vector<TrimPiece>();  // "= {}" would keep the memory
       return;
     }
     setBox();

@@ -31,6 +31,13 @@ void Axis::anchor(bool low, bool high) {
   if (high) cells_.back().origin = breaks_.back();
 }
 
+void Axis::forgetKnots() {
+  knots_ = std::vector<double>();  // "= {}" would keep the memory
+  reciprocals_ = std::vector<double>();
+  cells_.shrink_to_fit();
+  breaks_.shrink_to_fit();
+}
+
 double Axis::search(double t, std::int32_t& hint) const noexcept {
   if (!(t > breaks_.front())) t = breaks_.front();
   if (t > breaks_.back()) t = breaks_.back();

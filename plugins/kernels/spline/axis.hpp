@@ -50,6 +50,9 @@ class Axis {
   /// instead of about the middle of the cell. If both are true and there is a single cell, the cell is halved.
   void anchor(bool low, bool high);
 
+  /// [main] Frees what only window(), count() and knots() need; they must not be called any more.
+  void forgetKnots();
+
  private:
   double search(double t, std::int32_t& hint) const noexcept;
 

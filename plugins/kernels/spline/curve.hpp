@@ -12,6 +12,7 @@
 #include "kernels/spline/axis.hpp"
 #include "kernels/spline/curve_data.hpp"
 #include "kernels/spline/kernel.hpp"
+#include "kernels/spline/table.hpp"
 
 namespace hapticd::spline {
 
@@ -26,9 +27,10 @@ struct CurvePoint {
 /// the domain are moved to its ends, and NaN to its low end.
 class Curve {
  public:
-  /// [main] Checks and stores a curve.
+  /// [main] Checks and stores a curve. `kTable` is a request: if the power basis would lose digits (as in very narrow
+  /// spans), the curve uses kNet instead. form() returns the form in use.
   /// @throws std::invalid_argument as validate() does.
-  explicit Curve(const CurveData& data, Instructions instructions = Instructions::kFastest);
+  explicit Curve(const CurveData& data, Form form = Form::kNet, Instructions instructions = Instructions::kFastest);
 
   /// [any] Computes C and C1 at u; C2 stays unchanged.
   void evaluate1(double u, CurvePoint& out) const noexcept;
@@ -43,15 +45,21 @@ class Curve {
   int degree() const noexcept { return axis_.degree(); }
   bool rational() const noexcept { return rational_; }
   const std::string& name() const noexcept { return name_; }
+  /// [any] Returns the form in use.
+  Form form() const noexcept { return table_.cells.empty() ? Form::kNet : Form::kTable; }
   /// [any] Returns the memory that this curve has allocated, in bytes.
-  std::size_t bytes() const noexcept { return net_.capacity() * sizeof(Quad) + axis_.bytes(); }
+  std::size_t bytes() const noexcept {
+    return net_.capacity() * sizeof(Quad) + table_.cells.capacity() * sizeof(double) + axis_.bytes();
+  }
 
  private:
   void evaluate(int order, double u, std::int32_t& span, double* out) const noexcept;
 
-  std::array<NetKernel, 2> kernel_;
+  std::array<TableKernel, 2> table_kernel_{};
+  std::array<NetKernel, 2> net_kernel_{};
   Axis axis_;
-  std::vector<Quad> net_;
+  Table table_;
+  std::vector<Quad> net_;  ///< empty in table form
   double scale_ = 1;
   bool rational_ = false;
   std::string name_;

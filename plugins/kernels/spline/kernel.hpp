@@ -6,7 +6,7 @@
 
 namespace hapticd::spline {
 
-/// A control point (x, y, z, weight) or a power-basis coefficient; it fills one SIMD register.
+/// A control point (x, y, z, weight); it fills one SIMD register.
 struct alignas(32) Quad {
   double x = 0, y = 0, z = 0, w = 0;
 };
@@ -30,24 +30,30 @@ struct NetWindow {
 /// served by the processor's store buffer.
 inline constexpr int kOutStride = 4;
 using NetKernel = void (*)(const NetWindow& net, double u, double v, double* out) noexcept;
-/// Evaluates one cell of a table at (s, t), measured from the point about which it is expanded.
-/// @param cell the local origin, then size_u x size_v coefficients of s^i t^j, i-major
-using TableKernel = void (*)(const Quad* cell, int size_u, int size_v, double s, double t, double* out) noexcept;
+/// Returns how many numbers a power-basis coefficient has: x, y, z, and the weight if the surface is rational.
+constexpr int tableStride(bool rational) {
+  return rational ? 4 : 3;
+}
+/// Evaluates one cell of a table at (s, t), measured from the point about which it is expanded. The kernel also reads
+/// the number behind the cell, which must exist and has no effect.
+/// @param cell the local origin, then size_u x size_v coefficients of s^i t^j, i-major, each of tableStride() numbers
+using TableKernel = void (*)(const double* cell, int size_u, int size_v, double s, double t, double* out) noexcept;
 
 /// One cell of a table, with all that evaluating it needs. It saves the look-up for callers that stay in a cell for
 /// many evaluations.
 struct TableCell {
   double lo[2], end[2];  ///< parameters strictly between `lo` and `end` lie in the cell
   double origin[2];      ///< parameters about which the coefficients are expanded
-  const Quad* coefficients;
+  const double* coefficients;
   TableKernel kernel;  ///< computes up to second order; null if there is no table
   int size[2];
 };
 
 /// Sizes of cells (degree + 1 along u and v) that have unrolled kernels. Cells of smaller degree are padded with zeros
-/// to one of these sizes.
-inline constexpr int kTableShapes = 8;
-inline constexpr int kTableSizes[kTableShapes][2] = {{2, 2}, {2, 3}, {3, 2}, {3, 3}, {4, 2}, {2, 4}, {4, 4}, {6, 6}};
+/// to the first of these sizes that holds them. The sizes of 1 along v are those of curves.
+inline constexpr int kTableShapes = 12;
+inline constexpr int kTableSizes[kTableShapes][2] = {{4, 1}, {6, 1}, {2, 2}, {2, 3}, {3, 2}, {3, 3},
+                                                     {4, 2}, {2, 4}, {4, 4}, {6, 2}, {2, 6}, {6, 6}};
 
 /// The kind of evaluation that the weights of a net need.
 enum class Weights : std::uint8_t {

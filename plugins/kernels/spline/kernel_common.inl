@@ -7,6 +7,11 @@ typedef double V4 __attribute__((vector_size(32)));
 inline V4 load(const Quad* q) {
   return *reinterpret_cast<const V4*>(q);
 }
+/// Loads four doubles from an address of any alignment of doubles.
+inline V4 load(const double* from) {
+  typedef double Anywhere __attribute__((vector_size(32), aligned(8), may_alias));
+  return *reinterpret_cast<const Anywhere*>(from);
+}
 inline V4 splat(double a) {
   return V4{a, a, a, a};
 }

@@ -51,16 +51,29 @@ inline Row polynomial(int size, const Powers& t, Coefficient coefficient) {
   return horner<kOrder>(kSize > 0 ? kSize : size, t.x, coefficient);
 }
 
+/// Evaluates a curve: nothing depends on v.
+template <int kSize, bool kRational, int kOrder>
+inline void evaluateCurve(const double* cell, double s, double* out) noexcept {
+  constexpr int kStride = tableStride(kRational);
+  const double* c = cell + kStride;
+  const Row f = polynomial<kSize, kOrder>(kSize, Powers(s), [=](int i) { return load(c + i * kStride); });
+  Sums sums{f.f, f.g, splat(0), f.h + f.h, splat(0), splat(0)};
+  if constexpr (kRational) divideByWeight<kOrder>(sums);
+  storeSums<kOrder>(sums, load(cell), out);
+}
+
 template <int kSizeU, int kSizeV, bool kRational, int kOrder>
-void evaluateTable(const Quad* cell, int run_size_u, int run_size_v, double s, double t, double* out) noexcept {
+void evaluateTable(const double* cell, int run_size_u, int run_size_v, double s, double t, double* out) noexcept {
+  if constexpr (kSizeV == 1) return evaluateCurve<kSizeU, kRational, kOrder>(cell, s, out);
   const int size_u = kSizeU > 0 ? kSizeU : run_size_u, size_v = kSizeV > 0 ? kSizeV : run_size_v;
-  const Quad* c = cell + 1;
+  constexpr int kStride = tableStride(kRational);
+  const double* c = cell + kStride;
   const Powers powers(s);
   const V4 x = splat(t);
   Row rows[kSizeU > 0 ? kSizeU : kMaxTableSize];
 #pragma GCC unroll 6
   for (int i = 0; i < size_u; ++i) {
-    rows[i] = horner<kOrder>(size_v, x, [=](int j) { return load(c + i * size_v + j); });
+    rows[i] = horner<kOrder>(size_v, x, [=](int j) { return load(c + (i * size_v + j) * kStride); });
   }
   const Row f = polynomial<kSizeU, kOrder>(size_u, powers, [&](int i) { return rows[i].f; });
   const Row g = polynomial<kSizeU, kOrder - 1>(size_u, powers, [&](int i) { return rows[i].g; });

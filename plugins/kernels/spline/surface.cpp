@@ -25,6 +25,7 @@ Surface::Surface(const SurfaceData& data, Form form, Instructions instructions) 
       table_ = std::move(*table);
       const auto& pair = set.table[table_.shape][rational_];
       table_kernel_ = {pair[0], pair[1]};
+      for (Axis& axis : axes_) axis.forgetKnots();
       return;
     }
   }
@@ -60,7 +61,8 @@ void Surface::rescale(int order, SurfacePoint& out) const noexcept {
 }
 
 std::size_t Surface::bytes() const noexcept {
-  return (net_.capacity() + table_.cells.capacity()) * sizeof(Quad) + axes_[0].bytes() + axes_[1].bytes();
+  return net_.capacity() * sizeof(Quad) + table_.cells.capacity() * sizeof(double) + axes_[0].bytes() +
+         axes_[1].bytes();
 }
 
 }  // namespace hapticd::spline

@@ -29,12 +29,6 @@ struct SurfacePoint {
   alignas(32) std::array<std::int32_t, 2> span{0, 0};
 };
 
-/// How a surface is stored.
-enum class Form : std::uint8_t {
-  kTable,  ///< power-basis coefficients for each knot span; the fastest form
-  kNet     ///< only control points (Cox-de Boor evaluation); the smallest form, exact to rounding for any weights
-};
-
 /// A surface that is ready for evaluation. Constant after construction, so all threads may share it. Parameters outside
 /// the domain are moved to its boundary, and NaN to its low end.
 class Surface {
@@ -86,7 +80,7 @@ class Surface {
       rescale(kOrder, out);
     }
   }
-  const Quad* tableCell(const SurfacePoint& at) const noexcept {
+  const double* tableCell(const SurfacePoint& at) const noexcept {
     return table_.cells.data() + at.span[0] * table_.row_stride + at.span[1] * table_.stride;
   }
   NetWindow netWindow(const Cell& cu, const Cell& cv) const noexcept;

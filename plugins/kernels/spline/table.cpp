@@ -116,11 +116,17 @@ bool powersFit(const Axis& axis) {
   return true;
 }
 
+/// Appends a local origin or a coefficient to the table.
+void append(const Quad& quad, bool rational, Table& table) {
+  table.cells.insert(table.cells.end(), {quad.x, quad.y, quad.z});
+  if (rational) table.cells.push_back(quad.w);
+}
+
 /// Appends one cell to the table. Returns false if the cell would lose digits.
 bool appendCell(const Window& window, const Taylor& tu, const Taylor& tv, std::array<Real, 2> reach,
-                std::array<int, 2> degree, Table& table) {
+                std::array<int, 2> degree, bool rational, Table& table) {
   Growth growth;
-  table.cells.push_back(window.origin);
+  append(window.origin, rational, table);
   Real power_u = 1;
   for (int k = 0; k < table.size_u; ++k, power_u *= reach[0]) {
     Real power = power_u;
@@ -136,8 +142,9 @@ bool appendCell(const Window& window, const Taylor& tu, const Taylor& tv, std::a
         sum.add(tu[static_cast<std::size_t>(k)][a], row);
       }
       growth.add(sum, power);
-      table.cells.push_back({static_cast<double>(sum.x), static_cast<double>(sum.y), static_cast<double>(sum.z),
-                             static_cast<double>(sum.w)});
+      append({static_cast<double>(sum.x), static_cast<double>(sum.y), static_cast<double>(sum.z),
+              static_cast<double>(sum.w)},
+             rational, table);
     }
   }
   return growth.acceptable(window);
@@ -189,9 +196,9 @@ std::optional<Table> makeTable(const Net& net, const Axis& u, const Axis& v) {
   const std::array<int, 2> degree{u.degree(), v.degree()};
   Table table;
   chooseShape(degree, table);
-  table.stride = 1 + static_cast<std::ptrdiff_t>(table.size_u) * table.size_v;
+  table.stride = (1 + static_cast<std::ptrdiff_t>(table.size_u) * table.size_v) * tableStride(net.rational());
   table.row_stride = table.stride * static_cast<std::ptrdiff_t>(v.cells().size());
-  table.cells.reserve(u.cells().size() * static_cast<std::size_t>(table.row_stride));
+  table.cells.reserve(u.cells().size() * static_cast<std::size_t>(table.row_stride) + 1);
   std::vector<Taylor> taylor_v;
   for (const Cell& cell : v.cells()) taylor_v.push_back(taylorCoefficients(v, cell));
   for (const Cell& cu : u.cells()) {
@@ -199,9 +206,11 @@ std::optional<Table> makeTable(const Net& net, const Axis& u, const Axis& v) {
     for (std::size_t j = 0; j < taylor_v.size(); ++j) {
       const Cell& cv = v.cells()[j];
       const Window window = windowOf(net, u, v, cu, cv);
-      if (!appendCell(window, tu, taylor_v[j], {farthest(cu), farthest(cv)}, degree, table)) return std::nullopt;
+      if (!appendCell(window, tu, taylor_v[j], {farthest(cu), farthest(cv)}, degree, net.rational(), table))
+        return std::nullopt;
     }
   }
+  table.cells.push_back(0);
   return table;
 }
 

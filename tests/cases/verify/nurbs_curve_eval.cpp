@@ -25,14 +25,15 @@ spline::CurveData readCurve(const Json& in) {
 /// Positions absolutely, derivatives relative to the length of the true vector; a derivative that is zero must be zero.
 void nurbsCurveEval(const Case& c, Check& check) {
   const spline::CurveData data = readCurve(c.input);
-  for (auto instructions : {spline::Instructions::kFastest, spline::Instructions::kPortable}) {
-    const spline::Curve curve(data, instructions);
-    spline::CurvePoint E;
-    curve.evaluate2(number(c.input["u"]), E);
-    check.nearVector("C", E.C, c.expect["C"], number(c.tol["C_abs"]));
-    check.nearVector("C1", E.C1, c.expect["C1"], number(c.tol["C1_rel"]) * norm(c.expect["C1"]));
-    check.nearVector("C2", E.C2, c.expect["C2"], number(c.tol["C2_rel"]) * norm(c.expect["C2"]));
-  }
+  for (const auto form : {spline::Form::kNet, spline::Form::kTable})
+    for (auto instructions : {spline::Instructions::kFastest, spline::Instructions::kPortable}) {
+      const spline::Curve curve(data, form, instructions);
+      spline::CurvePoint E;
+      curve.evaluate2(number(c.input["u"]), E);
+      check.nearVector("C", E.C, c.expect["C"], number(c.tol["C_abs"]));
+      check.nearVector("C1", E.C1, c.expect["C1"], number(c.tol["C1_rel"]) * norm(c.expect["C1"]));
+      check.nearVector("C2", E.C2, c.expect["C2"], number(c.tol["C2_rel"]) * norm(c.expect["C2"]));
+    }
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ TEST(Curve, AgreesWithExactArithmeticForEveryDegreeAndWeight) {
       for (double u : {0.0, 0.123, 0.5, 0.987, 1.0}) {
         const auto truth = exact::curve(data, u);
         for (Instructions instructions : {Instructions::kFastest, Instructions::kPortable}) {
-          const Curve curve(data, instructions);
+          const Curve curve(data, Form::kNet, instructions);
           CurvePoint E;
           curve.evaluate2(u, E);
           EXPECT_LT((E.C - truth[0]).norm(), 1e-14);
@@ -47,6 +47,36 @@ TEST(Curve, AgreesWithExactArithmeticForEveryDegreeAndWeight) {
       }
     }
   }
+}
+
+TEST(Curve, InTableFormAgreesWithExactArithmeticForEveryDegree) {
+  int tables = 0;
+  for (int degree = 1; degree <= kMaxDegree; ++degree) {
+    for (double spread : {0.0, 3.0, 1e9}) {
+      const CurveData data = wire(degree, degree + 4, spread, static_cast<unsigned>(degree));
+      for (Instructions instructions : {Instructions::kFastest, Instructions::kPortable}) {
+        const Curve curve(data, Form::kTable, instructions);
+        tables += curve.form() == Form::kTable;
+        EXPECT_TRUE(curve.form() == Form::kTable || spread > 0 || degree > 5) << degree;
+        for (double u : {0.0, 0.123, 0.5, 0.987, 1.0}) {
+          const auto truth = exact::curve(data, u);
+          CurvePoint E, first;
+          curve.evaluate2(u, E);
+          EXPECT_LT((E.C - truth[0]).norm(), 1e-14) << degree << ' ' << spread << ' ' << u;
+          EXPECT_LT((E.C1 - truth[1]).norm(), 1e-10 * truth[1].norm()) << degree << ' ' << spread << ' ' << u;
+          EXPECT_LE((E.C2 - truth[2]).norm(), 1e-9 * (truth[2].norm() + truth[1].norm()));
+          curve.evaluate1(u, first);
+          EXPECT_LT((first.C1 - E.C1).norm(), 1e-13 * E.C1.norm());
+        }
+      }
+    }
+  }
+  EXPECT_GT(tables, 20);
+}
+
+TEST(Curve, KeepsNoKnotsInTableForm) {
+  const CurveData data = wire(5, 9, 0, 4);
+  EXPECT_LT(Curve(data, Form::kTable).bytes(), Curve(data, Form::kNet).bytes());
 }
 
 TEST(Curve, IsACircleWithTheRightCurvature) {
