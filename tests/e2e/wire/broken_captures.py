@@ -94,7 +94,7 @@ code, rows, err = decode(raw, SCALE=f"{SCALE * 11:.9g}")
 check("a forgotten gear is seen", "times too large" in err, err)
 check("and none of it in the right file", "too large" not in decode(raw)[2] and "clock" not in decode(raw)[2], decode(raw)[2])
 check("rate 100 contradicts the arm's clock", "give rate: 1000" in decode(raw, RATE="100")[2], decode(raw, RATE="100")[2])
-check("a scale of time that is 1000 times too large", "scale of time that is 1000 times smaller" in decode(raw, TIME="1.0e-3")[2], decode(raw, TIME="1.0e-3")[2])
+check("a scale of time that is 1000 times too large", "scale of the field time that is 1000 times smaller" in decode(raw, TIME="1.0e-3")[2], decode(raw, TIME="1.0e-3")[2])
 lines = "\n".join(raw[i : i + 17].hex(" ") for i in range(0, len(raw), 17)) + "\n"
 short = "\n".join(line[: 3 * 16 - 1] for line in lines.splitlines()) + "\n"
 code, rows, err = decode(short)

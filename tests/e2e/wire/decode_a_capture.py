@@ -135,7 +135,7 @@ with tempfile.TemporaryDirectory() as folder:
     code, out, err = run("decode", arm, given=("\n".join("01 " + line for line in lines)).encode())
     check("a report id that the file lacks is guessed", code == 1 and "give wire.input id: 1" in err, err)
     code, out, err = run("decode", arm, given=" ".join(lines).encode())
-    check("many reports in a line are counted", code == 1 and "720 bytes are 40 reports of 18" in err, err)
+    check("many reports in a line are counted", code == 1 and "720 bytes in a line are 40 reports of 18" in err, err)
     other = os.path.join(folder, "other.yaml")
     for wrong in ("method: crc32c", "method: crc32-bzip2", "endian: big, method: crc32"):
         open(other, "w").write(ARM.replace("method: crc32,", wrong + ","))

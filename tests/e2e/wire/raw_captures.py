@@ -156,7 +156,7 @@ with tempfile.TemporaryDirectory() as folder:
             "{is: position, joint: 3, at: 12": "{is: position, joint: 3, at: 13"}
     whole = b"".join(marked(i) for i in range(400))
     for what, capture in (("few", whole[:20 * 12]), ("some of them damaged", damaged(whole, 20))):
-        named(f"a capture that begins inside a report, {what}", capture[7:], mark, "from byte 13 on, nearly all reports are good; give framing: {start: 0xa5}, and they are found\n")
+        named(f"a capture that begins inside a report, {what}", capture[7:], mark, "from byte 13 on, nearly all reports are good; give framing: {start: 0xa5}, and the reports are found\n")
     for what, capture in (("few", bare[:20 * 12]), ("some of them damaged", damaged(bare, 20))):
         named(f"the same without a constant, {what}", capture[7:], {**no_id}, "from byte 13 on, nearly all reports are good; leave out the first 13 bytes (tail -c +14 FILE)\n")
 finish()

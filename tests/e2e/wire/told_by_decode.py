@@ -152,7 +152,7 @@ with tempfile.TemporaryDirectory() as folder:
     code, err, _ = told(stream, SERIAL)
     check("a framed stream is right", code == 0 and f"{COUNT} good" in err and err.count("\n") == 1, err)
     code, err, _ = told(stream[3:], SERIAL)
-    check("one that begins within a report is good", code == 0 and f"{COUNT - 1} good; it begins with the last" in err, err)
+    check("one that begins within a report is good", code == 0 and f"{COUNT - 1} good; the capture begins with the last" in err, err)
     code, err, _ = told(b"".join(serial(i, total=lambda d: -sum(d) & 255) for i in range(COUNT)), SERIAL)
     check("a negated sum is told", code == 1 and "right with method: sum, negated: true" in err, err)
     code, err, _ = told(b"".join(serial(i, total=lambda d: ~sum(d) & 255) for i in range(COUNT)), SERIAL)

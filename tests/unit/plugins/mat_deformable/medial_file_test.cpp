@@ -93,7 +93,7 @@ TEST(MedialFile, DampsNoMoreThanTheHostIsTold) {
   } catch (const ModelFileError& e) {
     EXPECT_NE(std::string(e.what()).find(":6:12: medial.damping: expected at most 5 N s/m"), std::string::npos)
         << e.what();
-    EXPECT_NE(std::string(e.what()).find("to 1000 in the scene"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("set `damping` to 1000"), std::string::npos) << e.what();
   }
   EXPECT_TRUE(readMedialFile(file.path(), {300, 100, .01}).damps);
 }

@@ -131,7 +131,7 @@ TEST(ShapeInstance, ExplainsAMissingOrWrongLibrary) {
   described.plugin = "something_else";
   const auto other = ShapeInstance::create(described, nullptr);
   ASSERT_FALSE(other);
-  EXPECT_TRUE(contains(other.error(), "contains no plugin named 'something_else'")) << other.error();
+  EXPECT_TRUE(contains(other.error(), "has no plugin named 'something_else'")) << other.error();
 }
 
 TEST(Library, IsTheSameForEveryUserAndEverySpelling) {
