@@ -153,6 +153,9 @@ void MatDeformable::describe(const MedialFile& file, double tick) const {
               " gives the materials of its points; this parameter is only for a medial mesh without materials (.ma)");
   if (!geometry_.ends_with(".ma") && rings_ != static_cast<int>(usual("rings")))
     say(HSP_LOG_WARNING, "rings: has no effect: only a medial mesh (.ma) has rings; for a grid, set influence");
+  if (friction_static_ > 0 && friction_static_ < friction_dynamic_)
+    say(HSP_LOG_WARNING,
+        "friction_static: has no effect, because friction_dynamic is greater; friction_dynamic must not be greater");
   const double size = body_->bounds().sizes().maxCoeff();
   if (!(size > kLarge)) return;
   char text[128];

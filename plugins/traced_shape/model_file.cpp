@@ -48,7 +48,9 @@ class Reader {
     const Path at = Path{} / "surfaces";
     const auto surfaces = root.find("surfaces");
     if (surfaces == root.end() || !surfaces->is_array() || surfaces->empty() || surfaces->size() > kMostSurfaces) {
-      problems_.add(at, "expected a list of one to " + std::to_string(kMostSurfaces) + " surfaces");
+      problems_.add(at, surfaces == root.end() && root.contains("medial")
+                            ? "missing: this file is a soft body (it has medial); use plugin: mat_deformable for it"
+                            : "expected a list of one to " + std::to_string(kMostSurfaces) + " surfaces");
       return file;
     }
     file.surfaces.reserve(surfaces->size());

@@ -97,6 +97,14 @@ void ParameterReader::nothing(const Entry& entry, const std::string& key, uint32
 void ParameterReader::unknown(const Entry& entry, const std::string& key, const std::string& id) {
   std::vector<std::string> ids = info_.paramIds();
   if (ids.empty()) return in_->problem(entry.key, key, "unknown key: " + info_.name + " has no parameters");
+  constexpr const char* kOfTheFile[] = {"name", "mount", "limits", "admittance", "hand", "hd", "module"};
+  const bool of_the_file =
+      info_.kind == host::Kind::kDevice &&
+      std::any_of(std::begin(kOfTheFile), std::end(kOfTheFile), [&](const char* one) { return id == one; });
+  if (of_the_file)
+    return in_->problem(
+        entry.key, key,
+        "belongs at the top of the device file, beside parameters, because it is not a parameter of " + info_.name);
   // Within a group only names of this group are suggested, because names of other groups are not valid here.
   const std::string group = id.substr(0, id.find('.') == id.npos ? 0 : id.rfind('.'));
   if (!group.empty()) std::erase_if(ids, [&](const std::string& one) { return one.rfind(group + ".", 0) != 0; });

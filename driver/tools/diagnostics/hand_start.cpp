@@ -203,6 +203,8 @@ void tellRefused(const scene::Scene& scene, const scene::Device& device, const s
     for (const scene::Value& value : device.parameters)
       if (value.id == key)
         return document::report(problems, value.place, key.starts_with("hand.") ? key : "parameters." + key, what);
+    for (const std::string& one : {"device." + key, fmt::format("devices[{}].{}", &device - scene.devices.data(), key)})
+      if (const auto place = placeOfKey(scene.file, one)) return document::report(problems, *place, one, what);
     for (const auto& file : {device.file, scene.file})
       if (const auto place = placeOfKey(file, key)) return document::report(problems, *place, key, what);
     const size_t next = told.find(": ", begin);

@@ -197,6 +197,7 @@ MODELS = [
     ("a stiffness in N/mm", "mat_deformable", SOFT + "  stiffness: |0.3\n", "1 N/mm is 1000 N/m"),
 ]
 SOFT_PARAMETERS = [("friction_static: |5, friction_dynamic: 1", "friction_static", "rubber"), ("crease: |1", "crease", "1 mm is 0.001 m"),
+                   ("friction_static: |0.1, friction_dynamic: 0.5", "friction_static", "friction_dynamic must not be greater"),
                    ("shear_distance: |1", "shear_distance", "1 mm is 0.001 m"), ("rings: |4", "rings", "has no effect"),
                    ("dynamics: off, relaxation: {share: |0.5, time: 0.2}", "relaxation.share", "dynamics is off")]
 
@@ -391,6 +392,11 @@ def refused(folder):
         problems = [one for one in json.loads(out)["files"][0]["problems"] if one["key"] == "models[0].motion"]
         check(f"a {plugin} that is {motion}: refused at its place", code == 2 and [(one["line"], one["column"]) for one in problems] == [(line, column)]
               and plugin in problems[0]["what"], (line, column, out))
+    file, line, column = write(folder, "compliant.yaml", f"hapticd: 1\ndevice:\n  file: {ARM}\n  admittance: |{{mass: 2, damping: 20}}\nmodels: []\n")
+    code, out, _ = program(HAPTICD, own_state(folder))("check", "--json", file)
+    problems = [one for one in json.loads(out)["files"][0]["problems"] if one["key"] == "device.admittance"]
+    check("admittance of an arm without torque sensors: refused at its place", code == 2 and [(one["line"], one["column"]) for one in problems]
+          == [(line, column)], (line, column, out))
 
 
 def right(folder):

@@ -51,6 +51,11 @@ TEST_F(ModelFileTest, ReadsYamlAndTheSameAsJson) {
   EXPECT_TRUE(yaml.surfaces[0].reversed && json.surfaces[0].reversed);
 }
 
+TEST_F(ModelFileTest, NamesThePluginForTheFileOfASoftBody) {
+  const std::string soft = "format: hapticd-model/1\nmedial: {points: [[[0, 0, 0]]], radius: 0.01, stiffness: 300}\n";
+  EXPECT_NE(complaintOf(soft).find("use plugin: mat_deformable"), std::string::npos) << complaintOf(soft);
+}
+
 /// Two million numbers of YAML would take a gigabyte: refused before anything is parsed. As JSON they are read.
 TEST_F(ModelFileTest, RefusesMoreYamlThanMemoryIsGoodFor) {
   std::string knots = "0, 0";
