@@ -11,7 +11,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish, program
+from e2e import LONG, check, finish, program
 
 HAPTICD, MAKE_PARTS = sys.argv[1:3]
 run = program(HAPTICD, timeout=800)
@@ -66,7 +66,7 @@ check("a face that a STEP file refers to and does not have is lost", code == 0 a
 
 os.remove(part)  # of the faceless file
 numbers = [m for m in re.finditer(rb"-?\d+\.\d+|(?<=\s)-?\d+(?=\s)", brep)]
-for word in (b"nan", b"-nan", b"inf", b"-INF", b"Infinity", b"1.#QNAN", b"nan(ind)"):  # Open CASCADE would not come back
+for word in (b"nan", b"-nan", b"inf", b"-INF", b"Infinity", b"1.#QNAN", b"nan(ind)")[::1 if LONG else 3]:  # Open CASCADE would not come back
     at = numbers[len(numbers) // 2]
     file = put("words.brep", brep[:at.start()] + word + brep[at.end():])
     refused(f"{word.decode()} in a BREP file", file, "--time", "60")
@@ -75,7 +75,7 @@ for word in (b"nan", b"-nan", b"inf", b"-INF", b"Infinity", b"1.#QNAN", b"nan(in
 for name, whole in (("step", step), ("iges", iges), ("brep", brep)):
     for share in (0.3, 0.6, 0.9):
         survived(f"a .{name} that ends after {share:.0%}", put(f"cut.{name}", whole[:int(share * len(whole))]))
-    for trial in range(4):  # digits become others: references, counts and coordinates are wrong
+    for trial in range(4 if LONG else 1):  # digits become others: references, counts and coordinates are wrong
         damaged = bytearray(whole)
         digits = [i for i, b in enumerate(damaged) if 48 <= b <= 57]
         for i in source.sample(digits, 12):

@@ -88,7 +88,7 @@ def holds_over_another_motion(folder, name, file, radius):
 
 with tempfile.TemporaryDirectory() as folder:
     file = scene(folder, "teapot", "")
-    text = run("tune", file, "--motion-seconds", "2" if LONG else "1", "--limit-seconds", "20", "--write", "--json", f"{folder}/t.json",
+    text = run("tune", file, "--motion-seconds", "2" if LONG else "1", "--limit-seconds", "20" if LONG else "10", "--write", "--json", f"{folder}/t.json",
                "--page", f"{folder}/t.html", "--picture", f"{folder}/t.svg")
     for word in ("chosen:", "p50 ns", "rate Hz", "velocity estimator"):
         assert word in text, f"no {word!r} in the table:\n{text}"
@@ -109,7 +109,7 @@ with tempfile.TemporaryDirectory() as folder:
     # Other scenes keep what was promised too.
     for name, radius in (("sphere", 0.049), ("torus", 0.066)) if LONG else (("torus", 0.066),):
         other = scene(folder, name, "")
-        run("tune", other, "--motion-seconds", "1", "--limit-seconds", "8", "--write")
+        run("tune", other, "--motion-seconds", "1", "--limit-seconds", "8" if LONG else "4", "--write")
         holds_over_another_motion(folder, name, other, radius)
 
     file = scene(folder, "teapot", "")  # as it was
@@ -143,7 +143,7 @@ with tempfile.TemporaryDirectory() as folder:
     assert "comes near no model" in run("tune", file, "--probe", f"{folder}/far.csv", code=1)
 
     # A goal that nothing reaches: the nearest is chosen, and the exit code says so.
-    assert "none of" in run("tune", file, "--motion-seconds", "0.5", "--limit-seconds", "5", "--budget-us", "0.001", code=1)
+    assert "none of" in run("tune", file, "--motion-seconds", "0.5", "--limit-seconds", "2", "--budget-us", "0.001", code=1)
     open(f"{folder}/empty.yaml", "w").write("hapticd: 1\nmodels: []\n")
     assert "expected one to tune" in run("tune", f"{folder}/empty.yaml", code=2)
 print("tuned; the choice holds over another motion")
