@@ -7,6 +7,7 @@
 #include "description/scene.hpp"
 #include "diagnostics/hand_script.hpp"
 #include "document/problem.hpp"
+#include "host/shape_instance.hpp"
 
 namespace hapticd::diagnostics {
 
