@@ -219,6 +219,8 @@ TOGETHER = [
     (WIRED, {"  calibration:": "  health: {stale: 0.001}\n  calibration:"}, {"health.stale": "one late report switches the motors off"}),
     (WIRED, {SENT.format(1, 0): SENT.format(1, 0).replace("2.0e-5", "-2.0e-5"), SENT.format(3, 4): SENT.format(3, 4).replace("2.0e-5", "-2.0e-5")},
      {"wire.output.fields[0].scale": "of joint 1, 3 have opposite signs"}),
+    (WIRED, {"kind: phantom": "kind: delat", "[0.21, 0.17, 0.03, 0, 0]": "[0.06, 0.1, 0.015, 0.025, 0.015]"},
+     {"arm.kind": "did you mean \"delta\"", "arm.lengths": "expected 8"}),
     (WIRED, {READ.format(3, 6): READ.format(2, 6)},
      {"wire.input.fields[3].joint": "fields[2] is the position of joint 2 already", "wire.input.fields": "no position of joint 3"}),
 ]
