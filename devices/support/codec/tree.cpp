@@ -37,6 +37,14 @@ std::string shown(const Json& value) {
   return text;
 }
 
+/// Returns the number that a text with hexadecimal digits, such as 7e, probably means; NaN if it is no such text.
+double hexMeant(const std::string& text, double least, double most) {
+  const bool hex =
+      text.size() >= 2 && text.size() <= 8 && text.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
+  const double value = hex ? static_cast<double>(std::strtoul(text.c_str(), nullptr, 16)) : std::nan("");
+  return value >= least && value <= most ? value : std::nan("");
+}
+
 }  // namespace
 
 struct Document::Data {
@@ -120,9 +128,16 @@ double Tree::number(double least, double most, const char* unit) const {
   const std::string range =
       (least == most ? shortText(least) : "a number from " + shortText(least) + " to " + shortText(most)) +
       (*unit != '\0' ? " " : "") + unit;
-  const bool text = json.is_string() && std::isnan(value);
-  fail(shown(json) + ", expected " + range + (text ? document::numberMeant(json.get_ref<const std::string&>()) : ""));
-  return allowed;
+  std::string meant;
+  double taken = allowed;  // the value with which other checks go on
+  if (json.is_string() && std::isnan(value)) {
+    const std::string& text = json.get_ref<const std::string&>();
+    const double hex = *unit == '\0' ? hexMeant(text, least, most) : std::nan("");
+    if (!std::isnan(hex)) taken = hex;
+    meant = std::isnan(hex) ? document::numberMeant(text) : "; if it is hexadecimal, write 0x" + text;
+  }
+  fail(shown(json) + ", expected " + range + meant);
+  return taken;
 }
 
 double Tree::whole(double least, double most) const {

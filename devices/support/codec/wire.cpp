@@ -2,6 +2,7 @@
 #include "codec/wire.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 #include "codec/choice.hpp"
@@ -33,13 +34,17 @@ bool has(const Report& report, Role role) {
 /// Notes a problem unless each joint has exactly one field of this role.
 void requireEach(const Tree& fields, const Report& report, size_t joints, Role role, const char* what) {
   for (size_t joint = 0; joint < joints; ++joint) {
-    int found = 0;
-    for (const Field& field : report.fields) found += field.role == role && field.index == joint ? 1 : 0;
-    if (found == 1) continue;
-    const std::string which = std::string(what) + " of joint " + std::to_string(joint + 1);
-    fields.fail(found == 0 ? "no " + which + ", expected one field {is: " + what +
-                                 ", joint: " + std::to_string(joint + 1) + "}"
-                           : std::to_string(found) + " fields are the " + which + ", expected one");
+    const std::string number = std::to_string(joint + 1), which = std::string(what) + " of joint " + number;
+    std::optional<size_t> first;
+    for (size_t i = 0; i < report.fields.size(); ++i) {
+      if (report.fields[i].role != role || report.fields[i].index != joint) continue;
+      if (first)
+        fields.item(i).at("joint").fail(number + ", but fields[" + std::to_string(*first) + "] is the " + which +
+                                        " already; give one of them another joint, or remove it");
+      else
+        first = i;
+    }
+    if (!first) fields.fail("no " + which + ", expected one field {is: " + what + ", joint: " + number + "}");
   }
 }
 
@@ -142,15 +147,23 @@ Escape readEscape(const Tree& tree) {
   return escape;
 }
 
-Framing readFraming(const Tree& tree) {
+/// Reads the byte of a mark. @param known set to false if neither the byte nor what was meant can be told
+uint8_t markOf(const Tree& tree, bool& known) {
+  const size_t before = tree.problems();
+  const uint8_t mark = byteOf(tree);
+  if (tree.problems() != before && mark == 0) known = false;
+  return mark;
+}
+
+Framing readFraming(const Tree& tree, bool& marks_known) {
   Framing framing;
   framing.used = true;
   tree.only(kFramingKeys);
   if (tree.has("packet")) framing.packet = static_cast<size_t>(tree.at("packet").whole(8, 1024));
   if (tree.has("header"))
     framing.header = static_cast<size_t>(tree.at("header").whole(0, static_cast<double>(framing.packet - 1)));
-  if (tree.has("start")) framing.start = byteOf(tree.at("start"));
-  if (tree.has("end")) framing.end = byteOf(tree.at("end"));
+  if (tree.has("start")) framing.start = markOf(tree.at("start"), marks_known);
+  if (tree.has("end")) framing.end = markOf(tree.at("end"), marks_known);
   if (!tree.has("escape")) return framing;
   framing.escape = readEscape(tree.at("escape"));
   if (framing.start < 0 && framing.end < 0)
@@ -177,30 +190,32 @@ void readTimes(const Tree& tree, Wire& wire) {
             "between commands");
 }
 
+void readStartup(const Tree& steps, Wire& wire) {
+  for (size_t i = 0; i < steps.count(); ++i) {
+    if (i == kMaxSteps) return steps.fail("has more than " + std::to_string(kMaxSteps) + " steps");
+    wire.startup.push_back(readStep(steps.item(i)));
+  }
+}
+
 /// Reads the whole description. What is wrong in it has been noted, and has its default.
 Wire readAll(const Document& document, size_t joints) {
   const Tree tree = document.root();
   Wire wire;
   tree.only(kWireKeys);
   readTimes(tree, wire);
-  if (tree.has("framing")) wire.framing = readFraming(tree.at("framing"));
-  if (tree.has("startup"))
-    for (size_t i = 0; i < tree.at("startup").count(); ++i) {
-      if (i == kMaxSteps) {
-        tree.at("startup").fail("has more than " + std::to_string(kMaxSteps) + " steps");
-        break;
-      }
-      wire.startup.push_back(readStep(tree.at("startup").item(i)));
-    }
+  bool marks_known = true;
+  if (tree.has("framing")) wire.framing = readFraming(tree.at("framing"), marks_known);
+  if (tree.has("startup")) readStartup(tree.at("startup"), wire);
   if (tree.has("endpoints")) {
     const Tree endpoints = tree.at("endpoints");
     endpoints.only(kEndpointKeys);
     wire.endpoint_in = static_cast<uint8_t>(endpoints.at("in").whole(0x81, 0x8f));
     wire.endpoint_out = static_cast<uint8_t>(endpoints.at("out").whole(0x01, 0x0f));
   }
+  const size_t before_reports = tree.problems();
   wire.input = readReport(tree.at("input"), joints, true);
   wire.output = readReport(tree.at("output"), joints, false);
-  if (tree.problems() == 0) {
+  if (tree.problems() == before_reports && marks_known) {
     placeMarks(tree.at("input"), wire.framing, true, wire.input);
     placeMarks(tree.at("output"), wire.framing, wire.framing.escape.used, wire.output);
   }

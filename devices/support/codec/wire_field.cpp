@@ -213,7 +213,7 @@ bool readMethod(const Tree& tree, Field& field) {
   if (name == "crc") {
     check.method = Checksum::kCrc;
     check.polynomial = tree.at("polynomial").bits(check.bits);
-    if (tree.has("polynomial") && (check.polynomial & 1) == 0)
+    if (tree.problems() == before && (check.polynomial & 1) == 0)
       tree.at("polynomial").fail("is even, expected the polynomial without its highest term, which ends in + 1");
     return true;
   }

@@ -170,7 +170,7 @@ class Arm : public Device, public Parameters {
     wrong.attempt([&] { wire_ = codec::readWire(wire, joints_), wire_known = true; });
     wrong.attempt([&] { (void)static_cast<const T*>(this)->address(); });
     wrong.attempt([&] { checkCount("arm.max_torque", max_torque.size(), true); });
-    if (method == static_cast<int>(Calibration::kPose))
+    if (method == static_cast<int>(Calibration::kPose) || !pose.empty())
       wrong.attempt([&] { checkCount("calibration.pose", pose.size(), false); });
     if (wire_known) wrong.attempt([&] { takeWire(); });
     wrong.attempt([&] { takeFirmware(); });

@@ -126,6 +126,7 @@ std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p) {
   std::unique_ptr<kinematics::Arm> arm;
   wrong.attempt([&] { arm = mechanism(p); });
   wrong.attempt([&] { needRows(p.limits, 2, jointsOf(p), "arm.limits", "one for each joint"); });
+  wrong.attempt([&] { needOrder(p.limits); });
   wrong.check();
   const auto rows = static_cast<Eigen::Index>(p.limits.size() / 2);
   kinematics::JointLimits limits{kinematics::JointVector(rows), kinematics::JointVector(rows)};

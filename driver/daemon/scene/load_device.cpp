@@ -80,6 +80,35 @@ void refuseNoForce(const Node& root, Reader& in) {
              "the key out for the device's own maximum. To run without any force, write models: [] in the scene");
 }
 
+/// Counts the values below `node` whose keys are parameters of a module.
+size_t knownKeys(const Node& node, const std::string& key, const host::ClassInfo& info) {
+  if (!key.empty() && info.indexOf(key) >= 0) return 1;
+  size_t count = 0;
+  if (node.isMap())
+    for (const Entry& entry : node.entries)
+      count += knownKeys(entry.value, key.empty() ? entry.key.scalar : key + "." + entry.key.scalar, info);
+  return count;
+}
+
+/// Returns the module that an unknown name probably means, to find the other problems of the file, too: the one with
+/// the nearest name, else the one that knows most of the given parameters; "" if none knows at least three.
+std::string moduleMeant(const std::string& name, const Node* parameters, host::Catalog& catalog) {
+  constexpr size_t kEnough = 3;
+  const std::vector<std::string> names = catalog.names(host::Kind::kDevice);
+  std::string best = nearest(name, names);
+  if (!best.empty() || parameters == nullptr) return best;
+  size_t most = 2 * kEnough - 1;
+  for (const std::string& one : names) {
+    const auto info = catalog.device(one);
+    if (!info) continue;
+    const size_t known = knownKeys(*parameters, "", **info);
+    const bool alike = name.size() > 2 && one.find(name) != std::string::npos;  // hid means usb_hid
+    if (known < kEnough || 2 * known + (alike ? 1 : 0) <= most) continue;
+    best = one, most = 2 * known + (alike ? 1 : 0);
+  }
+  return best;
+}
+
 }  // namespace
 
 std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceReference& reference, host::Catalog& catalog,
@@ -100,8 +129,9 @@ std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceRefer
 
   auto found = catalog.device(text.module);
   if (!found) {
-    in.problem(*root.find("module"), "module", found.error());
-    const std::string meant = nearest(text.module, catalog.names(host::Kind::kDevice));
+    const std::string meant = moduleMeant(text.module, text.parameters, catalog);
+    in.problem(*root.find("module"), "module",
+               found.error() + (meant.empty() ? "" : "\n  the parameters are judged as those of " + meant));
     if (!meant.empty()) found = catalog.device(meant);  // to find the other problems, too
     if (!found) return std::nullopt;
     device.module = meant;

@@ -45,6 +45,13 @@ std::string countText(const host::ParamInfo& p) {
 
 }  // namespace
 
+/// Returns the index of the choice that a misspelt one probably means.
+static std::optional<double> choiceMeant(const std::string& word, const std::vector<std::string>& choices) {
+  const std::string meant = document::nearest(word, choices);
+  if (meant.empty()) return std::nullopt;
+  return static_cast<double>(std::find(choices.begin(), choices.end(), meant) - choices.begin());
+}
+
 /// Returns the number in the range that is nearest to what was given, for drafts of files with problems; 0 for what is
 /// no number.
 static double heldIn(const Node& node, const Range& range) {
@@ -145,7 +152,10 @@ bool ParameterReader::readValue(const Node& node, const std::string& key, const 
       if (const auto flag = in_->boolean(node, key)) number = *flag ? 1 : 0;
       break;
     case HSP_ENUM:
-      if (const auto index = in_->choice(node, key, param.choices)) number = static_cast<double>(*index);
+      if (const auto index = in_->choice(node, key, param.choices))
+        number = static_cast<double>(*index);
+      else if (node.isScalar())  // for drafts of files with problems
+        number = choiceMeant(node.scalar, param.choices);
       break;
     case HSP_PATH:
       return readPath(node, key, value);

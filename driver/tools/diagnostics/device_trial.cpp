@@ -154,6 +154,7 @@ document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& c
   if (!root) return problems;
   const Node* parameters = root->find("parameters");
   checkEnableButton(*root, file.string(), problems);
+  checkHd(*root, file.string(), problems);
   if (parameters != nullptr && !trial.error.empty())
     placeComplaints(trial.error, *parameters, *root, file.string(), known, problems);
   else if (!trial.error.empty() && known.empty())

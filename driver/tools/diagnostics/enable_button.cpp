@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <set>
 
@@ -27,6 +28,27 @@ std::optional<std::set<int>> buttonsIn(const Node& root) {
   return buttons;
 }
 
+/// Returns the number of joints in the fields of both reports; 0 if the file describes none.
+int jointsIn(const Node& root) {
+  int most = 0;
+  for (const char* report : {"input", "output"}) {
+    const Node* fields = find(root, {"parameters", "wire", report, "fields"});
+    if (fields == nullptr || !fields->isSequence()) continue;
+    for (const Node& field : fields->items) {
+      const Node* joint = find(field, {"joint"});
+      const double number = joint != nullptr ? document::toNumber(joint->scalar).value_or(0) : 0;
+      if (number >= 1 && number <= 16) most = std::max(most, static_cast<int>(number));
+    }
+  }
+  return most;
+}
+
+/// Returns the whole number of a node, or -1.
+int wholeOf(const Node& node) {
+  const double number = node.isScalar() ? document::toNumber(node.scalar).value_or(-1) : -1;
+  return number >= 0 && number <= 1000 ? static_cast<int>(number) : -1;
+}
+
 }  // namespace
 
 std::string enableButtonText(int button) {
@@ -46,6 +68,29 @@ void checkEnableButton(const Node& root, const std::string& file, document::Prob
                    fmt::format("wire.input has no button {:g} (counted from 0), so forces could never be enabled; in "
                                "wire.input, buttons count from 1; expected {}",
                                number, expected));
+}
+
+void checkHd(const Node& root, const std::string& file, document::Problems& problems) {
+  const Node *joints = find(root, {"hd", "joints"}), *buttons = find(root, {"hd", "buttons"});
+  const int count = jointsIn(root);
+  for (size_t i = 0; joints != nullptr && joints->isSequence() && count > 0 && i < joints->items.size(); ++i) {
+    const Node& row = joints->items[i];
+    if (!row.isSequence() || row.items.empty() || wholeOf(row.items[0]) < count || wholeOf(row.items[0]) > 15) continue;
+    document::report(problems, file, row.items[0].line, row.items[0].column, fmt::format("hd.joints[{}][0]", i),
+                     fmt::format("the arm has no joint {} (counted from 0): wire has {} joints, so expected 0 to {}",
+                                 wholeOf(row.items[0]), count, count - 1));
+  }
+  const auto known = buttonsIn(root);
+  const int most = known && !known->empty() ? *known->rbegin() : 0;
+  for (size_t i = 0; buttons != nullptr && buttons->isSequence() && known && i < buttons->items.size(); ++i) {
+    const Node& button = buttons->items[i];
+    if (wholeOf(button) < most || wholeOf(button) > 31) continue;
+    document::report(problems, file, button.line, button.column, fmt::format("hd.buttons[{}]", i),
+                     fmt::format("the arm has no {}; ", enableButtonText(wholeOf(button))) +
+                         (most == 0   ? "wire.input has no button: remove this one"
+                          : most == 1 ? "expected 0, its only button"
+                                      : fmt::format("expected 0 to {}", most - 1)));
+  }
 }
 
 }  // namespace hapticd::diagnostics

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Checks whether an arm has the enable (dead-man) button that its device file asks for.
+/// Checks whether an arm has the enable (dead-man) button, and the joints and buttons of HDAPI programs, that its
+/// device file asks for.
 #pragma once
 #include <string>
 
@@ -10,6 +11,9 @@ namespace hapticd::diagnostics {
 /// [main] Adds a problem if no field of parameters.wire.input is the button limits.enable.button. A file without a wire
 /// format does not describe its buttons, so only `run` can check it.
 void checkEnableButton(const document::Node& root, const std::string& file, document::Problems& problems);
+
+/// [main] Adds a problem for each joint and button in hd that the wire format of the arm lacks.
+void checkHd(const document::Node& root, const std::string& file, document::Problems& problems);
 
 /// [any] Returns the name of a button: "button 0 (counted from 0; button: 1 of a wire format)".
 std::string enableButtonText(int button);

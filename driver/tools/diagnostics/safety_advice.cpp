@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -64,21 +65,30 @@ void noTorqueLimit(const File& file, const codec::Wire& wire, const host::Device
                      : ", such as 0.05 N m to begin with"));
 }
 
-/// Warns of opposite signs, because forces then pull the hand in instead of pushing it out.
+/// Warns of opposite signs, because forces then pull the hand in instead of pushing it out. A board may reverse a sign,
+/// so one warning for the whole arm is enough, and an arm that was tried has none.
 void oppositeSigns(const File& file, const codec::Wire& wire) {
   if (file.number("loader") > 0) return;  // the board of a Falcon reverses all three signs
+  if (file.number("device.verified") > 0) return;
   const Node* fields = find(file.root, {"parameters", "wire", "output", "fields"});
+  if (fields == nullptr) return;
+  std::optional<size_t> first;
+  std::string joints;
   for (const Field& in : wire.input.fields)
-    for (size_t i = 0; i < wire.output.fields.size() && fields != nullptr && i < fields->items.size(); ++i) {
+    for (size_t i = 0; i < std::min(wire.output.fields.size(), fields->items.size()); ++i) {
       const Field& out = wire.output.fields[i];
       if (in.role != Role::kPosition || out.role != Role::kTorque || in.index != out.index) continue;
       if (in.scale * out.scale > 0) continue;
-      file.warn(
-          fields->items[i], fmt::format("parameters.wire.output.fields[{}].scale", i),
-          fmt::format("the scale of this torque and the scale of the position of joint {} have opposite signs; unless "
-                      "the board reverses one of them, forces pull the hand in; check with a very small force first",
-                      in.index + 1));
+      joints += fmt::format("{}{}", first ? ", " : "", in.index + 1);
+      if (!first) first = i;
     }
+  if (first)
+    file.warn(
+        fields->items[*first], fmt::format("parameters.wire.output.fields[{}].scale", *first),
+        fmt::format("the scale of this torque and the scale of the position of joint {} have opposite signs; unless "
+                    "the board reverses one of them, forces pull the hand in; check with a very small force first, "
+                    "then set device.verified: true, and this warning ends",
+                    joints));
 }
 
 void slowWatchdog(const File& file, const codec::Wire& wire) {
@@ -98,6 +108,18 @@ void slowSamples(const File& file, const codec::Wire& wire) {
   const Node* rate = find(file.root, {"parameters", "wire", "rate"});
   if (const std::string slow = slownessOf(file.device, kServoAtItsBest); rate != nullptr && !slow.empty())
     file.warn(*rate, "parameters.wire.rate", fmt::format("{:g} Hz: ", wire.rate) + slow);
+}
+
+/// Warns of a time without reports that ends before the second report, because one late report then stops the motors.
+void soonStale(const File& file, const codec::Wire& wire) {
+  constexpr double kReports = 2;
+  const Node* stale = find(file.root, {"parameters", "health", "stale"});
+  const double time = file.number("health.stale");
+  if (stale == nullptr || !(time > 0) || !(time * wire.rate < kReports)) return;
+  file.warn(*stale, "parameters.health.stale",
+            fmt::format("{:g} s is shorter than two reports at {:g} Hz, so one late report switches the motors off; "
+                        "expected the time of several reports, such as {:.2g}",
+                        time, wire.rate, std::min(0.018, std::max(0.005, 5 / wire.rate))));
 }
 
 /// Warns of a missing calibration, because encoders that wrap have their zero wherever the arm was switched on.
@@ -193,6 +215,7 @@ void adviseSafety(const Node& root, const scene::Device& device, const host::Dev
   oppositeSigns(file, *wire);
   slowWatchdog(file, *wire);
   slowSamples(file, *wire);
+  soonStale(file, *wire);
   noCalibration(file, *wire);
   tooHeavy(file, arm);
   unusedKeys(file, wire->input, "input");

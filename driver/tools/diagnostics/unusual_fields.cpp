@@ -169,7 +169,7 @@ void coarseCounts(const Node& root, const Side& side, const host::DeviceInstance
 
 /// Warns if one count is a large angle, of an arm whose lengths are unknown.
 void coarseAngles(const Side& side) {
-  constexpr double kLarge = 0.02;  // [rad] 4 mm at a link of 0.2 m
+  constexpr double kLarge = 0.01;  // [rad] 2 mm at a link of 0.2 m
   for (const size_t i : side.of({Role::kPosition})) {
     const Field& field = side.report.fields[i];
     if (field.type == codec::Type::kFloat || !(std::abs(field.scale) > kLarge) ||
