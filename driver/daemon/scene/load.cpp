@@ -14,6 +14,13 @@ void checkRoot(const Node& root, Reader& in, host::Catalog& catalog, std::option
   const Format* format = detail::formatOf(root);
   if (format == nullptr) {
     detail::hasFormat(root, nullptr, in);
+    const Node* models = root.isMap() ? root.find("models") : nullptr;
+    if (models == nullptr || !models->isSequence()) return;
+    Problems others;  // a list of models is of a scene, so the rest of it can be judged, too
+    Reader rest(in.file(), others);
+    detail::loadScene(root, rest, catalog, {.default_device = root.find("hand") != nullptr, .device_file = {}});
+    for (Problem& one : others)
+      if (document::nearest(one.key, {"hapticd"}).empty()) in.problems().push_back(std::move(one));
   } else if (format->table == &kSceneTable) {
     // If the scene names no arm, its hand is checked against the default arm of `hapticd run`.
     const bool default_arm = root.find("hand") != nullptr;

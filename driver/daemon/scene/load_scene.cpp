@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <map>
+#include <set>
 #include <string_view>
 #include <unordered_map>
 
@@ -112,12 +113,13 @@ class SceneLoader {
   }
 
   void addPath(const std::string& key, const Node* path, Model& model) {
-    if (path != nullptr && !model.kinematic)
-      return in_.problem(
+    if (path == nullptr) return;  // without a path, a kinematic model rests until a program leads it
+    if (!model.kinematic)
+      in_.problem(
           *path, key + ".path",
           "the model does not follow its path, because it is not kinematic; add motion: kinematic to the model");
-    if (!model.kinematic || path == nullptr) return;  // without a path, the model rests until a program leads it
-    if (const auto file = in_.existingFile(*path, key + ".path")) model.path = readKinematicPath(*file, in_.problems());
+    const auto file = in_.existingFile(*path, key + ".path");
+    if (file && model.kinematic) model.path = readKinematicPath(*file, in_.problems());
   }
 
   /// Reads `clients`: a mode alone, or a mapping that contains the mode.
@@ -141,6 +143,13 @@ class SceneLoader {
       in_.problem(*text_.hand, "hand",
                   "none of the scene's devices has a simulated hand; remove this key, or use a device whose module has "
                   "hand.* parameters");
+    if (text_.hand != nullptr && scene_.devices.empty() && !hand_used_) checkHandPath(*text_.hand);
+  }
+
+  /// Without a device, nothing reads the keys of the hand, but whether the file of its path exists can be told.
+  void checkHandPath(const Node& hand) {
+    const Node* path = hand.isMap() ? hand.find("path") : nullptr;
+    if (path != nullptr) in_.existingFile(*path, "hand.path");
   }
 
   void addList(const Node& list) {
@@ -159,14 +168,13 @@ class SceneLoader {
       in_.object(node, key, kDeviceReferenceTable, &reference);
     else if (const auto file = in_.existingFile(node, key))
       reference.file = *file;
-    if (in_.problems().size() != before) return;
-    if (const std::string name = addDevice(reference); !name.empty()) checkDeviceName(name, node, key);
+    const bool is_right = in_.problems().size() == before;
+    const std::string name = is_right ? addDevice(reference) : reference.name;
+    if (!name.empty()) checkDeviceName(name, node, key);
   }
 
   void checkDeviceName(const std::string& name, const Node& node, const std::string& key) {
-    size_t same = 0;
-    for (const Device& device : scene_.devices) same += device.name == name ? 1 : 0;
-    if (same > 1)
+    if (!device_names_.insert(name).second)
       in_.problem(node, key,
                   "another device is named \"" + name +
                       "\" too, expected different names: write {file: FILE, name: NAME} in place of one path");
@@ -203,6 +211,7 @@ class SceneLoader {
   Scene scene_;
   std::unordered_map<std::string, int> names_;
   std::map<std::string, Known> plugins_;
+  std::set<std::string> device_names_;  ///< also of devices that have problems
   bool hand_used_ = false;
 };
 

@@ -175,7 +175,11 @@ document::Problems hastyHands(const scene::Scene& scene, const UnreadKeys& unrea
     if (!hand) continue;
     const bool wide = judgeSweep(device, *hand, unread, warnings);
     const size_t before = warnings.size();
-    if (!wide && !unread.has("hand")) {
+    if (wide && hand->sweep <= 360 && !unread.has("hand")) {  // judged as it is once its sweep is mended
+      HandScript mended = *hand;
+      mended.sweep *= std::numbers::pi / 180;
+      judgeSpeed(scene, device, mended, warnings);
+    } else if (!wide && !unread.has("hand")) {
       judgeSpeed(scene, device, *hand, warnings);
       judgeCrawl(scene, device, *hand, warnings);
     }
