@@ -29,7 +29,7 @@ std::optional<std::set<int>> buttonsIn(const Node& root) {
 }
 
 /// Returns the number of joints in the fields of both reports; 0 if the file describes none.
-int jointsIn(const Node& root) {
+int wiredJoints(const Node& root) {
   int most = 0;
   for (const char* report : {"input", "output"}) {
     const Node* fields = find(root, {"parameters", "wire", report, "fields"});
@@ -72,7 +72,7 @@ void checkEnableButton(const Node& root, const std::string& file, document::Prob
 
 void checkHd(const Node& root, const std::string& file, document::Problems& problems) {
   const Node *joints = find(root, {"hd", "joints"}), *buttons = find(root, {"hd", "buttons"});
-  const int count = jointsIn(root);
+  const int count = wiredJoints(root);
   for (size_t i = 0; joints != nullptr && joints->isSequence() && count > 0 && i < joints->items.size(); ++i) {
     const Node& row = joints->items[i];
     if (!row.isSequence() || row.items.empty() || wholeOf(row.items[0]) < count || wholeOf(row.items[0]) > 15) continue;
