@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "kernels/medial/passive.hpp"
@@ -45,9 +46,14 @@ bool alike(const Place& a, const Group& b) {
          near(a.tissue.damping, b.tissue.damping) && near(a.tissue.mass, b.tissue.mass);
 }
 
+/// Returns what distinguishes materials, the stiffness first.
+auto materialOf(const Place& one) {
+  return std::tuple{one.felt.told, one.felt.felt, one.felt.deep, one.tissue.damping, one.tissue.mass};
+}
+
 /// Groups places with the same material, the stiffest first.
 std::vector<Group> grouped(std::vector<Place> all) {
-  std::stable_sort(all.begin(), all.end(), [](const Place& a, const Place& b) { return a.felt.told > b.felt.told; });
+  std::sort(all.begin(), all.end(), [](const Place& a, const Place& b) { return materialOf(a) > materialOf(b); });
   std::vector<Group> groups;
   for (const Place& one : all) {
     if (groups.empty() || !alike(one, groups.back())) groups.push_back({0, one.felt, one.tissue});
