@@ -67,6 +67,7 @@ void readFields(const Tree& fields, size_t joints, bool input, bool sized, Repor
     report.fields.push_back(read.field);
     placed.push_back(read.placed && read.target_known && sized);
   }
+  report.whole = all_known && fields.exists();
   if (fields.exists()) checkOverlaps(fields, report, placed);
   if (!all_known || !fields.exists()) return;
   if (joints == 0) joints = jointsNamed(report, input ? Role::kPosition : Role::kTorque);
