@@ -27,7 +27,7 @@ Vector3d vector(const std::array<double, 3>& from) {
 
 /// Expands a list to one number per joint. The list has one number per joint, or one number for all joints; if it is
 /// empty, `fallback` is used.
-JointVector perJoint(const std::vector<double>& from, int count, double fallback, const char* id) {
+JointVector listOf(const std::vector<double>& from, int count, double fallback, const char* id) {
   if (from.empty()) return JointVector::Constant(count, fallback);
   if (from.size() == 1) return JointVector::Constant(count, from[0]);
   if (from.size() != static_cast<size_t>(count))
@@ -92,27 +92,34 @@ kinematics::PhantomGeometry phantomOf(const Parameters& p) {
 
 JointSettings jointsOf(const Parameters& p, int count) {
   const bool premium = p.arm() == Kind::kPremium15;
-  JointVector gear = perJoint(p.gear, count, 1, "joint.gear");
+  kinematics::Complaints wrong;
+  const auto perJoint = [&](const std::vector<double>& values, double otherwise, const char* name) {
+    JointVector list = JointVector::Ones(count);
+    wrong.attempt([&] { list = listOf(values, count, otherwise, name); });
+    return list;
+  };
+  JointVector gear = perJoint(p.gear, 1, "joint.gear");
   if (premium && p.gear.empty()) gear = kPremiumGear;
   JointSettings joints;
-  const JointVector counts = perJoint(p.counts, count, premium ? kPremiumCounts : 0, "joint.counts");
-  const JointVector rotor = perJoint(p.rotor, count, premium ? kPremiumRotor : 0, "joint.rotor");
-  const JointVector torque = perJoint(p.max_torque, count, premium ? kPremiumStall : 100, "joint.max_torque");
+  const JointVector counts = perJoint(p.counts, premium ? kPremiumCounts : 0, "joint.counts");
+  const JointVector rotor = perJoint(p.rotor, premium ? kPremiumRotor : 0, "joint.rotor");
+  const JointVector torque = perJoint(p.max_torque, premium ? kPremiumStall : 100, "joint.max_torque");
   if (!p.arm_torque.empty() && !p.max_torque.empty())
-    throw std::invalid_argument("arm.max_torque and joint.max_torque are both given; remove one of the two");
+    wrong.add("arm.max_torque and joint.max_torque are both given; remove one of the two");
   joints.step = joints.rotor = joints.max_torque = JointVector::Zero(count);
   for (int i = 0; i < count; ++i) {
     joints.step[i] = counts[i] > 0 ? 2 * M_PI / (counts[i] * gear[i]) : 0;
     joints.rotor[i] = rotor[i] * gear[i] * gear[i];
     joints.max_torque[i] = torque[i] * gear[i];
   }
-  if (!p.arm_torque.empty()) joints.max_torque = perJoint(p.arm_torque, count, 0, "arm.max_torque");
-  joints.damping = perJoint(p.damping, count, premium ? kPremiumDamping : 0, "joint.damping");
-  joints.friction = perJoint(p.friction, count, premium ? kPremiumFriction : 0, "joint.friction");
+  if (!p.arm_torque.empty()) joints.max_torque = perJoint(p.arm_torque, 0, "arm.max_torque");
+  joints.damping = perJoint(p.damping, premium ? kPremiumDamping : 0, "joint.damping");
+  joints.friction = perJoint(p.friction, premium ? kPremiumFriction : 0, "joint.friction");
   if (!p.stiffness.empty()) {
-    joints.stiffness = perJoint(p.stiffness, count, 0, "joint.stiffness");
-    joints.rate_damping = perJoint(p.rate_damping, count, 0, "joint.rate_damping");
+    joints.stiffness = perJoint(p.stiffness, 0, "joint.stiffness");
+    joints.rate_damping = perJoint(p.rate_damping, 0, "joint.rate_damping");
   }
+  wrong.check();
   joints.motor_lag = p.motor_lag;
   joints.friction_speed = p.friction_speed;
   return joints;
@@ -187,8 +194,7 @@ std::unique_ptr<kinematics::Arm> makeArm(const Parameters& p) {
       arm = std::make_unique<kinematics::Phantom>(makePhantom(p));
   });
   const int joints = p.arm() == Kind::kChain ? static_cast<int>(p.dh.size() / 4) : kOfPhantom;
-  // If nothing is wrong so far, open() reports what is wrong with the joints.
-  if (!wrong.none() && joints > 0) wrong.attempt([&] { (void)jointsOf(p, joints); });
+  if (joints > 0) wrong.attempt([&] { (void)jointsOf(p, joints); });
   wrong.check();
   return arm;
 }

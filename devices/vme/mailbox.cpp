@@ -18,15 +18,13 @@ bool nobody(std::span<const uint8_t> bytes) noexcept {
   return std::all_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte == 0xff; });
 }
 
-}  // namespace
-
-Result<void> check(const MailboxPlace& place, const codec::Wire& wire) {
-  if (auto fits = check(place.window); !fits) return fits;
+/// Checks the two blocks. @param sized false if the size of the window is wrong, so that nothing can be beyond its end
+Result<void> checkBlocks(const MailboxPlace& place, const codec::Wire& wire, bool sized) {
   const uint64_t in = wire.input.size, out = wire.output.size, width = place.window.width;
   const auto outside = [&](uint64_t at, uint64_t bytes) {
     return at > place.window.size || bytes > place.window.size - at;
   };
-  if (outside(place.state, in) || outside(place.command, out))
+  if (sized && (outside(place.state, in) || outside(place.command, out)))
     return Error{"vme.state, vme.command: the blocks end beyond the window's " + std::to_string(place.window.size) +
                  " bytes; correct the offsets, or make vme.size larger"};
   if (place.state < place.command + out && place.command < place.state + in)
@@ -38,6 +36,15 @@ Result<void> check(const MailboxPlace& place, const codec::Wire& wire) {
   if (wire.framing.used || wire.input.id >= 0 || wire.output.id >= 0 || !wire.startup.empty())
     return Error{"wire: has framing, startup or a report id, which a mailbox on a bus cannot use\n  fix: remove them"};
   return {};
+}
+
+}  // namespace
+
+Result<void> check(const MailboxPlace& place, const codec::Wire& wire) {
+  const auto window = check(place.window);
+  auto blocks = checkBlocks(place, wire, static_cast<bool>(window));
+  if (window || blocks) return window ? blocks : window;
+  return Error{window.error() + "\n" + blocks.error()};  // one problem a line
 }
 
 void Mailbox::findNumbers(const codec::Report& report) {

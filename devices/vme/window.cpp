@@ -21,6 +21,14 @@ std::string hex(uint64_t number) {
   return text;
 }
 
+constexpr const char* kFolder = "/dev/bus/vme/";
+
+/// Tells whether a device node is one of the four windows to the bus that vme_user has.
+bool isMaster(const std::string& node) {
+  const std::string name = node.substr(std::strlen(kFolder));
+  return name.size() == 2 && name[0] == 'm' && name[1] >= '0' && name[1] <= '3';
+}
+
 int bitsOf(uint32_t space) {
   return space == kA16 ? 16 : space == kA24 ? 24 : 32;
 }
@@ -53,10 +61,15 @@ std::string describe(const Place& place) {
 }
 
 Result<void> check(const Place& place) {
+  std::string wrong;  // one problem a line
+  const auto add = [&](const std::string& what) { wrong += (wrong.empty() ? "" : "\n") + what; };
+  if (place.node.starts_with(kFolder) && !isMaster(place.node))
+    add("vme.window: " + place.node + ", expected /dev/bus/vme/m0 to m3: vme_user has four windows to the bus");
   if (place.address % kGranule != 0)
-    return Error{"vme.address: " + hex(place.address) + ", expected a multiple of 64 KiB, as the bridge needs it"};
+    add("vme.address: " + hex(place.address) + ", expected a multiple of 64 KiB, as the bridge needs it");
   if (place.size == 0 || place.size % kGranule != 0)
-    return Error{"vme.size: " + hex(place.size) + ", expected a multiple of 64 KiB, and 64 KiB at least"};
+    add("vme.size: " + hex(place.size) + ", expected a multiple of 64 KiB, and 64 KiB at least");
+  if (!wrong.empty()) return Error{wrong};
   const uint64_t end = uint64_t{1} << bitsOf(place.space);
   if (place.address >= end || place.size > end - place.address)
     return Error{"vme.address: the window of " + hex(place.size) + " bytes at " + hex(place.address) +

@@ -51,7 +51,9 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 }
 
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
-  const std::string_view own = word.substr(word.rfind('.') + 1);  // without the names of groups
+  const size_t point = word.rfind('.');
+  const bool decimal = point != word.npos && point > 0 && std::isdigit(static_cast<unsigned char>(word[point - 1]));
+  const std::string_view own = decimal ? word : word.substr(point + 1);  // without groups; premium1.5 has none
   for (const std::string_view key : {word, own})
     if (const std::string slip = keyMeant(key); !slip.empty()) return slip;
   const std::string meant = nearest(word, candidates);

@@ -76,6 +76,7 @@ struct Report {
   int id = -1;      ///< HID report id, which comes before the other bytes; -1 if there is none
   size_t size = 0;  ///< bytes without the id
   std::vector<Field> fields;
+  bool whole = false;  ///< each field was read: what none of them is, the report does not have
   size_t bytes() const noexcept { return size + (id >= 0 ? 1 : 0); }
 };
 

@@ -48,9 +48,18 @@ void requireEach(const Tree& fields, const Report& report, size_t joints, Role r
   }
 }
 
-/// Reads the fields. If all of them are known, also checks that no field that an arm needs is missing.
+/// Returns the number of joints that the fields of this role name.
+size_t jointsNamed(const Report& report, Role role) {
+  size_t joints = 0;
+  for (const Field& field : report.fields)
+    if (field.role == role) joints = std::max<size_t>(joints, field.index + size_t{1});
+  return joints;
+}
+
+/// Reads the fields. If all of them are known, also checks that no field that an arm needs is missing. Where the number
+/// of joints is not known, it is the highest one that the fields name.
 void readFields(const Tree& fields, size_t joints, bool input, bool sized, Report& report) {
-  bool all_known = joints > 0;
+  bool all_known = true;
   std::vector<bool> placed;
   for (size_t i = 0; i < fields.count(); ++i) {
     const ReadField read = readField(fields.item(i), report, joints, input);
@@ -58,8 +67,10 @@ void readFields(const Tree& fields, size_t joints, bool input, bool sized, Repor
     report.fields.push_back(read.field);
     placed.push_back(read.placed && read.target_known && sized);
   }
+  report.whole = all_known && fields.exists();
   if (fields.exists()) checkOverlaps(fields, report, placed);
   if (!all_known || !fields.exists()) return;
+  if (joints == 0) joints = jointsNamed(report, input ? Role::kPosition : Role::kTorque);
   requireEach(fields, report, joints, input ? Role::kPosition : Role::kTorque, input ? "position" : "torque");
   if (has(report, Role::kReference)) requireEach(fields, report, joints, Role::kReference, "reference");
   if (has(report, Role::kReference) != has(report, Role::kFollow))

@@ -172,7 +172,10 @@ class Arm : public Device, public Parameters {
     wrong.attempt([&] { checkCount("arm.max_torque", max_torque.size(), true); });
     if (method == static_cast<int>(Calibration::kPose) || !pose.empty())
       wrong.attempt([&] { checkCount("calibration.pose", pose.size(), false); });
-    if (wire_known) wrong.attempt([&] { takeWire(); });
+    if (wire_known)
+      wrong.attempt([&] { takeWire(); });
+    else
+      wrong.attempt([&] { needCalibrated(draft()); });
     wrong.attempt([&] { takeFirmware(); });
     wrong.check();
     for (size_t i = 0; i < joints_; ++i) limit_[i] = max_torque[max_torque.size() == 1 ? 0 : i];
@@ -189,14 +192,25 @@ class Arm : public Device, public Parameters {
   void takeWire() {
     velocity_ = torque_ = follows_ = false;
     for (const codec::Field& field : wire_.output.fields) follows_ = follows_ || field.role == codec::Role::kFollow;
-    bool says_calibrated = false;
     for (const codec::Field& field : wire_.input.fields) {
       velocity_ = velocity_ || field.role == codec::Role::kVelocity;
       torque_ = torque_ || field.role == codec::Role::kTorque;
-      says_calibrated = says_calibrated || field.role == codec::Role::kCalibrated;
     }
-    if (method == static_cast<int>(Calibration::kDevice) && !says_calibrated)
-      throw std::invalid_argument("calibration.method: device, but no field of wire.input is \"calibrated\"");
+    needCalibrated(wire_);
+  }
+
+  /// Returns as much of a wire format with mistakes as can be read; they have been noted before.
+  codec::Wire draft() const {
+    codec::Wire read;
+    kinematics::Complaints noted;
+    noted.attempt([&] { read = codec::draftOfWire(wire, joints_); });
+    return read;
+  }
+
+  void needCalibrated(const codec::Wire& read) const {
+    bool said = method != static_cast<int>(Calibration::kDevice) || !read.input.whole;
+    for (const codec::Field& field : read.input.fields) said = said || field.role == codec::Role::kCalibrated;
+    if (!said) throw std::invalid_argument("calibration.method: device, but no field of wire.input is \"calibrated\"");
   }
 
   void takeFirmware() {

@@ -117,7 +117,8 @@ std::unique_ptr<kinematics::Arm> mechanism(const MechanismParameters& p) {
 size_t jointsOf(const MechanismParameters& p) {
   constexpr size_t kOfOthers = 3;  // phantom and delta
   if (static_cast<Kind>(p.kind) != Kind::kChain) return kOfOthers;
-  return p.dh.empty() ? 0 : p.dh.size() / 4 + static_cast<size_t>(p.others);
+  if (p.dh.empty()) return p.limits.size() / 2;  // a mistake, but arm.limits may tell how many joints were meant
+  return p.dh.size() / 4 + static_cast<size_t>(p.others);
 }
 
 std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p) {

@@ -90,21 +90,29 @@ size_t knownKeys(const Node& node, const std::string& key, const host::ClassInfo
   return count;
 }
 
+/// Tells whether one name is the beginning or the end of the other: hid means usb_hid, and vme_bus means vme.
+bool partOf(const std::string& a, const std::string& b) {
+  const std::string &part = a.size() < b.size() ? a : b, &whole = a.size() < b.size() ? b : a;
+  return part.size() > 2 && (whole.starts_with(part) || whole.ends_with(part));
+}
+
 /// Returns the module that an unknown name probably means, to find the other problems of the file, too: the one with
-/// the nearest name, else the one that knows most of the given parameters; "" if none knows at least three.
+/// the nearest name, else one that shares a part of its name, else the one that knows most of the given parameters, if
+/// it knows at least three. A shared part alone counts less than three known parameters.
 std::string moduleMeant(const std::string& name, const Node* parameters, host::Catalog& catalog) {
-  constexpr size_t kEnough = 3;
+  constexpr size_t kEnough = 3, kAlike = 1000;  // known parameters; more than a file has
   const std::vector<std::string> names = catalog.names(host::Kind::kDevice);
   std::string best = nearest(name, names);
   if (!best.empty() || parameters == nullptr) return best;
-  size_t most = 2 * kEnough - 1;
+  size_t most = 0;
   for (const std::string& one : names) {
     const auto info = catalog.device(one);
     if (!info) continue;
-    const size_t known = knownKeys(*parameters, "", **info);
-    const bool alike = name.size() > 2 && one.find(name) != std::string::npos;  // hid means usb_hid
-    if (known < kEnough || 2 * known + (alike ? 1 : 0) <= most) continue;
-    best = one, most = 2 * known + (alike ? 1 : 0);
+    const bool alike = partOf(name, one);
+    size_t known = knownKeys(*parameters, "", **info);
+    if (known < kEnough) known = alike ? 1 : 0;
+    if (alike && known >= kEnough) known += kAlike;
+    if (known > most) best = one, most = known;
   }
   return best;
 }

@@ -128,10 +128,13 @@ bool kinematicsKnown(const document::Problems& known) {
 size_t jointsIn(const Node& root) {
   constexpr size_t kOfOthers = 3;
   const Node *kind = find(root, {"parameters", "arm", "kind"}), *rows = find(root, {"parameters", "arm", "dh"}),
-             *others = find(root, {"parameters", "arm", "others"});
+             *others = find(root, {"parameters", "arm", "others"}),
+             *limits = find(root, {"parameters", "arm", "limits"});
   if (kind == nullptr) return 0;
   if (kind->scalar == "phantom" || kind->scalar == "premium15" || kind->scalar == "delta") return kOfOthers;
-  if (kind->scalar != "chain" || rows == nullptr) return 0;
+  if (kind->scalar != "chain") return 0;
+  if (rows == nullptr)  // a mistake, but arm.limits may tell how many joints were meant
+    return limits != nullptr && limits->isSequence() ? std::min<size_t>(limits->items.size(), HDV_MAX_JOINTS) : 0;
   const double more = others != nullptr ? document::toNumber(others->scalar).value_or(0) : 0;
   return std::min<size_t>(rows->items.size() + static_cast<size_t>(std::clamp(more, 0.0, 16.0)), HDV_MAX_JOINTS);
 }

@@ -66,10 +66,12 @@ void motorsBeyondAll(const Node& root, const scene::Device& device, double reach
   double most = 600;  // [N mm] as an example
   if (torques != nullptr && !torques->numbers.empty())
     most = *std::max_element(torques->numbers.begin(), torques->numbers.end());
+  const std::string allowed =  // a wrong limit is told elsewhere, and was not read
+      device.limits.force > 0 ? fmt::format(", but limits.force allows only {:g} N", device.limits.force) : "";
   document::report(warnings, device.file.string(), at->line, at->column, "parameters.arm.max_torque",
-                   fmt::format("these torques give {:.3g} N at the tip, but limits.force allows only {:g} N; torques "
-                               "must be in N m, here and in the scales of the torques: {:g} N mm is {:g} N m",
-                               reach, device.limits.force, most, most / 1000));
+                   fmt::format("these torques give {:.3g} N at the tip{}; torques must be in N m, here and in the "
+                               "scales of the torques: {:g} N mm is {:g} N m",
+                               reach, allowed, most, most / 1000));
 }
 
 /// Moves joints between their stops: those of a simulated chain to the middle, where it begins, and others to the

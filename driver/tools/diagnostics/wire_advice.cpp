@@ -76,6 +76,33 @@ Odd oddTorque(const Field& field, double most, bool scaled) {
                       range, most, step * most / std::max(range, 1e-300))};
 }
 
+/// Warns once at arm.max_torque if every torque field ends far below it, because N mm were meant there. Returns true if
+/// max_torque is wrong in this way, so that the scales must not be judged by it.
+bool maxTorqueTooLarge(const Node& root, const codec::Report& report, const scene::Device& device,
+                       document::Problems& warnings) {
+  constexpr double kTimes = 100;  // factor between N mm and N m is 1000, and fields have room
+  size_t beyond = 0, torques = 0;
+  double largest = 0;
+  for (const Field& field : report.fields) {
+    if (field.role != Role::kTorque) continue;
+    const double most = maxTorque(device, field.index);
+    const double range = rangeOf(field, field.least, field.most);
+    ++torques, beyond += range > 0 && range * kTimes <= most ? 1 : 0;
+    largest = std::max(largest, most);
+  }
+  const Node* at = find(root, {"parameters", "arm", "max_torque"});
+  if (torques < 2 || beyond != torques || at == nullptr) return false;
+  const std::string key = "parameters.arm.max_torque";
+  if (std::any_of(warnings.begin(), warnings.end(), [&](const document::Problem& one) { return one.key == key; }))
+    return true;
+  document::report(
+      warnings, device.file.string(), at->line, at->column, key,
+      fmt::format("no torque field of wire.output reaches a hundredth of these torques; the values must be "
+                  "in N m: {:g} N mm is {:g} N m",
+                  largest, largest / 1000));
+  return true;
+}
+
 void adviseTorques(const Node& fields, const codec::Report& report, const scene::Device& device,
                    document::Problems& warnings) {
   for (size_t i = 0; i < report.fields.size() && i < fields.items.size(); ++i) {
@@ -188,7 +215,7 @@ void adviseWire(const Node& root, const scene::Device& device, size_t joints, do
   const Node* out = find(root, {"parameters", "wire", "output", "fields"});
   const auto wire = wireDraftOf(device, joints);
   if (!wire || in == nullptr || out == nullptr) return;
-  adviseTorques(*out, wire->output, device, warnings);
+  if (!maxTorqueTooLarge(root, wire->output, device, warnings)) adviseTorques(*out, wire->output, device, warnings);
   adviseGaps(*in, wire->input, device, warnings);
   if (!wireOf(device, joints)) return;  // a field with a mistake may lie elsewhere
   adviseChecksum(*in, wire->input, "input", device, warnings);

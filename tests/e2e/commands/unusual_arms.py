@@ -74,6 +74,7 @@ CHAIN = WIRED.replace("""    kind: phantom
       - [0.2, 0, 0, 0]
 """).replace("workspace: 0.3, ", "")
 PREMIUM = open(os.path.join(SOURCE, "config", "devices", "simulated-premium15.yaml")).read()
+SARCOS = open(os.path.join(SOURCE, "config", "devices", "sarcos.yaml")).read()
 IN, OUT = "parameters.wire.input.fields", "parameters.wire.output.fields"
 READ = "joint: {0}, at: {1}, type: i16, scale: 9.6e-5"
 SENT = "joint: {0}, at: {1}, type: i16, scale: 2.0e-5"
@@ -223,16 +224,40 @@ TOGETHER = [
      {"arm.kind": "did you mean \"delta\"", "arm.lengths": "expected 8"}),
     (WIRED, {READ.format(3, 6): READ.format(2, 6)},
      {"wire.input.fields[3].joint": "fields[2] is the position of joint 2 already", "wire.input.fields": "no position of joint 3"}),
+    (CHAIN, {ROWS: "", "    dh:\n": "", READ.format(3, 6): READ.format(4, 6), FIRST_OUT: FIRST_OUT.replace("2.0e-5", "2.0")},
+     {"arm.dh": "empty", "wire.input.fields[3].joint": "from 1 to 3", "wire.output.fields[0].scale": "most torques would be sent as 0"}),
+    (CHAIN, {ROWS: "", "    dh:\n": "", "    limits: [[-1.2, 1.2], [-0.3, 0.9], [-1, 1]]\n": "", READ.format(3, 6): READ.format(4, 6)},
+     {"arm.dh": "empty", "wire.input.fields": "no position of joint 3"}),
+    (WIRED, {"module: usb_hid": "module: vme_bus", "watchdog: 0.02": "watchdog: 20"},
+     {"module": "judged as those of vme", "usb": "unknown parameter of vme", "vme.window": "missing", "wire.watchdog": "20 ms is 0.02 s"}),
+    ("hapticd-device: 1\nmodule: haply\nname: mine\nlimits: {force: -2}\nparameters: {url: localhost, rate: 5}\n", {},
+     {"module": "judged as those of haply_service", "limits.force": "out of range", "url": "unknown parameter", "rate": "out of range"}),
+    (SARCOS, {"/m0": "/m9", "size: 0x10000": "size: 0x100", "command: 0x100": "command: 0x020"},
+     {"vme.window": "expected /dev/bus/vme/m0 to m3", "vme.size": "multiple of 64 KiB", "vme.command": "overlaps the state block"}),
+    (PREMIUM, {"premium15}": "premium1.5}", "substep: 0.0002": "substep: 0.2"}, {"arm.kind": "did you mean \"premium15\"", "substep": "0.2 ms is 0.0002 s"}),
+    (WIRED, {"method: pose, pose: [0, 0, 0]": "method: device", SENT.format(3, 4): SENT.format(4, 4)},
+     {"calibration.method": "no field of wire.input", "wire.output.fields[2].joint": "from 1 to 3"}),
+    (TWIN_CHAIN, {"    dh:": "    masses: [1]\n    dh:", "parameters:\n": "parameters:\n  joint: {damping: [1, 1], friction: [0.1, 0.1], motor_lag: -1}\n"},
+     {"joint.motor_lag": "out of range", "joint.damping": "2", "joint.friction": "2", "arm.masses": "expected 3"}),
+]
+# The keys beside which nothing else may be told, because it would follow from the same mistake.
+ALONE = [
+    (WIRED, {"max_torque: [0.6]": "max_torque: [500]"}, ["parameters.arm.max_torque"]),
+    (WIRED, {"max_torque: [0.6]": "max_torque: [500]", "force: 2, ": "force: 5000, "}, ["limits.force", "parameters.arm.max_torque"]),
 ]
 
 
 def together(folder):
     files = []
-    for i, (text, changes, _) in enumerate(TOGETHER):
+    for i, (text, changes, _) in enumerate(TOGETHER + ALONE):
         file, _ = written(os.path.join(folder, f"together{i}.yaml"), text + "|", changes)
         files.append(file)
     done = subprocess.run([HAPTICD, "check", "--json", *files], capture_output=True, text=True, timeout=300)
     told = {one["file"]: one for one in json.loads(done.stdout)["files"]}
+    for file, (_, _, keys) in zip(files[len(TOGETHER):], ALONE):
+        all_told = told[file]["problems"] + told[file]["warnings"]
+        check(f"{os.path.basename(file)} tells nothing that follows", sorted(one["key"] for one in all_told) == keys
+              and not any("only 0 N" in one["what"] for one in all_told), all_told)
     for file, (_, _, wanted) in zip(files, TOGETHER):
         all_told = {w["key"]: w["what"] for w in told[file]["problems"] + told[file]["warnings"]}
         for key, word in wanted.items():
