@@ -29,6 +29,7 @@ TEST(Door, TellsTheStateOfTheTickThatGoesOn) {
   Memory memory;
   hapticd_bell bell{};
   std::vector<hapticd_state> states;
+  states.reserve(1000);  // the clock runs in the servo thread, which must not allocate
   Rig* running = nullptr;
   Rig rig(0, [&](Nanoseconds) {
     if (running != nullptr && running->loop->ticks() > 0) states.push_back(stateIn(memory));
