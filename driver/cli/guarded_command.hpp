@@ -4,7 +4,7 @@
 #pragma once
 #include <filesystem>
 
-#include "base/blame.hpp"
+#include "base/code_owner.hpp"
 #include "base/os.hpp"
 #include "watch/crash.hpp"
 #include "watch/ended.hpp"
@@ -18,7 +18,7 @@ class GuardedCommand {
   explicit GuardedCommand(const std::filesystem::path& dir = {}) : guard_(none_, dir) { os::prepareSignalStack(); }
 
  private:
-  Working working_{Worker::kMain};
+  WorkerScope working_{Worker::kMain};
   watch::Ended none_;
   watch::CrashGuard guard_;
 };

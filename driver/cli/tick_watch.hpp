@@ -22,14 +22,14 @@ class TickWatch {
     uint64_t ticks() const noexcept override { return OfflineTick::ended(); }
     Nanoseconds tickBegun() const noexcept override { return static_cast<Nanoseconds>(OfflineTick::current()); }
     Nanoseconds cpuTime() const noexcept override { return static_cast<Nanoseconds>(os::cpuTime(clock_)); }
-    const Owner* inServo() const noexcept override { return calledBy(Worker::kMain); }
+    const Owner* inServo() const noexcept override { return ownerOfWorker(Worker::kMain); }
 
    private:
     os::CpuClock clock_ = os::cpuClockOfThread();
   };
 
   static void end() noexcept {
-    if (const Owner* keeps = calledBy(Worker::kMain)) watch::dieOf("a step that did not come back", keeps);
+    if (const Owner* keeps = ownerOfWorker(Worker::kMain)) watch::dieOf("a step that did not come back", keeps);
   }
 
   Ticks ticks_;

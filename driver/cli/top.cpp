@@ -17,7 +17,7 @@
 
 #include "base/clock.hpp"
 #include "cli/command.hpp"
-#include "control/presence.hpp"
+#include "control/liveness.hpp"
 #include "diagnostics/client_advice.hpp"
 #include "host/class_table.hpp"
 #include "servo/safety/limiter.hpp"

@@ -81,8 +81,8 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
     return Error{who + "module '" + device.module + "' of " + device.library.string() +
                  " lacks a required function; expected all functions of version 1.0 of the interface"};
 
-  ownCode(reinterpret_cast<const void*>(found->create), instance->owner_);
-  const Calling calling(instance->owner_);
+  setCodeOwner(reinterpret_cast<const void*>(found->create), instance->owner_);
+  const OwnerScope calling(instance->owner_);
   instance->class_ = found;
   tellCall("create");
   instance->device_ = found->create(found, instance->services_.abi());
@@ -117,14 +117,14 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
 
 DeviceInstance::~DeviceInstance() {
   stop();
-  const Calling calling(owner_);
+  const OwnerScope calling(owner_);
   if (open_ && playback_ == nullptr) class_->close(device_);
   if (device_ != nullptr) class_->destroy(device_);
 }
 
 Result<void> DeviceInstance::open() {
   if (open_) return {};
-  const Calling calling(owner_);
+  const OwnerScope calling(owner_);
   const std::string who = "device '" + name_ + "': ";
   info_ = {};
   info_.struct_size = sizeof info_;
@@ -153,7 +153,7 @@ Result<void> DeviceInstance::start(const hdv_start& how) {
   const std::string who = "device '" + name_ + "': ";
   if (!open_) return Error{who + "is not open"};
   if (playback_ != nullptr) return {};
-  const Calling calling(owner_);
+  const OwnerScope calling(owner_);
   services_.forgetError();
   const hsp_status status = class_->start(device_, &how);
   if (status < 0) return Error{who + "cannot be started: " + reasonOf(status, services_)};
@@ -162,7 +162,7 @@ Result<void> DeviceInstance::start(const hdv_start& how) {
 }
 
 void DeviceInstance::stop() {
-  const Calling calling(owner_);
+  const OwnerScope calling(owner_);
   if (started_) class_->stop(device_);
   started_ = false;
 }

@@ -6,8 +6,8 @@
 namespace hapticd::servo {
 
 /// [any] Calls `done` every millisecond. Returns true once `done` returns true, and false after 2 s.
-template <class Done>
-bool waitUntil(Done&& done) {
+template <class JobResult>
+bool waitUntil(JobResult&& done) {
   constexpr Nanoseconds kPause = 1'000'000, kPatience = 2'000'000'000;
   RealClock clock(0);
   for (const Nanoseconds end = clock.now() + kPatience; clock.now() < end; clock.waitUntil(clock.now() + kPause))

@@ -43,7 +43,7 @@ class RequestHandler {
   /// waiting for other requests. @return the answer, or nothing if the line is not such a request
   std::optional<control::Reply> urgent(const control::Peer& peer, const std::string& line);
   /// [any] Called from the thread of answer(). Returns what depends on the peer's connection.
-  control::Standing standing(const control::Peer& peer) const { return {stays(peer), listeners_.count(peer.id) > 0}; }
+  control::KeepAlive keepAlive(const control::Peer& peer) const { return {stays(peer), listeners_.count(peer.id) > 0}; }
   /// [any] Called from the thread of answer(). Returns new events for a subscriber, one line each; "" if there are
   /// none.
   std::string news(const control::Peer& peer);

@@ -54,7 +54,7 @@ std::string noFifo(int priority, const std::error_code& code, bool hardware) {
 /// Returns the module whose code keeps the run from ending, or nullptr.
 const Owner* keepsTheEnd() {
   for (const Worker worker : {Worker::kServo, Worker::kMain, Worker::kSearch, Worker::kControl})
-    if (const Owner* owner = calledBy(worker)) return owner;
+    if (const Owner* owner = ownerOfWorker(worker)) return owner;
   return nullptr;
 }
 
@@ -92,7 +92,7 @@ Result<void> runInVirtualTime(Loop& loop, const watch::Watched& watched, const s
 }  // namespace
 
 Runner::~Runner() {
-  const Working working(Worker::kMain);
+  const WorkerScope working(Worker::kMain);
   watch::Ended ended;
   const watch::CrashGuard crash(ended, options_.state_dir);
   recorder_.reset();
@@ -199,7 +199,7 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
   Result<void> done;
   if (recorder_)
     if (const auto code = recorder_->start()) return Error{"cannot start the recording thread: " + code.message()};
-  const Working working(Worker::kMain);
+  const WorkerScope working(Worker::kMain);
   WatchedServo watched(*loop_, arms_, *telemetry_);
   const watch::CrashGuard crash(watched, options_.state_dir);
   os::prepareSignalStack();  // this thread may run searches, and so code of plugins
@@ -249,7 +249,7 @@ void Runner::lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::
 
 /// The function of the servo thread. @param runs false if the rights that the arms need are missing
 void Runner::serve(bool runs) {
-  const Working working(Worker::kServo);
+  const WorkerScope working(Worker::kServo);
   if (guard_ && runs) guard_->arm(true);
   if (runs) loop_->run();
   if (guard_ && loop_->silent()) guard_->arm(false);  // the last command was zero: no cut is needed

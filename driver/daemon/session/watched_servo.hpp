@@ -24,7 +24,7 @@ class WatchedServo final : public watch::Watched {
   Nanoseconds stopAsked() const noexcept override { return loop_.stopAsked(); }
   void cut(double stuck_for) noexcept override;
   bool cutLeft() const noexcept override;
-  const Owner* inServo() const noexcept override { return calledBy(Worker::kServo); }
+  const Owner* inServo() const noexcept override { return ownerOfWorker(Worker::kServo); }
   const void* blackBox() const noexcept override;
   size_t blackBoxBytes() const noexcept override;
 

@@ -6,8 +6,8 @@
 #include <atomic>
 #include <functional>
 
-#include "base/blame.hpp"
 #include "base/clock.hpp"
+#include "base/code_owner.hpp"
 #include "base/os.hpp"
 #include "sim/proximity.hpp"
 
@@ -50,7 +50,7 @@ class ProximityThread {
 
   void loop() {
     constexpr Nanoseconds kPoll = 1'000'000;  // longest delay of an urgent search
-    const Working working(Worker::kSearch);
+    const WorkerScope working(Worker::kSearch);
     RealClock clock(0);
     for (Nanoseconds next = clock.now(); !stop_;) {
       const Nanoseconds now = clock.waitUntil(clock.now() + kPoll);

@@ -45,8 +45,8 @@ const Owner* culpritOf(int signal, const siginfo_t& info, const void* context) n
   const bool own_fault = wordsOfCrash(signal) != nullptr && info.si_code > 0;
   const bool raised = info.si_code == SI_TKILL && info.si_pid == getpid();
   if (!own_fault && !raised) return nullptr;
-  if (const Owner* called = calledHere()) return called;
-  return isWorker() ? nullptr : ownerInterrupted(context);  // perhaps a thread that a plugin or module started
+  if (const Owner* called = currentOwner()) return called;
+  return isWorker() ? nullptr : interruptedOwner(context);  // perhaps a thread that a plugin or module started
 }
 
 /// True if malloc() or free() aborted because its own data were overwritten. The code that overwrote them has returned
@@ -107,7 +107,7 @@ void onStop(int signal, siginfo_t* info, void* context) {
   const bool own = info->si_code <= 0 && info->si_code != SI_TIMER && info->si_pid == getpid();
   if (own && watchedHere() != nullptr) dieOf(words(signal).text(), culpritOf(signal, *info, context));
   if (void (*former)(int) = os::formerStop(signal)) return former(signal);
-  const Owner* keeps = watchedHere() != nullptr ? calledHere() : nullptr;
+  const Owner* keeps = watchedHere() != nullptr ? currentOwner() : nullptr;
   if (keeps != nullptr) {
     Line line;
     addOwner(line.add("\nwarning: ended by ").add(words(signal).text()).add(" while "), *keeps).add(" was");
@@ -121,7 +121,7 @@ void onStop(int signal, siginfo_t* info, void* context) {
 /// run.
 void dieOfExit(const char* what) noexcept {
   if (prepared.leaving.load() || watchedHere() == nullptr) return;
-  const Owner* culprit = calledHere();
+  const Owner* culprit = currentOwner();
   if (culprit == nullptr && !isWorker()) culprit = ownerOnStack(__builtin_frame_address(0));
   dieOf(what, culprit);
 }

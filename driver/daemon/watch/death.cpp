@@ -207,7 +207,7 @@ void die(Watched* servo, const char* dir, const Cause& cause) noexcept {
     death.reason.add(cause.reason);
     death.culprit = cause.culprit;
     death.suspicion = cause.suspicion;
-    death.called = cause.culprit != nullptr && cause.culprit == calledHere();
+    death.called = cause.culprit != nullptr && cause.culprit == currentOwner();
     death.call = callNameHere();
   }
   for (size_t step = death.step++; step < std::size(kSteps); step = death.step++) kSteps[step](*servo);

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "base/blame.hpp"
 #include "base/clock.hpp"
+#include "base/code_owner.hpp"
 
 namespace hapticd::watch {
 

@@ -53,7 +53,7 @@ namespace {
 std::string baseOf(const std::string& name) {
   const std::string own = status::runtimeFolder(false) + "/" + name, system = "/run/hapticd/" + name;
   const auto isThere = [](const std::string& base) { return access((base + ".sock").c_str(), F_OK) == 0; };
-  return !isThere(own) && isThere(system) ? system : own;
+  return !fileExists(own) && fileExists(system) ? system : own;
 }
 
 /// Changes a message that mentions the option --name, which a program that uses this library may not have.

@@ -28,7 +28,7 @@ void runWatched(int how, const fs::path& dir) {
       std::make_unique<Flight>(std::move(*record::FlightRing::create(streams, record::About{})), rig.arms, 8));
   WatchedServo watched(*rig.loop, rig.arms, *rig.telemetry);
   watch::guardAgainstCrash(watched, dir);
-  const Working working(Worker::kServo);
+  const WorkerScope working(Worker::kServo);
   watch::Watchdog watchdog(watched, [&watched] { watch::dieOf("a step that did not come back", watched.inServo()); });
   if (watchdog.start(81)) _exit(3);
   os::prepareSignalStack();

@@ -311,7 +311,7 @@ TEST(CrashDeathTest, OneInsideTheCutOfTheMotorsStillEndsInQuarantine) {
   const auto crash = [&] {
     BadCut servo;
     guardAgainstCrash(servo, dir);
-    const Calling calling(ownerOf("bad", "model"));
+    const OwnerScope calling(ownerOf("bad", "model"));
     std::raise(SIGFPE);
   };
   EXPECT_EXIT(crash(), testing::ExitedWithCode(1), "SIGFPE.*\n.*switching the motors off crashed too");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "control/presence.hpp"
+#include "control/liveness.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool isThere(const std::string& file) {
+bool fileExists(const std::string& file) {
   std::error_code unknown;
   return fs::exists(fs::symlink_status(file, unknown));
 }
@@ -35,31 +35,31 @@ bool within(double seconds, Done&& done) {
 
 }  // namespace
 
-bool lives(const std::string& socket) {
+bool isAlive(const std::string& socket) {
   const std::string lock = fs::path(socket).replace_extension(".lock").string();
   const int fd = open(lock.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
   // Another user's lock file cannot be opened. Then the socket decides: a daemon removes it at its end.
-  if (fd < 0) return errno == EACCES && isThere(socket);
+  if (fd < 0) return errno == EACCES && fileExists(socket);
   const bool held = flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   close(fd);
   return held;
 }
 
 bool waitForEnd(const std::string& socket, double seconds) {
-  return within(seconds, [&] { return !lives(socket); });
+  return within(seconds, [&] { return !isAlive(socket); });
 }
 
 bool wasKilled(const std::string& socket) {
   constexpr double kAboutToEnd = 2;  // [s]
-  within(kAboutToEnd, [&] { return !isThere(socket) || !lives(socket); });
-  return isThere(socket) && !lives(socket);
+  within(kAboutToEnd, [&] { return !fileExists(socket) || !isAlive(socket); });
+  return fileExists(socket) && !isAlive(socket);
 }
 
-std::vector<std::string> running(const std::string& folder) {
+std::vector<std::string> runningDaemons(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".sock" && lives(entry.path().string()))
+    if (entry.path().extension() == ".sock" && isAlive(entry.path().string()))
       names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;

@@ -6,7 +6,7 @@
 
 namespace hapticd::kinematics {
 
-class Complaints {
+class ErrorCollector {
  public:
   /// [main] Calls `part`, and notes the message of a std::invalid_argument that it throws.
   template <class Part>
@@ -18,7 +18,7 @@ class Complaints {
     }
   }
   void add(const std::string& what) { all_ += (all_.empty() ? "" : "\n") + what; }
-  bool none() const { return all_.empty(); }
+  bool empty() const { return all_.empty(); }
   /// [main] Throws std::invalid_argument with all messages, one per line, if there are any.
   void check() const {
     if (!all_.empty()) throw std::invalid_argument(all_);

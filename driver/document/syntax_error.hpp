@@ -11,14 +11,14 @@ namespace hapticd::document {
 
 /// [any] Returns what is wrong with a text. @param place the place where the parser gave up
 /// @param words the parser's message
-Problem slipIn(const std::string& text, const Place& place, const std::string& words);
+Problem findSyntaxError(const std::string& text, const Place& place, const std::string& words);
 
 /// [any] Returns the text with an unknown alias (*name) replaced by the marked name that resembles it, so that the rest
 /// of the file can be read; "" if the parser gave up for another reason.
-std::string withAliasMeant(const std::string& text, const Place& place, const std::string& words);
+std::string withCorrectedAlias(const std::string& text, const Place& place, const std::string& words);
 
 /// [any] Returns a problem if the last text in quotes is never closed. The parser itself reports nothing then: it takes
 /// the end of the file for the closing quote.
-std::optional<Problem> openQuote(const std::string& text, const Place& last_quoted);
+std::optional<Problem> findOpenQuote(const std::string& text, const Place& last_quoted);
 
 }  // namespace hapticd::document

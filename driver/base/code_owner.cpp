@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "base/blame.hpp"
+#include "base/code_owner.hpp"
 
 #include <array>
 #include <cstdint>
@@ -43,17 +43,17 @@ const Owner* ownerOf(const std::string& module, const std::string& name, bool de
   return &known.try_emplace(key, Owner{module, name, device}).first->second;
 }
 
-Working::Working(Worker worker) noexcept : worker_(worker) {
+WorkerScope::WorkerScope(Worker worker) noexcept : worker_(worker) {
   t_works = true;
   workers[static_cast<int>(worker)].store(&detail::t_called);
 }
 
-Working::~Working() {
+WorkerScope::~WorkerScope() {
   t_works = false;
   workers[static_cast<int>(worker_)].store(nullptr);
 }
 
-const Owner* calledBy(Worker worker) noexcept {
+const Owner* ownerOfWorker(Worker worker) noexcept {
   const std::atomic<const Owner*>* called = workers[static_cast<int>(worker)].load();
   return called != nullptr ? called->load(std::memory_order_relaxed) : nullptr;
 }
@@ -62,7 +62,7 @@ bool isWorker() noexcept {
   return t_works;
 }
 
-void keepCode(const void* begin, const void* end) {
+void registerCode(const void* begin, const void* end) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   const size_t count = library_count.load();
@@ -72,7 +72,7 @@ void keepCode(const void* begin, const void* end) {
   library_count.store(count + 1);
 }
 
-void ownCode(const void* address, const Owner* owner) {
+void setCodeOwner(const void* address, const Owner* owner) {
   if (Code* found = libraryAt(address)) found->owner.store(owner);
 }
 

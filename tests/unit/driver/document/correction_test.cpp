@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "document/meant.hpp"
+#include "document/correction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,9 +26,9 @@ TEST(Meant, SaysHowToWriteANumberThatWasWrittenOtherwise) {
                                   {"\u22129.81", "m/s^2", "; write -9.81, with the minus sign of the keyboard"},
                                   {"2pi/4096", "", "; write the result as a number: formulas are not calculated"},
                                   {"0x10", "Hz", "; write it as a decimal number"}};
-  for (const auto& [text, unit, meant] : cases) EXPECT_EQ(numberMeant(text, unit), meant) << text;
+  for (const auto& [text, unit, meant] : cases) EXPECT_EQ(suggestNumber(text, unit), meant) << text;
   for (const char* text : {"", "fast", "1.2.3", "10-20", "1000 2000", "1 2", "0,5,1", ",", "-", "mm", "true"})
-    EXPECT_EQ(numberMeant(text, "N"), "") << text;
+    EXPECT_EQ(suggestNumber(text, "N"), "") << text;
 }
 
 TEST(Meant, ReadsAListInATextAndTwoNumbersInOne) {
@@ -36,15 +36,15 @@ TEST(Meant, ReadsAListInATextAndTwoNumbersInOne) {
     Problems problems;
     return parseText(text, "t.yaml", problems).value_or(Node{});
   };
-  EXPECT_EQ(listMeant(node("0 0 0.1"), 3), "; write [0, 0, 0.1]");
-  EXPECT_EQ(listMeant(node("0, -9.81, 0"), 3), "; write [0, -9.81, 0]");
-  EXPECT_EQ(listMeant(node("[0,5, 0, 0]"), 3),
+  EXPECT_EQ(suggestList(node("0 0 0.1"), 3), "; write [0, 0, 0.1]");
+  EXPECT_EQ(suggestList(node("0, -9.81, 0"), 3), "; write [0, -9.81, 0]");
+  EXPECT_EQ(suggestList(node("[0,5, 0, 0]"), 3),
             "; a comma separates two numbers: write decimals with a point, such as 0.5");
-  EXPECT_EQ(listMeant(node("{x: 0, y: 0, z: 0}"), 3), "; write the numbers alone, as [x, y, z]");
-  for (const char* text : {"[0, 0.1]", "somewhere", "0 0", "[a, b, c, d]"}) EXPECT_EQ(listMeant(node(text), 3), "");
-  EXPECT_EQ(mappingMeant(node("rate = 1000")), "; write rate: 1000, with a colon and a blank");
-  EXPECT_EQ(mappingMeant(node("rate:1000")), "; write rate: 1000, with a colon and a blank");
-  for (const char* text : {"press", "[1]", "http://x", "a b = 1"}) EXPECT_EQ(mappingMeant(node(text)), "") << text;
+  EXPECT_EQ(suggestList(node("{x: 0, y: 0, z: 0}"), 3), "; write the numbers alone, as [x, y, z]");
+  for (const char* text : {"[0, 0.1]", "somewhere", "0 0", "[a, b, c, d]"}) EXPECT_EQ(suggestList(node(text), 3), "");
+  EXPECT_EQ(suggestMapping(node("rate = 1000")), "; write rate: 1000, with a colon and a blank");
+  EXPECT_EQ(suggestMapping(node("rate:1000")), "; write rate: 1000, with a colon and a blank");
+  for (const char* text : {"press", "[1]", "http://x", "a b = 1"}) EXPECT_EQ(suggestMapping(node(text)), "") << text;
 }
 
 TEST(Meant, FindsTheValueInsideAKey) {

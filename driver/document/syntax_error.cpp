@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "document/slip.hpp"
+#include "document/syntax_error.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -183,7 +183,7 @@ Alias aliasAt(const std::string& text, const Place& place) {
 }
 
 /// Translates the parser's message into plain words.
-std::string plainWords(const std::string& text, const Place& place, const std::string& words) {
+std::string plainMessage(const std::string& text, const Place& place, const std::string& words) {
   const char here = charAt(text, place);
   const auto begins = [&words](const char* with) { return words.rfind(with, 0) == 0; };
   if (begins("unknown token") && here > ' ')
@@ -210,25 +210,25 @@ std::string plainWords(const std::string& text, const Place& place, const std::s
 
 }  // namespace
 
-std::optional<Problem> openQuote(const std::string& text, const Place& last_quoted) {
+std::optional<Problem> findOpenQuote(const std::string& text, const Place& last_quoted) {
   const std::optional<Mark> open = scanYaml(text).quote;
   if (!open || open->line != last_quoted.line || open->column != last_quoted.column) return std::nullopt;
   return at(*open, last_quoted.file,
             std::string("the ") + open->what + " that begins here is never closed, expected the closing one");
 }
 
-std::string withAliasMeant(const std::string& text, const Place& place, const std::string& words) {
+std::string withCorrectedAlias(const std::string& text, const Place& place, const std::string& words) {
   if (words.rfind("the referenced anchor", 0) != 0 || text.empty()) return "";
   const Alias alias = aliasAt(text, place);
   if (alias.meant.empty()) return "";
   return std::string(text).replace(alias.begin, alias.name.size(), alias.meant);
 }
 
-Problem slipIn(const std::string& text, const Place& place, const std::string& words) {
+Problem findSyntaxError(const std::string& text, const Place& place, const std::string& words) {
   if (auto blank = wrongBlank(text, place.line, place.file)) return *std::move(blank);
   if (auto pair = wrongPair(text, place.file)) return *std::move(pair);
   if (auto indent = wrongIndent(text, place.line, place.file)) return *std::move(indent);
-  return {place, "", "not YAML: " + plainWords(text, place, words)};
+  return {place, "", "not YAML: " + plainMessage(text, place, words)};
 }
 
 }  // namespace hapticd::document

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-#include "control/desk.hpp"
+#include "control/request_worker.hpp"
 
 #include <utility>
 
-#include "base/blame.hpp"
+#include "base/code_owner.hpp"
 
 namespace hapticd::control {
 
-std::error_code Desk::start(std::function<bool(Job&, Done&)> work, std::function<void()> ring) {
+std::error_code RequestWorker::start(std::function<bool(Job&, JobResult&)> work, std::function<void()> ring) {
   work_ = std::move(work);
   ring_ = std::move(ring);
   return thread_.start("hapticd-desk", [this] { run(); });
 }
 
-void Desk::stop() {
+void RequestWorker::stop() {
   {
     const std::lock_guard lock(mutex_);
     stop_ = true;
@@ -22,7 +22,7 @@ void Desk::stop() {
   thread_.join();
 }
 
-void Desk::give(Job job) {
+void RequestWorker::post(Job job) {
   {
     const std::lock_guard lock(mutex_);
     jobs_.push_back(std::move(job));
@@ -30,13 +30,13 @@ void Desk::give(Job job) {
   more_.notify_one();
 }
 
-std::vector<Done> Desk::take() {
+std::vector<JobResult> RequestWorker::take() {
   const std::lock_guard lock(mutex_);
   return std::exchange(done_, {});
 }
 
-void Desk::run() {
-  const Working working(Worker::kControl);
+void RequestWorker::run() {
+  const WorkerScope working(Worker::kControl);
   std::unique_lock lock(mutex_);
   for (;;) {
     more_.wait(lock, [this] { return stop_ || !jobs_.empty(); });
@@ -44,7 +44,7 @@ void Desk::run() {
     Job job = std::move(jobs_.front());
     jobs_.pop_front();
     lock.unlock();
-    Done done;
+    JobResult done;
     const bool comes_back = work_(job, done);
     lock.lock();
     if (!comes_back) continue;

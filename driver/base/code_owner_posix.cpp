@@ -7,19 +7,19 @@
 #include <array>
 #include <cstdint>
 
-#include "base/blame.hpp"
+#include "base/code_owner.hpp"
 
 namespace hapticd {
 
 namespace {
 
-struct Interrupted {
+struct InterruptedContext {
   const void* instruction = nullptr;
   const void* stack = nullptr;
 };
 
-Interrupted readContext(const void* context) noexcept {
-  Interrupted at;
+InterruptedContext readContext(const void* context) noexcept {
+  InterruptedContext at;
   if (context == nullptr) return at;
   const mcontext_t& machine = static_cast<const ucontext_t*>(context)->uc_mcontext;
 #if defined(__x86_64__)
@@ -36,8 +36,8 @@ Interrupted readContext(const void* context) noexcept {
 
 }  // namespace
 
-const Owner* ownerInterrupted(const void* context) noexcept {
-  const Interrupted at = readContext(context);
+const Owner* interruptedOwner(const void* context) noexcept {
+  const InterruptedContext at = readContext(context);
   const Owner* owner = ownerOfCode(at.instruction);
   return owner != nullptr ? owner : ownerOnStack(at.stack);
 }

@@ -14,7 +14,7 @@
 
 namespace hapticd::control {
 
-/// A piece of work that the sockets' thread gives to the desk. Done is its result.
+/// A piece of work that the sockets' thread gives to the worker. JobResult is its result.
 struct Job {
   enum class Kind { kAnswer, kNews, kLeft };
   Kind kind = Kind::kAnswer;
@@ -22,34 +22,34 @@ struct Job {
   std::string line;
   std::vector<Descriptor> files = {};  ///< descriptors that came with the line
 };
-struct Done {
+struct JobResult {
   uint64_t peer = 0;
   bool answers = false;  ///< true for the answer to a request, false for news
   Reply reply;
-  Standing standing;
+  KeepAlive keep_alive;
 };
 
-class Desk {
+class RequestWorker {
  public:
-  ~Desk() { stop(); }
+  ~RequestWorker() { stop(); }
 
-  /// [main] Starts the desk's thread. @param work does a job, and returns false if the job has no result
-  /// @param ring called after each job with a result. Both are called from the desk's thread
-  std::error_code start(std::function<bool(Job&, Done&)> work, std::function<void()> ring);
+  /// [main] Starts the worker's thread. @param work does a job, and returns false if the job has no result
+  /// @param ring called after each job with a result. Both are called from the worker's thread
+  std::error_code start(std::function<bool(Job&, JobResult&)> work, std::function<void()> ring);
   void stop();  ///< [main] ends the thread after the present job; other jobs are dropped
 
-  void give(Job job);        ///< [any]
-  std::vector<Done> take();  ///< [any] returns the results since the last call
+  void post(Job job);             ///< [any]
+  std::vector<JobResult> take();  ///< [any] returns the results since the last call
 
  private:
   void run();
 
-  std::function<bool(Job&, Done&)> work_;
+  std::function<bool(Job&, JobResult&)> work_;
   std::function<void()> ring_;
   std::mutex mutex_;
   std::condition_variable more_;
   std::list<Job> jobs_;
-  std::vector<Done> done_;
+  std::vector<JobResult> done_;
   bool stop_ = false;
   os::Thread thread_;
 };

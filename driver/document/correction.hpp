@@ -11,19 +11,19 @@ namespace hapticd::document {
 /// [any] Returns advice such as "; write 0.04: 40 mm is 0.04 m" for a text in the place of a number; "" if nothing can
 /// be guessed. It knows decimal commas, units, quotes, blanks or signs between digits, and formulas.
 /// @param unit the expected unit; "" if it is unknown
-std::string numberMeant(std::string_view text, std::string_view unit = "");
+std::string suggestNumber(std::string_view text, std::string_view unit = "");
 
 /// [any] Returns advice such as "; write [0, 0, 0.1]" for a node in the place of a list of numbers, or "".
-std::string listMeant(const Node& node, size_t count);
+std::string suggestList(const Node& node, size_t count);
 
 /// [any] Returns advice such as "; write rate: 1000" for a node in the place of a mapping, or "".
-std::string mappingMeant(const Node& node);
+std::string suggestMapping(const Node& node);
 
 /// [any] Returns advice such as " (no blank after the colon, expected \"rate: 1000\")" for an unknown key that contains
 /// its own value, typographic quotes, or a no-break space; otherwise "".
-std::string keyMeant(std::string_view key);
+std::string suggestKey(std::string_view key);
 
 /// [any] Returns advice such as "; ~ is not replaced here ..." for a path in the form of a shell or of Windows, or "".
-std::string pathMeant(std::string_view path);
+std::string suggestPath(std::string_view path);
 
 }  // namespace hapticd::document

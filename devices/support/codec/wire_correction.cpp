@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "codec/wire_meant.hpp"
+#include "codec/wire_correction.hpp"
 
 #include <cctype>
 #include <utility>
@@ -26,7 +26,7 @@ std::string asked(const std::string& name) {
 
 }  // namespace
 
-std::string typeMeant(const std::string& text) {
+std::string suggestType(const std::string& text) {
   static const std::pair<const char*, const char*> kWords[] = {
       {"short", "i16"}, {"char", "i8"}, {"byte", "u8"},   {"word", "u16"},   {"long", "i32"},
       {"int", "i32"},   {"bool", "u1"}, {"float", "f32"}, {"double", "f64"}, {"real", "f32"}};
@@ -44,7 +44,7 @@ std::string typeMeant(const std::string& text) {
   return "";
 }
 
-std::string methodMeant(const std::string& text) {
+std::string suggestMethod(const std::string& text) {
   const std::string word = squeezed(text);
   std::string inside;
   std::vector<std::string> all{"sum", "xor", "sum8", "xor8", "crc"};

@@ -11,7 +11,7 @@ namespace hapticd::kinematics {
 /// std::invalid_argument with a message for the user if the number of numbers is wrong.
 /// @param id name of the list, for the message
 template <class... Member>
-void assign(const std::vector<double>& from, const char* id, Member&... members) {
+void assignList(const std::vector<double>& from, const char* id, Member&... members) {
   if (from.empty()) return;
   if (from.size() != sizeof...(members))
     throw std::invalid_argument(std::string(id) + ": " + std::to_string(from.size()) +

@@ -8,7 +8,7 @@
 namespace hapticd::control {
 
 /// [any] True if the daemon of this socket lives, which means that it holds the lock on its name.
-bool lives(const std::string& socket);
+bool isAlive(const std::string& socket);
 
 /// [main] Waits until the daemon of this socket has ended and its name is free. @return false if it still lives after
 /// `seconds`
@@ -19,6 +19,6 @@ bool waitForEnd(const std::string& socket, double seconds);
 bool wasKilled(const std::string& socket);
 
 /// [main] Returns the names of the living daemons whose files are in a folder, sorted.
-std::vector<std::string> running(const std::string& folder);
+std::vector<std::string> runningDaemons(const std::string& folder);
 
 }  // namespace hapticd::control

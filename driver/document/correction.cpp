@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "document/meant.hpp"
+#include "document/correction.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,20 +17,20 @@ namespace {
 constexpr size_t kLongest = 60;  ///< longest text that is examined; a longer one is not a number with a unit
 
 /// A unit as people write it, the unit that hapticd uses, and the factor between them.
-struct Known {
+struct KnownUnit {
   const char *written, *unit;
   double size;
 };
 constexpr std::array kUnits{
-    Known{"mm", "m", 1e-3},        Known{"cm", "m", 1e-2},          Known{"um", "m", 1e-6},
-    Known{"µm", "m", 1e-6},        Known{"in", "m", 0.0254},        Known{"kHz", "Hz", 1e3},
-    Known{"khz", "Hz", 1e3},       Known{"ms", "s", 1e-3},          Known{"us", "s", 1e-6},
-    Known{"min", "s", 60},         Known{"deg", "rad", M_PI / 180}, Known{"degrees", "rad", M_PI / 180},
-    Known{"°", "rad", M_PI / 180}, Known{"g", "kg", 1e-3},          Known{"mN", "N", 1e-3},
-    Known{"kN", "N", 1e3},         Known{"N/mm", "N/m", 1e3},       Known{"kN/m", "N/m", 1e3},
-    Known{"N/cm", "N/m", 100},     Known{"mNm", "N m", 1e-3},       Known{"Nmm", "N m", 1e-3},
-    Known{"mm/s", "m/s", 1e-3},    Known{"cm/s", "m/s", 1e-2},      Known{"ms", "us", 1e3},
-    Known{"s", "us", 1e6},         Known{"Ns/mm", "N s/m", 1e3}};
+    KnownUnit{"mm", "m", 1e-3},        KnownUnit{"cm", "m", 1e-2},          KnownUnit{"um", "m", 1e-6},
+    KnownUnit{"µm", "m", 1e-6},        KnownUnit{"in", "m", 0.0254},        KnownUnit{"kHz", "Hz", 1e3},
+    KnownUnit{"khz", "Hz", 1e3},       KnownUnit{"ms", "s", 1e-3},          KnownUnit{"us", "s", 1e-6},
+    KnownUnit{"min", "s", 60},         KnownUnit{"deg", "rad", M_PI / 180}, KnownUnit{"degrees", "rad", M_PI / 180},
+    KnownUnit{"°", "rad", M_PI / 180}, KnownUnit{"g", "kg", 1e-3},          KnownUnit{"mN", "N", 1e-3},
+    KnownUnit{"kN", "N", 1e3},         KnownUnit{"N/mm", "N/m", 1e3},       KnownUnit{"kN/m", "N/m", 1e3},
+    KnownUnit{"N/cm", "N/m", 100},     KnownUnit{"mNm", "N m", 1e-3},       KnownUnit{"Nmm", "N m", 1e-3},
+    KnownUnit{"mm/s", "m/s", 1e-3},    KnownUnit{"cm/s", "m/s", 1e-2},      KnownUnit{"ms", "us", 1e3},
+    KnownUnit{"s", "us", 1e6},         KnownUnit{"Ns/mm", "N s/m", 1e3}};
 
 std::string replaced(std::string_view text, std::string_view what, std::string_view with) {
   std::string out;
@@ -92,7 +92,7 @@ std::optional<std::string> ungrouped(std::string_view text) {
 
 /// Returns advice for a number that is followed by the text `rest`: what its writer probably meant, and how to write
 /// that.
-std::string unitMeant(double number, const std::string& shown, std::string_view rest, std::string_view unit) {
+std::string suggestUnit(double number, const std::string& shown, std::string_view rest, std::string_view unit) {
   const std::string value = numberText(number), behind(rest);
   if (rest == "," || rest == ";") return "; write " + value + ", without the " + behind + " after it";
   if (rest == "%") return "; write " + rounded(number / 100) + ": percentages are not accepted";
@@ -101,7 +101,7 @@ std::string unitMeant(double number, const std::string& shown, std::string_view 
     return "; write the result as a number: formulas are not calculated";
   if (isDigit(rest[0]) || rest[0] == '.' || rest[0] == '-') return "";
   if (!unit.empty() && squeezed(rest) == squeezed(unit)) return "; write " + value + ", without the unit";
-  for (const Known& known : kUnits)
+  for (const KnownUnit& known : kUnits)
     if (squeezed(rest) == known.written && unit == known.unit)
       return "; write " + rounded(number * known.size) + ": " + shown + " is " + rounded(number * known.size) + " " +
              std::string(unit);
@@ -116,7 +116,7 @@ std::string bare(std::string_view text) {
 
 }  // namespace
 
-std::string numberMeant(std::string_view given, std::string_view unit) {
+std::string suggestNumber(std::string_view given, std::string_view unit) {
   const std::string_view text = withoutBlanks(given);
   if (text.empty() || text.size() > kLongest) return "";
   if (toNumber(text)) return "; write " + std::string(text) + ", without quotes or a tag";
@@ -138,10 +138,10 @@ std::string numberMeant(std::string_view given, std::string_view unit) {
   if (decimal && rest.empty()) return "; write " + number + ", with a point, not a comma";
   if (decimal && rest.find(',') != rest.npos) return "";
   return (decimal ? "; write decimals with a point" : "") +
-         unitMeant(toNumber(number).value_or(0), number + " " + std::string(rest), rest, unit);
+         suggestUnit(toNumber(number).value_or(0), number + " " + std::string(rest), rest, unit);
 }
 
-std::string listMeant(const Node& node, size_t count) {
+std::string suggestList(const Node& node, size_t count) {
   if (node.isMap()) return "; write the numbers alone, as [x, y, z]";
   if (node.isSequence() && node.items.size() > count) {
     for (const Node& item : node.items)
@@ -161,7 +161,7 @@ std::string listMeant(const Node& node, size_t count) {
   return numbers.size() == count ? "; write [" + listed(numbers) + "]" : "";
 }
 
-std::string mappingMeant(const Node& node) {
+std::string suggestMapping(const Node& node) {
   if (!node.isScalar() || node.quoted || node.scalar.size() > kLongest) return "";
   const size_t sign = node.scalar.find_first_of(":=");
   if (sign == std::string::npos || sign == 0 || sign + 1 >= node.scalar.size()) return "";
@@ -171,7 +171,7 @@ std::string mappingMeant(const Node& node) {
   return "; write " + key + ": " + value + ", with a colon and a blank";
 }
 
-std::string keyMeant(std::string_view key) {
+std::string suggestKey(std::string_view key) {
   const bool digits = !key.empty() && std::all_of(key.begin(), key.end(), isDigit);
   if (digits || toNumber(key))
     return " (there is a comma before it: write decimals with a point, such as 0." +
@@ -187,7 +187,7 @@ std::string keyMeant(std::string_view key) {
   return "";
 }
 
-std::string pathMeant(std::string_view path) {
+std::string suggestPath(std::string_view path) {
   const char first = path.empty() ? ' ' : path[0];
   if (first == '~' || first == '$')
     return std::string("; ") + first + " is not replaced here: write the folder's whole path";
