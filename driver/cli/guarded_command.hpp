@@ -7,7 +7,7 @@
 #include "base/code_owner.hpp"
 #include "base/os.hpp"
 #include "watch/crash.hpp"
-#include "watch/ended.hpp"
+#include "watch/idle_target.hpp"
 
 namespace hapticd::cli {
 
@@ -19,7 +19,7 @@ class GuardedCommand {
 
  private:
   WorkerScope working_{Worker::kMain};
-  watch::Ended none_;
+  watch::IdleTarget none_;
   watch::CrashGuard guard_;
 };
 

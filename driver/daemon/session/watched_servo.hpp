@@ -6,11 +6,11 @@
 
 #include "servo/loop/loop.hpp"
 #include "session/telemetry.hpp"
-#include "watch/watched.hpp"
+#include "watch/watch_target.hpp"
 
 namespace hapticd::servo {
 
-class WatchedServo final : public watch::Watched {
+class WatchedServo final : public watch::WatchTarget {
  public:
   /// [main] The arguments must outlive this object.
   WatchedServo(Loop& loop, std::vector<std::unique_ptr<Arm>>& arms, const Telemetry& telemetry);

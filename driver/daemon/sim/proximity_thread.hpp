@@ -17,7 +17,7 @@ class ProximityThread {
  public:
   /// @param wants_search [any] returns true if a search is needed now, without waiting for the period
   ProximityThread(Proximity& proximity, std::function<bool()> wants_search)
-      : proximity_(proximity), wants_search_(std::move(wants_search)) {}
+      : proximity_(proximity), needs_search_(std::move(wants_search)) {}
   ~ProximityThread() { stop(); }
 
   /// [main] Searches once, so that tracing starts with the first tick.
@@ -54,14 +54,14 @@ class ProximityThread {
     RealClock clock(0);
     for (Nanoseconds next = clock.now(); !stop_;) {
       const Nanoseconds now = clock.waitUntil(clock.now() + kPoll);
-      if (now < next && !wants_search_()) continue;
+      if (now < next && !needs_search_()) continue;
       next = now + link::kSearchPeriod;
       proximity_.search();
     }
   }
 
   Proximity& proximity_;
-  std::function<bool()> wants_search_;
+  std::function<bool()> needs_search_;
   std::atomic<bool> stop_{false};
   os::Thread thread_;
 };

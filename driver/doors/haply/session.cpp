@@ -111,7 +111,7 @@ std::string Session::answer(const std::string& message) {
   const Json json = Json::parse(message, nullptr, false);
   bool all = false;
   if (json.is_object()) {
-    obey(json);
+    execute(json);
     all = childOf(json, "session").contains("force_render_full_state");
   } else {
     complain("a message is not a JSON object");
@@ -119,7 +119,7 @@ std::string Session::answer(const std::string& message) {
   return tell(all);
 }
 
-void Session::obey(const Json& message) {
+void Session::execute(const Json& message) {
   const Json& permutation = childOf(childOf(childOf(childOf(message, "session"), "configure"), "basis"), "permutation");
   if (permutation.is_string() && !basis_.set(permutation.get<std::string>()))
     complain("the basis \"" + permutation.get<std::string>().substr(0, 40) +
@@ -131,11 +131,11 @@ void Session::obey(const Json& message) {
     if (arm == arms_.end())
       complain("there is no arm \"" + id.get<std::string>().substr(0, 100) + "\"");
     else
-      obeyArm(**arm, childOf(device, "commands"));
+      executeForArm(**arm, childOf(device, "commands"));
   }
 }
 
-void Session::obeyArm(Arm& arm, const Json& commands) {
+void Session::executeForArm(Arm& arm, const Json& commands) {
   if (!commands.is_object()) return;
   for (const auto& [name, command] : commands.items()) {
     double force[3];

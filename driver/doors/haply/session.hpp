@@ -29,8 +29,8 @@ class Session {
 
  private:
   Session(hapticd_client* client, int number) : client_(client), number_(number) {}
-  void obey(const nlohmann::json& message);
-  void obeyArm(Arm& arm, const nlohmann::json& commands);
+  void execute(const nlohmann::json& message);
+  void executeForArm(Arm& arm, const nlohmann::json& commands);
   void complain(const std::string& what);
   std::string tell(bool all);
 

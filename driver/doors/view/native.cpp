@@ -215,7 +215,7 @@ void Native::onText(std::string_view text) {
   request.erase("id");
   if (word == "geometry") return draw(id, request);
   if (playback_ && Playback::knows(word)) {
-    const std::string error = playback_->obey(request);
+    const std::string error = playback_->execute(request);
     jump();
     return answer(id, error.empty() ? Json({{"ok", true}}) : Json({{"ok", false}, {"error", error}}));
   }

@@ -51,8 +51,8 @@ std::string fixOf(const record::ClientReport& client, double answer_time) {
   return record::lateFix(answer_time);
 }
 
-Finding judge(const std::vector<ClientNow>& clients, double answer_time, Finding before) {
-  for (const ClientNow& client : clients) {
+Finding judge(const std::vector<ClientStatus>& clients, double answer_time, Finding before) {
+  for (const ClientStatus& client : clients) {
     const bool late = record::late(client.report);
     const bool first = before.state.empty();
     // programs in time are not listed beside late ones
@@ -68,14 +68,14 @@ Finding judge(const std::vector<ClientNow>& clients, double answer_time, Finding
 
 }  // namespace
 
-std::vector<ClientNow> clientsOf(const status::Page& page) {
-  std::vector<ClientNow> clients;
+std::vector<ClientStatus> clientsOf(const status::Page& page) {
+  std::vector<ClientStatus> clients;
   for (uint32_t i = 0; i < std::min(page.arms, status::kMaxArms) * status::kPushersOfArm; ++i) {
     const auto who = page.pusher[i].who.read().value_or(status::Pusher{});
     if (who.pid == 0) continue;
-    const auto now = page.pusher[i].now.read().value_or(status::PusherNow{});
+    const auto now = page.pusher[i].now.read().value_or(status::PusherStatus{});
     const auto arm = page.arm[i / status::kPushersOfArm].name.read().value_or(status::Name{});
-    ClientNow& client = clients.emplace_back();
+    ClientStatus& client = clients.emplace_back();
     client.report.device = textOf(arm.text);
     client.report.program = textOf(who.program);
     client.report.pid = static_cast<int>(who.pid);

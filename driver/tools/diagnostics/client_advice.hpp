@@ -11,13 +11,13 @@
 namespace hapticd::diagnostics {
 
 /// A program that pushes now.
-struct ClientNow {
+struct ClientStatus {
   record::ClientReport report;
   double force = 0;  ///< [N] size of the force that it asks for now
 };
 
 /// [any] Returns the programs that a status page shows.
-std::vector<ClientNow> clientsOf(const status::Page& page);
+std::vector<ClientStatus> clientsOf(const status::Page& page);
 
 /// [main] Checks the programs of all daemons whose status pages are in a folder.
 Finding checkClients(const std::string& runtime_folder);

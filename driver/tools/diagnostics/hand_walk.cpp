@@ -48,7 +48,7 @@ class WalkLog final : public servo::TickLog {
   void overrun(uint64_t) noexcept HSP_RT override {}
   void finish(uint64_t, Nanoseconds, long, uint64_t) noexcept override {}
 
-  void tick(double t, double, Nanoseconds, const servo::Spent&, const servo::Core& core,
+  void tick(double t, double, Nanoseconds, const servo::TickDuration&, const servo::Core& core,
             const servo::Arms& arms) noexcept HSP_RT override {
     constexpr uint64_t kLookEvery = 64;  // ticks
     if (ended_) return;

@@ -87,7 +87,7 @@ void adviseMotion(const scene::Model& model, size_t index, document::Problems& w
 }
 
 /// Reports a crash, an exit or a hang, with the model whose plugin caused it.
-void reportEnd(const std::string& how, const host::Trail& trail, const scene::Scene& scene,
+void reportEnd(const std::string& how, const host::ChildProgress& trail, const scene::Scene& scene,
                document::Problems& problems) {
   const uint32_t index = trail.item();
   if (*trail.call() == '\0' || index >= scene.models.size())
@@ -125,7 +125,7 @@ struct Tried {
 using Log = std::function<void(int, const std::string&, const std::string&)>;
 
 Tried tryOne(const scene::Scene& scene, const scene::Model& model, uint32_t index, double max_force, const Log& log,
-             host::Trail& trail) {
+             host::ChildProgress& trail) {
   Tried tried;
   trail.mark(index, "create() or set");
   auto shape = host::ShapeInstance::create(model, log);
@@ -152,7 +152,7 @@ Tried tryOne(const scene::Scene& scene, const scene::Model& model, uint32_t inde
 /// Sets up a refused model without the parameter that the plugin objects to, and again, so that further objections and
 /// the size of the model are known. What would only follow from a missing parameter is not added to the problems.
 Tried tryWithout(const scene::Scene& scene, uint32_t index, double max_force, std::string error, const Log& log,
-                 host::Trail& trail, Remarks& problems) {
+                 host::ChildProgress& trail, Remarks& problems) {
   constexpr int kMost = 3;  // parameters that are left out
   scene::Model rest = scene.models[index];
   std::vector<std::string> left_out;
@@ -174,7 +174,8 @@ Tried tryWithout(const scene::Scene& scene, uint32_t index, double max_force, st
   return tried;
 }
 
-std::string tryAll(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound, host::Trail& trail) {
+std::string tryAll(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound,
+                   host::ChildProgress& trail) {
   Remarks problems, warnings;
   host::Packer claims, boxes;
   for (uint32_t i = 0; i < scene.models.size(); ++i) {
@@ -200,7 +201,7 @@ std::string tryAll(const scene::Scene& scene, double max_force, const std::vecto
 ModelTrial tryModels(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound) {
   ModelTrial trial;
   if (scene.models.empty()) return trial;
-  host::Trail trail;
+  host::ChildProgress trail;
   const auto told = host::runInChild([&] { return tryAll(scene, max_force, unsound, trail); }, kTrialLimitMs);
   if (!told) {
     reportEnd(told.error(), trail, scene, trial.problems);

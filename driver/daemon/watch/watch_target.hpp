@@ -10,9 +10,9 @@
 namespace hapticd::watch {
 
 /// Every function is [any], lock-free and async-signal-safe.
-class Watched {
+class WatchTarget {
  public:
-  virtual ~Watched() = default;
+  virtual ~WatchTarget() = default;
   virtual uint64_t ticks() const noexcept = 0;         ///< number of ticks so far
   virtual Nanoseconds tickBegun() const noexcept = 0;  ///< CLOCK_MONOTONIC start of the tick in progress; 0: none is
   /// CLOCK_MONOTONIC time by which the next tick must have begun; 0 if there will be none.

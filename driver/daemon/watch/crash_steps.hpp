@@ -3,7 +3,7 @@
 /// leaves it out, the black box is saved, and the message is printed. Every function is [any] and async-signal-safe.
 #pragma once
 #include "watch/line.hpp"
-#include "watch/watched.hpp"
+#include "watch/watch_target.hpp"
 
 namespace hapticd::watch {
 
@@ -23,11 +23,11 @@ struct Cause {
 /// Ends the process with exit code 1, in several steps. If a step crashes itself, the next step follows.
 /// @param servo the watched servo; nullptr ends the process without any step
 /// @param dir folder for the black box and the quarantine file; "": neither is written. The text must stay valid
-[[noreturn]] void die(Watched* servo, const char* dir, const Cause& cause) noexcept;
+[[noreturn]] void endInSteps(WatchTarget* servo, const char* dir, const Cause& cause) noexcept;
 
 /// Frees the motors, and waits a moment until the command has been sent: an I/O thread may still have to send it, and
 /// this thread ends with the process.
-void cutAndAwait(Watched& servo) noexcept;
+void cutAndAwait(WatchTarget& servo) noexcept;
 
 /// Adds the name of an owner, such as "plugin 'torus' of model 'ring'".
 Line& addOwner(Line& line, const Owner& owner) noexcept;

@@ -6,9 +6,9 @@
 namespace hapticd::watch {
 
 /// [any] Returns what went wrong, for a signal that faulty code raises; nullptr for other signals.
-const char* wordsOfCrash(int signal) noexcept;
+const char* crashName(int signal) noexcept;
 
 /// [any] Returns words for any signal.
-Line words(int signal) noexcept;
+Line signalName(int signal) noexcept;
 
 }  // namespace hapticd::watch

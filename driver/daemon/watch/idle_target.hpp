@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-/// The Watched object for a process without a running servo: after a run, during the set-up of modules, or in a command
+/// The WatchTarget for a process without a running servo: after a run, during the set-up of modules, or in a command
 /// without an arm. There are no ticks, and the motors are off.
 ///
-/// Watched itself has no default implementations, so that the compiler reports what a running servo does not implement.
+/// WatchTarget itself has no default implementations, so that the compiler reports what a running servo does not
+/// implement.
 #pragma once
-#include "watch/watched.hpp"
+#include "watch/watch_target.hpp"
 
 namespace hapticd::watch {
 
-class Ended : public Watched {
+class IdleTarget : public WatchTarget {
  public:
   uint64_t ticks() const noexcept override { return 0; }
   Nanoseconds tickBegun() const noexcept override { return 0; }

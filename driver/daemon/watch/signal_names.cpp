@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "watch/signal_words.hpp"
+#include "watch/signal_names.hpp"
 
 #include <csignal>
 #include <cstring>
 
 namespace hapticd::watch {
 
-const char* wordsOfCrash(int signal) noexcept {
+const char* crashName(int signal) noexcept {
   switch (signal) {
     case SIGSEGV:
       return "a memory access that is not allowed (SIGSEGV)";
@@ -28,9 +28,9 @@ const char* wordsOfCrash(int signal) noexcept {
   return nullptr;
 }
 
-Line words(int signal) noexcept {
+Line signalName(int signal) noexcept {
   Line line;
-  if (const char* known = wordsOfCrash(signal)) return line.add(known);
+  if (const char* known = crashName(signal)) return line.add(known);
   line.add("a signal that ends a process (");
   if (const char* name = sigabbrev_np(signal)) return line.add("SIG").add(name).add(")");
   const int number = signal - SIGRTMIN;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "servo/core/follow.hpp"
+#include "servo/core/pose_follower.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -52,8 +52,8 @@ Quaterniond turnBy(const Vector3d& rotation) noexcept HSP_RT {
 /// Returns for how many seconds at its full twist a target has moved on, `age` [s] after the time of its record. This
 /// is less than `age` once the twist fades.
 double reachOf(double age) noexcept HSP_RT {
-  const double fading = std::clamp(age - Follow::kTwistHolds, 0.0, Follow::kTwistFades);
-  return std::min(age, Follow::kTwistHolds) + fading * (1 - 0.5 * fading / Follow::kTwistFades);
+  const double fading = std::clamp(age - PoseFollower::kTwistHolds, 0.0, PoseFollower::kTwistFades);
+  return std::min(age, PoseFollower::kTwistHolds) + fading * (1 - 0.5 * fading / PoseFollower::kTwistFades);
 }
 
 struct Bounds {
@@ -80,18 +80,18 @@ Vector3d nextVelocity(const Motion& motion, const Bounds& most, double dt) noexc
   const double distance = behind.norm();
   Vector3d wanted = motion.of_target;
   if (distance > 0) {
-    const double close_in = std::max(Follow::kCloseIn, 2 * dt);  // no tick may go past the target
+    const double close_in = std::max(PoseFollower::kCloseIn, 2 * dt);  // no tick may go past the target
     wanted += behind * (std::min(distance / close_in, std::sqrt(most.acceleration * distance)) / distance);
   }
   return motion.velocity + capped(capped(wanted, most.speed) - motion.velocity, most.acceleration * dt);
 }
 
-constexpr Bounds kLinear{Follow::kMostSpeed, Follow::kMostAcceleration};
-constexpr Bounds kAngular{Follow::kMostTurn, Follow::kMostTurnAcceleration};
+constexpr Bounds kLinear{PoseFollower::kMostSpeed, PoseFollower::kMostAcceleration};
+constexpr Bounds kAngular{PoseFollower::kMostTurn, PoseFollower::kMostTurnAcceleration};
 
 }  // namespace
 
-Follow::Refusal Follow::refusalOf(const hapticd_target& target, double now) noexcept HSP_RT {
+PoseFollower::Refusal PoseFollower::refusalOf(const hapticd_target& target, double now) noexcept HSP_RT {
   const bool numbers = finite(target.position, 3) && finite(target.orientation, 4) && finite(target.linear, 3) &&
                        finite(target.angular, 3) && std::isfinite(target.time);
   if (!numbers) return Refusal::kNotFinite;
@@ -103,7 +103,7 @@ Follow::Refusal Follow::refusalOf(const hapticd_target& target, double now) noex
   return unit ? Refusal::kNone : Refusal::kNotUnit;
 }
 
-void Follow::begin(const hsp_pose& pose) noexcept HSP_RT {
+void PoseFollower::begin(const hsp_pose& pose) noexcept HSP_RT {
   p_ = Vector3d(pose.position);
   v_ = Vector3d(pose.linear);
   w_ = Vector3d(pose.angular);
@@ -111,7 +111,7 @@ void Follow::begin(const hsp_pose& pose) noexcept HSP_RT {
   led_ = rests_ = false;
 }
 
-bool Follow::aim(const hapticd_target& target, double t) noexcept HSP_RT {
+bool PoseFollower::aim(const hapticd_target& target, double t) noexcept HSP_RT {
   if (led_ && t < t_target_) return false;
   p_target_ = Vector3d(target.position);
   v_target_ = capped(Vector3d(target.linear), kMostSpeed);
@@ -123,7 +123,7 @@ bool Follow::aim(const hapticd_target& target, double t) noexcept HSP_RT {
   return true;
 }
 
-void Follow::step(double t, double dt, hsp_pose& pose) noexcept HSP_RT {
+void PoseFollower::step(double t, double dt, hsp_pose& pose) noexcept HSP_RT {
   if (rests_) return;
   const double reach = reachOf(t - t_target_);
   // The mean twist over the tick, not the twist now, so that a leader of constant velocity is followed without error.
@@ -140,7 +140,7 @@ void Follow::step(double t, double dt, hsp_pose& pose) noexcept HSP_RT {
   rests_ = dt > 0 && still && (!led_ || target_still);
 }
 
-void Follow::stepPosition(double trust, double reach, double dt) noexcept HSP_RT {
+void PoseFollower::stepPosition(double trust, double reach, double dt) noexcept HSP_RT {
   Motion motion{v_, Vector3d::Zero(), Vector3d::Zero()};
   if (led_) {
     motion.of_target = trust * v_target_;
@@ -155,7 +155,7 @@ void Follow::stepPosition(double trust, double reach, double dt) noexcept HSP_RT
   p_ += dt * v_;
 }
 
-void Follow::stepOrientation(double trust, double reach, double dt) noexcept HSP_RT {
+void PoseFollower::stepOrientation(double trust, double reach, double dt) noexcept HSP_RT {
   Motion motion{w_, Vector3d::Zero(), Vector3d::Zero()};
   const Quaterniond goal = led_ ? turnBy(reach * w_target_) * q_target_ : q_;
   if (led_) {

@@ -10,7 +10,7 @@
 
 namespace hapticd::servo {
 
-class Follow {
+class PoseFollower {
  public:
   static constexpr double kMostSpeed = 1.0;        ///< [m/s] highest speed of the pose
   static constexpr double kMostAcceleration = 20;  ///< [m/s^2] highest acceleration
