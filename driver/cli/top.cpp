@@ -18,7 +18,7 @@
 #include "base/clock.hpp"
 #include "cli/command.hpp"
 #include "control/liveness.hpp"
-#include "diagnostics/client_advice.hpp"
+#include "diagnostics/client_warnings.hpp"
 #include "host/class_table.hpp"
 #include "servo/safety/limiter.hpp"
 #include "session/silence_reason.hpp"
@@ -73,7 +73,7 @@ void quantiles(const status::SharedHistogram& histogram, double* to) {
   to[0] = histogram.quantile(0.5), to[1] = histogram.quantile(0.99), to[2] = histogram.max();
 }
 
-View look(const status::Page& page) {
+View readPage(const status::Page& page) {
   View view;
   view.now = page.now.read().value_or(status::TickStatus{});
   view.rate = page.rate;
@@ -277,7 +277,7 @@ int watch(const TopArguments& options, const status::Page& page) {
     if (key == 'f') sort = "force";
     if (key == 'd') sort = "depth";
     if (key == 's') sort = "step";
-    View view = look(page);
+    View view = readPage(page);
     const double passed = view.now.t - before.t;
     view.held = passed > 0 ? static_cast<double>(view.now.tick - before.tick) / passed : 0;
     before = view.now;
@@ -298,7 +298,7 @@ int stream(const TopArguments& options, const status::Page& page) {
   RealClock clock(0);
   status::TickStatus before{};
   while (!ended(page)) {
-    View view = look(page);
+    View view = readPage(page);
     const double passed = view.now.t - before.t;
     view.held = passed > 0 ? static_cast<double>(view.now.tick - before.tick) / passed : 0;
     before = view.now;
@@ -333,7 +333,7 @@ int top(const TopArguments& options) {
   if (ended(page))
     return fail(kFailed, "the daemon " + options.name +
                              " has gone: it was killed, or it crashed\n  fix: start it again with hapticd run");
-  View view = look(page);
+  View view = readPage(page);
   const bool still = standsStill(page, view.now.tick);
   view.held = view.now.t > 0 && !still ? static_cast<double>(view.now.tick) / view.now.t : 0;
   sortModels(view.models, options.sort);

@@ -97,7 +97,7 @@ class Socket final : public Peer, public std::enable_shared_from_this<Socket> {
   std::deque<Outgoing> waiting_;  ///< the first message is being sent
   size_t waiting_bytes_ = 0;
   bool ended_ = false, paused_ = false;
-  std::unique_ptr<Conversation> conversation_;
+  std::unique_ptr<PeerSession> conversation_;
 };
 
 /// One HTTP connection: it answers requests until it becomes a WebSocket.
@@ -145,7 +145,7 @@ class ServerImpl final : public Server {
     if (v6_.is_open()) accept(v6_);
   }
   const AccessPolicy& accessPolicy() const { return access_policy_; }
-  const Converse& converse() const { return converse_; }
+  const Converse& startSession() const { return converse_; }
   bool full() const { return sockets() >= kMostSockets; }
   const std::shared_ptr<Register>& connected() const { return register_; }
 
@@ -278,7 +278,7 @@ void Socket::open(Request request, const Admission& admission) {
 }
 
 void Socket::onOpen(Subprotocol protocol) {
-  conversation_ = server_.converse()(protocol, *this);
+  conversation_ = server_.startSession()(protocol, *this);
   read();
 }
 
