@@ -9,7 +9,7 @@
 namespace hapticd::dynamics {
 
 /// A contact at the end of the last step, in the world frame.
-struct Pressing {
+struct LastContact {
   Eigen::Vector3d probe{0, 0, 0};   ///< position of the probe then [m]
   Eigen::Vector3d point{0, 0, 0};   ///< point of the surface under the probe [m]
   Eigen::Vector3d normal{0, 0, 1};  ///< outward unit normal of the surface
@@ -24,9 +24,9 @@ struct Pressing {
 
 /// One contact in the coming step, in the world frame. A force that is held through a step still pushes the body after
 /// the body has moved away. So each half swing would grow by the factor e^(pi w h/4) (w^2 = k/m, step h), without limit
-/// for a light body. For this reason a Press has the force at the end of the step, and by how much the body's own
-/// change of velocity reduces this force.
-struct Press {
+/// for a light body. For this reason a PredictedContact has the force at the end of the step, and by how much the
+/// body's own change of velocity reduces this force.
+struct PredictedContact {
   Eigen::Vector3d point{0, 0, 0};  ///< [m] point of the body on which the force acts
   /// outward unit normal: no force ever pulls the body in this direction
   Eigen::Vector3d outward{0, 0, 1};
@@ -40,11 +40,11 @@ struct Press {
 /// @param probe_now position of the probe now [m]
 /// @param closing_speed speed of the probe relative to the surface [m/s], > 0 if it goes deeper
 /// @param point_velocity velocity of the body at the contact [m/s]
-Press foresee(const Pressing& last, const Eigen::Vector3d& probe_now, double closing_speed,
-              const Eigen::Vector3d& point_velocity, double dt) noexcept;
+PredictedContact predict(const LastContact& last, const Eigen::Vector3d& probe_now, double closing_speed,
+                         const Eigen::Vector3d& point_velocity, double dt) noexcept;
 
 /// [rt] Returns the force [N] on the body if the point's velocity changes by `change` [m/s] in the step. It never pulls
 /// the body outward.
-Eigen::Vector3d forceAfter(const Press& press, const Eigen::Vector3d& change) noexcept;
+Eigen::Vector3d forceAfter(const PredictedContact& press, const Eigen::Vector3d& change) noexcept;
 
 }  // namespace hapticd::dynamics

@@ -17,7 +17,7 @@ namespace hapticd {
 /// @param text the text of the file, in which the lines of the numbers are found
 /// @param name the name of the file, for the warnings
 /// @return warnings of the form `file:line:column: key: what`
-std::vector<std::string> adviseMedial(const MedialFile& file, const nlohmann::json& root, const Problems& problems,
-                                      const std::string& text, const std::string& name);
+std::vector<std::string> warnOfMedialFile(const MedialFile& file, const nlohmann::json& root, const Problems& problems,
+                                          const std::string& text, const std::string& name);
 
 }  // namespace hapticd

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "medial_advice.hpp"
+#include "medial_warnings.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -48,7 +48,7 @@ double largest(const Json& value) {
   return most;
 }
 
-void adviseMass(const MedialFile& file, const Eigen::AlignedBox3d& box, Problems& odd) {
+void warnOfMass(const MedialFile& file, const Eigen::AlignedBox3d& box, Problems& odd) {
   // [kg/m^3] denser than any metal; [kg] less than this is never reported; [m] a larger body is meant in mm
   constexpr double kDensest = 25'000, kEasy = 3, kHuge = 5;
   const std::vector<double>& mass = file.grid ? file.grid->mass : file.mesh->mass;
@@ -65,7 +65,7 @@ void adviseMass(const MedialFile& file, const Eigen::AlignedBox3d& box, Problems
 }
 
 /// Warns of a modulus that is too low for a solid, where the stiffness that it gives is unknown.
-void adviseModulus(const Json& medial, Problems& odd) {
+void warnOfModulus(const Json& medial, Problems& odd) {
   constexpr double kSoftest = 100;  // [Pa] softer than any tissue
   if (const double young = largest(medial["young"]); young < kSoftest)
     odd.add(medialAt("young"), written("%.4g Pa is softer than any tissue; the value must be in Pa (1 kPa is 1000 Pa; "
@@ -73,11 +73,11 @@ void adviseModulus(const Json& medial, Problems& odd) {
                                        young));
 }
 
-void adviseStiffness(const MedialFile& file, const Json& medial, Problems& odd) {
+void warnOfStiffness(const MedialFile& file, const Json& medial, Problems& odd) {
   constexpr double kUnfelt = 5;  // [N/m] a press of 10 mm gives 0.05 N, less than the friction of most arms
   const std::vector<double>& stiffness = file.grid ? file.grid->stiffness : file.mesh->stiffness;
   const bool young = medial.contains("young");
-  if (stiffness.empty()) return young ? adviseModulus(medial, odd) : void();
+  if (stiffness.empty()) return young ? warnOfModulus(medial, odd) : void();
   const double most = *std::max_element(stiffness.begin(), stiffness.end());
   if (!(most < kUnfelt)) return;
   odd.add(medialAt(young ? "young" : "stiffness"),
@@ -90,8 +90,8 @@ void adviseStiffness(const MedialFile& file, const Json& medial, Problems& odd) 
 
 }  // namespace
 
-std::vector<std::string> adviseMedial(const MedialFile& file, const Json& root, const Problems& problems,
-                                      const std::string& text, const std::string& name) {
+std::vector<std::string> warnOfMedialFile(const MedialFile& file, const Json& root, const Problems& problems,
+                                          const std::string& text, const std::string& name) {
   Problems odd(name, text);
   if (!file.grid && !file.mesh) return {};
   const Json& medial = root["medial"];
@@ -104,8 +104,8 @@ std::vector<std::string> adviseMedial(const MedialFile& file, const Json& root, 
       odd.add(medialAt(key),
               written("%.4g m is more than the size of the body, %.3g m; the value must be in m: %.4g mm is %.4g m",
                       largest(medial[key]), size, largest(medial[key]), largest(medial[key]) / 1000));
-  if (sized && read("mass")) adviseMass(file, box, odd);
-  if (read("stiffness") || read("young")) adviseStiffness(file, medial, odd);
+  if (sized && read("mass")) warnOfMass(file, box, odd);
+  if (read("stiffness") || read("young")) warnOfStiffness(file, medial, odd);
   // A file without problems gets this warning from the body that is made of it.
   if (constexpr double kLarge = 1.5; problems.any() && sized && size > kLarge)
     odd.add({{"medial", 0}},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model_advice.hpp"
+#include "model_warnings.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -31,7 +31,7 @@ Path surfaceAt(std::size_t surface, const char* key = nullptr) {
   return path;
 }
 
-void adviseSize(double size, Problems& odd) {
+void warnOfSize(double size, Problems& odd) {
   constexpr double kHuge = 5, kTiny = 1e-3;        // [m] sizes beyond these are unusual
   if (size > kHuge || (size > 0 && size < kTiny))  // a size of 0 is reported as surfaces without area
     odd.add({{"surfaces", 0}}, written("the model is %.3g m large; a hand feels models from 0.001 to 5 m, and lengths "
@@ -51,7 +51,7 @@ bool hasNoArea(const SurfaceData& surface) {
   });
 }
 
-void adviseNames(const ModelFile& file, Problems& odd) {
+void warnOfNames(const ModelFile& file, Problems& odd) {
   std::map<std::string, std::size_t> first;
   for (std::size_t i = 0; i < file.surfaces.size(); ++i) {
     const std::string& name = file.surfaces[i].name;
@@ -64,7 +64,7 @@ void adviseNames(const ModelFile& file, Problems& odd) {
 }
 
 /// Warns of a weight that is so large that its neighbours in the net have no effect.
-void adviseWeights(const SurfaceData& surface, std::size_t index, Problems& odd) {
+void warnOfWeights(const SurfaceData& surface, std::size_t index, Problems& odd) {
   constexpr double kTimes = 1000;
   const auto rows = static_cast<std::size_t>(surface.count(0)), columns = static_cast<std::size_t>(surface.count(1));
   const auto judge = [&](std::size_t a, std::size_t b) {
@@ -101,7 +101,7 @@ double lengthOfNet(const SurfaceData& surface, std::size_t along_u, std::size_t 
 
 /// Warns of a control net whose points were written with u fastest. Read with v fastest, its lines run to and fro, so
 /// they are longer.
-void adviseOrder(const SurfaceData& surface, std::size_t index, Problems& odd) {
+void warnOfOrder(const SurfaceData& surface, std::size_t index, Problems& odd) {
   constexpr double kShorter = 0.8;
   const auto rows = static_cast<std::size_t>(surface.count(0)), columns = static_cast<std::size_t>(surface.count(1));
   const double as_read = lengthOfNet(surface, columns, 1), turned = lengthOfNet(surface, 1, rows);
@@ -113,7 +113,7 @@ void adviseOrder(const SurfaceData& surface, std::size_t index, Problems& odd) {
 }
 
 /// Warns of a control point that is far away from all its neighbours: a coordinate with its decimal point elsewhere.
-void adviseSpikes(const SurfaceData& surface, std::size_t index, Problems& odd) {
+void warnOfSpikes(const SurfaceData& surface, std::size_t index, Problems& odd) {
   constexpr double kTimes = 4;  // the longest line of the rest of the net
   const auto rows = static_cast<std::size_t>(surface.count(0)), columns = static_cast<std::size_t>(surface.count(1));
   struct Line {
@@ -163,14 +163,14 @@ class Gaps {
   }
 
   void tell() {
-    // most sides at one corner that are compared; judgeAlone() is left out if there are more than eight times as many
+    // most sides at one corner that are compared; checkAlone() is left out if there are more than eight times as many
     // free sides
     constexpr std::size_t kMost = 64;
     for (const auto& [corner, ends] : free_at_)
       for (std::size_t i = 0; i < std::min(ends.size(), kMost); ++i)
         for (std::size_t j = i + 1; j < std::min(ends.size(), kMost); ++j) judge(ends[i], ends[j]);
     if (free_.size() > 8 * kMost) return;
-    for (int patch = 0; patch < model_.patchCount(); ++patch) judgeAlone(patch);
+    for (int patch = 0; patch < model_.patchCount(); ++patch) checkAlone(patch);
   }
 
  private:
@@ -219,7 +219,7 @@ class Gaps {
 
   /// Finds a face that joins no other face although other surfaces surround it: the whole face is probably misplaced.
   /// Two parallel sheets do not count, because each has only one neighbour.
-  void judgeAlone(int patch) {
+  void checkAlone(int patch) {
     constexpr std::size_t kRound = 3;
     std::set<int> beside;
     for (int side = 0; side < trace::kSides; ++side) {
@@ -254,37 +254,37 @@ class Gaps {
 namespace {
 
 /// Judges one surface by itself.
-void adviseSurface(const SurfaceData& surface, std::size_t index, Problems& odd) {
+void warnOfSurface(const SurfaceData& surface, std::size_t index, Problems& odd) {
   if (hasNoArea(surface))
     odd.add(surfaceAt(index, "points"),
             "all points lie in one place or on one line, so the surface has no area and cannot be felt");
-  adviseOrder(surface, index, odd);
-  adviseSpikes(surface, index, odd);
-  if (!surface.weights.empty()) adviseWeights(surface, index, odd);
+  warnOfOrder(surface, index, odd);
+  warnOfSpikes(surface, index, odd);
+  if (!surface.weights.empty()) warnOfWeights(surface, index, odd);
 }
 
 }  // namespace
 
-std::vector<std::string> adviseSurfaces(const ModelFile& file, const std::vector<bool>& sound, const std::string& text,
+std::vector<std::string> warnOfSurfaces(const ModelFile& file, const std::vector<bool>& sound, const std::string& text,
                                         const std::string& name) {
   Problems odd(name, text);
   Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < sound.size() && i < file.surfaces.size(); ++i)
     if (sound[i])
       for (const Vector3d& point : file.surfaces[i].points) box.extend(point);
-  if (!box.isEmpty()) adviseSize(box.diagonal().norm(), odd);
+  if (!box.isEmpty()) warnOfSize(box.diagonal().norm(), odd);
   for (std::size_t i = 0; i < sound.size() && i < file.surfaces.size() && !odd.full(); ++i)
-    if (sound[i]) adviseSurface(file.surfaces[i], i, odd);
-  adviseNames(file, odd);
+    if (sound[i]) warnOfSurface(file.surfaces[i], i, odd);
+  warnOfNames(file, odd);
   return odd.texts();
 }
 
-std::vector<std::string> adviseModel(const ModelFile& file, const trace::Model& model, const std::string& text,
+std::vector<std::string> warnOfModel(const ModelFile& file, const trace::Model& model, const std::string& text,
                                      const std::string& name) {
   Problems odd(name, text);
-  adviseSize(model.bounds().diagonal().norm(), odd);
-  for (std::size_t i = 0; i < file.surfaces.size() && !odd.full(); ++i) adviseSurface(file.surfaces[i], i, odd);
-  adviseNames(file, odd);
+  warnOfSize(model.bounds().diagonal().norm(), odd);
+  for (std::size_t i = 0; i < file.surfaces.size() && !odd.full(); ++i) warnOfSurface(file.surfaces[i], i, odd);
+  warnOfNames(file, odd);
   Gaps(model, file, odd).tell();
   return odd.texts();
 }

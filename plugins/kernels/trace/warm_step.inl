@@ -81,7 +81,7 @@ inline Forms makeForms(const double* E) {
   return F;
 }
 
-inline void keep(const Forms& F, QuickState& out) {
+inline void keep(const Forms& F, WarmStepState& out) {
   store(out.tangents[0], F.x);
   store(out.tangents[1], F.y);
   store(out.tangents[2], F.z);
@@ -91,7 +91,7 @@ inline void keep(const Forms& F, QuickState& out) {
   for (int i = 0; i < 3; ++i) store2(out.bend[i], F.bend[i]);
 }
 
-inline Forms kept(const QuickState& in) {
+inline Forms kept(const WarmStepState& in) {
   return {get(in.tangents[0]),
           get(in.tangents[1]),
           get(in.tangents[2]),
@@ -171,7 +171,7 @@ inline double shrinkTo(V4 n, double near) {
 }
 
 /// Writes the foot at uv + d, by Taylor expansion about the point.
-inline void finish(const double* E, const double* p, const QuickState& state, double shrink, V2 d, V2 uv,
+inline void finish(const double* E, const double* p, const WarmStepState& state, double shrink, V2 d, V2 uv,
                    double residual2, double* foot) {
   const V4 du = splat(d[0]), dv = splat(d[1]), half = splat(0.5);
   const V4 Su = get(E + kSu), Sv = get(E + kSv), Suv = get(E + kSuv);
@@ -189,8 +189,8 @@ inline void finish(const double* E, const double* p, const QuickState& state, do
   lengths[2] = of_r[1] * to_unit;
 }
 
-QuickResult quickStep(const double* p, double tolerance2, double* uv, double* E, QuickState& state,
-                      double* foot) noexcept {
+WarmStepResult warmStep(const double* p, double tolerance2, double* uv, double* E, WarmStepState& state,
+                        double* foot) noexcept {
   const Forms before = kept(state);
   Step step = stepFrom(E, before, p);
   // The correction takes as long as the step itself, so it is left out if the last ticks did not need it.
@@ -201,23 +201,23 @@ QuickResult quickStep(const double* p, double tolerance2, double* uv, double* E,
   step.good &= step.length2 <= 4 * step.distance2;
   const V2 target = get2(uv) + step.d;
   if (!step.good) [[unlikely]]
-    return QuickResult::kNoStep;
+    return WarmStepResult::kNoStep;
   const spline::TableCell& cell = state.cell;
   const bool here = inside(target, cell);
   if (here & (step.length2 <= tolerance2)) [[unlikely]] {
     finish(E, p, state, state.shrink, step.d, target, step.length2, foot);
-    return QuickResult::kSameFoot;
+    return WarmStepResult::kSameFoot;
   }
   if (here && cell.kernel != nullptr) [[likely]] {
     cell.kernel(cell.coefficients, cell.size[0], cell.size[1], target[0] - cell.origin[0], target[1] - cell.origin[1],
                 E);
   } else if (!state.evaluate(state, target[0], target[1], E)) {
-    return QuickResult::kNoStep;
+    return WarmStepResult::kNoStep;
   }
   const Forms F = makeForms(E);
   const Step next = stepFrom(E, F, p);
   if (!(next.distance2 <= step.distance2)) [[unlikely]]
-    return QuickResult::kFarther;
+    return WarmStepResult::kFarther;
   keep(F, state);
   store2(uv, target);
   const V2 there = target + next.d;
@@ -229,15 +229,15 @@ QuickResult quickStep(const double* p, double tolerance2, double* uv, double* E,
   state.calm2 = 100 * missed * missed * missed <= enough * last * last ? 4 * last : 0;
   const bool converged =
       (now <= enough) | ((now < 0.01 * last) & (100 * (now + bend2) * now * now <= enough * last * last));
-  if (!(converged & next.good & inside(there, cell))) return QuickResult::kNearer;
+  if (!(converged & next.good & inside(there, cell))) return WarmStepResult::kNearer;
   finish(E, p, state, F.shrink, next.d, there, now < enough ? now : enough, foot);
-  return QuickResult::kFoot;
+  return WarmStepResult::kFoot;
 }
 
-void formsOf(const double* E, QuickState& forms) noexcept {
+void formsOf(const double* E, WarmStepState& forms) noexcept {
   keep(makeForms(E), forms);
 }
 
-constexpr QuickKernels kQuickKernels{formsOf, quickStep};
+constexpr WarmStepKernels kWarmStepKernels{formsOf, warmStep};
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/dynamics/press.hpp"
+#include "kernels/dynamics/contact_prediction.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@ namespace hapticd::dynamics {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-Press foresee(const Pressing& last, const Vector3d& probe_now, double closing_speed, const Vector3d& point_velocity,
-              double dt) noexcept {
-  Press press;
+PredictedContact predict(const LastContact& last, const Vector3d& probe_now, double closing_speed,
+                         const Vector3d& point_velocity, double dt) noexcept {
+  PredictedContact press;
   press.point = last.point;
   press.outward = last.normal;
   const Vector3d slide = probe_now - last.probe - dt * point_velocity;  // [m] motion of the probe relative to the body
@@ -38,7 +38,7 @@ Press foresee(const Pressing& last, const Vector3d& probe_now, double closing_sp
   return press;
 }
 
-Vector3d forceAfter(const Press& press, const Vector3d& change) noexcept {
+Vector3d forceAfter(const PredictedContact& press, const Vector3d& change) noexcept {
   const Vector3d force = press.force - press.give * change;
   return force - std::max(0.0, press.outward.dot(force)) * press.outward;
 }

@@ -13,12 +13,12 @@ namespace hapticd {
 /// @param text the text of the file, in which the lines of the values are found
 /// @param name the name of the file, for the warnings
 /// @return warnings of the form `file:line:column: key: what`
-std::vector<std::string> adviseModel(const ModelFile& file, const trace::Model& model, const std::string& text,
+std::vector<std::string> warnOfModel(const ModelFile& file, const trace::Model& model, const std::string& text,
                                      const std::string& name);
 
 /// [main] Does the same for the surfaces of a file with problems. @param sound true for each surface that was read; its
 /// neighbours may be missing
-std::vector<std::string> adviseSurfaces(const ModelFile& file, const std::vector<bool>& sound, const std::string& text,
+std::vector<std::string> warnOfSurfaces(const ModelFile& file, const std::vector<bool>& sound, const std::string& text,
                                         const std::string& name);
 
 }  // namespace hapticd
