@@ -150,7 +150,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
     (void)os::setFifo(os::kServoPriority + 1);  // this thread waits for the service, so that the servo need not
     const auto period = std::chrono::nanoseconds(kNanosecondsPerSecond) / rate;
     auto due = std::chrono::steady_clock::now();
-    vendor_arm::Seen seen;
+    vendor_arm::ArmReading seen;
     seen.calibrated = true;
     introduced_ = lost_ = false;
     while (!end_) {
@@ -162,7 +162,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
     }
   }
 
-  void exchangeOnce(vendor_arm::Seen& seen) {
+  void exchangeOnce(vendor_arm::ArmReading& seen) {
     double wanted[3];
     exchange_.force(wanted);
     const bool sent = static_cast<bool>(channel_->send(command(wanted), kPatienceMs));

@@ -35,7 +35,7 @@ Vector3d unit(const Vector3d& direction, const char* what) {
 
 }  // namespace
 
-Unrest::Unrest(double rms, double low_hz, double high_hz, uint64_t seed)
+BandNoise::BandNoise(double rms, double low_hz, double high_hz, uint64_t seed)
     : amplitude_(rms * std::sqrt(2.0 / static_cast<double>(kTones))) {
   Random random(seed);
   for (size_t axis = 0; axis < 3; ++axis)
@@ -47,7 +47,7 @@ Unrest::Unrest(double rms, double low_hz, double high_hz, uint64_t seed)
     }
 }
 
-Vector3d Unrest::at(double t) const noexcept {
+Vector3d BandNoise::at(double t) const noexcept {
   Vector3d sum = Vector3d::Zero();
   if (amplitude_ == 0) return sum;
   for (size_t axis = 0; axis < 3; ++axis)

@@ -33,9 +33,9 @@ struct HandTarget {
 };
 
 /// A narrow-band random force of given rms: a sum of sinusoids with random frequencies and phases, drawn once.
-class Unrest {
+class BandNoise {
  public:
-  Unrest(double rms, double low_hz, double high_hz, uint64_t seed);
+  BandNoise(double rms, double low_hz, double high_hz, uint64_t seed);
   Eigen::Vector3d at(double t) const noexcept;  ///< [rt] force [N] at time t [s]
 
  private:
@@ -68,7 +68,7 @@ class Hand {
   HandPath path_;
   Eigen::Vector3d side_;  ///< unit vector, perpendicular to axis and normal
   HandTarget guided_;
-  Unrest tremor_, wander_;
+  BandNoise tremor_, wander_;
 };
 
 }  // namespace hapticd::simulated

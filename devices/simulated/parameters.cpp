@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "kinematics/complaints.hpp"
+#include "kinematics/error_collector.hpp"
 #include "simulated/mechanisms.hpp"
 
 namespace hapticd::simulated {
@@ -58,7 +58,7 @@ Eigen::Quaterniond baseOrientation(const std::vector<double>& q) {
 
 kinematics::ChainGeometry chainOf(const Parameters& p) {
   kinematics::ChainGeometry geometry;
-  kinematics::Complaints wrong;
+  kinematics::ErrorCollector wrong;
   // Device files of real chains have arm.origin instead of arm.base_position.
   geometry.base.position = vector(p.base_position) + vector(p.origin);
   wrong.attempt([&] { geometry.base.orientation = baseOrientation(p.base_orientation); });
@@ -92,7 +92,7 @@ kinematics::PhantomGeometry phantomOf(const Parameters& p) {
 
 JointSettings jointsOf(const Parameters& p, int count) {
   const bool premium = p.arm() == Kind::kPremium15;
-  kinematics::Complaints wrong;
+  kinematics::ErrorCollector wrong;
   const auto perJoint = [&](const std::vector<double>& values, double otherwise, const char* name) {
     JointVector list = JointVector::Ones(count);
     wrong.attempt([&] { list = listOf(values, count, otherwise, name); });
@@ -171,7 +171,7 @@ kinematics::PhantomInertia inertiaOf(const Parameters& p, const JointVector& rot
 }  // namespace
 
 /// Refuses lists that this kind of arm would ignore, because it has its values from another list or has fixed ones.
-static void refuseIdle(const Parameters& p, kinematics::Complaints& wrong) {
+static void refuseIdle(const Parameters& p, kinematics::ErrorCollector& wrong) {
   if (p.arm() == Kind::kChain && !p.lengths.empty())
     wrong.add("arm.lengths: a chain has its lengths in arm.dh; remove arm.lengths");
   if (p.arm() != Kind::kPremium15) return;
@@ -184,7 +184,7 @@ static void refuseIdle(const Parameters& p, kinematics::Complaints& wrong) {
 
 std::unique_ptr<kinematics::Arm> makeArm(const Parameters& p) {
   constexpr int kOfPhantom = 3;
-  kinematics::Complaints wrong;
+  kinematics::ErrorCollector wrong;
   std::unique_ptr<kinematics::Arm> arm;
   refuseIdle(p, wrong);
   wrong.attempt([&] {

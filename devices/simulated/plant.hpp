@@ -24,7 +24,7 @@ class Plant {
   /// [main] Puts the arm to rest at q, with its motors off.
   virtual void reset(const JointVector& q) = 0;
   /// [rt] Advances by h seconds.
-  virtual void step(double h, const Drive& drive, const Pull& pull) noexcept = 0;
+  virtual void step(double h, const Drive& drive, const HandCoupling& pull) noexcept = 0;
   virtual JointVector position() const noexcept = 0;         ///< [rt] [rad]
   virtual JointVector velocity() const noexcept = 0;         ///< [rt] [rad/s]
   virtual Eigen::Vector3d tip() const noexcept = 0;          ///< [rt] [m] device frame, at most one step old
@@ -60,7 +60,7 @@ class PlantOf final : public Plant {
     mechanism_.evaluate(q_, qd_);
   }
 
-  void step(double h, const Drive& drive, const Pull& pull) noexcept override {
+  void step(double h, const Drive& drive, const HandCoupling& pull) noexcept override {
     mechanism_.evaluate(q_, qd_);
     const Eigen::Vector3d tip_velocity = mechanism_.J * qd_;
     const Eigen::Vector3d force =

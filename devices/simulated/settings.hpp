@@ -29,7 +29,7 @@ struct Drive {
 };
 
 /// The pull of the hand at the tip during one integration step. It is interpolated within the servo period.
-struct Pull {
+struct HandCoupling {
   Eigen::Vector3d target, velocity, force;  ///< [m], [m/s], [N] in addition to spring and damper
   double stiffness = 0, damping = 0;        ///< [N/m], [N s/m]
 };

@@ -203,7 +203,7 @@ class SimulatedArm : public Device, public Parameters {
       drive.torque.setZero();
     }
     const bool holds = hand_->holds();
-    Pull pull;
+    HandCoupling pull;
     pull.stiffness = holds ? hand_->settings().stiffness : 0;
     pull.damping = holds ? hand_->settings().damping : 0;
     for (int i = 0; i < steps; ++i) {

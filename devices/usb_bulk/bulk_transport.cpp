@@ -138,7 +138,7 @@ class BulkTransport final : public Transport {
   }
 
   /// Opens the same usbfs node again: another process can claim the interface after this process has ended.
-  Descriptor wayIn(hdv_silence& how) noexcept override {
+  Descriptor openForSilence(hdv_silence& how) noexcept override {
     libusb_device* device = libusb_get_device(handle_);
     char node[40];
     std::snprintf(node, sizeof node, "/dev/bus/usb/%03d/%03d", libusb_get_bus_number(device),

@@ -109,7 +109,7 @@ class HidTransport final : public Transport {
 
   /// Opens the node again without the lock. A process that held the lock would keep this program from opening the
   /// device.
-  Descriptor wayIn(hdv_silence& how) noexcept override {
+  Descriptor openForSilence(hdv_silence& how) noexcept override {
     how.kind = HDV_BY_WRITE;
     how.size = numbered_ ? 0 : 1;  // hidraw needs a report id in front of each report
     return Descriptor(::open(node_.c_str(), O_RDWR | O_CLOEXEC | O_NOCTTY));

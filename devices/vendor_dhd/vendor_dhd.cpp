@@ -117,7 +117,7 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
     (void)os::setFifo(os::kServoPriority + 1);  // this thread waits for the hardware, so that the servo need not
     const auto period = std::chrono::nanoseconds(kNanosecondsPerSecond) / rate;
     auto due = std::chrono::steady_clock::now();
-    vendor_arm::Seen seen;
+    vendor_arm::ArmReading seen;
     seen.calibrated = true;
     while (!end_) {
       exchangeOnce(seen);
@@ -127,7 +127,7 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
     }
   }
 
-  void exchangeOnce(vendor_arm::Seen& seen) {
+  void exchangeOnce(vendor_arm::ArmReading& seen) {
     double x = 0, y = 0, z = 0, wanted[3];
     if (seen.lost || dhd_.get_position(&x, &y, &z, id()) < 0) {
       seen.lost = true;

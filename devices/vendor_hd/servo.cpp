@@ -13,7 +13,7 @@ constexpr double kMetrePerMm = 1e-3;
 
 }  // namespace
 
-using vendor_arm::Seen;
+using vendor_arm::ArmReading;
 
 bool Servo::start(HHD device) {
   device_ = device;
@@ -47,7 +47,7 @@ HDCallbackCode HDCALLBACK Servo::callback(void* self) {
 /// Reads the position first and sets the force last, so that the daemon's tick can run in between.
 void Servo::tick() {
   vendor_.begin_frame(device_);
-  Seen seen = last_;
+  ArmReading seen = last_;
   look(seen);
   double force[3];
   exchange_.force(force);
@@ -59,7 +59,7 @@ void Servo::tick() {
   exchange_.show(seen);
 }
 
-void Servo::look(Seen& seen) {
+void Servo::look(ArmReading& seen) {
   double position[3] = {};
   HDint buttons = 0;
   vendor_.get_doubles(HD_CURRENT_POSITION, position);
@@ -74,7 +74,7 @@ void Servo::look(Seen& seen) {
 
 /// Takes the library's errors. A lost arm stays lost until the next start, because the library may report old positions
 /// for ever. A fault stays as well.
-void Servo::notice(Seen& seen) {
+void Servo::notice(ArmReading& seen) {
   constexpr int kMost = 64;
   for (int i = 0; i < kMost; ++i) {
     switch (vendor_.get_error().errorCode) {

@@ -20,8 +20,8 @@ class Servo {
  private:
   static HDCallbackCode HDCALLBACK callback(void* self);
   void tick();
-  void look(vendor_arm::Seen& seen);
-  void notice(vendor_arm::Seen& seen);
+  void look(vendor_arm::ArmReading& seen);
+  void notice(vendor_arm::ArmReading& seen);
 
   const VendorLibrary& vendor_;
   vendor_arm::Exchange& exchange_;
@@ -29,7 +29,7 @@ class Servo {
   HDSchedulerHandle handle_ = 0;
   bool scheduled_ = false;
   std::atomic<bool> end_{false};
-  vendor_arm::Seen last_;  ///< used only by the callback
+  vendor_arm::ArmReading last_;  ///< used only by the callback
   uint64_t ticks_ = 0;
 };
 

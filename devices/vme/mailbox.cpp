@@ -134,7 +134,7 @@ Status Mailbox::take(std::span<uint8_t> block) noexcept {
 
 /// Opens the window a second time. Link::silence() uses it only after the board has sent a report, because a wrong
 /// address may be memory of another board.
-Descriptor Mailbox::wayIn(hdv_silence& how) noexcept {
+Descriptor Mailbox::openForSilence(hdv_silence& how) noexcept {
   how.kind = HDV_BY_PWRITE;
   how.offset = place_.command;
   return Descriptor(::open(place_.window.node.c_str(), O_RDWR | O_CLOEXEC));

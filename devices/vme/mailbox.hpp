@@ -27,7 +27,7 @@ class Mailbox final : public wire_arm::Transport {
   wire_arm::Status receive(std::span<uint8_t> to, size_t& size, Nanoseconds wait) noexcept override;
   wire_arm::Status send(std::span<const uint8_t> bytes) noexcept override;
   /// Gives access to the command block through another descriptor of the same window.
-  Descriptor wayIn(hdv_silence& how) noexcept override;
+  Descriptor openForSilence(hdv_silence& how) noexcept override;
   wire_arm::Status control(const codec::StartStep&) noexcept override { return wire_arm::Status::kFailed; }
 
  private:

@@ -13,18 +13,18 @@ namespace {
 /// one owner.
 constexpr size_t kOwners = 16;
 
-struct Noted {
+struct OwnerCount {
   std::atomic<const Owner*> owner{nullptr};
   std::atomic<uint64_t> count{0};
 };
 
-std::array<Noted, kOwners> g_noted;
+std::array<OwnerCount, kOwners> g_noted;
 
 /// This runs within malloc, so it takes no lock and allocates nothing.
 void noteOne() {
-  const Owner* const owner = calledHere();
+  const Owner* const owner = currentOwner();
   if (owner == nullptr) return;
-  for (Noted& noted : g_noted) {
+  for (OwnerCount& noted : g_noted) {
     const Owner* known = nullptr;
     if (!noted.owner.compare_exchange_strong(known, owner, std::memory_order_relaxed) && known != owner) continue;
     noted.count.fetch_add(1, std::memory_order_relaxed);
@@ -40,7 +40,7 @@ void noteAllocations(bool on) noexcept {
 
 AllocationShare mostAllocations() noexcept {
   AllocationShare most;
-  for (const Noted& noted : g_noted)
+  for (const OwnerCount& noted : g_noted)
     if (const uint64_t count = noted.count.load(std::memory_order_relaxed); count > most.count)
       most = {noted.owner.load(std::memory_order_relaxed), count};
   return most;

@@ -4,7 +4,7 @@
 #pragma once
 #include <cstdint>
 
-#include "base/blame.hpp"
+#include "base/code_owner.hpp"
 
 namespace hapticd {
 

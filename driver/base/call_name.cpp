@@ -10,27 +10,27 @@ namespace {
 
 /// An entry of a linked list. The list only grows, at its head, and is never destroyed, because signal handlers may
 /// read it at any moment.
-struct Known {
+struct OwnerPlace {
   const Owner* owner;
   std::string place;
-  const Known* next;
+  const OwnerPlace* next;
 };
-std::atomic<const Known*> newest{nullptr};
+std::atomic<const OwnerPlace*> newest{nullptr};
 
 }  // namespace
 
-void keepPlace(const Owner* owner, const std::string& place) {
+void setPlaceOfOwner(const Owner* owner, const std::string& place) {
   static std::mutex mutex;
-  static auto& last = *new std::unordered_map<const Owner*, const Known*>;  // newest entry of each owner
+  static auto& last = *new std::unordered_map<const Owner*, const OwnerPlace*>;  // newest entry of each owner
   const std::lock_guard lock(mutex);
-  const Known*& known = last[owner];
+  const OwnerPlace*& known = last[owner];
   if ((known != nullptr ? known->place : "") == place) return;
-  known = new Known{owner, place, newest.load()};
+  known = new OwnerPlace{owner, place, newest.load()};
   newest.store(known);
 }
 
 const char* placeOf(const Owner* owner) noexcept {
-  for (const Known* known = newest.load(); known != nullptr; known = known->next)
+  for (const OwnerPlace* known = newest.load(); known != nullptr; known = known->next)
     if (known->owner == owner) return known->place.c_str();
   return "";
 }

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <string>
 
-#include "base/blame.hpp"
+#include "base/code_owner.hpp"
 
 namespace hapticd {
 
@@ -35,7 +35,7 @@ inline const char* callNameHere() noexcept {
 }
 
 /// [main] Notes which line of a file asks for that owner. @param place such as "scene.yaml:4"; a later call replaces it
-void keepPlace(const Owner* owner, const std::string& place);
+void setPlaceOfOwner(const Owner* owner, const std::string& place);
 /// [any] Returns the line of the file that asks for that owner, such as "scene.yaml:4"; "" if it is unknown.
 /// Async-signal-safe.
 const char* placeOf(const Owner* owner) noexcept;

@@ -28,7 +28,7 @@ bool isRepeated(const FileOfOwner* entry) noexcept {
 
 }  // namespace
 
-void keepFile(const Owner* owner, const std::string& identity, bool foreign) {
+void setFileOfOwner(const Owner* owner, const std::string& identity, bool foreign) {
   static std::mutex mutex;
   static auto& last = *new std::unordered_map<const Owner*, const FileOfOwner*>;  // newest entry of each owner
   const std::lock_guard lock(mutex);

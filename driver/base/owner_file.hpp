@@ -5,14 +5,14 @@
 #include <cstddef>
 #include <string>
 
-#include "base/blame.hpp"
+#include "base/code_owner.hpp"
 
 namespace hapticd {
 
 /// [main] Notes which file contains the code of an owner. @param identity identity of the file when it was loaded, one
 /// line without tabs
 /// @param foreign true if the file does not ship with hapticd
-void keepFile(const Owner* owner, const std::string& identity, bool foreign);
+void setFileOfOwner(const Owner* owner, const std::string& identity, bool foreign);
 /// [any] Returns the identity of that owner's file; "" if none was given. Async-signal-safe.
 const char* fileOf(const Owner* owner) noexcept;
 /// [any] Returns the owner of that number among the owners whose files do not ship with hapticd. Each module counts

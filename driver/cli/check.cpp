@@ -12,19 +12,19 @@
 #include "cli/check_draft.hpp"
 #include "cli/colour.hpp"
 #include "cli/command.hpp"
-#include "cli/scene_advice.hpp"
-#include "diagnostics/device_advice.hpp"
+#include "cli/scene_warnings.hpp"
 #include "diagnostics/device_trial.hpp"
-#include "diagnostics/hand_path_advice.hpp"
+#include "diagnostics/device_warnings.hpp"
+#include "diagnostics/hand_path_warnings.hpp"
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/hand_start.hpp"
 #include "diagnostics/key_place.hpp"
 #include "diagnostics/model_trial.hpp"
+#include "diagnostics/setting_plausibility.hpp"
 #include "diagnostics/slow_arm.hpp"
-#include "diagnostics/unit_advice.hpp"
-#include "diagnostics/unusual_settings.hpp"
-#include "diagnostics/unusual_values.hpp"
-#include "diagnostics/velocity_advice.hpp"
+#include "diagnostics/unit_warnings.hpp"
+#include "diagnostics/value_plausibility.hpp"
+#include "diagnostics/velocity_warnings.hpp"
 #include "document/node.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
@@ -53,7 +53,7 @@ int printSchema(const std::string& format) {
 }
 
 /// What `check` reports about one file.
-struct Verdict {
+struct CheckResult {
   std::string file;
   document::Problems problems, warnings;
   bool whole = true;  ///< false if some checks were left out, because something that they need is missing or wrong
@@ -67,22 +67,23 @@ bool tells(const document::Problems& told, const document::Problem& one) {
 }
 
 /// Adds warnings about what is allowed but was hardly meant, or cannot be stable.
-void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckArguments& options, Verdict& verdict) {
+void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckArguments& options,
+                 CheckResult& result) {
   document::Problems more = unstableContacts(full, trial.stiffness);
   for (const document::Problem& one : lateVelocity(full, trial.needs_velocity)) more.push_back(one);
   for (const auto& found_by : {&farModels, &softModels, &idleBounds, &quarantinedModels, &slowArms, &wideScales})
     for (const document::Problem& one : found_by(full)) more.push_back(one);
   document::Problems unread;
-  if (const auto root = document::parseFile(verdict.file, unread)) adviseZeros(*root, verdict.file, more);
-  if (!options.files_only && verdict.problems.empty())  // these run the scene
+  if (const auto root = document::parseFile(result.file, unread)) warnOfZeros(*root, result.file, more);
+  if (!options.files_only && result.problems.empty())  // these run the scene
     for (const document::Problems& found :
-         {unreachableRows(full), adviseHands(full, strayModels(full, trial.boxes, catalog()))})
+         {unreachableRows(full), warnOfHands(full, strayModels(full, trial.boxes, catalog()))})
       more.insert(more.end(), found.begin(), found.end());
   if (!options.files_only || !options.device.empty())  // what the check of the device file itself says
     for (const scene::Device& device : full.devices)
-      for (const document::Problem& one : adviseDevice(device.file, catalog()))
+      for (const document::Problem& one : warnOfDevice(device.file, catalog()))
         if (!tells(more, one)) more.push_back(one);
-  verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
+  result.warnings.insert(result.warnings.end(), more.begin(), more.end());
 }
 
 /// Tries the modules of a scene's arms in child processes, before any of them is loaded here, and returns what a run
@@ -106,43 +107,43 @@ document::Problems badModules(const scene::Scene& scene) {
 }
 
 /// Judges what could be read of a scene that has problems, so that the user sees all problems at once.
-void tryTheRest(const CheckArguments& options, Verdict& verdict) {
-  const auto draft = scene::sceneDraft(verdict.file, catalog());
-  verdict.whole = !draft && std::none_of(verdict.problems.begin(), verdict.problems.end(),
-                                         [](const document::Problem& problem) { return problem.key.empty(); });
+void tryTheRest(const CheckArguments& options, CheckResult& result) {
+  const auto draft = scene::sceneDraft(result.file, catalog());
+  result.whole = !draft && std::none_of(result.problems.begin(), result.problems.end(),
+                                        [](const document::Problem& problem) { return problem.key.empty(); });
   if (!draft || options.files_only) return;
-  judgeDraft(*draft, verdict.problems, verdict.warnings);
-  document::sortByPlace(verdict.problems);
+  checkDraft(*draft, result.problems, result.warnings);
+  document::sortByPlace(result.problems);
 }
 
 /// Adds problems that `run` would find when it opens the arms.
-void addRefusals(const scene::Scene& full, bool needs_velocity, Verdict& verdict) {
+void addRefusals(const scene::Scene& full, bool needs_velocity, CheckResult& result) {
   for (const document::Problems& problems :
-       {refusedArms(full, needs_velocity), refusedVelocity(full, needs_velocity, verdict.warnings)})
-    verdict.problems.insert(verdict.problems.end(), problems.begin(), problems.end());
+       {refusedArms(full, needs_velocity), refusedVelocity(full, needs_velocity, result.warnings)})
+    result.problems.insert(result.problems.end(), problems.begin(), problems.end());
 }
 
 /// Asks the modules of the device files that a scene with problems names for the rest of their problems, and judges
 /// their values, so that the user sees all at once. @param named the scene's own devices are used, and no other
-void addOfDevices(Verdict& verdict, bool named) {
+void addOfDevices(CheckResult& result, bool named) {
   std::set<std::string> others;
-  for (const document::Problem& one : verdict.problems)
-    if (one.place.file != verdict.file) others.insert(one.place.file);
-  if (const auto draft = scene::sceneDraft(verdict.file, catalog()); draft && named)
+  for (const document::Problem& one : result.problems)
+    if (one.place.file != result.file) others.insert(one.place.file);
+  if (const auto draft = scene::sceneDraft(result.file, catalog()); draft && named)
     for (const scene::Device& device : draft->devices) others.insert(device.file.string());
   for (const std::string& file : others) {
     document::Problems known;
-    for (const document::Problem& one : verdict.problems)
+    for (const document::Problem& one : result.problems)
       if (one.place.file == file) known.push_back(one);
     for (const document::Problem& one : tryDevice(file, catalog(), known))
-      known.push_back(one), verdict.problems.push_back(one);
-    for (const document::Problem& one : adviseDevice(file, catalog(), known)) verdict.warnings.push_back(one);
+      known.push_back(one), result.problems.push_back(one);
+    for (const document::Problem& one : warnOfDevice(file, catalog(), known)) result.warnings.push_back(one);
   }
-  document::sortByPlace(verdict.problems);
+  document::sortByPlace(result.problems);
 }
 
 /// Finds the places of keys in files. Each file is read once.
-class Places {
+class KeyPlaces {
  public:
   std::optional<document::Place> of(const std::string& file, const std::string& key) {
     document::Problems unread;
@@ -158,7 +159,7 @@ class Places {
 /// Finds the line of each warning that has only a key, or the pose of a model, and removes warnings that occur twice.
 void placeWarnings(document::Problems& warnings) {
   document::Problems once;
-  Places places;
+  KeyPlaces places;
   for (document::Problem& one : warnings) {
     constexpr std::string_view kPosition = ".position";
     const bool of_pose = one.key.ends_with(".pose") || one.key.ends_with(".pose.position");
@@ -178,55 +179,55 @@ void placeWarnings(document::Problems& warnings) {
   warnings = std::move(once);
 }
 
-Verdict checkOne(const std::string& file, const CheckArguments& options) {
+CheckResult checkOne(const std::string& file, const CheckArguments& options) {
   std::optional<scene::Scene> scene;
-  Verdict verdict{file, scene::checkFile(file, catalog(), &scene), {}};
-  document::Problems& found = verdict.problems;
+  CheckResult result{file, scene::checkFile(file, catalog(), &scene), {}};
+  document::Problems& found = result.problems;
   if (scene && !options.device.empty()) {  // as run takes it
     scene::Loaded other = scene::load(file, catalog(), {true, options.device});
     scene = std::move(other.scene);
     found = std::move(other.problems);
-    verdict.whole = found.empty();
+    result.whole = found.empty();
     if (!scene) {
-      addOfDevices(verdict, false);
-      return verdict;
+      addOfDevices(result, false);
+      return result;
     }
   }
   if (scene && !options.files_only)
     if (document::Problems bad = badModules(*scene); !bad.empty()) {
       found.insert(found.end(), bad.begin(), bad.end());
-      return verdict;  // the checks that follow would call these modules in this process
+      return result;  // the checks that follow would call these modules in this process
     }
   ModelTrial trial;
   if (scene && !options.files_only) trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)));
   found.insert(found.end(), trial.problems.begin(), trial.problems.end());
-  if (scene && !options.files_only) addRefusals(withArm(*scene), trial.needs_velocity, verdict);
+  if (scene && !options.files_only) addRefusals(withArm(*scene), trial.needs_velocity, result);
   if (!scene && !found.empty()) {
-    tryTheRest(options, verdict);
-    if (!options.files_only) addOfDevices(verdict, true);
+    tryTheRest(options, result);
+    if (!options.files_only) addOfDevices(result, true);
   }
   if (!scene) {
-    const document::Problems more = tryDevice(file, catalog(), found, &verdict.warnings);
+    const document::Problems more = tryDevice(file, catalog(), found, &result.warnings);
     found.insert(found.end(), more.begin(), more.end());
-    for (const document::Problem& one : adviseDevice(file, catalog(), found)) verdict.warnings.push_back(one);
+    for (const document::Problem& one : warnOfDevice(file, catalog(), found)) result.warnings.push_back(one);
     if (found.empty()) {
-      if (!options.files_only) found = refusedAlone(file, catalog(), verdict.warnings);
+      if (!options.files_only) found = refusedAlone(file, catalog(), result.warnings);
     }
     document::sortByPlace(found);
   }
-  verdict.warnings.insert(verdict.warnings.end(), trial.warnings.begin(), trial.warnings.end());
-  verdict.whole = verdict.whole && found.empty();
-  if (scene) addWarnings(withArm(*scene), trial, options, verdict);
-  if (scene) addUnusual(withArm(*scene), trial.boxes, {}, verdict.warnings);
-  placeWarnings(verdict.warnings);
-  return verdict;
+  result.warnings.insert(result.warnings.end(), trial.warnings.begin(), trial.warnings.end());
+  result.whole = result.whole && found.empty();
+  if (scene) addWarnings(withArm(*scene), trial, options, result);
+  if (scene) addImplausible(withArm(*scene), trial.boxes, {}, result.warnings);
+  placeWarnings(result.warnings);
+  return result;
 }
 
-void print(const Verdict& verdict, bool quiet) {
-  printProblems(verdict.problems, stdout);
-  printWarnings(verdict.warnings, stdout);
-  if (verdict.problems.empty() && !quiet)
-    std::printf("%s: %s\n", verdict.file.c_str(), coloured("ok", Colour::kGood).c_str());
+void print(const CheckResult& result, bool quiet) {
+  printProblems(result.problems, stdout);
+  printWarnings(result.warnings, stdout);
+  if (result.problems.empty() && !quiet)
+    std::printf("%s: %s\n", result.file.c_str(), coloured("ok", Colour::kGood).c_str());
 }
 
 Json toJson(const document::Problems& problems) {
@@ -247,17 +248,17 @@ int check(const CheckArguments& options) {
   bool whole = true;
   Json files = Json::array();
   for (const std::string& file : options.files) {
-    const Verdict verdict = checkOne(file, options);
+    const CheckResult result = checkOne(file, options);
     if (options.json)
       files.push_back({{"file", file},
-                       {"ok", verdict.problems.empty()},
-                       {"problems", toJson(verdict.problems)},
-                       {"warnings", toJson(verdict.warnings)}});
+                       {"ok", result.problems.empty()},
+                       {"problems", toJson(result.problems)},
+                       {"warnings", toJson(result.warnings)}});
     else
-      print(verdict, options.quiet);
-    problems += verdict.problems.size();
-    whole = whole && verdict.whole;
-    bad_files += verdict.problems.empty() ? 0 : 1;
+      print(result, options.quiet);
+    problems += result.problems.size();
+    whole = whole && result.whole;
+    bad_files += result.problems.empty() ? 0 : 1;
   }
   if (options.json)
     std::printf(

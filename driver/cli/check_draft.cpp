@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/scene_advice.hpp"
+#include "cli/scene_warnings.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/hand_start.hpp"
 #include "diagnostics/key_place.hpp"
 #include "diagnostics/model_trial.hpp"
 #include "diagnostics/slow_arm.hpp"
-#include "diagnostics/unit_advice.hpp"
-#include "diagnostics/velocity_advice.hpp"
+#include "diagnostics/unit_warnings.hpp"
+#include "diagnostics/velocity_warnings.hpp"
 #include "document/node.hpp"
 #include "hapticd/shape.h"
 #include "tune/stability.hpp"
@@ -133,12 +133,12 @@ class Models {
 };
 
 /// Judges settings that need the arms.
-void judgeArms(const scene::Scene& draft, const UnreadKeys& unread, const ModelTrial& trial,
-               document::Problems& problems, document::Problems& warnings) {
+void checkDraftArms(const scene::Scene& draft, const UnreadKeys& unread, const ModelTrial& trial,
+                    document::Problems& problems, document::Problems& warnings) {
   const auto add = [](document::Problems& to, const document::Problems& more) {
     to.insert(to.end(), more.begin(), more.end());
   };
-  for (const document::Problem& one : hastyHands(draft, unread)) warnings.push_back(one);
+  for (const document::Problem& one : fastHands(draft, unread)) warnings.push_back(one);
   if (!unread.has("clients.max_force")) add(warnings, idleBounds(draft));
   if (!unread.has("servo.velocity")) {
     if (!unread.has("servo.rate") || draft.servo.velocity.estimator == "butterworth")
@@ -154,7 +154,7 @@ void judgeArms(const scene::Scene& draft, const UnreadKeys& unread, const ModelT
 
 }  // namespace
 
-void judgeDraft(scene::Scene draft, document::Problems& problems, document::Problems& warnings) {
+void checkDraft(scene::Scene draft, document::Problems& problems, document::Problems& warnings) {
   const UnreadKeys unread(problems);
   bool arms = armsAreRead(draft, problems);
   if (arms) draft = withArm(std::move(draft));
@@ -169,9 +169,9 @@ void judgeDraft(scene::Scene draft, document::Problems& problems, document::Prob
     for (const document::Problem& one : found_by(draft))
       if (models.isRead(one) && !unread.has(one.key)) warnings.push_back(one);
   document::Problems unparsed;
-  if (const auto root = document::parseFile(draft.file, unparsed)) adviseZeros(*root, draft.file.string(), warnings);
-  if (arms) judgeArms(draft, unread, trial, problems, warnings);
-  addUnusual(draft, trial.boxes, unread, warnings);
+  if (const auto root = document::parseFile(draft.file, unparsed)) warnOfZeros(*root, draft.file.string(), warnings);
+  if (arms) checkDraftArms(draft, unread, trial, problems, warnings);
+  addImplausible(draft, trial.boxes, unread, warnings);
   if (!arms) std::erase_if(warnings, [](const document::Problem& one) { return one.key == "clients.origin"; });
 }
 

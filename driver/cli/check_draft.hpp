@@ -9,6 +9,6 @@ namespace hapticd::cli {
 /// [main] Sets up the models and judges the values that were read. A judgement that depends on a value with a problem
 /// is left out. @param draft the scene as far as it was read @param problems problems of the scene; those of its models
 /// are added
-void judgeDraft(scene::Scene draft, document::Problems& problems, document::Problems& warnings);
+void checkDraft(scene::Scene draft, document::Problems& problems, document::Problems& warnings);
 
 }  // namespace hapticd::cli

@@ -24,14 +24,14 @@ Settings& settings() {
 }
 
 /// Errors of modules that are kept for the message of a failing set-up.
-struct Waiting {
+struct PendingErrors {
   std::mutex mutex;
   bool open = false;
   std::vector<std::pair<std::string, std::string>> errors;  ///< sender and text of each error
 };
 
-Waiting& waiting() {
-  static Waiting instance;
+PendingErrors& waiting() {
+  static PendingErrors instance;
   return instance;
 }
 
@@ -68,14 +68,14 @@ SetupErrors::SetupErrors() {
   waiting().open = true;
 }
 
-bool SetupErrors::keeps(int level, const std::string& who, const std::string& text) {
+bool SetupErrors::holdsBack(int level, const std::string& who, const std::string& text) {
   const std::lock_guard lock(waiting().mutex);
   if (!waiting().open || level != HSP_LOG_ERROR) return false;
   waiting().errors.emplace_back(who, text);
   return true;
 }
 
-void SetupErrors::tell() {
+void SetupErrors::print() {
   const std::lock_guard lock(waiting().mutex);
   for (const auto& [who, text] : waiting().errors) std::fprintf(stderr, "error: %s: %s\n", who.c_str(), text.c_str());
   waiting().errors.clear();
@@ -87,13 +87,13 @@ int fail(int exit_code, const std::string& message) {
     const std::lock_guard lock(waiting().mutex);
     std::erase_if(waiting().errors, [&](const auto& e) { return message.find(e.second) != std::string::npos; });
   }
-  SetupErrors::tell();
+  SetupErrors::print();
   std::fprintf(stderr, "error: %s\n", message.c_str());
   return exit_code;
 }
 
 void logToTerminal(int level, const std::string& who, const std::string& text) {
-  if (level < HSP_LOG_INFO || SetupErrors::keeps(level, who, text)) return;
+  if (level < HSP_LOG_INFO || SetupErrors::holdsBack(level, who, text)) return;
   const char* word = level == HSP_LOG_INFO ? "info" : level == HSP_LOG_WARNING ? "warning" : "error";
   std::fprintf(stderr, "%s: %s: %s\n", word, who.c_str(), text.c_str());
 }

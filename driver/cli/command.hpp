@@ -35,13 +35,13 @@ void logToTerminal(int level, const std::string& who, const std::string& text);
 class SetupErrors {
  public:
   SetupErrors();
-  ~SetupErrors() { tell(); }
+  ~SetupErrors() { print(); }
   SetupErrors(const SetupErrors&) = delete;
   SetupErrors& operator=(const SetupErrors&) = delete;
   /// [any] Returns true if this message is an error that is kept for now.
-  static bool keeps(int level, const std::string& who, const std::string& text);
+  static bool holdsBack(int level, const std::string& who, const std::string& text);
   /// [main] Prints the kept errors; later ones are printed at once.
-  static void tell();
+  static void print();
 };
 
 /// Adds the options --config and --plugin-path, which stand before the subcommand.

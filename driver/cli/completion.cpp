@@ -15,7 +15,7 @@
 namespace hapticd::cli {
 namespace {
 
-struct Word {
+struct CompletionWord {
   std::string text, doc;
   std::vector<std::string> choices;  ///< what may follow an option
 };
@@ -24,7 +24,7 @@ struct Word {
 /// of `plugin`.
 struct CommandNode {
   std::string path;
-  std::vector<Word> words;
+  std::vector<CompletionWord> words;
   bool files = false;  ///< whether an argument is a file
 };
 
@@ -118,13 +118,13 @@ std::string bash(const std::vector<CommandNode>& nodes) {
   text += findPath(nodes, "\"${COMP_WORDS[@]:1:COMP_CWORD-1}\"");
   text += "  local known_='' files_=''\n  case \"$path_ ${COMP_WORDS[COMP_CWORD-1]}\" in\n";
   for (const CommandNode& node : nodes)
-    for (const Word& word : node.words)
+    for (const CompletionWord& word : node.words)
       if (!word.choices.empty())
         text += "    '" + node.path + " " + word.text + "') known_='" + joined(word.choices) + "' ;;\n";
   text += "    *)\n      case \"$path_\" in\n";
   for (const CommandNode& node : nodes) {
     std::vector<std::string> words;
-    for (const Word& word : node.words) words.push_back(word.text);
+    for (const CompletionWord& word : node.words) words.push_back(word.text);
     text += "        '" + node.path + "') known_='" + joined(words) + "'" + (node.files ? " files_=-f" : "") + " ;;\n";
   }
   text += "      esac\n      case \"$path_\" in\n";
@@ -145,13 +145,13 @@ std::string zsh(const std::vector<CommandNode>& nodes) {
   text += findPath(nodes, "${words[2,CURRENT-1]}");
   text += "  local -a known_\n  local files_=''\n  case \"$path_ ${words[CURRENT-1]}\" in\n";
   for (const CommandNode& node : nodes)
-    for (const Word& word : node.words)
+    for (const CompletionWord& word : node.words)
       if (!word.choices.empty())
         text += "    '" + node.path + " " + word.text + "') compadd -- " + joined(word.choices) + "; return ;;\n";
   text += "  esac\n  case \"$path_\" in\n";
   for (const CommandNode& node : nodes) {
     text += "    '" + node.path + "') known_=(\n";
-    for (const Word& word : node.words) text += "      '" + word.text + ":" + quoted(word.doc, true) + "'\n";
+    for (const CompletionWord& word : node.words) text += "      '" + word.text + ":" + quoted(word.doc, true) + "'\n";
     text += node.files ? "    ); files_=1 ;;\n" : "    ) ;;\n";
   }
   text += "  esac\n  case \"$path_\" in\n";
@@ -179,7 +179,7 @@ std::string fish(const std::vector<CommandNode>& nodes) {
   for (const CommandNode& node : nodes) {
     const std::string condition = fishCondition(node.path);
     if (!node.files) text += "complete -c hapticd -n '" + condition + "' -f\n";
-    for (const Word& word : node.words) {
+    for (const CompletionWord& word : node.words) {
       const bool option = word.text.rfind("--", 0) == 0;
       text +=
           "complete -c hapticd -n '" + condition + "' " + (option ? "-l " + word.text.substr(2) : "-a " + word.text);

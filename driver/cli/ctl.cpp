@@ -14,7 +14,7 @@
 #include "cli/named_files.hpp"
 #include "cli/output_file.hpp"
 #include "control/client.hpp"
-#include "control/presence.hpp"
+#include "control/liveness.hpp"
 #include "document/json_text.hpp"
 #include "document/node.hpp"
 #include "status/page_file.hpp"
@@ -246,7 +246,7 @@ int showEvents(const CtlArguments& options) {
   }
   constexpr double kLong = 1e6;
   while (options.follow && std::fflush(stdout) == 0) {
-    const auto line = client->hear(kLong);
+    const auto line = client->receiveLine(kLong);
     if (!line) return endOfStream(options);
     std::printf("%s\n", line->c_str());
   }

@@ -61,7 +61,7 @@ Result<hapticd_target> targetOf(std::string line) {
   return checked(target);
 }
 
-int tellOfEnd() {
+int reportEnd() {
   return fail(kFailed, "the daemon has ended, or it ended this lead: nothing is led any more");
 }
 
@@ -72,7 +72,7 @@ int putLines(const control::Client& client, link::PoseSlot& slot) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const auto target = targetOf(line);
     if (!target) return fail(kBadInput, "line " + std::to_string(number) + ": " + target.error());
-    if (client.ended()) return tellOfEnd();
+    if (client.ended()) return reportEnd();
     slot.put(*target);
   }
   return kWorked;
@@ -96,7 +96,7 @@ int leadByLines(const LeadOptions& options) {
   RealClock clock(0);
   if (exit_code == kWorked) clock.waitUntil(clock.now() + static_cast<Nanoseconds>(options.hold * 1e9));
   munmap(memory, HAPTICD_LEAD_BYTES);
-  if (exit_code == kWorked && client->ended()) exit_code = tellOfEnd();
+  if (exit_code == kWorked && client->ended()) exit_code = reportEnd();
   return exit_code;
 }
 

@@ -10,30 +10,30 @@ namespace hapticd::cli {
 namespace {
 
 /// The hazards of hazards.md in groups, with a few words for each group.
-struct Against {
+struct HazardGroup {
   const char *hazards, *words;
 };
-constexpr Against kAgainst[] = {{"H4 H6 H8 H9 H13 H17 H21", "wrong numbers, faults"},
-                                {"H16", "too much force"},
-                                {"H18", "a blow"},
-                                {"H1 H2", "false positions or times"},
-                                {"H1", "false positions"},
-                                {"H19", "a push too long or strong"},
-                                {"A3", "running into the stops"},
-                                {"A1", "a burnt winding"},
-                                {"H20", "a force nobody expects"},
-                                {"H23", "a weight that pushes"},
-                                {"H26 H33", "a daemon that stands still"},
-                                {"H30 H32", "a daemon that is gone"},
-                                {"H21", "energy after a fault"},
-                                {"H30", "a machine that stops"},
-                                {"H3", "an arm that falls silent"},
-                                {"H22", "a contact that buzzes"},
-                                {"H5", "an arm without its zero"}};
+constexpr HazardGroup kAgainst[] = {{"H4 H6 H8 H9 H13 H17 H21", "wrong numbers, faults"},
+                                    {"H16", "too much force"},
+                                    {"H18", "a blow"},
+                                    {"H1 H2", "false positions or times"},
+                                    {"H1", "false positions"},
+                                    {"H19", "a push too long or strong"},
+                                    {"A3", "running into the stops"},
+                                    {"A1", "a burnt winding"},
+                                    {"H20", "a force nobody expects"},
+                                    {"H23", "a weight that pushes"},
+                                    {"H26 H33", "a daemon that stands still"},
+                                    {"H30 H32", "a daemon that is gone"},
+                                    {"H21", "energy after a fault"},
+                                    {"H30", "a machine that stops"},
+                                    {"H3", "an arm that falls silent"},
+                                    {"H22", "a contact that buzzes"},
+                                    {"H5", "an arm without its zero"}};
 
 /// Returns the words for these hazards, or their codes if there are no words.
 std::string wordsOf(const std::string& hazards) {
-  for (const Against& against : kAgainst)
+  for (const HazardGroup& against : kAgainst)
     if (hazards == against.hazards) return against.words;
   return hazards;
 }

@@ -11,11 +11,11 @@
 #include <sstream>
 #include <string>
 
-#include "capture/course_hint.hpp"
 #include "capture/hints.hpp"
 #include "capture/plausible.hpp"
 #include "capture/report_table.hpp"
 #include "capture/saturation.hpp"
+#include "capture/time_series_hint.hpp"
 #include "cli/command.hpp"
 #include "cli/decoded_table.hpp"
 #include "cli/encode_columns.hpp"
@@ -106,7 +106,7 @@ int decode(const DecodeArguments& options) {
     return failed;
   std::fprintf(stderr, "read as %s: %s\n%s%s%s", taken->text ? "hexadecimal text" : "raw bytes",
                capture::summaryOf(decoded).c_str(), capture::hintsOf(described->wire, *taken, decoded).c_str(),
-               capture::courseHints(described->wire, decoded, described->arm.least_rate).c_str(),
+               capture::timeSeriesHints(described->wire, decoded, described->arm.least_rate).c_str(),
                capture::implausible(described->wire, described->arm, decoded).c_str());
   if (decoded.reports.empty())
     return fail(kFailed, "no report in " + std::to_string(taken->bytes()) + " bytes, expected " +
@@ -171,13 +171,13 @@ Result<std::string> encodeTable(const DecodeArguments& options, const Described&
     const auto bytes = capture::encodeRow(described.wire, !options.from_arm, columns.names, values->data(),
                                           static_cast<uint32_t>(i + 1));
     if (!bytes) return Error{bytes.error()};
-    saturation.look(described.wire, !options.from_arm, columns.names, values->data(), table.lines[i]);
+    saturation.add(described.wire, !options.from_arm, columns.names, values->data(), table.lines[i]);
     if (options.raw)
       out.append(bytes->begin(), bytes->end());
     else
       out += capture::hexText(bytes->data(), bytes->size()) + "\n";
   }
-  for (const std::string& what : saturation.told())
+  for (const std::string& what : saturation.findings())
     std::fprintf(stderr, "warning: %s: %s\n", options.input.c_str(), what.c_str());
   return out;
 }

@@ -17,7 +17,7 @@ namespace hapticd::cli {
 namespace {
 
 /// Checks whether the twin that was written can be run. @return an exit code
-int judge(const std::string& file, const std::string& out) {
+int checkTwinFile(const std::string& file, const std::string& out) {
   const scene::LoadedDevice twin = scene::loadDevice(out, catalog());
   document::Problems problems = twin.problems;
   if (problems.empty()) problems = diagnostics::tryDevice(out, catalog());
@@ -50,7 +50,7 @@ int makeTwin(const std::string& file, const std::string& wanted) {
   std::ofstream stream(out);
   stream << *text << std::flush;
   if (!stream) return fail(kFailed, out + " is not writable");
-  if (const int wrong = judge(file, out); wrong != kWorked) return wrong;
+  if (const int wrong = checkTwinFile(file, out); wrong != kWorked) return wrong;
   if (const std::string borrowed = diagnostics::borrowedByTwin(*root); !borrowed.empty())
     std::fprintf(stderr, "warning: %s: %s\n", file.c_str(), borrowed.c_str());
   std::printf("%s\n\nthen:\n  hapticd check SCENE.yaml --device %s\n  hapticd run SCENE.yaml --device %s --view\n",

@@ -9,7 +9,7 @@
 #include "cli/colour.hpp"
 #include "cli/command.hpp"
 #include "diagnostics/arm_checks.hpp"
-#include "diagnostics/client_advice.hpp"
+#include "diagnostics/client_warnings.hpp"
 #include "diagnostics/doctor_checks.hpp"
 #include "status/page_file.hpp"
 

@@ -27,7 +27,7 @@ using namespace diagnostics;
 namespace {
 
 /// Prints one line with a fact and its reason.
-void say(const char* what, const std::string& why) {
+void printLine(const char* what, const std::string& why) {
   std::printf("  %-22s %s\n", what, why.c_str());
 }
 
@@ -91,41 +91,42 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
                                            ", traced while within the activation radius, " +
                                            document::numberText(scene.servo.activation_radius) + " m"
                                      : "is traced by its plugin in every tick";
-    say("  surfaces", surfaces);
-    say("  motion", (report.flags & HSP_R_MOVES) != 0       ? "moved by its plugin: integrated in every tick"
-                    : model.kinematic && model.path.empty() ? std::string("rests until a program leads it")
-                    : model.kinematic ? "follows " + std::to_string(model.path.size()) + " points of a path"
-                                      : "none: no integrator, its pose is fixed");
+    printLine("  surfaces", surfaces);
+    printLine("  motion", (report.flags & HSP_R_MOVES) != 0       ? "moved by its plugin: integrated in every tick"
+                          : model.kinematic && model.path.empty() ? std::string("rests until a program leads it")
+                          : model.kinematic ? "follows " + std::to_string(model.path.size()) + " points of a path"
+                                            : "none: no integrator, its pose is fixed");
     if ((shape.description().flags & HSP_C_DEFORMS) != 0)
-      say("  deformation", "not computed until it is touched; then only moving control points are integrated");
+      printLine("  deformation", "not computed until it is touched; then only moving control points are integrated");
     const bool identity = model.pose.position.isZero(0) && model.pose.orientation.vec().isZero(0);
     const bool still = (report.flags & HSP_R_MOVES) == 0 && !model.kinematic;
-    say("  transform",
-        identity && still
-            ? "none: the model stands at the world's origin"
-            : "in every tick in which it is traced: the probe into its frame, foot point and normal back");
-    say("  velocity", (report.flags & HSP_R_VELOCITY) != 0 ? "used (damping, viscosity or friction)" : "not used");
-    say("  memory", bytes(report.locked_bytes));
-    say("  cost", std::to_string(costs[i]) + " ns per tick near the surface (median of 300)");
+    printLine("  transform",
+              identity && still
+                  ? "none: the model stands at the world's origin"
+                  : "in every tick in which it is traced: the probe into its frame, foot point and normal back");
+    printLine("  velocity",
+              (report.flags & HSP_R_VELOCITY) != 0 ? "used (damping, viscosity or friction)" : "not used");
+    printLine("  memory", bytes(report.locked_bytes));
+    printLine("  cost", std::to_string(costs[i]) + " ns per tick near the surface (median of 300)");
     const auto [begin, end] = details.equal_range(model.name);
-    for (auto detail = begin; detail != end; ++detail) say(detail == begin ? "  details" : "", detail->second);
+    for (auto detail = begin; detail != end; ++detail) printLine(detail == begin ? "  details" : "", detail->second);
   }
 }
 
 void explainServo(const scene::Scene& scene, const servo::World& world) {
   std::printf("servo\n");
-  say("rate", std::to_string(static_cast<int>(scene.servo.rate)) + " Hz");
+  printLine("rate", std::to_string(static_cast<int>(scene.servo.rate)) + " Hz");
   constexpr double kShare = 0.8;
   char deadline[160];
   std::snprintf(
       deadline, sizeof deadline,
       "%.4g us for all models; beyond it the least important models are traced less accurately, never left out",
       scene.servo.budget_us > 0 ? scene.servo.budget_us : kShare * 1e6 / scene.servo.rate);
-  say("budget of a tick", deadline);
-  say("velocity estimator", world.needsVelocity()
-                                ? scene.servo.velocity.estimator + " (" +
-                                      document::numberText(scene.servo.velocity.parameter) + "): a model uses velocity"
-                                : "none: nothing in the scene uses velocity");
+  printLine("budget of a tick", deadline);
+  printLine("velocity estimator", world.needsVelocity() ? scene.servo.velocity.estimator + " (" +
+                                                              document::numberText(scene.servo.velocity.parameter) +
+                                                              "): a model uses velocity"
+                                                        : "none: nothing in the scene uses velocity");
 }
 
 void explainSimulation(servo::World& world) {
@@ -133,10 +134,10 @@ void explainSimulation(servo::World& world) {
   const size_t count = world.proximity().modelCount();
   const std::string every = "every 5 ms over " + std::to_string(count) + (count == 1 ? " model, " : " models, ");
   const sim::Searching amount = world.proximity().amount();
-  say("proximity search", amount == sim::Searching::kNone ? "none: no model has surfaces to search"
-                          : amount == sim::Searching::kSmall
-                              ? every + "by the main thread: one small surface needs no thread"
-                              : every + "on its own thread");
+  printLine("proximity search", amount == sim::Searching::kNone ? "none: no model has surfaces to search"
+                                : amount == sim::Searching::kSmall
+                                    ? every + "by the main thread: one small surface needs no thread"
+                                    : every + "on its own thread");
 }
 
 void explainFiles(const scene::Scene& scene) {
@@ -149,7 +150,7 @@ void explainFiles(const scene::Scene& scene) {
   for (const scene::Device& device : scene.devices) {
     const std::string reason = device.chosen_by_default ? "the scene names none" : where(device.place);
     std::printf("  %s  (%s, %s)\n", device.name.c_str(), device.module.c_str(), reason.c_str());
-    if (const std::string slow = slownessOf(device, scene.servo.rate); !slow.empty()) say("  less force", slow);
+    if (const std::string slow = slownessOf(device, scene.servo.rate); !slow.empty()) printLine("  less force", slow);
   }
 }
 
@@ -185,8 +186,8 @@ int explain(const ExplainArguments& options) {
   explainModels(*scene, **world, costs, details);
   explainFiles(*scene);
   std::printf("memory\n");
-  say("models", bytes((*world)->lockedBytes()));
-  say("process now", bytes(os::residentBytes()));
+  printLine("models", bytes((*world)->lockedBytes()));
+  printLine("process now", bytes(os::residentBytes()));
   return kWorked;
 }
 

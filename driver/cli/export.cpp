@@ -21,7 +21,7 @@ struct ExportArguments {
   std::string file, mcap, csv, stream;
 };
 
-void tell(const std::string& file, const record::Exported& done) {
+void printExport(const std::string& file, const record::Exported& done) {
   std::printf("%s: %llu rows, %.1f MB\n", file.c_str(), static_cast<unsigned long long>(done.rows),
               static_cast<double>(done.bytes) / 1e6);
 }
@@ -29,7 +29,7 @@ void tell(const std::string& file, const record::Exported& done) {
 int toMcap(const record::Recording& recording, const std::string& file) {
   auto done = record::exportMcap(recording, file);
   if (!done) return fail(kFailed, done.error());
-  tell(file, *done);
+  printExport(file, *done);
   return kWorked;
 }
 
@@ -69,7 +69,7 @@ int toCsv(const record::Recording& recording, const ExportArguments& options) {
   for (const auto& [stream, file] : tables) {
     auto done = record::exportCsv(*stream, file);
     if (!done) return fail(kFailed, done.error());
-    tell(file, *done);
+    printExport(file, *done);
   }
   return kWorked;
 }

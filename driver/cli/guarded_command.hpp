@@ -4,10 +4,10 @@
 #pragma once
 #include <filesystem>
 
-#include "base/blame.hpp"
+#include "base/code_owner.hpp"
 #include "base/os.hpp"
 #include "watch/crash.hpp"
-#include "watch/ended.hpp"
+#include "watch/idle_target.hpp"
 
 namespace hapticd::cli {
 
@@ -18,8 +18,8 @@ class GuardedCommand {
   explicit GuardedCommand(const std::filesystem::path& dir = {}) : guard_(none_, dir) { os::prepareSignalStack(); }
 
  private:
-  Working working_{Worker::kMain};
-  watch::Ended none_;
+  WorkerScope working_{Worker::kMain};
+  watch::IdleTarget none_;
   watch::CrashGuard guard_;
 };
 

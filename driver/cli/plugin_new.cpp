@@ -69,7 +69,7 @@ fs::path includeFolder() {
 }
 
 /// Prints what to do next. The compiler's command comes first, because it works with and without an installed hapticd.
-void tellNextSteps(const std::string& folder, const std::string& name) {
+void printNextSteps(const std::string& folder, const std::string& name) {
   const char *at = folder.c_str(), *what = name.c_str();
   std::printf("\nbuild it:  g++ -std=c++20 -O2 -shared -fPIC -I %s %s/%s.cpp -o %s/%s.so\n", includeFolder().c_str(),
               at, what, at, what);
@@ -105,7 +105,7 @@ int makeNew(const NewPluginArguments& options) {
                   file.string() + ": cannot be written, expected a disk with room and a folder that you may write to");
     std::printf("%s\n", file.c_str());
   }
-  tellNextSteps(target.string(), options.name);
+  printNextSteps(target.string(), options.name);
   return kWorked;
 }
 

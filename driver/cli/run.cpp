@@ -17,7 +17,7 @@
 #include "cli/guarded_command.hpp"
 #include "cli/output_file.hpp"
 #include "cli/run_signals.hpp"
-#include "cli/scene_advice.hpp"
+#include "cli/scene_warnings.hpp"
 #include "cli/view_process.hpp"
 #include "diagnostics/enable_button.hpp"
 #include "document/node.hpp"
@@ -226,7 +226,7 @@ void warnOfSettings(servo::Runner& runner, double rate) {
 
 /// Logs a message, unless the error that ends the set-up will contain it anyway.
 void logOfRun(int level, const std::string& who, const std::string& text) {
-  if (!SetupErrors::keeps(level, who, text)) log::write(level, who, text);
+  if (!SetupErrors::holdsBack(level, who, text)) log::write(level, who, text);
 }
 
 /// Starts a process that serves a page for this run. It must start before this process takes rights that a child must
@@ -310,12 +310,12 @@ int runScene(const RunArguments& options, scene::Scene& scene) {
   heedStopSignals();  // from here on files must be removed at the end
   auto runner = servo::Runner::prepare(scene, how, std::move(*world), logOfRun);
   if (!runner) return fail(kFailed, runner.error());
-  once.tell();
+  once.print();
   warnOfSettings(**runner, how.rate);
   const StopBySignal stop(**runner);
   if (!options.virtual_time) heedSuspendSignal();
   const auto advise = [&runner](const scene::Scene& models, const std::vector<double>& stiffness) {
-    return adviceOnModels(**runner, models, stiffness);
+    return warningsOfModels(**runner, models, stiffness);
   };
   if (files) files->serve(**runner, options.device, catalog(), advise, logOfRun);
   if (auto done = tickToTheEnd(**runner, files.get()); !done) return fail(kFailed, done.error());

@@ -6,7 +6,7 @@
 #include "base/thread_usage.hpp"
 #include "watch/crash.hpp"
 #include "watch/end_watch.hpp"
-#include "watch/ended.hpp"
+#include "watch/idle_target.hpp"
 
 namespace hapticd::cli {
 
@@ -17,19 +17,19 @@ class TickWatch {
 
  private:
   /// Tells EndWatch the ticks of a command. The command has no servo loop, but a tick may still hang.
-  class Ticks final : public watch::Ended {
+  class Ticks final : public watch::IdleTarget {
    public:
     uint64_t ticks() const noexcept override { return OfflineTick::ended(); }
     Nanoseconds tickBegun() const noexcept override { return static_cast<Nanoseconds>(OfflineTick::current()); }
     Nanoseconds cpuTime() const noexcept override { return static_cast<Nanoseconds>(os::cpuTime(clock_)); }
-    const Owner* inServo() const noexcept override { return calledBy(Worker::kMain); }
+    const Owner* inServo() const noexcept override { return ownerOfWorker(Worker::kMain); }
 
    private:
     os::CpuClock clock_ = os::cpuClockOfThread();
   };
 
   static void end() noexcept {
-    if (const Owner* keeps = calledBy(Worker::kMain)) watch::dieOf("a step that did not come back", keeps);
+    if (const Owner* keeps = ownerOfWorker(Worker::kMain)) watch::endByFault("a step that did not come back", keeps);
   }
 
   Ticks ticks_;

@@ -17,8 +17,8 @@
 
 #include "base/clock.hpp"
 #include "cli/command.hpp"
-#include "control/presence.hpp"
-#include "diagnostics/client_advice.hpp"
+#include "control/liveness.hpp"
+#include "diagnostics/client_warnings.hpp"
 #include "host/class_table.hpp"
 #include "servo/safety/limiter.hpp"
 #include "session/silence_reason.hpp"
@@ -38,7 +38,7 @@ struct TopArguments {
 
 struct ModelLine {
   std::string name, plugin;
-  status::ModelNow now;
+  status::ModelStatus now;
   status::ModelFeet feet;
   std::string silenced;              ///< why the model was silenced; "" if it was not
   double p50 = 0, p99 = 0, max = 0;  ///< [us] times of a step
@@ -47,7 +47,7 @@ struct ModelLine {
 
 struct ArmLine {
   std::string name, module;
-  status::ArmNow now;
+  status::ArmStatus now;
   double force() const { return std::hypot(now.force[0], now.force[1], now.force[2]); }
   std::string fault() const {
     const auto fault = static_cast<servo::Fault>(now.fault);
@@ -56,12 +56,12 @@ struct ArmLine {
 };
 
 struct View {
-  status::Now now;
+  status::TickStatus now;
   double rate = 0, held = 0;  ///< [Hz] rate that the scene asks for, and ticks per second since the last view
   double late[3] = {}, compute[3] = {};
   std::vector<ArmLine> arms;
   std::vector<ModelLine> models;
-  std::vector<diagnostics::ClientNow> clients;
+  std::vector<diagnostics::ClientStatus> clients;
   double answer_time = 0;  ///< [s]
 };
 
@@ -73,23 +73,23 @@ void quantiles(const status::SharedHistogram& histogram, double* to) {
   to[0] = histogram.quantile(0.5), to[1] = histogram.quantile(0.99), to[2] = histogram.max();
 }
 
-View look(const status::Page& page) {
+View readPage(const status::Page& page) {
   View view;
-  view.now = page.now.read().value_or(status::Now{});
+  view.now = page.now.read().value_or(status::TickStatus{});
   view.rate = page.rate;
   quantiles(page.lateness_us, view.late);
   quantiles(page.compute_us, view.compute);
   for (uint32_t i = 0; i < std::min(page.arms, status::kMaxArms); ++i) {
     const auto name = page.arm[i].name.read().value_or(status::Name{});
     view.arms.push_back({textOf(name.text, sizeof name.text), textOf(name.kind, sizeof name.kind),
-                         page.arm[i].now.read().value_or(status::ArmNow{})});
+                         page.arm[i].now.read().value_or(status::ArmStatus{})});
   }
   for (uint32_t i = 0; i < status::kMaxModels; ++i) {
     const auto name = page.model[i].name.read().value_or(status::Name{});
     if (name.text[0] == '\0') continue;
     ModelLine line{textOf(name.text, sizeof name.text),
                    textOf(name.kind, sizeof name.kind),
-                   page.model[i].now.read().value_or(status::ModelNow{}),
+                   page.model[i].now.read().value_or(status::ModelStatus{}),
                    page.feet[i].read().value_or(status::ModelFeet{}),
                    "",
                    0,
@@ -102,7 +102,7 @@ View look(const status::Page& page) {
     line.traced = line.now.tick + kFresh >= view.now.tick && std::isfinite(line.now.depth);
     if (!line.traced) line.now.force = 0;
     line.silenced =
-        servo::silenceReason(line.name, static_cast<servo::Trouble>(line.now.trouble), line.now.failed_status);
+        servo::silenceReason(line.name, static_cast<servo::ShapeFault>(line.now.trouble), line.now.failed_status);
     view.models.push_back(line);
   }
   view.clients = diagnostics::clientsOf(page);
@@ -124,7 +124,7 @@ void sortModels(std::vector<ModelLine>& models, const std::string& by) {
 
 Json jsonOfClients(const View& view) {
   Json clients = Json::array();
-  for (const diagnostics::ClientNow& client : view.clients)
+  for (const diagnostics::ClientStatus& client : view.clients)
     clients.push_back({{"device", client.report.device},
                        {"program", client.report.program},
                        {"pid", client.report.pid},
@@ -271,13 +271,13 @@ int watch(const TopArguments& options, const status::Page& page) {
   const RawKeys keys;
   std::string sort = options.sort;
   constexpr size_t kRows = 30;
-  status::Now before = page.now.read().value_or(status::Now{});
+  status::TickStatus before = page.now.read().value_or(status::TickStatus{});
   for (char key = 0; key != 'q'; key = keys.wait(options.every)) {
     if (key == 'n') sort = "name";
     if (key == 'f') sort = "force";
     if (key == 'd') sort = "depth";
     if (key == 's') sort = "step";
-    View view = look(page);
+    View view = readPage(page);
     const double passed = view.now.t - before.t;
     view.held = passed > 0 ? static_cast<double>(view.now.tick - before.tick) / passed : 0;
     before = view.now;
@@ -296,9 +296,9 @@ int watch(const TopArguments& options, const status::Page& page) {
 /// Prints one line of JSON after another, until the reader of the output or the daemon ends.
 int stream(const TopArguments& options, const status::Page& page) {
   RealClock clock(0);
-  status::Now before{};
+  status::TickStatus before{};
   while (!ended(page)) {
-    View view = look(page);
+    View view = readPage(page);
     const double passed = view.now.t - before.t;
     view.held = passed > 0 ? static_cast<double>(view.now.tick - before.tick) / passed : 0;
     before = view.now;
@@ -316,7 +316,7 @@ bool standsStill(const status::Page& page, uint64_t tick) {
   RealClock clock(0);
   const Nanoseconds end = clock.now() + kPatience;
   while (clock.now() < end) {
-    if (ended(page) || page.now.read().value_or(status::Now{}).tick != tick) return false;
+    if (ended(page) || page.now.read().value_or(status::TickStatus{}).tick != tick) return false;
     clock.waitUntil(clock.now() + kLook);
   }
   return true;
@@ -333,7 +333,7 @@ int top(const TopArguments& options) {
   if (ended(page))
     return fail(kFailed, "the daemon " + options.name +
                              " has gone: it was killed, or it crashed\n  fix: start it again with hapticd run");
-  View view = look(page);
+  View view = readPage(page);
   const bool still = standsStill(page, view.now.tick);
   view.held = view.now.t > 0 && !still ? static_cast<double>(view.now.tick) / view.now.t : 0;
   sortModels(view.models, options.sort);

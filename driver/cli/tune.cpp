@@ -37,7 +37,7 @@ std::atomic<bool> stopped{false};
 /// Ctrl-C ends the search and keeps what was found. If a plugin never returns, the search cannot end: a second Ctrl-C,
 /// or any signal not sent by a person, ends the command.
 void stopTuning(int signal) {
-  if (stopped.exchange(true) || signal != SIGINT) watch::endAnyway(calledHere());
+  if (stopped.exchange(true) || signal != SIGINT) watch::forceEnd(currentOwner());
 }
 
 /// Returns the motion of a path file, resampled to the scene's rate.

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "document/meant.hpp"
+#include "document/correction.hpp"
 #include "document/node.hpp"
 #include "document/reader.hpp"
 
@@ -150,7 +150,7 @@ class Parser {
               "\"" + std::string(field.text.substr(0, 40)) + "\" is not valid, expected a " +
                   (finite ? "finite number" : "number") +
                   (value ? (std::isfinite(*value) ? " of at most " + numberText(rules_.largest) : "")
-                         : numberMeant(unquoted(field.text))));
+                         : suggestNumber(unquoted(field.text))));
     else
       table_.values.push_back(*value);
     return good;

@@ -10,7 +10,7 @@
 #include "base/regular_file.hpp"
 #include "document/foreign_file.hpp"
 #include "document/node.hpp"
-#include "document/slip.hpp"
+#include "document/syntax_error.hpp"
 
 namespace hapticd::document {
 namespace {
@@ -222,7 +222,7 @@ std::optional<Node> parseRepaired(const std::string& text, const std::string& fi
     }
     std::optional<Node> root = builder.take();
     // If a quote is never closed, the parser takes the end of the text for the closing quote.
-    if (const auto open = openQuote(text, placeOf(builder.lastQuoted(), file))) {
+    if (const auto open = findOpenQuote(text, placeOf(builder.lastQuoted(), file))) {
       problems.push_back(*open);
       return std::nullopt;
     }
@@ -238,10 +238,10 @@ std::optional<Node> parseRepaired(const std::string& text, const std::string& fi
     report(problems, placeOf(refused.mark, file), "", refused.what);
   } catch (const YAML::Exception& error) {
     const Place place = placeOf(error.mark, file);
-    const std::string meant = withAliasMeant(text, place, error.msg);
+    const std::string meant = withCorrectedAlias(text, place, error.msg);
     const bool again = repairs > 0 && !meant.empty();
     if (again) problems.resize(before);  // they are found again
-    problems.push_back(slipIn(text, place, error.msg));
+    problems.push_back(findSyntaxError(text, place, error.msg));
     if (again) return parseRepaired(meant, file, problems, repairs - 1);
   } catch (const std::exception& error) {
     report(problems, file, 1, 1, "", std::string("not YAML: ") + error.what());

@@ -7,7 +7,7 @@
 
 #include "base/passed_files.hpp"
 #include "base/regular_file.hpp"
-#include "document/meant.hpp"
+#include "document/correction.hpp"
 #include "document/suggestion.hpp"
 #include "document/table.hpp"
 
@@ -59,12 +59,12 @@ static std::string shortText(double value) {
 /// Guesses that a number that is too large is in millimetres, degrees or milliseconds. Returns advice if the converted
 /// number is in the range, else "".
 static std::string inOtherUnits(double value, const Range& range) {
-  struct Slip {
+  struct UnitSlip {
     const char *unit, *meant;
     double factor;
   };
-  static constexpr Slip kSlips[] = {{"m", "mm", 1e-3}, {"rad", "degrees", M_PI / 180}, {"s", "ms", 1e-3}};
-  for (const Slip& slip : kSlips)
+  static constexpr UnitSlip kSlips[] = {{"m", "mm", 1e-3}, {"rad", "degrees", M_PI / 180}, {"s", "ms", 1e-3}};
+  for (const UnitSlip& slip : kSlips)
     if (const double meant = value * slip.factor;
         std::string_view(range.unit) == slip.unit && meant >= range.min && meant <= range.max)
       return "; " + numberText(value) + " " + slip.meant + " is " + shortText(meant) + " " + slip.unit;
@@ -76,7 +76,7 @@ std::optional<double> Reader::number(const Node& node, const std::string& key, c
   if (!value) {
     problem(node, key,
             describe(node) + " is not a number, expected " + expectedOf(range) +
-                (node.isScalar() ? numberMeant(node.scalar, range.unit) : ""));
+                (node.isScalar() ? suggestNumber(node.scalar, range.unit) : ""));
   } else if (!std::isfinite(*value)) {
     problem(node, key, node.scalar + " is not finite, expected " + expectedOf(range));
   } else if (*value < range.min || *value > range.max) {
@@ -158,7 +158,7 @@ std::optional<std::filesystem::path> Reader::existingFile(const Node& node, cons
             "there is no file " + full.string() + ", expected the path of a file" +
                 (written.is_absolute() ? "" : ", relative to the file that names it") +
                 (toNumber(node.scalar) ? "" : suggestion(full.filename().string(), neighbours)) +
-                pathMeant(node.scalar));
+                suggestPath(node.scalar));
   }
   return std::nullopt;
 }
@@ -167,7 +167,7 @@ std::optional<Eigen::Vector3d> Reader::vector3(const Node& node, const std::stri
   if (!node.isSequence() || node.items.size() != 3) {
     problem(node, key,
             (node.isSequence() ? "a list of " + std::to_string(node.items.size()) : describe(node)) +
-                ", expected a list of 3 numbers, " + expectedOf(range) + listMeant(node, 3));
+                ", expected a list of 3 numbers, " + expectedOf(range) + suggestList(node, 3));
     return std::nullopt;
   }
   Eigen::Vector3d v;
@@ -224,7 +224,7 @@ std::string belongsTo(const Table& table, const std::string& name) {
 
 void Reader::object(const Node& node, const std::string& key, const Table& table, void* object) {
   if (!node.isMap()) {
-    problem(node, key, describe(node) + ", expected a mapping with " + listed(table.names()) + mappingMeant(node));
+    problem(node, key, describe(node) + ", expected a mapping with " + listed(table.names()) + suggestMapping(node));
     return;
   }
   const std::string* empty = nullptr;  // a key without a value: unknown keys after it probably belong under it

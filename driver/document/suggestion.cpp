@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "document/meant.hpp"
+#include "document/correction.hpp"
 
 namespace hapticd::document {
 namespace {
@@ -55,7 +55,7 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
   const bool decimal = point != word.npos && point > 0 && std::isdigit(static_cast<unsigned char>(word[point - 1]));
   const std::string_view own = decimal ? word : word.substr(point + 1);  // without groups; premium1.5 has none
   for (const std::string_view key : {word, own})
-    if (const std::string slip = keyMeant(key); !slip.empty()) return slip;
+    if (const std::string slip = suggestKey(key); !slip.empty()) return slip;
   const std::string meant = nearest(word, candidates);
   return meant.empty() ? "" : " (did you mean \"" + meant + "\"?)";
 }

@@ -61,11 +61,11 @@ namespace detail {
 template <class T, class C>
 C classOf(T C::*);
 template <class T>
-struct Bare {
+struct ValueType {
   using Type = T;
 };
 template <class T>
-struct Bare<std::optional<T>> {
+struct ValueType<std::optional<T>> {
   using Type = T;
 };
 template <auto M>
@@ -103,7 +103,7 @@ constexpr Key integer(const char* name, Range range, const char* def, const char
           {},
           nullptr,
           [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
-            using T = typename detail::Bare<std::remove_cvref_t<decltype(detail::member<M>(object))>>::Type;
+            using T = typename detail::ValueType<std::remove_cvref_t<decltype(detail::member<M>(object))>>::Type;
             if (const auto value = in.whole(node, path, key.range)) detail::member<M>(object) = static_cast<T>(*value);
           }};
 }

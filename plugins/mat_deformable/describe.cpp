@@ -128,7 +128,7 @@ double usual(std::string_view id) {
 
 }  // namespace
 
-void MatDeformable::say(int level, const std::string& text) const {
+void MatDeformable::writeLog(int level, const std::string& text) const {
   if (host() != nullptr && host()->log != nullptr) host()->log(host(), level, text.c_str());
 }
 
@@ -136,7 +136,7 @@ MedialFile MatDeformable::readFile() const {
   try {
     return readMedialFile(geometry_, {stiffness_, damping_, mass_, probe_radius_});
   } catch (const ModelFileError& error) {
-    for (const std::string& odd : error.odd) say(HSP_LOG_WARNING, "geometry: " + odd);
+    for (const std::string& odd : error.odd) writeLog(HSP_LOG_WARNING, "geometry: " + odd);
     throw;
   }
 }
@@ -144,30 +144,32 @@ MedialFile MatDeformable::readFile() const {
 void MatDeformable::describe(const MedialFile& file, double tick) const {
   if (host() == nullptr || host()->log == nullptr) return;
   const Description description = body_->describe(geometry_);
-  say(description.warning ? HSP_LOG_WARNING : HSP_LOG_INFO, description.text);
+  writeLog(description.warning ? HSP_LOG_WARNING : HSP_LOG_INFO, description.text);
   if (!(body_->greatestRadius() > 0))
-    say(HSP_LOG_WARNING, geometry_ + ": all radii are 0, so nothing will be felt; give radii above 0, in m");
+    writeLog(HSP_LOG_WARNING, geometry_ + ": all radii are 0, so nothing will be felt; give radii above 0, in m");
   describeMaterial(file, tick);
-  for (const std::string& odd : file.odd) say(HSP_LOG_WARNING, "geometry: " + odd);
+  for (const std::string& odd : file.odd) writeLog(HSP_LOG_WARNING, "geometry: " + odd);
   describeDynamics(file);
   // Materials in the scene are only for files without materials. Otherwise they have no effect, which nobody would
   // notice.
   for (const auto& [id, given] : {std::pair("stiffness", stiffness_), std::pair("mass", mass_)})
     if (!geometry_.ends_with(".ma") && given != usual(id))
-      say(HSP_LOG_WARNING,
+      writeLog(
+          HSP_LOG_WARNING,
           std::string(id) + ": has no effect: " + geometry_ +
               " gives the materials of its points; this parameter is only for a medial mesh without materials (.ma)");
   if (!geometry_.ends_with(".ma") && rings_ != static_cast<int>(usual("rings")))
-    say(HSP_LOG_WARNING, "rings: has no effect: only a medial mesh (.ma) has rings; for a grid, set influence");
+    writeLog(HSP_LOG_WARNING, "rings: has no effect: only a medial mesh (.ma) has rings; for a grid, set influence");
   if (friction_static_ > 0 && friction_static_ < friction_dynamic_)
-    say(HSP_LOG_WARNING,
+    writeLog(
+        HSP_LOG_WARNING,
         "friction_static: has no effect, because friction_dynamic is greater; friction_dynamic must not be greater");
   const double size = body_->bounds().sizes().maxCoeff();
   if (!(size > kLarge)) return;
   char text[128];
   std::snprintf(text, sizeof text, ": the body is %.3g m long; lengths must be in m: is the file in millimetres?",
                 size);
-  say(HSP_LOG_WARNING, geometry_ + text);
+  writeLog(HSP_LOG_WARNING, geometry_ + text);
 }
 
 /// Writes which dynamics is in use, and warns if a mass was given that nobody feels.
@@ -181,12 +183,14 @@ void MatDeformable::describeDynamics(const MedialFile& file) const {
   if (by_file)
     text += without ? " (the default for .ma files; with dynamics: felt the hand feels it)"
                     : " (the default for files of this format)";
-  say(HSP_LOG_DEBUG, text);
+  writeLog(HSP_LOG_DEBUG, text);
   if (dynamics != kFelt && relaxation_share_ > 0)
-    say(HSP_LOG_WARNING, std::string("relaxation.share: has no effect: dynamics is ") +
-                             (dynamics == kSeen ? "seen" : "off") + "; to feel the relaxation, set dynamics to felt");
+    writeLog(HSP_LOG_WARNING, std::string("relaxation.share: has no effect: dynamics is ") +
+                                  (dynamics == kSeen ? "seen" : "off") +
+                                  "; to feel the relaxation, set dynamics to felt");
   if (without && by_file && dynamics == kSeen && mass_ != usual("mass"))
-    say(HSP_LOG_WARNING,
+    writeLog(
+        HSP_LOG_WARNING,
         "mass: has no effect on the force, because dynamics is `seen` by default for .ma files; to feel the mass, set "
         "dynamics to felt");
 }
@@ -210,21 +214,21 @@ void MatDeformable::describeMaterial(const MedialFile& file, double tick) const 
   std::size_t lines = 0;
   for (const Group& group : grouped(std::move(places))) {
     if (++lines <= kMostLines)
-      say(HSP_LOG_DEBUG,
-          line(group, without ? "the scene" : "the file", felt ? springText(group.tissue, contact_ratio_, tick) : ""));
+      writeLog(HSP_LOG_DEBUG, line(group, without ? "the scene" : "the file",
+                                   felt ? springText(group.tissue, contact_ratio_, tick) : ""));
     if (group.first.told > 0) most = std::max(most, group.first.deep / group.first.told);
   }
   if (felt) describeContact(file, tick);
   if (file.grid && file.revision >= 2 && shear_offset_ != kUsualShearOffset)
-    say(HSP_LOG_WARNING,
-        geometry_ + ": shear_offset has no effect on files of format hapticd-model/2; use shear_distance");
+    writeLog(HSP_LOG_WARNING,
+             geometry_ + ": shear_offset has no effect on files of format hapticd-model/2; use shear_distance");
   if (!(most > kNoticed)) return;
   char text[192];
   std::snprintf(text, sizeof text,
                 "shear_offset makes a press 5 mm deep up to %.2g times as stiff as the file says; use shear_distance "
                 "instead to feel the stiffness of the file",
                 most);
-  say(HSP_LOG_INFO, text);
+  writeLog(HSP_LOG_INFO, text);
 }
 
 /// Finds the material whose swinging mass needs the greatest damping of an arm. Warns if the mass has so little damping
@@ -243,7 +247,7 @@ void MatDeformable::describeContact(const MedialFile& file, double tick) const {
                   "the whole body is passive on an arm with a damping of at least %.3g N s/m at %.4g Hz; with less, "
                   "limits.passivity must guard it",
                   most, 1 / tick);
-    say(HSP_LOG_DEBUG, text);
+    writeLog(HSP_LOG_DEBUG, text);
   }
   if (!(worst.times > kSwings)) return;
   char arm[96] = "it is not passive on any arm";
@@ -254,7 +258,7 @@ void MatDeformable::describeContact(const MedialFile& file, double tick) const {
                 "give it a damping of at least %.2g N s/m",
                 worst.tissue.mass, medial::elementOf(worst.tissue, contact_ratio_).contact, 1 / tick, arm,
                 enoughDamping(worst.tissue, contact_ratio_, tick));
-  say(HSP_LOG_WARNING, geometry_ + text);
+  writeLog(HSP_LOG_WARNING, geometry_ + text);
 }
 
 std::vector<medial::Tissue> MatDeformable::distinct(const MedialFile& file) const {

@@ -12,7 +12,7 @@ namespace {
 constexpr int kAttempts = 100;
 }  // namespace
 
-void Displaced::publish(const medial::Nodes& body) noexcept HSP_RT {
+void DisplacementBuffer::publish(const medial::Nodes& body) noexcept HSP_RT {
   const uint32_t version = version_.load(std::memory_order_relaxed);
   version_.store(version + 1, std::memory_order_relaxed);
   std::atomic_thread_fence(std::memory_order_release);
@@ -24,7 +24,7 @@ void Displaced::publish(const medial::Nodes& body) noexcept HSP_RT {
   version_.store(version + 2, std::memory_order_release);
 }
 
-float Displaced::read(medial::Displacements& out) const {
+float DisplacementBuffer::read(medial::Displacements& out) const {
   out.resize(values_.size() / 4);
   float bulge = 0;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -79,7 +79,7 @@ std::size_t Frames::bytes() const noexcept {
          (whole_.capacity() + work_.capacity()) * sizeof(float);
 }
 
-void Display::show(const SoftBody& body, const Displaced& displaced, double chord_error, hsp_mesh& out) {
+void Display::show(const SoftBody& body, const DisplacementBuffer& displaced, double chord_error, hsp_mesh& out) {
   if (!contour_ || chord_error != chord_error_) {
     contour_ = body.contour(chord_error);
     chord_error_ = chord_error;

@@ -13,9 +13,9 @@ namespace hapticd {
 
 /// The newest displacements of all nodes. One thread writes them and another reads them, without waiting for each
 /// other: a reader that was overtaken by the writer tries again.
-class Displaced {
+class DisplacementBuffer {
  public:
-  explicit Displaced(std::size_t nodes) : values_(4 * nodes + 1) {}  ///< [main]
+  explicit DisplacementBuffer(std::size_t nodes) : values_(4 * nodes + 1) {}  ///< [main]
 
   /// [rt] Copies the displacements of all nodes.
   void publish(const medial::Nodes& body) noexcept HSP_RT;
@@ -61,7 +61,7 @@ class Frames {
 class Display {
  public:
   /// Fills `out` with the displaced contour, to within `chord_error` [m]. Its pointers are valid until the next call.
-  void show(const SoftBody& body, const Displaced& displaced, double chord_error, hsp_mesh& out);
+  void show(const SoftBody& body, const DisplacementBuffer& displaced, double chord_error, hsp_mesh& out);
 
  private:
   std::unique_ptr<medial::MovingMesh> contour_;

@@ -22,8 +22,8 @@ hsp_status MatDeformable::stepFelt(const hsp_step& step) noexcept HSP_RT {
   stored_ = 0;
   hsp_status worst = HSP_OK;
   for (uint32_t i = 0; i < step.count; ++i) {
-    const hsp_status status = meet(*HSP_AT(const hsp_probe, step.in, step.in_stride, i), step, i,
-                                   *HSP_AT(hsp_contact, step.out, step.out_stride, i));
+    const hsp_status status = addContact(*HSP_AT(const hsp_probe, step.in, step.in_stride, i), step, i,
+                                         *HSP_AT(hsp_contact, step.out, step.out_stride, i));
     if (status < 0 || (status > 0 && worst == HSP_OK)) worst = worst < 0 ? worst : status;
   }
   body_->feltSurface()->advance(elapsed(step), {contacts_.data(), met_.size()});
@@ -38,9 +38,9 @@ hsp_status MatDeformable::stepFelt(const hsp_step& step) noexcept HSP_RT {
 }
 
 /// Finds the surface at a probe, and records a contact if the two may touch.
-hsp_status MatDeformable::meet(const hsp_probe& probe, const hsp_step& step, uint32_t index,
-                               hsp_contact& contact) noexcept HSP_RT {
-  const Located located = locate(probe, step, index, contact);
+hsp_status MatDeformable::addContact(const hsp_probe& probe, const hsp_step& step, uint32_t index,
+                                     hsp_contact& contact) noexcept HSP_RT {
+  const LocatedSurface located = locate(probe, step, index, contact);
   if (!located.found) {
     if (index < tracks_.size()) tracks_[index].near = false;
     return located.status;

@@ -84,7 +84,7 @@ std::size_t MatDeformable::openVolume() {
   auto hull = body_->hull();
   const medial::VolumeKeeper volume(*hull, body_->greatestRadius());
   const std::size_t bytes = hull->bytes() + volume.bytes();
-  keeper_.reset(new Keeper{std::move(hull), volume});
+  keeper_.reset(new VolumeControl{std::move(hull), volume});
   return bytes;
 }
 
@@ -92,7 +92,7 @@ uint32_t MatDeformable::openDisplay() {
   last_time_ns_ = 0;
   stored_ = since_shown_ = 0;
   shown_at_rest_ = true;
-  displaced_ = std::make_unique<Displaced>(body_->nodes().count());
+  displaced_ = std::make_unique<DisplacementBuffer>(body_->nodes().count());
   display_.reset();
   frames_.reset();
   if (display_tolerance_ <= 0) return 0;
@@ -223,8 +223,8 @@ FindOptions MatDeformable::findOptions(const hsp_step& step) const noexcept HSP_
   return options;
 }
 
-MatDeformable::Located MatDeformable::locate(const hsp_probe& probe, const hsp_step& step, uint32_t index,
-                                             hsp_contact& contact) noexcept HSP_RT {
+MatDeformable::LocatedSurface MatDeformable::locate(const hsp_probe& probe, const hsp_step& step, uint32_t index,
+                                                    hsp_contact& contact) noexcept HSP_RT {
   if (index >= tracks_.size()) return {HSP_E_ARG, false, {}};
   Track& track = tracks_[index];
   if (!track.active || (probe.flags & HSP_IN_INVALID) != 0) {
@@ -266,7 +266,7 @@ MatDeformable::Located MatDeformable::locate(const hsp_probe& probe, const hsp_s
 
 hsp_status MatDeformable::touch(const hsp_probe& probe, const hsp_step& step, uint32_t index,
                                 hsp_contact& contact) noexcept HSP_RT {
-  const Located located = locate(probe, step, index, contact);
+  const LocatedSurface located = locate(probe, step, index, contact);
   if (!located.found) return located.status;
   if (located.surface.depth > 0) {
     push(probe, located.surface, tracks_[index], contact);

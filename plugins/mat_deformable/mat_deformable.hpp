@@ -147,7 +147,7 @@ class MatDeformable final : public Shape {
   struct States {
     std::vector<unsigned char> kept, loaded;
   };
-  struct Keeper {
+  struct VolumeControl {
     std::unique_ptr<medial::MovingMesh> hull;
     medial::VolumeKeeper volume;
   };
@@ -171,20 +171,22 @@ class MatDeformable final : public Shape {
   /// material of a point as the file gives it
   medial::Tissue tissueAt(const MedialFile& file, std::size_t point) const;
   std::vector<medial::Tissue> distinct(const MedialFile& file) const;
-  void say(int level, const std::string& text) const;  ///< [main] writes to the log of the host, if it has one
+  void writeLog(int level, const std::string& text) const;  ///< [main] writes to the log of the host, if it has one
   double elapsed(const hsp_step& step) noexcept HSP_RT;
   FindOptions findOptions(const hsp_step& step) const noexcept HSP_RT;
   FindOptions searchOptions() const noexcept;
   /// The surface at a probe, if the probe is near one and its sample is good.
-  struct Located {
+  struct LocatedSurface {
     hsp_status status = HSP_OK;
     bool found = false;
     Felt surface;
   };
-  Located locate(const hsp_probe& probe, const hsp_step& step, uint32_t index, hsp_contact& contact) noexcept HSP_RT;
+  LocatedSurface locate(const hsp_probe& probe, const hsp_step& step, uint32_t index,
+                        hsp_contact& contact) noexcept HSP_RT;
   hsp_status touch(const hsp_probe& probe, const hsp_step& step, uint32_t index, hsp_contact& contact) noexcept HSP_RT;
   hsp_status stepFelt(const hsp_step& step) noexcept HSP_RT;
-  hsp_status meet(const hsp_probe& probe, const hsp_step& step, uint32_t index, hsp_contact& contact) noexcept HSP_RT;
+  hsp_status addContact(const hsp_probe& probe, const hsp_step& step, uint32_t index,
+                        hsp_contact& contact) noexcept HSP_RT;
   void answer(const hsp_probe& probe, const medial::FeltContact& met, const Felt& felt, Track& track,
               hsp_contact& contact) noexcept HSP_RT;
   void push(const hsp_probe& probe, const Felt& felt, Track& track, hsp_contact& contact) noexcept HSP_RT;
@@ -214,17 +216,17 @@ class MatDeformable final : public Shape {
   std::vector<Track> tracks_;           ///< one per probe
   std::vector<medial::Press> presses_;  ///< contacts of this step; has room for all probes
   /// On a felt surface: one entry for each probe that is near in this step, with the probe's index.
-  struct Met {
+  struct FeltProbe {
     uint32_t probe = 0;
     Felt felt;
   };
   /// contacts of this step; there is room for the most contacts of one surface, and the first met_.size() are in use
   std::vector<medial::FeltContact> contacts_;
   std::unique_ptr<medial::FeltPlace> beside_;  ///< place of the rival foot, for the contact that is being handled
-  std::vector<Met> met_;                       ///< contacts of this step; has room for all probes
-  std::unique_ptr<Displaced> displaced_;
-  std::unique_ptr<Frames> frames_;  ///< written by step() if display_tolerance is above 0
-  std::unique_ptr<Keeper> keeper_;  ///< keeps the volume, if `volume` is on
+  std::vector<FeltProbe> met_;                 ///< contacts of this step; has room for all probes
+  std::unique_ptr<DisplacementBuffer> displaced_;
+  std::unique_ptr<Frames> frames_;         ///< written by step() if display_tolerance is above 0
+  std::unique_ptr<VolumeControl> keeper_;  ///< keeps the volume, if `volume` is on
   std::unique_ptr<States> states_ = std::make_unique<States>();
   std::unique_ptr<Display> display_;
   double since_shown_ = 0;  ///< [s] time since the last set of displacements for drawing

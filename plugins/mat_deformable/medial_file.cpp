@@ -10,7 +10,7 @@
 
 #include "kernels/medial/layer.hpp"
 #include "ma_file.hpp"
-#include "medial_advice.hpp"
+#include "medial_warnings.hpp"
 #include "traced_shape/document.hpp"
 #include "traced_shape/model_file.hpp"
 
@@ -298,8 +298,8 @@ MedialFile parseMedialFile(const std::string& text, const std::string& name, con
     const Json root = parseDocument(text, name);
     Problems problems(name, text);
     Reader(problems, material).read(root, file);
-    if (problems.any()) problems.throwIfAny(adviseMedial(file, root, problems, text, name));
-    file.odd = adviseMedial(file, root, problems, text, name);
+    if (problems.any()) problems.throwIfAny(warnOfMedialFile(file, root, problems, text, name));
+    file.odd = warnOfMedialFile(file, root, problems, text, name);
   }
   const auto some = [](const std::vector<double>& values) {
     return std::any_of(values.begin(), values.end(), [](double x) { return x > 0; });

@@ -18,7 +18,7 @@ struct MedialFile {
   std::optional<medial::MeshBodyData> mesh;
   int revision = 1;                    ///< version of the format: 1 for hapticd-model/1, 2 for hapticd-model/2
   bool swings = false, damps = false;  ///< true if some point has mass; if some point has damping
-  std::vector<std::string> odd;        ///< warnings of adviseMedial()
+  std::vector<std::string> odd;        ///< warnings of warnOfMedialFile()
 };
 
 /// Material of all vertices if the file gives none. A file may give at most ten times this damping, or 5 N s/m if that

@@ -101,7 +101,7 @@ MovingFrame DynamicBody::frame() const noexcept HSP_RT {
 hsp_step DynamicBody::move(const hsp_step& step) noexcept HSP_RT {
   const MovingFrame before = MovingFrame::of(*step.pose);
   if (step.dt_s > 0)
-    body_.step(presses_.foresee(step, before, [this](const Vector3d& point) { return body_.velocityAt(point); }),
+    body_.step(presses_.predict(step, before, [this](const Vector3d& point) { return body_.velocityAt(point); }),
                step.dt_s);
   now_ = frame();
   now_.write(*step.pose);

@@ -9,7 +9,7 @@
 #include "kernels/dynamics/mass_properties.hpp"
 #include "kernels/dynamics/rigid_body.hpp"
 #include "kernels/trace/model.hpp"
-#include "traced_shape/presses.hpp"
+#include "traced_shape/contact_predictor.hpp"
 
 namespace hapticd {
 
@@ -75,7 +75,7 @@ class DynamicBody {
 
   /// [rt] Stores the contact of probe `index` with the body, in the model frame. Probes that are not stored do not push
   /// the body.
-  void remember(uint32_t index, const dynamics::Pressing& in_model) noexcept HSP_RT {
+  void remember(uint32_t index, const dynamics::LastContact& in_model) noexcept HSP_RT {
     presses_.remember(index, in_model, now_);
   }
 
@@ -89,7 +89,7 @@ class DynamicBody {
 
   dynamics::RigidBody body_;
   MovedProbes probes_;
-  Presses presses_;
+  ContactPredictor presses_;
   MovingFrame now_;
 };
 

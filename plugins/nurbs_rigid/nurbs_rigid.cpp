@@ -108,7 +108,7 @@ hsp_status NurbsRigid::press(const hsp_probe& probe, const hsp_step& step, hsp_c
 /// because it may touch the body by then.
 void NurbsRigid::remember(const hsp_probe& probe, const Touch& touch, uint32_t index, double depth,
                           const Eigen::Vector3d& rub) noexcept HSP_RT {
-  dynamics::Pressing pressing;
+  dynamics::LastContact pressing;
   pressing.probe = Eigen::Vector3d(probe.position);
   pressing.point = touch.foot.point;
   pressing.normal = touch.normal;

@@ -74,12 +74,12 @@ MovingFrame Pendulum::frame() const noexcept HSP_RT {
 
 /// Makes a step under the forces of the hand by backward Euler: it uses the torques at the end of the step, so it is
 /// stable even for a very light pendulum.
-void Pendulum::push(std::span<const dynamics::Press> presses, double dt) noexcept HSP_RT {
+void Pendulum::push(std::span<const dynamics::PredictedContact> presses, double dt) noexcept HSP_RT {
   const double weight = law_.mass * law_.gravity * law_.length, here = state_.angle + dt * state_.rate;
   const double own = law_.inertia + dt * (law_.damping + dt * weight * std::max(0.0, std::cos(state_.angle)));
   const double own_impulse = -dt * (weight * std::sin(here) + law_.damping * state_.rate);
   double resisting = own, impulse = own_impulse;
-  for (const dynamics::Press& press : presses) {
+  for (const dynamics::PredictedContact& press : presses) {
     // velocity of the point per angular velocity
     const Eigen::Vector3d moment = axis_world_.cross(press.point - pivot_world_);
     resisting += dt * moment.dot(press.give * moment);
@@ -87,7 +87,7 @@ void Pendulum::push(std::span<const dynamics::Press> presses, double dt) noexcep
   }
   const double change = impulse / resisting;
   impulse = own_impulse;
-  for (const dynamics::Press& press : presses) {
+  for (const dynamics::PredictedContact& press : presses) {
     const Eigen::Vector3d moment = axis_world_.cross(press.point - pivot_world_);
     impulse += dt * moment.dot(dynamics::forceAfter(press, change * moment));
   }
@@ -101,7 +101,7 @@ hsp_status Pendulum::step(const hsp_step& step) noexcept HSP_RT {
     return state_.rate * axis_world_.cross(point - pivot_world_);
   };
   if (step.dt_s > 0) {
-    const auto presses = presses_->foresee(step, before, velocity_at);
+    const auto presses = presses_->predict(step, before, velocity_at);
     presses.empty() ? void(state_ = dynamics::advance(law_, state_, 0, step.dt_s)) : push(presses, step.dt_s);
     // keeps the precision of the angle if the pendulum goes round many times
     state_.angle = std::remainder(state_.angle, 2 * M_PI);
@@ -123,7 +123,7 @@ hsp_status Pendulum::press(const hsp_probe& probe, const hsp_step& step, hsp_con
                            const MovingFrame& now) noexcept HSP_RT {
   const Touch touch = trace(probe, step, contact);
   if (!touch.traced) return touch.status;
-  dynamics::Pressing pressing;
+  dynamics::LastContact pressing;
   pressing.probe = Eigen::Vector3d(probe.position);
   pressing.point = touch.foot.point;
   pressing.normal = touch.normal;

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "kernels/dynamics/pendulum.hpp"
-#include "traced_shape/presses.hpp"
+#include "traced_shape/contact_predictor.hpp"
 #include "traced_shape/traced_shape.hpp"
 
 namespace hapticd {
@@ -55,7 +55,7 @@ class Pendulum final : public TracedShape {
 
  private:
   MovingFrame frame() const noexcept HSP_RT;
-  void push(std::span<const dynamics::Press> presses, double dt) noexcept HSP_RT;
+  void push(std::span<const dynamics::PredictedContact> presses, double dt) noexcept HSP_RT;
   hsp_status press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact,
                    const MovingFrame& now) noexcept HSP_RT;
 
@@ -69,7 +69,7 @@ class Pendulum final : public TracedShape {
   MovingFrame drawn_;  ///< frame of the model at angle 0: its pose in the scene
   double stored_ = 0;  ///< [J] energy stored in the surface
   std::optional<MovedProbes> probes_;
-  std::optional<Presses> presses_;
+  std::optional<ContactPredictor> presses_;
   hsp_ext_energy energy_extension_{};
 };
 

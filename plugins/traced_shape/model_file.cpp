@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "document.hpp"
-#include "model_advice.hpp"
+#include "model_warnings.hpp"
 
 namespace hapticd {
 namespace {
@@ -254,7 +254,7 @@ ModelFile parseModelFile(const std::string& text, const std::string& name) {
   Problems problems(name, text);
   Reader reader(problems);
   ModelFile file = reader.read(root);
-  if (problems.any()) problems.throwIfAny(adviseSurfaces(file, reader.sound(), text, name));
+  if (problems.any()) problems.throwIfAny(warnOfSurfaces(file, reader.sound(), text, name));
   return file;
 }
 

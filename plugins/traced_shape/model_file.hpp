@@ -20,7 +20,7 @@ struct ModelFile {
 class ModelFileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
-  /// Warnings about the values of the file that could be read, as adviseModel() and adviseMedial() give them.
+  /// Warnings about the values of the file that could be read, as warnOfModel() and warnOfMedialFile() give them.
   std::vector<std::string> odd;
 };
 

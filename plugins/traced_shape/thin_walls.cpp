@@ -27,9 +27,9 @@ Eigen::Array2d evenly(std::uint32_t i) {
   return {u - std::floor(u), v - std::floor(v)};
 }
 
-class Presser {
+class WallPress {
  public:
-  Presser(const brep::Model& part, double depth) : tracer_(part), others_(part), depth_(depth) {}
+  WallPress(const brep::Model& part, double depth) : tracer_(part), others_(part), depth_(depth) {}
 
   /// Presses at a point, given in its body's frame, if it lies on the surface of the part.
   void press(const brep::Placement& place, const Vector3d& in_body) {
@@ -75,7 +75,7 @@ class Presser {
 /// Presses each face of a placement at some points of its parameter range; points outside the face's loops are left
 /// out.
 void pressFaces(const brep::Model& part, const brep::Placement& place, std::uint32_t each, std::uint32_t stride,
-                Presser& presser) {
+                WallPress& presser) {
   const brep::Body& body = part.part().bodies[place.body];
   spline::SurfacePoint at;
   for (std::uint32_t f = 0; f < body.face_count; f += stride) {
@@ -89,7 +89,7 @@ void pressFaces(const brep::Model& part, const brep::Placement& place, std::uint
   }
 }
 
-void pressTriangles(const brep::Model& part, const brep::Placement& place, std::uint32_t stride, Presser& presser) {
+void pressTriangles(const brep::Model& part, const brep::Placement& place, std::uint32_t stride, WallPress& presser) {
   const brep::Body& body = part.part().bodies[place.body];
   for (std::uint32_t t = 0; t < body.triangle_count; t += stride) {
     const brep::Triangle& triangle = part.part().triangles[body.first_triangle + t];
@@ -111,7 +111,7 @@ std::optional<ThinWall> thinnestWall(const brep::Model& part, double depth) {
   if (count == 0) return std::nullopt;
   const auto each = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kPoints / count, 1, kMostOfFace));
   const auto stride = static_cast<std::uint32_t>((count + kPoints - 1) / kPoints);
-  Presser presser(part, depth);
+  WallPress presser(part, depth);
   for (const brep::Placement& place : part.placements()) {
     if (!place.solid) continue;
     pressFaces(part, place, each, stride, presser);

@@ -8,8 +8,8 @@
 
 #include "document.hpp"
 #include "kernels/brep/part_file.hpp"
-#include "model_advice.hpp"
 #include "model_file.hpp"
+#include "model_warnings.hpp"
 #include "part_mesh.hpp"
 
 namespace hapticd {
@@ -49,13 +49,13 @@ void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
     for (const std::string& warning : model_->warnings())
       host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + warning).c_str());
   if (host() != nullptr && host()->log != nullptr)
-    for (const std::string& odd : adviseModel(file, *model_, text, geometry_))
+    for (const std::string& odd : warnOfModel(file, *model_, text, geometry_))
       host()->log(host(), HSP_LOG_WARNING, ("geometry: " + odd).c_str());
   const uint32_t probes = std::max(activation.max_probes, 1u);
   tracers_.clear();
   tracers_.reserve(probes);
   for (uint32_t i = 0; i < probes; ++i) tracers_.emplace_back(*model_);
-  offers_.assign(probes, Offers{});
+  offers_.assign(probes, OfferedFeet{});
   searched_.assign(probes, 1);
   report.size_m = model_->bounds().diagonal().norm();
   report.locked_bytes = model_->bytes();
@@ -72,7 +72,7 @@ void TracedShape::deactivate() {
 void TracedShape::reset() noexcept HSP_RT {
   for (trace::Tracer& tracer : tracers_) tracer.reset();
   for (brep::Tracer& tracer : part_tracers_) tracer.reset();
-  for (Offers& offers : offers_) offers.count = 0;
+  for (OfferedFeet& offers : offers_) offers.count = 0;
   std::fill(searched_.begin(), searched_.end(), 1);
 }
 
@@ -175,17 +175,17 @@ void TracedShape::popThrough(uint32_t probe) noexcept HSP_RT {
 /// that appears in the meantime is found later, as also happens at 0.4 m/s. After twenty uses (100 ms) there is a new
 /// search. A hand that has just arrived here, or has jumped, has followed no foot on the way; it gets a new search at
 /// its own place.
-const TracedShape::Search& TracedShape::searchAbout(const Eigen::Vector3d& p, double radius) const {
+const TracedShape::CachedSearch& TracedShape::searchAbout(const Eigen::Vector3d& p, double radius) const {
   constexpr double kSamePlace = 2e-3;  // [m] greatest distance of p from the place of the search
   constexpr double kSameHand = 1e-3;   // [m] greatest path of the same hand between two requests: 0.2 m/s
   constexpr int kMostTold = 20;
-  for (Search& search : searches_)
+  for (CachedSearch& search : searches_)
     if (search.radius == radius && (search.at - p).norm() < kSamePlace && (search.asked - p).norm() < kSameHand) {
       search.asked = p;
       if (search.told++ < kMostTold) return search;
       search.radius = -1;
     }
-  Search& search = searches_[next_search_];
+  CachedSearch& search = searches_[next_search_];
   next_search_ = (next_search_ + 1) % searches_.size();
   search.at = search.asked = p;
   search.radius = radius;
@@ -198,7 +198,7 @@ const TracedShape::Search& TracedShape::searchAbout(const Eigen::Vector3d& p, do
 /// Returns the number of all records, which may be larger than `cap`.
 int64_t TracedShape::nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const {
   const Eigen::Vector3d p(p_model);
-  const Search& search = searchAbout(p, radius);
+  const CachedSearch& search = searchAbout(p, radius);
   const double way = (p - search.at).norm();
   uint64_t count = 0;
   for (const auto* records : {&search.found.nearest, &search.found.rivals})
@@ -213,7 +213,7 @@ int64_t TracedShape::nearby(const double p_model[3], double radius, hsp_near* ou
 hsp_status TracedShape::start(const hsp_near& near) noexcept HSP_RT {
   if (near.probe >= tracers_.size() || near.surface >= static_cast<uint32_t>(model_->surfaceCount())) return HSP_E_ARG;
   tracers_[near.probe].activate(static_cast<int>(near.surface), near.param[0], near.param[1], near.distance_m);
-  Offers& offers = offers_[near.probe];
+  OfferedFeet& offers = offers_[near.probe];
   if (offers.count < offers.near.size()) offers.near[offers.count++] = near;
   return HSP_OK;
 }

@@ -118,13 +118,13 @@ class TracedShape : public Shape {
   static constexpr const char* kEvaluationNames[] = {"table", "net"};
 
   /// The feet that the proximity search has offered since the last step. After a jump only these are valid.
-  struct Offers {
+  struct OfferedFeet {
     std::array<hsp_near, 64> near;
     uint32_t count = 0;
   };
 
   /// The result of a search about a place, and how often it has been returned since.
-  struct Search {
+  struct CachedSearch {
     Eigen::Vector3d at{0, 0, 0};
     /// [m] place of the last request that was answered with this result; the same hand asks again near it
     Eigen::Vector3d asked{0, 0, 0};
@@ -133,7 +133,7 @@ class TracedShape : public Shape {
     trace::Found found;
   };
 
-  const Search& searchAbout(const Eigen::Vector3d& p, double radius) const;
+  const CachedSearch& searchAbout(const Eigen::Vector3d& p, double radius) const;
   void beginAnew(uint32_t probe) noexcept HSP_RT;
   trace::TraceOptions optionsOf(const hsp_step& step) const noexcept HSP_RT;
   int64_t nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const;
@@ -154,11 +154,11 @@ class TracedShape : public Shape {
   std::unique_ptr<brep::Model> part_;
   std::vector<brep::Tracer> part_tracers_;  ///< one per probe
   std::unique_ptr<trace::Model> model_;
-  std::vector<trace::Tracer> tracers_;      ///< one per probe
-  std::vector<Offers> offers_;              ///< one per probe
-  std::vector<char> searched_;              ///< by probe: 1 if a search has answered since the last jump
-  mutable std::array<Search, 4> searches_;  ///< [sim] the newest results, enough for several fingers
-  mutable std::size_t next_search_ = 0;     ///< [sim] index of the result that is replaced next
+  std::vector<trace::Tracer> tracers_;            ///< one per probe
+  std::vector<OfferedFeet> offers_;               ///< one per probe
+  std::vector<char> searched_;                    ///< by probe: 1 if a search has answered since the last jump
+  mutable std::array<CachedSearch, 4> searches_;  ///< [sim] the newest results, enough for several fingers
+  mutable std::size_t next_search_ = 0;           ///< [sim] index of the result that is replaced next
   Mesh mesh_;
   hsp_ext_surfaces surfaces_extension_{};
   hsp_ext_geometry geometry_extension_{};

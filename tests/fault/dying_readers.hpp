@@ -54,9 +54,9 @@ class DyingReaders {
     if (!file) _exit(1);
     const status::Page& page = std::as_const(**file).page();
     for (bool told = false;;) {
-      uint64_t sum = page.now.read().value_or(status::Now{}).tick;
-      for (uint32_t i = 0; i < page.arms; ++i) sum += page.arm[i].now.read().value_or(status::ArmNow{}).sequence;
-      for (uint32_t i = 0; i < page.models; ++i) sum += page.model[i].now.read().value_or(status::ModelNow{}).tick;
+      uint64_t sum = page.now.read().value_or(status::TickStatus{}).tick;
+      for (uint32_t i = 0; i < page.arms; ++i) sum += page.arm[i].now.read().value_or(status::ArmStatus{}).sequence;
+      for (uint32_t i = 0; i < page.models; ++i) sum += page.model[i].now.read().value_or(status::ModelStatus{}).tick;
       if (!told && sum > 0) told = write(ready, "r", 1) == 1;
     }
   }

@@ -52,13 +52,13 @@ int run(const std::string& name, const hapticd::codec::Wire& wire, size_t joints
     if (wire.framing.used) bytes.insert(bytes.begin(), wire.framing.header, 1);
     good += session.receive(now, bytes) ? 1 : 0;
     session.watch(now);
-    hapticd::wire_arm::Wish wish;
-    wish.time = now, wish.sequence = 1, wish.on = true;
-    wish.torque.fill(random() % 16 == 0 ? std::nan("") : 1.0);
-    wish.follow = random() % 2 == 0;
-    wish.position.fill(random() % 16 == 0 ? std::nan("") : 1.0);
+    hapticd::wire_arm::ArmCommand wanted;
+    wanted.time = now, wanted.sequence = 1, wanted.on = true;
+    wanted.torque.fill(random() % 16 == 0 ? std::nan("") : 1.0);
+    wanted.follow = random() % 2 == 0;
+    wanted.position.fill(random() % 16 == 0 ? std::nan("") : 1.0);
     std::array<uint8_t, hapticd::codec::kMaxReportBytes + 1> out;
-    const size_t size = session.command(now, wish, out);
+    const size_t size = session.command(now, wanted, out);
     const bool whole = wire.framing.escape.used ? size >= wire.output.bytes() : size == wire.output.bytes();
     if (!whole) return std::printf("%s: no command\n", name.c_str());
     for (const double position : session.sample().position)

@@ -28,7 +28,7 @@ WALLS = [
     ("driver/daemon/sim/proximity.cpp", "link/link.hpp", ["servo/core/core.hpp", "servo/loop/loop.hpp"]),
     ("driver/daemon/servo/core/core.cpp", "servo/safety/guard.hpp", ["record/recording.hpp", "control/server.hpp", "servo/arm/arm.hpp", "sim/proximity.hpp", "scene/load.hpp"]),
     ("driver/daemon/servo/loop/loop.cpp", "servo/arm/arm.hpp", ["session/telemetry.hpp", "record/recording.hpp", "status/page.hpp", "watch/watchdog.hpp"]),
-    ("driver/daemon/watch/watchdog.cpp", "watch/watched.hpp", ["servo/loop/loop.hpp", "session/runner.hpp"]),
+    ("driver/daemon/watch/watchdog.cpp", "watch/watch_target.hpp", ["servo/loop/loop.hpp", "session/runner.hpp"]),
     ("driver/daemon/control/server.cpp", "base/os.hpp", ["session/request_handler.hpp", "servo/core/core.hpp"]),
     ("driver/daemon/world/world.cpp", "servo/core/core.hpp", ["session/runner.hpp", "record/recording.hpp", "scene/load.hpp"]),
     ("driver/command_line/command_line.cpp", "command_line/command_line.hpp", ["cli/command.hpp", "base/result.hpp", "host/catalog.hpp"]),

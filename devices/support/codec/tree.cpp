@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "document/correction.hpp"
 #include "document/json_text.hpp"
-#include "document/meant.hpp"
 #include "document/suggestion.hpp"
 
 namespace hapticd::codec {
@@ -38,7 +38,7 @@ std::string shown(const Json& value) {
 }
 
 /// Returns the number that a text with hexadecimal digits, such as 7e, probably means; NaN if it is no such text.
-double hexMeant(const std::string& text, double least, double most) {
+double suggestHex(const std::string& text, double least, double most) {
   const bool hex =
       text.size() >= 2 && text.size() <= 8 && text.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
   const double value = hex ? static_cast<double>(std::strtoul(text.c_str(), nullptr, 16)) : std::nan("");
@@ -132,9 +132,9 @@ double Tree::number(double least, double most, const char* unit) const {
   double taken = allowed;  // the value with which other checks go on
   if (json.is_string() && std::isnan(value)) {
     const std::string& text = json.get_ref<const std::string&>();
-    const double hex = *unit == '\0' ? hexMeant(text, least, most) : std::nan("");
+    const double hex = *unit == '\0' ? suggestHex(text, least, most) : std::nan("");
     if (!std::isnan(hex)) taken = hex;
-    meant = std::isnan(hex) ? document::numberMeant(text) : "; if it is hexadecimal, write 0x" + text;
+    meant = std::isnan(hex) ? document::suggestNumber(text) : "; if it is hexadecimal, write 0x" + text;
   }
   fail(shown(json) + ", expected " + range + meant);
   return taken;

@@ -11,7 +11,7 @@
 #include "codec/bits.hpp"
 #include "codec/checksum_start.hpp"
 #include "codec/choice.hpp"
-#include "codec/wire_meant.hpp"
+#include "codec/wire_correction.hpp"
 #include "codec/wire_overlap.hpp"
 
 namespace hapticd::codec {
@@ -86,7 +86,7 @@ void readType(const Tree& tree, Field& field) {
     tree.fail("\"" + text +
               "\", expected one of i8, i16, i32, u8, u16, u32 (any width: i2 to i64, u1 to u64), f32, f64, nibble, "
               "nibbles" +
-              typeMeant(text));
+              suggestType(text));
   }
 }
 
@@ -223,7 +223,7 @@ bool readMethod(const Tree& tree, Field& field) {
     all += std::string(", ") + named.name;
   }
   if (method.exists() && tree.problems() == before) {
-    const std::string meant = methodMeant(name);
+    const std::string meant = suggestMethod(name);
     method.fail("\"" + name + "\", expected one of " +
                 (meant.empty() ? all : "sum, xor, crc and the names of CRCs, such as crc16-modbus" + meant));
   }

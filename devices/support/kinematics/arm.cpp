@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kinematics/complaints.hpp"
+#include "kinematics/error_collector.hpp"
 
 namespace hapticd::kinematics {
 
@@ -18,7 +18,7 @@ void Arm::narrow(const JointLimits& limits) {
   if (limits.min.size() != jointCount())
     throw std::invalid_argument("arm.limits: " + std::to_string(limits.min.size()) + " rows, expected " +
                                 std::to_string(jointCount()) + ": one for each joint");
-  Complaints wrong;
+  ErrorCollector wrong;
   for (Eigen::Index i = 0; i < limits.min.size(); ++i)
     if (!(limits.min[i] <= limits.max[i]))
       wrong.add("arm.limits[" + std::to_string(i) + "]: [" + text(limits.min[i]) + ", " + text(limits.max[i]) +

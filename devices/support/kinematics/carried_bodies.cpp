@@ -6,7 +6,7 @@
 
 namespace hapticd::kinematics {
 
-Passengers::Passengers(std::unique_ptr<Arm> arm, const JointLimits& others)
+CarriedBodies::CarriedBodies(std::unique_ptr<Arm> arm, const JointLimits& others)
     : arm_(std::move(arm)), carrying_(arm_->jointCount()), others_(static_cast<int>(others.min.size())) {
   if (carrying_ + others_ > kMaxJoints)
     throw std::invalid_argument("an arm of " + std::to_string(carrying_ + others_) + " joints, expected at most " +
@@ -17,11 +17,11 @@ Passengers::Passengers(std::unique_ptr<Arm> arm, const JointLimits& others)
   limits_.max << arm_->limits().max, others.max;
 }
 
-bool Passengers::forward(const JointVector& q, Pose& tip) const noexcept {
+bool CarriedBodies::forward(const JointVector& q, Pose& tip) const noexcept {
   return arm_->forward(q.head(carrying_), tip);
 }
 
-bool Passengers::jacobian(const JointVector& q, Jacobian& J) const noexcept {
+bool CarriedBodies::jacobian(const JointVector& q, Jacobian& J) const noexcept {
   Jacobian carrying;
   if (!arm_->jacobian(q.head(carrying_), carrying)) return false;
   J.setZero(6, carrying_ + others_);
@@ -29,7 +29,7 @@ bool Passengers::jacobian(const JointVector& q, Jacobian& J) const noexcept {
   return true;
 }
 
-bool Passengers::gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept {
+bool CarriedBodies::gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept {
   JointVector carrying;
   if (!arm_->gravity(q.head(carrying_), gravity, carrying)) return false;
   tau.setZero(carrying_ + others_);
@@ -37,14 +37,14 @@ bool Passengers::gravity(const JointVector& q, const Eigen::Vector3d& gravity, J
   return true;
 }
 
-bool Passengers::inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept {
+bool CarriedBodies::inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept {
   JointVector carrying = q.head(carrying_);
   if (!arm_->inverse(position, carrying)) return false;
   q.head(carrying_) = carrying;
   return true;
 }
 
-JointVector Passengers::neutral() const noexcept {
+JointVector CarriedBodies::neutral() const noexcept {
   JointVector q(carrying_ + others_);
   q << arm_->neutral(), 0.5 * (limits_.min.tail(others_) + limits_.max.tail(others_));
   return q;

@@ -8,10 +8,10 @@
 
 namespace hapticd::kinematics {
 
-class Passengers : public Arm {
+class CarriedBodies : public Arm {
  public:
   /// @param others limits of the further joints, which come after the joints of `arm`. Throws std::invalid_argument.
-  Passengers(std::unique_ptr<Arm> arm, const JointLimits& others);
+  CarriedBodies(std::unique_ptr<Arm> arm, const JointLimits& others);
 
   int jointCount() const noexcept override { return carrying_ + others_; }
   bool forward(const JointVector& q, Pose& tip) const noexcept override;

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kinematics/complaints.hpp"
+#include "kinematics/error_collector.hpp"
 
 namespace hapticd::kinematics {
 namespace {
@@ -59,7 +59,7 @@ Chain::Chain(const ChainGeometry& geometry)
                                 std::to_string(kMaxJoints));
   limits_.min.resize(count_);
   limits_.max.resize(count_);
-  Complaints wrong;
+  ErrorCollector wrong;
   for (size_t i = 0; i < geometry.links.size(); ++i) wrong.attempt([&] { check(geometry.links[i], i); });
   wrong.check();
   for (size_t i = 0; i < geometry.links.size(); ++i) {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "kinematics/list_into.hpp"
+#include "kinematics/assign_list.hpp"
 
 namespace hapticd::kinematics {
 namespace {
@@ -38,8 +38,8 @@ double nearest(double angle, double reference) noexcept {
 PhantomGeometry phantomGeometry(const std::vector<double>& lengths, const std::vector<double>& masses,
                                 const Eigen::Vector3d& origin) {
   PhantomGeometry g;
-  assign(lengths, "arm.lengths", g.l1, g.l2, g.l3, g.l5, g.l6);
-  assign(masses, "arm.masses", g.ma, g.mc, g.mbe, g.mdf);
+  assignList(lengths, "arm.lengths", g.l1, g.l2, g.l3, g.l5, g.l6);
+  assignList(masses, "arm.masses", g.ma, g.mc, g.mbe, g.mdf);
   g.origin = origin;
   return g;
 }

@@ -16,7 +16,7 @@
 namespace hapticd::vendor_arm {
 
 /// The newest values that the vendor's library has given.
-struct Seen {
+struct ArmReading {
   /// time_ns: CLOCK_MONOTONIC when the position was read. sequence: number of the position; 0 if none has come.
   uint64_t time_ns = 0, sequence = 0;
   double position[3] = {};  ///< [m]
@@ -49,7 +49,7 @@ class Exchange {
   }
 
   // ---- for the thread that calls the vendor's library
-  void show(const Seen& seen) noexcept {
+  void show(const ArmReading& seen) noexcept {
     seen_.back() = seen;
     seen_.publish();
     ok_ = !seen.lost && !seen.fault;
@@ -59,7 +59,7 @@ class Exchange {
   void force(double out[3]) noexcept {
     constexpr uint64_t kOldNs = 20'000'000;
     wanted_.update();
-    const Wanted& wanted = wanted_.front();
+    const ForceCommand& wanted = wanted_.front();
     std::fill_n(out, 3, 0.0);
     const double size = std::hypot(wanted.force[0], wanted.force[1], wanted.force[2]);
     const bool old = monotonicNow() > wanted.time_ns + kOldNs;
@@ -71,7 +71,7 @@ class Exchange {
   // ---- for the servo thread
   hsp_status read(hdv_sample& sample) noexcept HSP_RT {
     seen_.update();
-    const Seen& seen = seen_.front();
+    const ArmReading& seen = seen_.front();
     lost_.store(seen.lost, std::memory_order_relaxed);
     std::copy_n(seen.position, 3, sample.position);
     sample.time_ns = seen.time_ns, sample.sequence = seen.sequence;
@@ -84,7 +84,7 @@ class Exchange {
   }
   hsp_status write(const hdv_command& command) noexcept HSP_RT {
     if (command.mode == HDV_OFF) cut_.store(false, std::memory_order_relaxed);
-    Wanted wanted;
+    ForceCommand wanted;
     wanted.time_ns = monotonicNow();
     for (int i = 0; i < 3; ++i)
       if (command.mode == HDV_TORQUE && std::isfinite(command.torque[i])) wanted.force[i] = command.torque[i];
@@ -96,12 +96,12 @@ class Exchange {
   bool lost() const noexcept HSP_RT { return lost_.load(std::memory_order_relaxed); }  ///< [any]
 
  private:
-  struct Wanted {
+  struct ForceCommand {
     uint64_t time_ns = 0;  ///< CLOCK_MONOTONIC when the command was written
     double force[3] = {};  ///< [N]
   };
-  TripleBuffer<Seen> seen_;
-  TripleBuffer<Wanted> wanted_;
+  TripleBuffer<ArmReading> seen_;
+  TripleBuffer<ForceCommand> wanted_;
   std::atomic<bool> cut_{false}, lost_{false};
   bool ok_ = true;  ///< the arm is neither lost nor at fault; used only by the thread that calls the library
   double max_force_ = 0;

@@ -16,7 +16,7 @@
 #include "hapticd/device_pace.h"
 #include "hapticd/device_silence.h"
 #include "hapticd/device_trouble.h"
-#include "kinematics/complaints.hpp"
+#include "kinematics/error_collector.hpp"
 #include "kinematics/extension.hpp"
 #include "wire_arm/calibration.hpp"
 #include "wire_arm/falcon_loader.hpp"
@@ -86,20 +86,20 @@ class Arm : public Device, public Parameters {
 
   hsp_status write(uint64_t now_ns, const hdv_command& command) noexcept HSP_RT {
     if (command.mode == HDV_OFF) link_->endCut();
-    wish_.time = now_ns;
-    ++wish_.sequence;
-    wish_.follow = command.mode == HDV_POSITION && follows_;
-    wish_.on = command.mode == HDV_TORQUE || wish_.follow;
+    command_.time = now_ns;
+    ++command_.sequence;
+    command_.follow = command.mode == HDV_POSITION && follows_;
+    command_.on = command.mode == HDV_TORQUE || command_.follow;
     const size_t count = joints_;
     for (size_t i = 0; i < count; ++i) {
       const double most = limit_[i], asked = command.torque[i];
-      if (!std::isfinite(asked)) wish_.on = false;
-      wish_.torque[i] = std::clamp(std::isfinite(asked) ? asked : 0.0, -most, most);
-      if (!wish_.follow) continue;
-      if (!std::isfinite(command.position[i])) wish_.on = false;
-      wish_.position[i] = wish_.on ? std::clamp(command.position[i], least_[i], most_[i]) : 0.0;
+      if (!std::isfinite(asked)) command_.on = false;
+      command_.torque[i] = std::clamp(std::isfinite(asked) ? asked : 0.0, -most, most);
+      if (!command_.follow) continue;
+      if (!std::isfinite(command.position[i])) command_.on = false;
+      command_.position[i] = command_.on ? std::clamp(command.position[i], least_[i], most_[i]) : 0.0;
     }
-    link_->write(wish_);
+    link_->write(command_);
     return HSP_OK;
   }
 
@@ -163,7 +163,7 @@ class Arm : public Device, public Parameters {
   /// Makes everything that depends only on the parameters. Throws std::invalid_argument with all problems, one per
   /// line.
   void prepare() {
-    kinematics::Complaints wrong;
+    kinematics::ErrorCollector wrong;
     joints_ = jointsOf(*this);  // also if the mechanism is wrong otherwise
     wrong.attempt([&] { arm_ = makeMechanism(*this); });
     bool wire_known = false;
@@ -202,7 +202,7 @@ class Arm : public Device, public Parameters {
   /// Returns as much of a wire format with mistakes as can be read; they have been noted before.
   codec::Wire draft() const {
     codec::Wire read;
-    kinematics::Complaints noted;
+    kinematics::ErrorCollector noted;
     noted.attempt([&] { read = codec::draftOfWire(wire, joints_); });
     return read;
   }
@@ -333,7 +333,7 @@ class Arm : public Device, public Parameters {
   hdv_ext_calibration calibration_{};
   std::atomic<Trouble> trouble_{Trouble::kNone};
   Sample sample_;
-  Wish wish_;
+  ArmCommand command_;
   JointArray limit_{}, least_{}, most_{};
   size_t joints_ = 0;
   bool velocity_ = false, torque_ = false, follows_ = false;

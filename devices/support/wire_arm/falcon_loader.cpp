@@ -25,7 +25,9 @@ class Loader {
  public:
   Loader(Transport& transport, const std::vector<uint8_t>& firmware) : transport_(transport), firmware_(firmware) {}
 
-  bool upload() { return slow() && hello() && fast() && answers({0x41}, {0x41}, kHelloTries) && chunks(); }
+  bool upload() {
+    return setSlowRate() && handshake() && setFastRate() && answers({0x41}, {0x41}, kHelloTries) && chunks();
+  }
 
   /// Sets the serial line up for reports: 1 ms latency, full speed.
   bool run() { return set(kLatency, 1) && set(kBaud, 0x2) && set(kLines, 0x0101); }
@@ -44,23 +46,23 @@ class Loader {
     step.request_type = kVendorOut, step.request = request, step.value = value;
     return transport_.control(step) == Status::kOk;
   }
-  bool slow() {  // resets the chip, then sets 9600 8N1 (divisor 0x4138), RTS low, DTR low and then high
+  bool setSlowRate() {  // resets the chip, then sets 9600 8N1 (divisor 0x4138), RTS low, DTR low and then high
     return set(kReset, 0) && set(kReset, 1) && set(kReset, 2) && set(kLatency, 16) && set(kBaud, 0x4138) &&
            set(kDataFormat, 8) && set(kLines, 0x0200) && set(kLines, 0x0100) && set(kLines, 0x0101);
   }
-  bool hello() { return answers({0x0a, 0x43, 0x0d}, {0x0a, 0x44, 0x2c, 0x0d}, kHelloTries); }
-  bool fast() { return set(kLines, 0x0100) && set(kBaud, 0x15); }  // sets 140000 baud
+  bool handshake() { return answers({0x0a, 0x43, 0x0d}, {0x0a, 0x44, 0x2c, 0x0d}, kHelloTries); }
+  bool setFastRate() { return set(kLines, 0x0100) && set(kBaud, 0x15); }  // sets 140000 baud
 
   /// Sends the bytes again and again until the expected answer comes.
   bool answers(const std::vector<uint8_t>& bytes, const std::vector<uint8_t>& expected, int tries) {
     for (int i = 0; i < tries; ++i) {
       if (transport_.send(bytes) != Status::kOk) return false;
-      if (heard(expected)) return true;
+      if (receiveExpected(expected)) return true;
     }
     return false;
   }
 
-  bool heard(const std::vector<uint8_t>& expected) {
+  bool receiveExpected(const std::vector<uint8_t>& expected) {
     const Nanoseconds until = monotonicNow() + kAnswer;
     size_t matched = 0;
     while (matched < expected.size() && monotonicNow() < until) {
@@ -82,7 +84,7 @@ class Loader {
       const size_t end = std::min(firmware_.size(), at + kFalconChunk);
       const std::vector<uint8_t> chunk(firmware_.begin() + static_cast<std::ptrdiff_t>(at),
                                        firmware_.begin() + static_cast<std::ptrdiff_t>(end));
-      if (transport_.send(chunk) != Status::kOk || !heard(chunk)) return false;
+      if (transport_.send(chunk) != Status::kOk || !receiveExpected(chunk)) return false;
     }
     return true;
   }

@@ -80,18 +80,18 @@ void Link::prepareSilence() {
   silence_ = {};
   silence_.struct_size = sizeof silence_;
   silence_.epoch = epoch;
-  way_in_ = transport_->wayIn(silence_);
-  if (silence_.size + size > sizeof silence_.bytes) way_in_ = Descriptor();
-  if (!way_in_) return;
+  silence_descriptor_ = transport_->openForSilence(silence_);
+  if (silence_.size + size > sizeof silence_.bytes) silence_descriptor_ = Descriptor();
+  if (!silence_descriptor_) return;
   std::copy_n(report.begin(), size, silence_.bytes + silence_.size);
   silence_.size += static_cast<uint32_t>(size);
-  silence_.fd = way_in_.get();
+  silence_.fd = silence_descriptor_.get();
 }
 
 bool Link::silence(hdv_silence& how) const {
   const std::lock_guard lock(mutex_);
   how = silence_;
-  return way_in_ && reported_.load(std::memory_order_relaxed);
+  return silence_descriptor_ && reported_.load(std::memory_order_relaxed);
 }
 
 Result<void> Link::startUp() {
@@ -145,7 +145,7 @@ Result<void> Link::capture(hdv_take_transfer take, void* who) {
   Nanoseconds due = begun;
   for (bool more = true; more;) {
     if (const Nanoseconds now = monotonicNow(); now >= due) {
-      size_t size = session_.command(now, Wish{}, out_);
+      size_t size = session_.command(now, ArmCommand{}, out_);
       due = std::max(due + period_, now);
       if (const Status sent = transport_->send({out_.data(), size}); sent == Status::kGone) return Error{"is gone"};
       more = take(who, now - begun, 1, out_.data(), size) == 0;
@@ -177,22 +177,22 @@ bool Link::read(Sample& sample) noexcept HSP_RT {
   return fresh;
 }
 
-void Link::write(const Wish& wish) noexcept HSP_RT {
-  wishes_.back() = wish;
-  wishes_.publish();
-  wished_.strike();
+void Link::write(const ArmCommand& wanted) noexcept HSP_RT {
+  commands_.back() = wanted;
+  commands_.publish();
+  commanded_.strike();
 }
 
 void Link::waitForNews(Nanoseconds until) noexcept {
   paced_.store(true, std::memory_order_relaxed);
-  wished_.wake();
+  commanded_.wake();
   news_.wait(heard_, until);
 }
 
 void Link::cut() noexcept {
   cut_left_.store(false);
   cut_.store(true);
-  wished_.strike();
+  commanded_.strike();
 }
 
 void Link::run() noexcept {
@@ -203,11 +203,11 @@ void Link::run() noexcept {
     if (open_)
       serve(monotonicNow());
     else
-      lookForIt();
-    tell();
+      findDevice();
+    logTrouble();
   }
   if (!open_) return;
-  const size_t size = session_.command(monotonicNow(), Wish{}, out_);  // motors off
+  const size_t size = session_.command(monotonicNow(), ArmCommand{}, out_);  // motors off
   (void)transport_->send({out_.data(), size});
 }
 
@@ -223,8 +223,8 @@ void Link::forgetOld() noexcept {
 
 void Link::serve(Nanoseconds now) noexcept {
   session_.calibrateByDevice(calibrate_.load(std::memory_order_relaxed));
-  wishes_.update();
-  const bool news = wire_.exchange == codec::Exchange::kStream && wishes_.front().sequence != sent_wish_ &&
+  commands_.update();
+  const bool news = wire_.exchange == codec::Exchange::kStream && commands_.front().sequence != sent_command_ &&
                     now - sent_at_ >= period_ / 2;
   const bool cut = cut_.load(std::memory_order_relaxed) && !cut_sent_;
   if (now >= due_ || news || cut) send(now);
@@ -259,16 +259,16 @@ void Link::receive(Nanoseconds wait) noexcept {
   }
   answered_ = answered_ || fresh;
   if (fresh) reported_.store(true, std::memory_order_relaxed);
-  if (fresh) tellServo();
+  if (fresh) publishToServo();
 }
 
 /// Publishes the newest sample. If the samples pace the servo, the servo answers each sample at once. So this function
-/// waits for the wish instead of the next report. Reports that come meanwhile wait in the kernel.
-void Link::tellServo() noexcept {
-  const uint32_t known = wished_.strikes();
+/// waits for the command instead of the next report. Reports that come meanwhile wait in the kernel.
+void Link::publishToServo() noexcept {
+  const uint32_t known = commanded_.strikes();
   publish();
   if (paced_.load(std::memory_order_relaxed) && wire_.exchange == codec::Exchange::kStream)
-    wished_.wait(known, monotonicNow() + period_ / 2);
+    commanded_.wait(known, monotonicNow() + period_ / 2);
 }
 
 /// Chooses when to ask a polled arm, so that its answer comes in the middle between two reads of the servo. Then each
@@ -276,7 +276,7 @@ void Link::tellServo() noexcept {
 Nanoseconds Link::midway(Nanoseconds due) const noexcept {
   constexpr int64_t kShare = 8;  // each command corrects 1 / kShare of the error, so one late command changes little
   const auto period = static_cast<int64_t>(period_), at = static_cast<int64_t>(due);
-  const auto read = static_cast<int64_t>(wishes_.front().time);
+  const auto read = static_cast<int64_t>(commands_.front().time);
   const bool follows = paced_.load(std::memory_order_relaxed);  // paced: the servo reads when the answer comes
   if (read == 0 || follows || wire_.exchange != codec::Exchange::kPoll) return due;
   const int64_t phase = ((at - read) % period + period) % period;
@@ -285,8 +285,8 @@ Nanoseconds Link::midway(Nanoseconds due) const noexcept {
 
 void Link::send(Nanoseconds now) noexcept {
   cut_sent_ = cut_.load(std::memory_order_relaxed);
-  const size_t size = session_.command(now, cut_sent_ ? Wish{} : wishes_.front(), out_);
-  sent_wish_ = wishes_.front().sequence;
+  const size_t size = session_.command(now, cut_sent_ ? ArmCommand{} : commands_.front(), out_);
+  sent_command_ = commands_.front().sequence;
   sent_at_ = now;
   due_ += period_;
   if (due_ + 10 * period_ < now || due_ > now + period_) due_ = now + period_;
@@ -307,7 +307,7 @@ void Link::lose(Trouble trouble) noexcept {
 
 /// Tries to open the lost arm again: at once, then ten times a second. If a device opens and fails again and again,
 /// this thread must still sleep, because its priority is above the servo's.
-void Link::lookForIt() noexcept {
+void Link::findDevice() noexcept {
   while (monotonicNow() < tried_at_ + kSearchPause && !stop_) pause(10 * kMillisecond);
   if (stop_) return;
   tried_at_ = monotonicNow();
@@ -327,7 +327,7 @@ void Link::lookForIt() noexcept {
   }
 }
 
-void Link::tell() noexcept {
+void Link::logTrouble() noexcept {
   const Trouble now = session_.trouble();
   if (now == told_ || session_.sample().sequence == 0) return;  // before the first report, start() reports the trouble
   told_ = now;

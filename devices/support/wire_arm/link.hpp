@@ -55,14 +55,14 @@ class Link {
 
   /// [rt] Returns the newest sample. @return false if it is the same as at the last call
   bool read(Sample& sample) noexcept HSP_RT;
-  /// [rt] Called between two ticks, if the samples of the arm pace the servo. Lets the newest wish go out at once, and
-  /// sleeps until read() has something new, or until `until`. From the first call on, the I/O thread sends each wish as
-  /// soon as it comes.
+  /// [rt] Called between two ticks, if the samples of the arm pace the servo. Lets the newest command go out at once,
+  /// and sleeps until read() has something new, or until `until`. From the first call on, the I/O thread sends each
+  /// command as soon as it comes.
   void waitForNews(Nanoseconds until) noexcept;
-  /// [rt] Gives the newest wish to the I/O thread.
-  void write(const Wish& wish) noexcept HSP_RT;
+  /// [rt] Gives the newest command to the I/O thread.
+  void write(const ArmCommand& wanted) noexcept HSP_RT;
 
-  /// [any] Switches the motors off until endCut(), whatever the wishes say. Async-signal-safe. The I/O thread tells
+  /// [any] Switches the motors off until endCut(), whatever the commands say. Async-signal-safe. The I/O thread tells
   /// the arm with its next command, about one period of wire.rate later at most.
   void cut() noexcept;
   /// [any] Returns false while a cut must still be sent to the arm; true if there is no cut or no arm.
@@ -71,7 +71,7 @@ class Link {
   /// [any] Fills in how another process can switch the motors off. Returns false if no report has come yet (it may be a
   /// wrong device), or if another process cannot reach the device.
   bool silence(hdv_silence& how) const;
-  /// [rt] Ends a cut: the next wish counts again.
+  /// [rt] Ends a cut: the next command counts again.
   void endCut() noexcept HSP_RT { cut_.store(false, std::memory_order_relaxed); }
 
   /// [main] While `wanted` is true, tells the device to find its zero.
@@ -89,10 +89,10 @@ class Link {
   void send(Nanoseconds now) noexcept;
   Nanoseconds midway(Nanoseconds due) const noexcept;
   void lose(Trouble trouble) noexcept;
-  void lookForIt() noexcept;
-  void tell() noexcept;
+  void findDevice() noexcept;
+  void logTrouble() noexcept;
   void publish() noexcept;
-  void tellServo() noexcept;
+  void publishToServo() noexcept;
   Result<Identity> bringUp();
   void prepareSilence();
   Result<void> startUp();
@@ -103,18 +103,19 @@ class Link {
   LinkSettings settings_;
   Session session_;
   TripleBuffer<Sample> samples_;
-  TripleBuffer<Wish> wishes_;
-  Bell news_, wished_;  ///< news_ wakes the servo for a sample or a trouble; wished_ wakes the I/O thread
-  uint32_t heard_ = 0;  ///< the servo's count of news_ at its last read()
+  TripleBuffer<ArmCommand> commands_;
+  Bell news_, commanded_;  ///< news_ wakes the servo for a sample or a trouble; commanded_ wakes the I/O thread
+  uint32_t heard_ = 0;     ///< the servo's count of news_ at its last read()
   os::Thread thread_;
   std::atomic<bool> cut_{false}, cut_left_{false};  ///< the watchdog or a crash cut the motors; this cut was sent
   bool cut_sent_ = false;
   hdv_silence silence_{};              ///< how to reach the device that was opened last
-  Descriptor way_in_;                  ///< the descriptor in silence_; empty if another process cannot reach the device
+  Descriptor silence_descriptor_;      ///< the descriptor in silence_; empty if another process cannot reach the device
   std::atomic<bool> reported_{false};  ///< a report came since the device was opened
   std::atomic<bool> paced_{false};     ///< the samples of the arm pace the servo
   std::atomic<bool> stop_{false}, calibrate_{false}, zero_wanted_{false}, zero_done_{false};
-  mutable std::mutex mutex_;  ///< guards identity_, pose_, silence_ and way_in_; the servo thread never takes it
+  mutable std::mutex
+      mutex_;  ///< guards identity_, pose_, silence_ and silence_descriptor_; the servo thread never takes it
   Identity identity_;
   JointArray pose_{}, offset_{};
   bool open_ = false, answered_ = false;
@@ -123,7 +124,7 @@ class Link {
   std::string back_ = "healthy";  ///< message for the time when the arm is healthy again
   Nanoseconds tried_at_ = 0;      ///< time of the last try to open the device again
   Nanoseconds due_ = 0, period_ = 0, sent_at_ = 0;
-  uint64_t sent_wish_ = 0;
+  uint64_t sent_command_ = 0;
   std::array<uint8_t, codec::kMaxReportBytes + 1> in_{}, out_{};
 };
 

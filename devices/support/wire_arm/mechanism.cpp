@@ -5,18 +5,18 @@
 #include <stdexcept>
 #include <string>
 
+#include "kinematics/assign_list.hpp"
 #include "kinematics/carried_bodies.hpp"
 #include "kinematics/chain.hpp"
-#include "kinematics/complaints.hpp"
 #include "kinematics/delta.hpp"
-#include "kinematics/list_into.hpp"
+#include "kinematics/error_collector.hpp"
 #include "kinematics/phantom.hpp"
 
 namespace hapticd::wire_arm {
 namespace {
 
 using Eigen::Vector3d;
-using kinematics::assign;
+using kinematics::assignList;
 
 kinematics::Pose baseOf(const MechanismParameters& p) {
   kinematics::Pose base;
@@ -38,10 +38,10 @@ std::unique_ptr<kinematics::Arm> phantom(const MechanismParameters& p) {
 
 std::unique_ptr<kinematics::Arm> delta(const MechanismParameters& p) {
   kinematics::DeltaGeometry g;
-  kinematics::Complaints wrong;
-  wrong.attempt([&] { assign(p.lengths, "arm.lengths", g.a, g.b, g.c, g.d, g.e, g.f, g.r, g.s); });
-  wrong.attempt([&] { assign(p.masses, "arm.masses", g.arm_mass, g.rod_mass, g.platform_mass); });
-  wrong.attempt([&] { assign(p.angles, "arm.angles", g.phi[0], g.phi[1], g.phi[2]); });
+  kinematics::ErrorCollector wrong;
+  wrong.attempt([&] { assignList(p.lengths, "arm.lengths", g.a, g.b, g.c, g.d, g.e, g.f, g.r, g.s); });
+  wrong.attempt([&] { assignList(p.masses, "arm.masses", g.arm_mass, g.rod_mass, g.platform_mass); });
+  wrong.attempt([&] { assignList(p.angles, "arm.angles", g.phi[0], g.phi[1], g.phi[2]); });
   wrong.attempt([&] { g.base = baseOf(p); });
   wrong.check();
   return std::make_unique<kinematics::Delta>(g);
@@ -57,7 +57,7 @@ void needRows(const std::vector<double>& list, size_t columns, size_t rows, cons
 
 /// Refuses rows of limits that begin with the larger number.
 void needOrder(const std::vector<double>& limits) {
-  kinematics::Complaints wrong;
+  kinematics::ErrorCollector wrong;
   for (size_t i = 0; i + 1 < limits.size(); i += 2) {
     if (limits[i] <= limits[i + 1]) continue;
     char text[120];
@@ -70,7 +70,7 @@ void needOrder(const std::vector<double>& limits) {
 
 std::unique_ptr<kinematics::Arm> chain(const MechanismParameters& p) {
   kinematics::ChainGeometry g;
-  kinematics::Complaints wrong;
+  kinematics::ErrorCollector wrong;
   wrong.attempt([&] { g.base = baseOf(p); });
   g.tool.position = Vector3d(p.tool_position[0], p.tool_position[1], p.tool_position[2]);
   const size_t count = p.dh.size() / 4, all = count + static_cast<size_t>(p.others);
@@ -97,7 +97,7 @@ std::unique_ptr<kinematics::Arm> chain(const MechanismParameters& p) {
     others.min[static_cast<int>(i - count)] = p.limits[2 * i];
     others.max[static_cast<int>(i - count)] = p.limits[2 * i + 1];
   }
-  return std::make_unique<kinematics::Passengers>(std::move(arm), others);
+  return std::make_unique<kinematics::CarriedBodies>(std::move(arm), others);
 }
 
 std::unique_ptr<kinematics::Arm> mechanism(const MechanismParameters& p) {
@@ -123,7 +123,7 @@ size_t jointsOf(const MechanismParameters& p) {
 
 std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p) {
   if (p.limits.empty() || static_cast<Kind>(p.kind) == Kind::kChain) return mechanism(p);
-  kinematics::Complaints wrong;
+  kinematics::ErrorCollector wrong;
   std::unique_ptr<kinematics::Arm> arm;
   wrong.attempt([&] { arm = mechanism(p); });
   wrong.attempt([&] { needRows(p.limits, 2, jointsOf(p), "arm.limits", "one for each joint"); });

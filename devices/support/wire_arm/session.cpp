@@ -226,17 +226,17 @@ double Session::gain(Nanoseconds now, bool healthy) noexcept {
   return settings_.health.ramp > 0 ? std::min(1.0, seconds(healthy_at_, now) / settings_.health.ramp) : 1;
 }
 
-size_t Session::command(Nanoseconds now, const Wish& wish, std::span<uint8_t> bytes) noexcept {
-  const bool fresh = wish.sequence > 0 && seconds(wish.time, now) <= settings_.health.host_silent;
+size_t Session::command(Nanoseconds now, const ArmCommand& wanted, std::span<uint8_t> bytes) noexcept {
+  const bool fresh = wanted.sequence > 0 && seconds(wanted.time, now) <= settings_.health.host_silent;
   const bool healthy = attached_ && sample_.trouble == Trouble::kNone && sample_.calibrated;
   const double part = gain(now, healthy && fresh);
   codec::Order order;
-  order.enable = healthy && fresh && wish.on;
-  order.follow = wish.follow;
+  order.enable = healthy && fresh && wanted.on;
+  order.follow = wanted.follow;
   for (size_t i = 0; i < settings_.joints; ++i) {
-    order.torque[i] = part * wish.torque[i];
+    order.torque[i] = part * wanted.torque[i];
     // References start at the present position of the joint, so that the arm's own loop ramps in like a torque.
-    order.position[i] = raw_[i] + part * (wish.position[i] - zero_[i] - raw_[i]);
+    order.position[i] = raw_[i] + part * (wanted.position[i] - zero_[i] - raw_[i]);
   }
   order.calibrate = calibrate_;
   answered_[sent_ % kRateWindow] = reports_;

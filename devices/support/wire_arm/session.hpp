@@ -51,7 +51,7 @@ struct Sample {
 };
 
 /// The command that the servo writes.
-struct Wish {
+struct ArmCommand {
   Nanoseconds time = 0;
   uint64_t sequence = 0;            ///< grows with every write
   bool on = false, follow = false;  ///< on: motors on; follow: `position` holds references in addition to the torques
@@ -74,8 +74,8 @@ class Session {
   bool watch(Nanoseconds now) noexcept;
 
   /// [any] Writes the next command to `bytes` and returns its number of bytes. The command has torques only if the arm
-  /// is healthy and the wish is not older than HealthLimits::host_silent.
-  size_t command(Nanoseconds now, const Wish& wish, std::span<uint8_t> bytes) noexcept;
+  /// is healthy and the command is not older than HealthLimits::host_silent.
+  size_t command(Nanoseconds now, const ArmCommand& wanted, std::span<uint8_t> bytes) noexcept;
 
   const Sample& sample() const noexcept { return sample_; }
   Trouble trouble() const noexcept { return sample_.trouble; }

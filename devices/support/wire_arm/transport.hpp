@@ -53,7 +53,7 @@ class Transport {
   /// Opens the device a second time while it is open, for a process that switches the motors off if this process ends.
   /// Fills in everything except the bytes; `size` becomes the number of zeros to put before a report.
   /// @return a new descriptor, or an empty one if the device cannot be opened twice
-  virtual Descriptor wayIn(hdv_silence&) noexcept { return {}; }
+  virtual Descriptor openForSilence(hdv_silence&) noexcept { return {}; }
 };
 
 }  // namespace hapticd::wire_arm

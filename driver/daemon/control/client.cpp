@@ -12,7 +12,7 @@
 #include <filesystem>
 
 #include "base/clock.hpp"
-#include "control/presence.hpp"
+#include "control/liveness.hpp"
 
 namespace hapticd::control {
 
@@ -57,7 +57,7 @@ Result<Client> Client::connect(const std::string& file) {
   if (fd >= 0) return Client(file, fd);
   const std::string why = errno == EAGAIN ? "the daemon is busy, and its queue is full" : std::strerror(errno);
   std::string names;
-  for (const std::string& name : running(std::filesystem::path(file).parent_path().string()))
+  for (const std::string& name : runningDaemons(std::filesystem::path(file).parent_path().string()))
     names += (names.empty() ? " (" : ", ") + name;
   return Error{"no daemon answers at " + file + ": " + why +
                "\n  fix: start one with hapticd run, or name a running one" + (names.empty() ? "" : names + ")") +
@@ -74,7 +74,7 @@ Client::~Client() {
   if (fd_ >= 0) close(fd_);
 }
 
-Result<void> Client::say(const std::string& line, std::span<const int> descriptors) {
+Result<void> Client::sendLine(const std::string& line, std::span<const int> descriptors) {
   const std::string out = line + "\n";
   for (size_t sent = 0; sent < out.size();) {
     const ssize_t now =
@@ -145,12 +145,12 @@ Result<Reply> Client::answer(double seconds) {
 }
 
 Result<Reply> Client::askForMore(const std::string& line, double seconds) {
-  if (auto said = say(line); !said) return Error{said.error()};
+  if (auto said = sendLine(line); !said) return Error{said.error()};
   return answer(seconds);
 }
 
 void Client::leave(const std::string& line) {
-  (void)say(line);
+  (void)sendLine(line);
 }
 
 Result<std::string> Client::ask(const std::string& line, double seconds) {
@@ -158,13 +158,13 @@ Result<std::string> Client::ask(const std::string& line, double seconds) {
 }
 
 Result<std::string> Client::askWith(const std::string& line, std::span<const int> descriptors, double seconds) {
-  if (auto said = say(line, descriptors); !said) return Error{said.error()};
+  if (auto said = sendLine(line, descriptors); !said) return Error{said.error()};
   auto reply = answer(seconds);
   if (!reply) return Error{reply.error()};
   return std::move(reply->line);
 }
 
-Result<std::string> Client::hear(double seconds) {
+Result<std::string> Client::receiveLine(double seconds) {
   if (!news_.empty()) {
     Reply first = std::move(news_.front());
     news_.pop_front();

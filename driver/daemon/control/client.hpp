@@ -26,7 +26,8 @@ bool connectTo(const std::string& file);
 /// sends by itself (news), for the answer to another request.
 class Client {
  public:
-  static constexpr size_t kMostNews = 4096;  ///< lines kept for hear(); if there are more, the oldest are dropped
+  static constexpr size_t kMostNews =
+      4096;  ///< lines kept for receiveLine(); if there are more, the oldest are dropped
 
   /// [main] @param file the socket of a running daemon
   static Result<Client> connect(const std::string& file);
@@ -50,13 +51,13 @@ class Client {
   void leave(const std::string& line);
   /// [main] Returns the next line that the daemon sends by itself (news); an error if none comes in time.
   /// @param seconds longest time to wait
-  Result<std::string> hear(double seconds);
+  Result<std::string> receiveLine(double seconds);
   /// [any] True if the daemon has ended, or has closed this connection.
   bool ended() const;
 
  private:
   Client(std::string file, int fd) : file_(std::move(file)), fd_(fd) {}
-  Result<void> say(const std::string& line, std::span<const int> descriptors = {});
+  Result<void> sendLine(const std::string& line, std::span<const int> descriptors = {});
   Result<Reply> answer(double seconds);
   Result<Reply> receive(double seconds);
   bool receiveMore();

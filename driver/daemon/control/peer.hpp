@@ -29,7 +29,7 @@ struct Reply {
 };
 
 /// Why a connection is kept even if it sends no requests.
-struct Standing {
+struct KeepAlive {
   bool stays = false;    ///< something depends on the connection, so it may be silent for any time
   bool listens = false;  ///< the client subscribed to news
 };

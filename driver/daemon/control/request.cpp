@@ -25,49 +25,50 @@ constexpr double kFinestDrawing = 1e-5;  ///< [m] smallest tolerance: no screen 
 constexpr double kMostFrames = 1e15;     ///< largest number of a frame: a double holds it exactly
 
 /// A kind of request: its word, the keys that it must have, and the keys that it may have.
-struct Form {
+struct RequestForm {
   const char* word;
   Kind kind;
   std::set<std::string> needs, may;
 };
 
-const std::array<Form, 24>& forms() {
-  static const std::array<Form, 24> all = {{{"status", Kind::kStatus, {}, {}},
-                                            {"list", Kind::kList, {}, {}},
-                                            {"snapshot", Kind::kSnapshot, {}, {}},
-                                            {"events", Kind::kEvents, {}, {"after"}},
-                                            {"subscribe", Kind::kSubscribe, {}, {}},
-                                            {"get", Kind::kGet, {"model"}, {"parameter"}},
-                                            {"enable", Kind::kEnable, {"model"}, {}},
-                                            {"disable", Kind::kDisable, {"model"}, {}},
-                                            {"move", Kind::kMove, {"model", "position"}, {"orientation", "seconds"}},
-                                            {"set", Kind::kSet, {"model", "parameter", "value"}, {"consent"}},
-                                            {"add", Kind::kAdd, {"file"}, {"model", "files"}},
-                                            {"remove", Kind::kRemove, {"model"}, {}},
-                                            {"reload", Kind::kReload, {}, {"file", "files"}},
-                                            {"hold", Kind::kHold, {}, {"device"}},
-                                            {"clear", Kind::kClear, {}, {"device"}},
-                                            {"dump", Kind::kDump, {}, {}},
-                                            {"geometry", Kind::kGeometry, {"model"}, {"tolerance", "as"}},
-                                            {"vertices", Kind::kVertices, {"model"}, {"after"}},
-                                            {"feature", Kind::kFeature, {"model", "number"}, {}},
-                                            {"lead", Kind::kLead, {}, {"model", "hand", "force"}},
-                                            {"unlead", Kind::kUnlead, {}, {"model", "hand", "force"}},
-                                            {"state", Kind::kState, {}, {}},
-                                            {"bell", Kind::kBell, {}, {}},
-                                            {"stop", Kind::kStop, {}, {}}}};
+const std::array<RequestForm, 24>& forms() {
+  static const std::array<RequestForm, 24> all = {
+      {{"status", Kind::kStatus, {}, {}},
+       {"list", Kind::kList, {}, {}},
+       {"snapshot", Kind::kSnapshot, {}, {}},
+       {"events", Kind::kEvents, {}, {"after"}},
+       {"subscribe", Kind::kSubscribe, {}, {}},
+       {"get", Kind::kGet, {"model"}, {"parameter"}},
+       {"enable", Kind::kEnable, {"model"}, {}},
+       {"disable", Kind::kDisable, {"model"}, {}},
+       {"move", Kind::kMove, {"model", "position"}, {"orientation", "seconds"}},
+       {"set", Kind::kSet, {"model", "parameter", "value"}, {"consent"}},
+       {"add", Kind::kAdd, {"file"}, {"model", "files"}},
+       {"remove", Kind::kRemove, {"model"}, {}},
+       {"reload", Kind::kReload, {}, {"file", "files"}},
+       {"hold", Kind::kHold, {}, {"device"}},
+       {"clear", Kind::kClear, {}, {"device"}},
+       {"dump", Kind::kDump, {}, {}},
+       {"geometry", Kind::kGeometry, {"model"}, {"tolerance", "as"}},
+       {"vertices", Kind::kVertices, {"model"}, {"after"}},
+       {"feature", Kind::kFeature, {"model", "number"}, {}},
+       {"lead", Kind::kLead, {}, {"model", "hand", "force"}},
+       {"unlead", Kind::kUnlead, {}, {"model", "hand", "force"}},
+       {"state", Kind::kState, {}, {}},
+       {"bell", Kind::kBell, {}, {}},
+       {"stop", Kind::kStop, {}, {}}}};
   return all;
 }
 
-const Form* formOf(const std::string& word) {
-  for (const Form& form : forms())
+const RequestForm* formOf(const std::string& word) {
+  for (const RequestForm& form : forms())
     if (word == form.word) return &form;
   return nullptr;
 }
 
 std::string words() {
   std::string list;
-  for (const Form& form : forms()) list += std::string(list.empty() ? "" : ", ") + form.word;
+  for (const RequestForm& form : forms()) list += std::string(list.empty() ? "" : ", ") + form.word;
   return list;
 }
 
@@ -80,9 +81,9 @@ std::string noJsonNumber(std::string_view line) {
 }
 
 /// Takes values out of a request and keeps the first complaint.
-class Taker {
+class FieldReader {
  public:
-  explicit Taker(const Json& json) : json_(json) {}
+  explicit FieldReader(const Json& json) : json_(json) {}
 
   void text(const char* key, std::string& to) {
     const Json* value = find(key);
@@ -162,7 +163,7 @@ class Taker {
   std::string complaint_;
 };
 
-std::string wrongKeys(const Json& json, const Form& form) {
+std::string wrongKeys(const Json& json, const RequestForm& form) {
   for (const std::string& key : form.needs)
     if (!json.contains(key)) return "\"" + key + "\" is missing in \"" + form.word + "\"";
   for (const auto& [key, value] : json.items())
@@ -184,7 +185,7 @@ std::string readId(const Json& json, std::string* id) {
   return "";
 }
 
-void readOrientation(Taker& take, Request& request) {
+void readOrientation(FieldReader& take, Request& request) {
   request.turns = take.has("orientation");
   take.numbers("orientation", 2, request.orientation);
   double square = 0;
@@ -214,7 +215,7 @@ class Watch {
   std::vector<std::set<std::string>> keys_;  ///< the keys so far of each open object
 };
 
-void readValues(Taker& take, Request& request) {
+void readValues(FieldReader& take, Request& request) {
   take.text("model", request.model);
   take.text("device", request.device);
   take.text("hand", request.hand);
@@ -249,12 +250,13 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
                  " is given twice, expected each key once"};
   if (const std::string wrong = readId(json, id); !wrong.empty()) return Error{wrong};
   const auto word = json.find("do");
-  const Form* form = word != json.end() && word->is_string() ? formOf(word->get_ref<const std::string&>()) : nullptr;
+  const RequestForm* form =
+      word != json.end() && word->is_string() ? formOf(word->get_ref<const std::string&>()) : nullptr;
   if (form == nullptr) return Error{"\"do\": expected one of " + words()};
   if (const std::string wrong = wrongKeys(json, *form); !wrong.empty()) return Error{wrong};
   Request request;
   request.kind = form->kind;
-  Taker take(json);
+  FieldReader take(json);
   readValues(take, request);
   if (!request.file.empty() && request.file[0] != '/') take.complain("file", "an absolute path");
   const bool leads = form->kind == Kind::kLead || form->kind == Kind::kUnlead;

@@ -67,7 +67,8 @@ Server::~Server() {
 
 std::error_code Server::start(Service service) {
   service_ = std::move(service);
-  if (const auto code = desk_.start([this](Job& job, Done& done) { return work(job, done); }, [this] { wake(); }))
+  if (const auto code =
+          worker_.start([this](Job& job, JobResult& done) { return work(job, done); }, [this] { wake(); }))
     return code;
   return thread_.start("hapticd-control", [this] { serve(); });
 }
@@ -76,7 +77,7 @@ void Server::stop() {
   stop_.store(true, std::memory_order_relaxed);
   wake();
   thread_.join();
-  desk_.stop();
+  worker_.stop();
 }
 
 void Server::wake() {
@@ -105,17 +106,17 @@ void Server::serve() {
     for (Client& client : clients_) watch(client, polled[i++].revents, now);
     if (now >= news_due_) news_due_ = now + kNewsPeriod;
     clients_.remove_if([](const Client& client) { return client.fd < 0; });
-    seat(now);
+    admitWaiting(now);
     if ((polled[0].revents & POLLIN) != 0) accept(now);
   }
 }
 
 bool Server::listened() const {
-  return std::any_of(clients_.begin(), clients_.end(), [](const Client& c) { return c.standing.listens; });
+  return std::any_of(clients_.begin(), clients_.end(), [](const Client& c) { return c.keep_alive.listens; });
 }
 
 /// True if an answer to the client is still to be made or sent.
-bool Server::owes(const Client& client) const {
+bool Server::hasPendingReply(const Client& client) const {
   return client.asked || !client.out.empty() || client.in.find('\n') != std::string::npos;
 }
 
@@ -126,23 +127,23 @@ void Server::watch(Client& client, short events, Nanoseconds now) {
   if (good && (events & (POLLIN | POLLHUP)) != 0 && client.out.empty()) good = receive(client);
   client.hung |= (events & POLLHUP) != 0;
   if (good && client.hung) answerLines(client);
-  if (good && client.standing.listens && !client.listening && client.out.empty() && now >= news_due_) {
+  if (good && client.keep_alive.listens && !client.listening && client.out.empty() && now >= news_due_) {
     client.listening = true;
-    desk_.give({Job::Kind::kNews, client.peer, ""});
+    worker_.post({Job::Kind::kNews, client.peer, ""});
   }
   if (good && !client.out.empty()) good = send(client);
-  if (!good || !patient(client, now) || (client.closing && !owes(client))) end(client);
+  if (!good || !patient(client, now) || (client.closing && !hasPendingReply(client))) end(client);
 }
 
 void Server::end(Client& client) {
   close(client.fd);
   client.fd = -1;
-  if (client.known) desk_.give({Job::Kind::kLeft, client.peer, ""});
+  if (client.known) worker_.post({Job::Kind::kLeft, client.peer, ""});
 }
 
 /// True if the client has been idle for long enough to make room for another.
-bool Server::mayYield(const Client& client, Nanoseconds now) const {
-  return client.seated && !client.standing.stays && !client.asked && now - client.heard >= kIdle;
+bool Server::mayBeDropped(const Client& client, Nanoseconds now) const {
+  return client.seated && !client.keep_alive.stays && !client.asked && now - client.heard >= kIdle;
 }
 
 size_t Server::count(bool seated) const {
@@ -151,12 +152,12 @@ size_t Server::count(bool seated) const {
 }
 
 /// Gives places to clients that wait: places of clients that left, or of clients that have been idle for long.
-void Server::seat(Nanoseconds now) {
+void Server::admitWaiting(Nanoseconds now) {
   for (Client& client : clients_) {
     if (client.seated) continue;
     if (count(true) >= kMaxClients) {
       const bool yields =
-          std::any_of(clients_.begin(), clients_.end(), [&](const Client& c) { return mayYield(c, now); });
+          std::any_of(clients_.begin(), clients_.end(), [&](const Client& c) { return mayBeDropped(c, now); });
       if (!yields) return;
       makeRoom(true);
     }
@@ -166,10 +167,10 @@ void Server::seat(Nanoseconds now) {
 }
 
 /// Ends the connection of one of the clients that have a place (`seated`) or that wait for one (not `seated`). Prefers
-/// one that may not stay silent (Standing::stays), then one without a request in work, then the longest silent one.
+/// one that may not stay silent (KeepAlive::stays), then one without a request in work, then the longest silent one.
 void Server::makeRoom(bool seated) {
   const auto rank = [&](const Client& c) {
-    return std::tuple(c.seated != seated || c.fd < 0, c.standing.stays, c.asked, c.heard);
+    return std::tuple(c.seated != seated || c.fd < 0, c.keep_alive.stays, c.asked, c.heard);
   };
   const auto idle = std::min_element(clients_.begin(), clients_.end(),
                                      [&](const Client& a, const Client& b) { return rank(a) < rank(b); });
@@ -192,7 +193,7 @@ void Server::accept(Nanoseconds now) {
   socklen_t bytes = sizeof who;
   if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &who, &bytes) != 0) who = {};
   client.peer = {++last_id_, who.pid, who.uid, 0};
-  seat(now);
+  admitWaiting(now);
 }
 
 void Server::queue(Client& client, Reply reply) {
@@ -278,11 +279,11 @@ void Server::ask(Client& client, std::string line) {
   client.asked = client.known = true;
   client.peer.asked = monotonicNow();
   std::vector<Descriptor> files = takeGiven(client, line);
-  desk_.give({Job::Kind::kAnswer, client.peer, std::move(line), std::move(files)});
+  worker_.post({Job::Kind::kAnswer, client.peer, std::move(line), std::move(files)});
 }
 
-/// Does one job; called in the desk's thread.
-bool Server::work(Job& job, Done& done) {
+/// Does one job; called in the worker's thread.
+bool Server::work(Job& job, JobResult& done) {
   done.peer = job.peer.id;
   done.answers = job.kind == Job::Kind::kAnswer;
   if (job.kind == Job::Kind::kLeft && service_.left) service_.left(job.peer);
@@ -292,16 +293,16 @@ bool Server::work(Job& job, Done& done) {
     done.reply = service_.answer(job.peer, job.line, std::move(job.files));
     done.reply.line += '\n';
   }
-  if (service_.standing) done.standing = service_.standing(job.peer);
+  if (service_.keep_alive) done.keep_alive = service_.keep_alive(job.peer);
   return true;
 }
 
 void Server::takeDone() {
-  for (Done& done : desk_.take()) {
+  for (JobResult& done : worker_.take()) {
     const auto client =
         std::find_if(clients_.begin(), clients_.end(), [&](const Client& c) { return c.peer.id == done.peer; });
     if (client == clients_.end()) continue;  // the client has left meanwhile
-    client->standing = done.standing;
+    client->keep_alive = done.keep_alive;
     (done.answers ? client->asked : client->listening) = false;
     if (!done.reply.line.empty() && !client->hung) queue(*client, std::move(done.reply));
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// Serves the control socket: each line of JSON from a client is answered by one line of JSON. One ordinary thread
-/// reads and writes the sockets; another (desk.hpp) works on one request after the other. The first thread itself
-/// answers urgent requests, such as a hold, also of clients for which there is no place yet. There are limits for the
-/// number of clients, the length of a request, the bytes that wait for a client that does not read, and the time to
-/// send a line. An answer may carry a descriptor. A client that subscribed also gets news, which are lines that it did
-/// not ask for.
+/// reads and writes the sockets; another (request_worker.hpp) works on one request after the other. The first thread
+/// itself answers urgent requests, such as a hold, also of clients for which there is no place yet. There are limits
+/// for the number of clients, the length of a request, the bytes that wait for a client that does not read, and the
+/// time to send a line. An answer may carry a descriptor. A client that subscribed also gets news, which are lines that
+/// it did not ask for.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -18,18 +18,19 @@
 #include "base/descriptors.hpp"
 #include "base/os.hpp"
 #include "base/result.hpp"
-#include "control/desk.hpp"
 #include "control/peer.hpp"
+#include "control/request_worker.hpp"
 
 namespace hapticd::control {
 
 class Server {
  public:
-  /// Functions that the server calls. The desk's thread calls all of them but `urgent`. All but `answer` may be empty.
+  /// Functions that the server calls. The worker's thread calls all of them but `urgent`. All but `answer` may be
+  /// empty.
   struct Service {
     /// Answers one line (without its end). `files` are the descriptors for the names in the request's `files`.
     std::function<Reply(const Peer&, const std::string& line, std::vector<Descriptor> files)> answer;
-    std::function<Standing(const Peer&)> standing;  ///< called after each answer
+    std::function<KeepAlive(const Peer&)> keep_alive;  ///< called after each answer
     /// Returns lines, each with its end, for a client that listens; "" if there is no news. Called about every
     /// kNewsPeriod, but only if the client has read all earlier lines.
     std::function<std::string(const Peer&)> news;
@@ -43,7 +44,7 @@ class Server {
   static constexpr size_t kMaxClients = 32;
   /// most clients that wait for a place; meanwhile only their urgent requests are answered
   static constexpr size_t kMaxStanding = 16;
-  static constexpr size_t kMaxStaying = 24;  ///< most clients with Standing::stays, so that others find places
+  static constexpr size_t kMaxStaying = 24;  ///< most clients with KeepAlive::stays, so that others find places
   static constexpr Nanoseconds kNewsPeriod = 20'000'000;
   static constexpr size_t kMaxWaiting = 1 << 20;       ///< [bytes] most that is kept for a client that does not read
   static constexpr Nanoseconds kIdle = 2'000'000'000;  ///< [ns] a client idle for longer is dropped if another waits
@@ -64,7 +65,7 @@ class Server {
   struct Client {
     int fd = -1;
     Peer peer;
-    Standing standing;
+    KeepAlive keep_alive;
     std::string in;
     std::vector<Descriptor> given;  ///< descriptors that came with the lines in `in`, in their order
     std::list<Reply> out;           ///< lines to send, with their ends; a descriptor goes with its line's first byte
@@ -76,7 +77,7 @@ class Server {
     bool seated = true;      ///< it has a place; if false, it waits for one
     bool asked = false;      ///< one of its requests is worked on
     bool listening = false;  ///< its news are being collected
-    bool known = false;      ///< the desk's thread has had a request of this client
+    bool known = false;      ///< the worker's thread has had a request of this client
     size_t scanned = 0;      ///< [bytes] part of `in` that was already searched for urgent requests
   };
   Server(std::string file, int fd, int wake_read, int wake_write)
@@ -86,9 +87,9 @@ class Server {
   void watch(Client& client, short events, Nanoseconds now);
   void end(Client& client);
   void queue(Client& client, Reply reply);
-  bool mayYield(const Client& client, Nanoseconds now) const;
+  bool mayBeDropped(const Client& client, Nanoseconds now) const;
   size_t count(bool seated) const;
-  void seat(Nanoseconds now);
+  void admitWaiting(Nanoseconds now);
   void makeRoom(bool seated);
   void accept(Nanoseconds now);
   bool receive(Client& client);
@@ -97,10 +98,10 @@ class Server {
   void actAtOnce(Client& client);
   size_t given() const;
   static std::vector<Descriptor> takeGiven(Client& client, const std::string& line);
-  bool work(Job& job, Done& done);
+  bool work(Job& job, JobResult& done);
   void ask(Client& client, std::string line);
   void takeDone();
-  bool owes(const Client& client) const;
+  bool hasPendingReply(const Client& client) const;
   void wake();
   bool send(Client& client);
   bool patient(Client& client, Nanoseconds now);
@@ -114,7 +115,7 @@ class Server {
   Nanoseconds news_due_ = 0;
   Nanoseconds accept_after_ = 0;  ///< after a failure of the system, no connection is accepted before this time
   std::atomic<bool> stop_{false};
-  Desk desk_;
+  RequestWorker worker_;
   os::Thread thread_;
 };
 

@@ -3,13 +3,13 @@
 
 namespace hapticd::host {
 
-static Trail* followed = nullptr;
+static ChildProgress* followed = nullptr;
 
-void followCalls(Trail* trail) noexcept {
+void followCalls(ChildProgress* trail) noexcept {
   followed = trail;
 }
 
-void tellCall(const char* name) noexcept {
+void noteCall(const char* name) noexcept {
   if (followed != nullptr) followed->mark(0, name);
 }
 

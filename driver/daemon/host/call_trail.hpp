@@ -7,9 +7,9 @@
 namespace hapticd::host {
 
 /// [main] From now on the calls of device modules at set-up are noted in `trail`; nullptr ends that. Only for a child.
-void followCalls(Trail* trail) noexcept;
+void followCalls(ChildProgress* trail) noexcept;
 
 /// [main] Notes that a module's function is about to be called. @param name name of the function, in static storage
-void tellCall(const char* name) noexcept;
+void noteCall(const char* name) noexcept;
 
 }  // namespace hapticd::host

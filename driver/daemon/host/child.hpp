@@ -17,12 +17,12 @@ Result<std::string> runInChild(const std::function<std::string()>& work, int lim
 
 /// Shows how far a child has come with its work. The parent can read it even if the child crashes. It must be made
 /// before the child.
-class Trail {
+class ChildProgress {
  public:
-  Trail();
-  ~Trail();
-  Trail(const Trail&) = delete;
-  Trail& operator=(const Trail&) = delete;
+  ChildProgress();
+  ~ChildProgress();
+  ChildProgress(const ChildProgress&) = delete;
+  ChildProgress& operator=(const ChildProgress&) = delete;
 
   /// [any] Notes that the child has reached piece `item` of its work. @param call name of a function, in static storage
   void mark(uint32_t item, const char* call) noexcept;

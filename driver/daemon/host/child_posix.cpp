@@ -222,32 +222,32 @@ bool pipeBeyondStandard(int (&ends)[2]) {
 
 }  // namespace
 
-struct Trail::Mark {
+struct ChildProgress::Mark {
   std::atomic<uint32_t> item{0};
   std::atomic<const char*> call{
       ""};  ///< the pointer is valid in both processes: a fork has its parent's literals at the same addresses
 };
 
-Trail::Trail() : mark_(nullptr) {
+ChildProgress::ChildProgress() : mark_(nullptr) {
   void* memory = mmap(nullptr, sizeof(Mark), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory != MAP_FAILED) mark_ = new (memory) Mark;
 }
 
-Trail::~Trail() {
+ChildProgress::~ChildProgress() {
   if (mark_ != nullptr) munmap(mark_, sizeof(Mark));
 }
 
-void Trail::mark(uint32_t item, const char* call) noexcept {
+void ChildProgress::mark(uint32_t item, const char* call) noexcept {
   if (mark_ == nullptr) return;
   mark_->item = item;
   mark_->call = call;
 }
 
-uint32_t Trail::item() const noexcept {
+uint32_t ChildProgress::item() const noexcept {
   return mark_ != nullptr ? mark_->item.load() : 0;
 }
 
-const char* Trail::call() const noexcept {
+const char* ChildProgress::call() const noexcept {
   return mark_ != nullptr ? mark_->call.load() : "";
 }
 

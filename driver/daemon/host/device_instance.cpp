@@ -68,7 +68,7 @@ DeviceInstance::DeviceInstance(std::shared_ptr<Library> library, const scene::De
 
 Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Device& device, Services::Log log) {
   const std::string who = "device '" + device.name + "': ";
-  tellCall("a constructor of its library");
+  noteCall("a constructor of its library");
   auto library = Library::open(device.library);
   if (!library) return Error{who + library.error()};
   auto entry = (*library)->devices();
@@ -81,22 +81,22 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
     return Error{who + "module '" + device.module + "' of " + device.library.string() +
                  " lacks a required function; expected all functions of version 1.0 of the interface"};
 
-  ownCode(reinterpret_cast<const void*>(found->create), instance->owner_);
-  const Calling calling(instance->owner_);
+  setCodeOwner(reinterpret_cast<const void*>(found->create), instance->owner_);
+  const OwnerScope calling(instance->owner_);
   instance->class_ = found;
-  tellCall("create");
+  noteCall("create");
   instance->device_ = found->create(found, instance->services_.abi());
   if (instance->device_ == nullptr)
     return Error{who + "module '" + device.module +
                  "' could not create an instance: " + reasonOf(HSP_E_NOMEM, instance->services_)};
-  tellCall("set");
+  noteCall("set");
   const auto set =
       setAll(device.parameters, found->param_count, instance->services_,
              [&](uint32_t index, const hsp_value* value) { return found->set(instance->device_, index, value); });
   if (!set) return Error{who + set.error()};
 
   instance->services_.forgetError();
-  tellCall("extension");
+  noteCall("extension");
   instance->kinematics_ = extensionOf<hdv_ext_kinematics>(*found, instance->device_, HDV_EXT_KINEMATICS);
   instance->calibration_ = extensionOf<hdv_ext_calibration>(*found, instance->device_, HDV_EXT_CALIBRATION);
   instance->links_ = drawable(extensionOf<hdv_ext_links>(*found, instance->device_, HDV_EXT_LINKS));
@@ -117,19 +117,19 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
 
 DeviceInstance::~DeviceInstance() {
   stop();
-  const Calling calling(owner_);
+  const OwnerScope calling(owner_);
   if (open_ && playback_ == nullptr) class_->close(device_);
   if (device_ != nullptr) class_->destroy(device_);
 }
 
 Result<void> DeviceInstance::open() {
   if (open_) return {};
-  const Calling calling(owner_);
+  const OwnerScope calling(owner_);
   const std::string who = "device '" + name_ + "': ";
   info_ = {};
   info_.struct_size = sizeof info_;
   services_.forgetError();
-  tellCall("open");
+  noteCall("open");
   const hsp_status status = playback_ == nullptr ? class_->open(device_, &info_) : HSP_OK;
   if (playback_ != nullptr) info_ = playback_->info;
   absent_ = status < 0;
@@ -153,7 +153,7 @@ Result<void> DeviceInstance::start(const hdv_start& how) {
   const std::string who = "device '" + name_ + "': ";
   if (!open_) return Error{who + "is not open"};
   if (playback_ != nullptr) return {};
-  const Calling calling(owner_);
+  const OwnerScope calling(owner_);
   services_.forgetError();
   const hsp_status status = class_->start(device_, &how);
   if (status < 0) return Error{who + "cannot be started: " + reasonOf(status, services_)};
@@ -162,7 +162,7 @@ Result<void> DeviceInstance::start(const hdv_start& how) {
 }
 
 void DeviceInstance::stop() {
-  const Calling calling(owner_);
+  const OwnerScope calling(owner_);
   if (started_) class_->stop(device_);
   started_ = false;
 }

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "base/blame.hpp"
+#include "base/code_owner.hpp"
 #include "base/result.hpp"
 #include "description/scene.hpp"
 #include "hapticd/device.h"
@@ -43,7 +43,7 @@ class DeviceInstance {
 
   hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
     if (playback_ == nullptr) {
-      const Calling calling(owner_);
+      const OwnerScope calling(owner_);
       return class_->read(device_, now_ns, &sample);
     }
     sample = playback_->sample;
@@ -51,14 +51,14 @@ class DeviceInstance {
   }
   hsp_status write(uint64_t now_ns, const hdv_command& command) noexcept HSP_RT {
     if (playback_ != nullptr) return playback_->write_status;
-    const Calling calling(owner_);
+    const OwnerScope calling(owner_);
     return class_->write(device_, now_ns, &command);
   }
 
   /// [any] Frees the motors at once by the module's cut(). Returns false if the module has no cut(). Async-signal-safe.
   bool cut() noexcept {
     if (cut_ == nullptr || playback_ != nullptr) return playback_ != nullptr;
-    const Calling calling(owner_);
+    const OwnerScope calling(owner_);
     cut_->cut(device_);
     return true;
   }
@@ -75,7 +75,7 @@ class DeviceInstance {
     how = {};
     how.struct_size = sizeof how;
     if (!silenceable()) return false;
-    const Calling calling(owner_);
+    const OwnerScope calling(owner_);
     return silence_->how(device_, &how) != 0 && how.size <= sizeof how.bytes;
   }
 
@@ -85,7 +85,7 @@ class DeviceInstance {
   /// @return time of the next tick
   uint64_t waitForSample(uint64_t until) noexcept {
     if (playback_ != nullptr) return until;
-    const Calling calling(owner_);
+    const OwnerScope calling(owner_);
     return pace_->wait(device_, until);
   }
 

@@ -20,9 +20,9 @@ using Joints = Eigen::Matrix<double, HDV_MAX_JOINTS, 1>;
 /// Memory for `Most` numbers. All numbers after the first `used` are marked, so that it is seen if a module overwrites
 /// them.
 template <size_t Most>
-class MarkedRoom {
+class GuardedArray {
  public:
-  explicit MarkedRoom(size_t used) : used_(used) {
+  explicit GuardedArray(size_t used) : used_(used) {
     numbers_.fill(kMark);
     std::fill_n(numbers_.begin(), used_, 0.0);
   }
@@ -52,8 +52,8 @@ struct Tip {
 
 class KinematicsCalls {
  public:
-  using JacobianRoom = MarkedRoom<6 * HDV_MAX_JOINTS>;
-  using JointRoom = MarkedRoom<HDV_MAX_JOINTS>;
+  using JacobianRoom = GuardedArray<6 * HDV_MAX_JOINTS>;
+  using JointRoom = GuardedArray<HDV_MAX_JOINTS>;
 
   KinematicsCalls(const hdv_ext_kinematics& kinematics, const hdv_device* device)
       : kinematics_(kinematics), device_(device) {}
@@ -83,7 +83,7 @@ class KinematicsCalls {
 
  private:
   static CallName calling(const char* name) {
-    tellCall(name);
+    noteCall(name);
     return CallName(name);
   }
   const hdv_ext_kinematics& kinematics_;

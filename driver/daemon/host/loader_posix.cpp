@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "base/blame.hpp"
+#include "base/code_owner.hpp"
 #include "host/loader.hpp"
 
 namespace hapticd::host {
@@ -16,7 +16,7 @@ std::string loaderReason() {
 }
 
 /// Notes the addresses of a library's code, so that a crash in a thread of the library can be blamed on it.
-void keepCodeOf(void* handle) {
+void registerCodeOf(void* handle) {
   link_map* loaded = nullptr;
   if (dlinfo(handle, RTLD_DI_LINKMAP, &loaded) != 0 || loaded == nullptr) return;
   const auto keep = [](dl_phdr_info* info, size_t, void* wanted) {
@@ -25,7 +25,7 @@ void keepCodeOf(void* handle) {
       const ElfW(Phdr) & part = info->dlpi_phdr[i];
       if (part.p_type != PT_LOAD || (part.p_flags & PF_X) == 0) continue;
       const auto* begin = reinterpret_cast<const char*>(info->dlpi_addr + part.p_vaddr);
-      keepCode(begin, begin + part.p_memsz);
+      registerCode(begin, begin + part.p_memsz);
     }
     return 1;
   };
@@ -37,7 +37,7 @@ void keepCodeOf(void* handle) {
 Result<void*> loadFile(const std::filesystem::path& file) {
   void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) return Error{loaderReason()};
-  keepCodeOf(handle);
+  registerCodeOf(handle);
   return handle;
 }
 

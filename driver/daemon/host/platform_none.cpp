@@ -26,13 +26,13 @@ std::optional<FileStamp> stampOf(const std::filesystem::path&) {
 }
 
 // There are no child processes here, so a trail stays empty.
-Trail::Trail() : mark_(nullptr) {}
-Trail::~Trail() = default;
-void Trail::mark(uint32_t, const char*) noexcept {}
-uint32_t Trail::item() const noexcept {
+ChildProgress::ChildProgress() : mark_(nullptr) {}
+ChildProgress::~ChildProgress() = default;
+void ChildProgress::mark(uint32_t, const char*) noexcept {}
+uint32_t ChildProgress::item() const noexcept {
   return 0;
 }
-const char* Trail::call() const noexcept {
+const char* ChildProgress::call() const noexcept {
   return "";
 }
 

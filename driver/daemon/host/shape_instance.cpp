@@ -79,10 +79,10 @@ Result<std::unique_ptr<ShapeInstance>> ShapeInstance::create(const scene::Model&
     return Error{who + "plugin '" + model.plugin + "' of " + model.library.string() +
                  " lacks a required function; expected all functions of version 1.0 of the interface"};
 
-  ownCode(reinterpret_cast<const void*>(instance->class_->create), instance->owner_);
-  keepPlace(instance->owner_, placeOf(model));
-  keepFile(instance->owner_, identityLoaded(model.library), !ships(model.library));
-  const Calling calling(instance->owner_);
+  setCodeOwner(reinterpret_cast<const void*>(instance->class_->create), instance->owner_);
+  setPlaceOfOwner(instance->owner_, placeOf(model));
+  setFileOfOwner(instance->owner_, identityLoaded(model.library), !ships(model.library));
+  const OwnerScope calling(instance->owner_);
   const CallName creating("create");
   instance->shape_ = instance->class_->create(instance->class_, instance->services_.abi());
   if (instance->shape_ == nullptr)
@@ -98,7 +98,7 @@ Result<std::unique_ptr<ShapeInstance>> ShapeInstance::create(const scene::Model&
 }
 
 ShapeInstance::~ShapeInstance() {
-  const Calling calling(owner_);
+  const OwnerScope calling(owner_);
   deactivate();
   const CallName destroying("destroy");
   if (shape_ != nullptr) class_->destroy(shape_);
@@ -110,7 +110,7 @@ Result<void> ShapeInstance::activate(const hsp_activation& activation) {
   report_ = {};
   report_.struct_size = sizeof report_;
   services_.forgetError();
-  const Calling calling(owner_);
+  const OwnerScope calling(owner_);
   const CallName activating("activate");
   const hsp_status status = class_->activate(shape_, &activation, &report_);
   if (status < 0) return Error{who + "cannot be set up: " + reasonOf(status, services_)};
@@ -134,7 +134,7 @@ Result<void> ShapeInstance::activate(const hsp_activation& activation) {
 
 void ShapeInstance::deactivate() {
   if (!active_) return;
-  const Calling calling(owner_);
+  const OwnerScope calling(owner_);
   const CallName deactivating("deactivate");
   class_->deactivate(shape_);
   surfaces_ = nullptr;
@@ -145,7 +145,7 @@ void ShapeInstance::deactivate() {
 }
 
 size_t ShapeInstance::nearby(const double p_model[3], double radius_m, std::span<hsp_near> near) const noexcept {
-  const Calling calling(owner_);
+  const OwnerScope calling(owner_);
   const CallName searching("nearby");
   const int64_t found = surfaces_->nearby(shape_, p_model, radius_m, near.data(), near.size());
   const size_t count = found > 0 ? std::min(static_cast<size_t>(found), near.size()) : 0;
@@ -161,7 +161,7 @@ hsp_status ShapeInstance::tessellate(double chord_error_m, hsp_mesh& mesh) const
   mesh = {};
   mesh.struct_size = sizeof mesh;
   if (geometry_ == nullptr) return HSP_E_UNSUPPORTED;
-  const Calling calling(owner_);
+  const OwnerScope calling(owner_);
   const CallName drawing("tessellate");
   const hsp_status status = geometry_->tessellate(shape_, chord_error_m, &mesh);
   if (status < 0) return status;
@@ -177,7 +177,7 @@ hsp_status ShapeInstance::tessellate(double chord_error_m, hsp_mesh& mesh) const
 
 bool ShapeInstance::bounds(double min[3], double max[3]) const {
   if (geometry_ == nullptr) return false;
-  const Calling calling(owner_);
+  const OwnerScope calling(owner_);
   const CallName bounding("bounds");
   if (geometry_->bounds(shape_, min, max) != HSP_OK) return false;
   for (int i = 0; i < 3; ++i)

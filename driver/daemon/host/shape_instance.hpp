@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "base/blame.hpp"
+#include "base/code_owner.hpp"
 #include "base/result.hpp"
 #include "description/scene.hpp"
 #include "hapticd/shape.h"
@@ -29,7 +29,7 @@ class ShapeInstance {
 
   /// [rt] Steps the shape. If a program asks for vertices, `step` also gets the place where the shape must write them.
   hsp_status step(hsp_step& step) noexcept HSP_RT {
-    const Calling calling(owner_);
+    const OwnerScope calling(owner_);
     if (contour_ == nullptr) return class_->step(shape_, &step);
     step.viz_xyz = contour_->offer(step.dt_s);
     step.viz_capacity = contour_->vertices();
@@ -38,16 +38,16 @@ class ShapeInstance {
     return status;
   }
   void reset() noexcept HSP_RT {  ///< [rt]
-    const Calling calling(owner_);
+    const OwnerScope calling(owner_);
     class_->reset(shape_);
   }
   /// [rt] Starts tracing a surface, or offers a second foot point on it. Only for a shape with surfaces.
   void activate(const hsp_near& near) noexcept HSP_RT {
-    const Calling calling(owner_);
+    const OwnerScope calling(owner_);
     surfaces_->activate(shape_, &near);
   }
   void deactivate(uint32_t probe, uint32_t surface) noexcept HSP_RT {  ///< [rt]
-    const Calling calling(owner_);
+    const OwnerScope calling(owner_);
     surfaces_->deactivate(shape_, probe, surface);
   }
   /// [sim] Finds the surfaces near a point in the model frame; invalid answers are left out. @return how many are in
@@ -57,7 +57,7 @@ class ShapeInstance {
   /// invalid.
   double storedEnergy() const noexcept HSP_RT {
     if (energy_ == nullptr) return 0;
-    const Calling calling(owner_);
+    const OwnerScope calling(owner_);
     const double stored = energy_->stored(shape_);
     return stored >= 0 ? stored : 0;
   }

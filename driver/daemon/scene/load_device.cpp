@@ -99,7 +99,7 @@ bool partOf(const std::string& a, const std::string& b) {
 /// Returns the module that an unknown name probably means, to find the other problems of the file, too: the one with
 /// the nearest name, else one that shares a part of its name, else the one that knows most of the given parameters, if
 /// it knows at least three. A shared part alone counts less than three known parameters.
-std::string moduleMeant(const std::string& name, const Node* parameters, host::Catalog& catalog) {
+std::string suggestModule(const std::string& name, const Node* parameters, host::Catalog& catalog) {
   constexpr size_t kEnough = 3, kAlike = 1000;  // known parameters; more than a file has
   const std::vector<std::string> names = catalog.names(host::Kind::kDevice);
   std::string best = nearest(name, names);
@@ -137,7 +137,7 @@ std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceRefer
 
   auto found = catalog.device(text.module);
   if (!found) {
-    const std::string meant = moduleMeant(text.module, text.parameters, catalog);
+    const std::string meant = suggestModule(text.module, text.parameters, catalog);
     in.problem(*root.find("module"), "module",
                found.error() + (meant.empty() ? "" : "\n  the parameters are judged as those of " + meant));
     if (!meant.empty()) found = catalog.device(meant);  // to find the other problems, too

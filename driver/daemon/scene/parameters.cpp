@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "document/meant.hpp"
+#include "document/correction.hpp"
 #include "document/suggestion.hpp"
 #include "hapticd/abi.h"
 
@@ -46,7 +46,7 @@ std::string countText(const host::ParamInfo& p) {
 }  // namespace
 
 /// Returns the index of the choice that a misspelt one probably means.
-static std::optional<double> choiceMeant(const std::string& word, const std::vector<std::string>& choices) {
+static std::optional<double> suggestChoice(const std::string& word, const std::vector<std::string>& choices) {
   const std::string meant = document::nearest(word, choices);
   if (meant.empty()) return std::nullopt;
   return static_cast<double>(std::find(choices.begin(), choices.end(), meant) - choices.begin());
@@ -69,7 +69,7 @@ void ParameterReader::read(const Node& node, const std::string& key, const std::
   if (!node.isMap())
     return in_->problem(node, key,
                         describe(node) + ", expected a mapping with " + document::listed(idsIn(info_, prefix)) +
-                            document::mappingMeant(node));
+                            document::suggestMapping(node));
   for (const Entry& entry : node.entries) {
     if (!skip.empty() && entry.key.scalar == skip) continue;
     if (node.find(entry.key.scalar) != &entry.value) continue;  // given twice: the parser has reported it
@@ -155,7 +155,7 @@ bool ParameterReader::readValue(const Node& node, const std::string& key, const 
       if (const auto index = in_->choice(node, key, param.choices))
         number = static_cast<double>(*index);
       else if (node.isScalar())  // for drafts of files with problems
-        number = choiceMeant(node.scalar, param.choices);
+        number = suggestChoice(node.scalar, param.choices);
       break;
     case HSP_PATH:
       return readPath(node, key, value);

@@ -109,9 +109,10 @@ Json pushersJson(const Session& session, uint32_t index) {
   return list;
 }
 
-status::ModelNow nowOf(const Session& session, uint32_t place) {
+status::ModelStatus nowOf(const Session& session, uint32_t place) {
   const status::Page& page = session.runner.telemetry().statusWriter()->page();
-  return place < status::kMaxModels ? page.model[place].now.read().value_or(status::ModelNow{}) : status::ModelNow{};
+  return place < status::kMaxModels ? page.model[place].now.read().value_or(status::ModelStatus{})
+                                    : status::ModelStatus{};
 }
 
 Json modelJson(const Session& session, uint32_t place) {
@@ -174,16 +175,16 @@ bool waitsForTip(const Session& session, uint32_t place) {
 }
 
 std::string silencedWhy(const Session& session, uint32_t place) {
-  const status::ModelNow now = nowOf(session, place);
-  return silenceReason(session.places[place].model.name, static_cast<Trouble>(now.trouble), now.failed_status);
+  const status::ModelStatus now = nowOf(session, place);
+  return silenceReason(session.places[place].model.name, static_cast<ShapeFault>(now.trouble), now.failed_status);
 }
 
 std::string statusAnswer(const Session& session, const std::string& name, const std::string& socket) {
   const status::Page& page = session.runner.telemetry().statusWriter()->page();
-  const auto now = page.now.read().value_or(status::Now{});
+  const auto now = page.now.read().value_or(status::TickStatus{});
   Json devices = Json::array();
   for (size_t i = 0; i < session.runner.arms().size(); ++i) {
-    const auto arm = page.arm[i].now.read().value_or(status::ArmNow{});
+    const auto arm = page.arm[i].now.read().value_or(status::ArmStatus{});
     const auto fault = static_cast<Fault>(arm.fault);
     const std::string why = noForceWhy(session, static_cast<uint32_t>(i));
     const std::string& slow = session.runner.arms()[i]->slowness();

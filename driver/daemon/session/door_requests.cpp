@@ -19,11 +19,12 @@ Result<uint32_t> RequestHandler::armOf(const std::string& device) const {
 }
 
 /// Passes the news of a pushing program to the status page, the log and the report of the run.
-void RequestHandler::tellOfPusher(uint32_t arm, const Leads::Pusher& pusher, Leads::News news) {
-  if (news == Leads::News::kBegins) return runner_.namePusher(arm, pusher.place, pusher.pid, pusher.program);
-  runner_.forgetPusher(arm, pusher.place, news == Leads::News::kLeft ? PusherLog::End::kLeft : PusherLog::End::kUnlead);
+void RequestHandler::reportPusher(uint32_t arm, const Leads::Pusher& pusher, Leads::PushEvent news) {
+  if (news == Leads::PushEvent::kBegins) return runner_.namePusher(arm, pusher.place, pusher.pid, pusher.program);
+  runner_.forgetPusher(arm, pusher.place,
+                       news == Leads::PushEvent::kLeft ? PusherLog::End::kLeft : PusherLog::End::kUnlead);
   const ClientForces::Client& client = runner_.arms()[arm]->clients().clients()[pusher.place];
-  runner_.book(reportOf(client, pusher, runner_.scene().devices[arm].name));
+  runner_.recordClient(reportOf(client, pusher, runner_.scene().devices[arm].name));
 }
 
 Result<Leads::Target> RequestHandler::pushOf(const std::string& device) const {
@@ -126,7 +127,7 @@ Result<std::string> RequestHandler::bell() {
       !done)
     return Error{done.error()};
   const SealedMemory& memory = *runner_.shared().bell;
-  if (first) runner_.door().hangBell(new (memory.data()) hapticd_bell{});
+  if (first) runner_.door().setBell(new (memory.data()) hapticd_bell{});
   return fmt::format(R"({{"ok":true,"bytes":{},"record":"hapticd_bell"}})", memory.bytes());
 }
 

@@ -10,7 +10,7 @@ namespace {
 constexpr double kStalled = 0.25;  ///< [s] a longer gap between two ticks means that the process was stopped
 constexpr uint32_t kWhy = 16;      ///< factor of the reason in the code of HAPTICD_REFUSED, see client.h
 
-uint32_t codeOf(Order::Led led, Follow::Refusal why) noexcept HSP_RT {
+uint32_t codeOf(Order::Led led, PoseFollower::Refusal why) noexcept HSP_RT {
   return static_cast<uint32_t>(led) + kWhy * static_cast<uint32_t>(why);
 }
 
@@ -50,14 +50,14 @@ void EventFinder::order(const Order& order) noexcept HSP_RT {
 void EventFinder::tick(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
   if (t - last_t_ >= kStalled) add(HAPTICD_STALLED, -1, -1, 0, t - last_t_);
   last_t_ = t;
-  if (leaving_ > 0) lookForLeft(core);
+  if (leaving_ > 0) findLeft(core);
   for (const uint32_t index : core.live())
-    if (index < models_.size()) look(t, index, core);
-  for (uint32_t i = 0; i < arms.size() && i < arms_.size(); ++i) look(t, i, *arms[i]);
+    if (index < models_.size()) check(t, index, core);
+  for (uint32_t i = 0; i < arms.size() && i < arms_.size(); ++i) check(t, i, *arms[i]);
   for (size_t i = 0; i < count_; ++i) found_[i].t = t;
 }
 
-void EventFinder::lookForLeft(const Core& core) noexcept HSP_RT {
+void EventFinder::findLeft(const Core& core) noexcept HSP_RT {
   for (uint32_t i = 0; i < models_.size() && i < core.models().size(); ++i) {
     if (!models_[i].leaving || core.models()[i].shape != nullptr) continue;
     models_[i] = ModelNote();
@@ -74,7 +74,7 @@ bool EventFinder::refused(double t, uint64_t now, Note& note) noexcept HSP_RT {
   return now > 0;
 }
 
-void EventFinder::look(double t, uint32_t index, const Core& core) noexcept HSP_RT {
+void EventFinder::check(double t, uint32_t index, const Core& core) noexcept HSP_RT {
   const ModelState& model = core.models()[index];
   const auto number = static_cast<int32_t>(index);
   ModelNote& note = models_[index];
@@ -89,9 +89,9 @@ void EventFinder::look(double t, uint32_t index, const Core& core) noexcept HSP_
       add(HAPTICD_TOUCH, number, by, 0, Eigen::Map<const Vector3d>(contact.world.force).norm());
     note.touched[probe] = t;
   }
-  if (model.guard.quarantined() && note.trouble != model.guard.trouble()) {
-    note.trouble = model.guard.trouble();
-    const bool sized = note.trouble == Trouble::kPulls || note.trouble == Trouble::kJump;
+  if (model.guard.quarantined() && note.trouble != model.guard.fault()) {
+    note.trouble = model.guard.fault();
+    const bool sized = note.trouble == ShapeFault::kPulls || note.trouble == ShapeFault::kJump;
     const double value = sized ? model.pull.force : model.failed_status;
     add(HAPTICD_SILENCED, number, -1, static_cast<uint32_t>(note.trouble), value);
   }
@@ -103,7 +103,7 @@ void EventFinder::look(double t, uint32_t index, const Core& core) noexcept HSP_
     add(HAPTICD_REFUSED, number, -1, codeOf(Order::Led::kModel, model.lead.why()), static_cast<double>(count));
 }
 
-void EventFinder::look(double t, uint32_t index, const Arm& arm) noexcept HSP_RT {
+void EventFinder::check(double t, uint32_t index, const Arm& arm) noexcept HSP_RT {
   ArmNote& note = arms_[index];
   const auto number = static_cast<int32_t>(index);
   if (const Fault fault = arm.limiter().fault(); fault != note.fault) {
@@ -120,16 +120,16 @@ void EventFinder::look(double t, uint32_t index, const Arm& arm) noexcept HSP_RT
 
 const char* whyRefused(const hapticd_event& event) {
   if (event.kind != HAPTICD_REFUSED) return "";
-  switch (static_cast<Follow::Refusal>(event.code / kWhy)) {
-    case Follow::Refusal::kNotFinite:
+  switch (static_cast<PoseFollower::Refusal>(event.code / kWhy)) {
+    case PoseFollower::Refusal::kNotFinite:
       return "a number is not finite";
-    case Follow::Refusal::kTime:
+    case PoseFollower::Refusal::kTime:
       return "its time is in the future or negative; expected seconds of CLOCK_MONOTONIC, or 0";
-    case Follow::Refusal::kFar:
+    case PoseFollower::Refusal::kFar:
       return "its position is farther than 10 m from the world's origin; the value must be in m";
-    case Follow::Refusal::kNotUnit:
+    case PoseFollower::Refusal::kNotUnit:
       return "its orientation does not have length 1; expected a unit quaternion w, x, y, z";
-    case Follow::Refusal::kNone:
+    case PoseFollower::Refusal::kNone:
       break;
   }
   return "";

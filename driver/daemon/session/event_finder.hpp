@@ -42,7 +42,7 @@ class EventFinder {
   struct ModelNote {
     std::array<double, link::kMaxProbes> touched = never();  ///< [s] time when each probe was last inside
     uint32_t level = 0;
-    Trouble trouble = Trouble::kNone;
+    ShapeFault trouble = ShapeFault::kNone;
     bool leaving = false;
     uint64_t refused = 0;
     double refused_told = -kRefusedPeriod;
@@ -61,9 +61,9 @@ class EventFinder {
     return times;
   }
   void add(uint32_t kind, int32_t model, int32_t probe, uint32_t code, double value) noexcept HSP_RT;
-  void look(double t, uint32_t index, const Core& core) noexcept HSP_RT;
-  void look(double t, uint32_t index, const Arm& arm) noexcept HSP_RT;
-  void lookForLeft(const Core& core) noexcept HSP_RT;
+  void check(double t, uint32_t index, const Core& core) noexcept HSP_RT;
+  void check(double t, uint32_t index, const Arm& arm) noexcept HSP_RT;
+  void findLeft(const Core& core) noexcept HSP_RT;
   template <class Note>
   bool refused(double t, uint64_t now, Note& note) noexcept HSP_RT;
 

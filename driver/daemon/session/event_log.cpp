@@ -28,9 +28,9 @@ void EventLog::name(uint32_t place, const std::string& model) {
   models_[place] = model;
 }
 
-void EventLog::tell(const Flight& flight) {
-  tellOfSwitches();
-  tellOfPushers();
+void EventLog::logNewEvents(const Flight& flight) {
+  logSwitches();
+  logPushers();
   for (;;) {
     const std::vector<hapticd_event> events = flight.events(next_, kAtOnce);
     for (const hapticd_event& event : events) {
@@ -43,7 +43,7 @@ void EventLog::tell(const Flight& flight) {
   }
 }
 
-void EventLog::tellOfSwitches() {
+void EventLog::logSwitches() {
   told_of_switch_.resize(arms_.size());
   for (size_t i = 0; i < arms_.size(); ++i) {
     if (told_of_switch_[i] || !arms_[i]->foundPressed()) continue;
@@ -53,10 +53,10 @@ void EventLog::tellOfSwitches() {
   }
 }
 
-void EventLog::tellOfPushers() {
+void EventLog::logPushers() {
   const std::chrono::duration<double> now = std::chrono::steady_clock::now().time_since_epoch();
   for (uint32_t i = 0; i < arms_.size(); ++i)
-    for (const PusherLog::Message& message : pushers_.look(i, arms_[i]->clients(), now.count())) write(i, message);
+    for (const PusherLog::Message& message : pushers_.update(i, arms_[i]->clients(), now.count())) write(i, message);
 }
 
 void EventLog::write(uint32_t arm, const PusherLog::Message& message) const {

@@ -28,7 +28,7 @@ class EventLog {
   void name(uint32_t place, const std::string& model);
 
   /// [main] Writes the events since the last call.
-  void tell(const Flight& flight);
+  void logNewEvents(const Flight& flight);
 
   /// [any] Notes the name of a process that is about to lead, because the process may be gone when its event is
   /// reported.
@@ -51,8 +51,8 @@ class EventLog {
   Message messageOfSwitch(size_t arm) const;
 
  private:
-  void tellOfSwitches();
-  void tellOfPushers();
+  void logSwitches();
+  void logPushers();
   void write(uint32_t arm, const PusherLog::Message& message) const;
   std::string leaderOf(const hapticd_event& event) const;
   std::string model(const hapticd_event& event) const;

@@ -64,7 +64,7 @@ std::string featureName(const host::ShapeInstance& shape, uint32_t feature) {
   constexpr uint64_t kLongest = 256;  // longer names are cut off
   const hsp_class& plugin = shape.description();
   if (!shape.active() || !HSP_HAS(&plugin, extension) || plugin.extension == nullptr) return "";
-  const Calling calling(shape.owner());
+  const OwnerScope calling(shape.owner());
   const auto* names = static_cast<const hsp_ext_names*>(plugin.extension(shape.handle(), HSP_EXT_NAMES));
   if (names == nullptr || names->struct_size < sizeof *names || names->feature == nullptr) return "";
   std::string text(kLongest, '\0');

@@ -64,16 +64,16 @@ Result<Descriptor> Leads::begin(Target target, const control::Peer& peer) {
     order.slot = new ((*memory)->data()) link::PoseSlot;
   if (programs_.size() >= kMostPrograms) programs_.clear();
   programs_[peer.pid] = programOf(peer.pid);  // set before the servo reports the new leader
-  const auto given = give_(order);
+  const auto given = post_order_(order);
   // kept also if the servo did not obey in time, because it may obey later
   leads_.push_back({target, peer, std::move(*memory), programs_[peer.pid]});
-  tell(leads_.back(), News::kBegins);
+  notify(leads_.back(), PushEvent::kBegins);
   if (given) return std::move(*shared);
   (void)end(target, peer);
   return Error{given.error()};
 }
 
-Result<void> Leads::end(const Target& target, const control::Peer& peer, News how) {
+Result<void> Leads::end(const Target& target, const control::Peer& peer, PushEvent how) {
   const auto found = std::find_if(leads_.begin(), leads_.end(), [&](const Lead& lead) {
     return same(lead.target, target) && lead.peer.id == peer.id;
   });
@@ -84,19 +84,19 @@ Result<void> Leads::end(const Target& target, const control::Peer& peer, News ho
 }
 
 Leads::~Leads() {
-  for (const Lead& lead : leads_) tell(lead, News::kEnds);
+  for (const Lead& lead : leads_) notify(lead, PushEvent::kEnds);
 }
 
-void Leads::tell(const Lead& lead, News news) const {
-  if (tell_ && lead.target.led == Order::Led::kForce)
-    tell_(lead.target.index, {lead.peer.pid, lead.target.place, lead.program}, news);
+void Leads::notify(const Lead& lead, PushEvent news) const {
+  if (on_push_event_ && lead.target.led == Order::Led::kForce)
+    on_push_event_(lead.target.index, {lead.peer.pid, lead.target.place, lead.program}, news);
 }
 
-Result<void> Leads::finish(Lead lead, News how) {
+Result<void> Leads::finish(Lead lead, PushEvent how) {
   Order order = orderOf(Order::Kind::kUnlead, lead.target);
   order.value = lead.peer.pid;
-  auto done = give_(order);
-  tell(lead, how);
+  auto done = post_order_(order);
+  notify(lead, how);
   if (!done) kept_.push_back(std::move(lead.memory));
   return done;
 }
@@ -112,14 +112,14 @@ void Leads::endPushes() {
   const auto pushes = [](const Lead& lead) { return lead.target.led == Order::Led::kForce; };
   for (auto found = leads_.begin(); (found = std::find_if(leads_.begin(), leads_.end(), pushes)) != leads_.end();)
     // An error only means that the servo is late: it will still obey.
-    (void)end(Target(found->target), control::Peer(found->peer), News::kEnds);
+    (void)end(Target(found->target), control::Peer(found->peer), PushEvent::kEnds);
 }
 
 void Leads::left(const control::Peer& peer) {
   while (holds(peer)) {
     const auto found =
         std::find_if(leads_.begin(), leads_.end(), [&](const Lead& lead) { return lead.peer.id == peer.id; });
-    (void)end(found->target, peer, News::kLeft);  // the peer is gone, so an error is not reported
+    (void)end(found->target, peer, PushEvent::kLeft);  // the peer is gone, so an error is not reported
   }
 }
 

@@ -21,7 +21,7 @@ namespace hapticd::servo {
 class Leads {
  public:
   /// Gives an order to the servo and waits until it is obeyed.
-  using Give = std::function<Result<void>(const Order&)>;
+  using PostOrder = std::function<Result<void>(const Order&)>;
 
   /// The target of a lead.
   struct Target {
@@ -38,13 +38,13 @@ class Leads {
     std::string program;
   };
   /// What a program did: kBegins: it begins to push; kEnds: it asked to end; kLeft: its connection is gone.
-  enum class News { kBegins, kEnds, kLeft };
+  enum class PushEvent { kBegins, kEnds, kLeft };
   /// Called when a program begins or stops pushing on an arm.
-  using Tell = std::function<void(uint32_t arm, const Pusher& pusher, News news)>;
+  using OnPushEvent = std::function<void(uint32_t arm, const Pusher& pusher, PushEvent news)>;
 
   /// @param exclusive true if only one program may push on an arm; otherwise as many as there are places
-  explicit Leads(Give give, bool exclusive = false, Tell tell = nullptr)
-      : give_(std::move(give)), tell_(std::move(tell)), exclusive_(exclusive) {}
+  explicit Leads(PostOrder post_order, bool exclusive = false, OnPushEvent on_push_event = nullptr)
+      : post_order_(std::move(post_order)), on_push_event_(std::move(on_push_event)), exclusive_(exclusive) {}
   ~Leads();  ///< reports the end of programs that still push
   Leads(const Leads&) = delete;
   Leads& operator=(const Leads&) = delete;
@@ -52,7 +52,7 @@ class Leads {
   /// [main] Begins a lead. @return a descriptor of its memory. If the target has a leader already, the error names it.
   Result<Descriptor> begin(Target target, const control::Peer& peer);
   /// [main] Ends this peer's lead of a target.
-  Result<void> end(const Target& target, const control::Peer& peer) { return end(target, peer, News::kEnds); }
+  Result<void> end(const Target& target, const control::Peer& peer) { return end(target, peer, PushEvent::kEnds); }
   /// [main] Ends the lead of a model, if there is one, because the model is moved in another way or is removed.
   Result<void> endOfModel(uint32_t model);
   /// [main] Ends all pushes, because programs may no longer push. Later answers of a program are not read.
@@ -69,7 +69,7 @@ class Leads {
   std::vector<Pusher> pushers(uint32_t arm) const;
   /// [main] True if programs may push. A request can change this; the scene sets only the first value.
   bool mayPush() const { return may_push_; }
-  void letPush(bool may) { may_push_ = may; }  ///< [main] sets mayPush()
+  void setMayPush(bool may) { may_push_ = may; }  ///< [main] sets mayPush()
   /// [main] True if this peer has a lead, which ends with its connection.
   bool holds(const control::Peer& peer) const;
   /// [main] Returns the numbers of all peers that have a lead.
@@ -82,13 +82,13 @@ class Leads {
     std::unique_ptr<SealedMemory> memory;
     std::string program;  ///< name of the leading program
   };
-  Result<void> end(const Target& target, const control::Peer& peer, News how);
-  Result<void> finish(Lead lead, News how);
-  void tell(const Lead& lead, News news) const;
+  Result<void> end(const Target& target, const control::Peer& peer, PushEvent how);
+  Result<void> finish(Lead lead, PushEvent how);
+  void notify(const Lead& lead, PushEvent news) const;
   Result<void> findPlace(Target& target, const control::Peer& peer);
 
-  Give give_;
-  Tell tell_;
+  PostOrder post_order_;
+  OnPushEvent on_push_event_;
   bool exclusive_, may_push_ = true;
   uint32_t last_place_ = 0;
   std::vector<Lead> leads_;

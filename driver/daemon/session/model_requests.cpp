@@ -16,8 +16,8 @@
 #include "scene/load.hpp"
 #include "session/foreign_files.hpp"
 #include "session/kept_settings.hpp"
-#include "session/patience.hpp"
 #include "session/request_handler.hpp"
+#include "session/wait_until.hpp"
 #include "watch/quarantine.hpp"
 
 namespace hapticd::servo {
@@ -28,8 +28,8 @@ using control::Request;
 
 /// Adds `notes` to the answer: which added models may not be what the user expects, because their plugin's file has
 /// changed since it was loaded.
-void tellReplaced(nlohmann::ordered_json& json, const std::vector<scene::Model>& models,
-                  const host::Services::Log& log) {
+void addReplaced(nlohmann::ordered_json& json, const std::vector<scene::Model>& models,
+                 const host::Services::Log& log) {
   std::set<std::string> told;
   for (const scene::Model& model : models) {
     if (!host::replacedSinceLoaded(model.library) || !told.insert(model.library.string()).second) continue;
@@ -128,8 +128,8 @@ Result<std::string> RequestHandler::add(const control::Peer& peer, const Request
     if (placeOf(model.name)) return refuse("busy", "a model named \"" + model.name + "\" exists already");
   if (auto done = adopt(models); !done) return Error{tellable(peer, done.error())};
   auto json = cameAnswer(models);
-  tellReplaced(json, models, log_);
-  tellWarnings(peer, models, json);
+  addReplaced(json, models, log_);
+  addWarnings(peer, models, json);
   return lineOf(json);
 }
 
@@ -173,10 +173,10 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
     order.kind = Order::Kind::kAdopt;
     order.target = place;
     order.model = prepared_.back().get();
-    const auto given = give(order);
+    const auto given = post(order);
     places_[place] = {models[i], true, true};
     // The shape is kept also if the servo did not obey in time, because it may obey later.
-    runner_.world().keep(place, std::move(shapes[i]), models[i]);
+    runner_.world().store(place, std::move(shapes[i]), models[i]);
     if (!given) return given;
     prepared_.pop_back();
   }
@@ -185,8 +185,8 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
 
 /// Adds the warnings of `hapticd check` about the added models to the answer, as `warnings`, and to the log. A caller
 /// of another user gets no warnings about the daemon's own scene.
-void RequestHandler::tellWarnings(const control::Peer& peer, const std::vector<scene::Model>& models,
-                                  nlohmann::ordered_json& json) const {
+void RequestHandler::addWarnings(const control::Peer& peer, const std::vector<scene::Model>& models,
+                                 nlohmann::ordered_json& json) const {
   if (!advise_ || (isForeign(peer) && !passed_)) return;
   scene::Scene came;
   came.models = models;
@@ -200,7 +200,9 @@ void RequestHandler::tellWarnings(const control::Peer& peer, const std::vector<s
 /// the models once
 nlohmann::ordered_json RequestHandler::waitingOf(const std::vector<scene::Model>& models, double met) const {
   nlohmann::ordered_json waiting = nlohmann::ordered_json::array();
-  const auto now = [&] { return runner_.telemetry().statusWriter()->page().now.read().value_or(status::Now{}).t; };
+  const auto now = [&] {
+    return runner_.telemetry().statusWriter()->page().now.read().value_or(status::TickStatus{}).t;
+  };
   const double came = now();
   waitUntil([&] { return now() > came + met || runner_.loop().finished(); });
   for (uint32_t i = 0; i < places_.size(); ++i) {
@@ -233,7 +235,7 @@ Result<void> RequestHandler::release(uint32_t place) {
   Order order;
   order.kind = Order::Kind::kRelease;
   order.target = place;
-  if (auto given = give(order); !given) return given;
+  if (auto given = post(order); !given) return given;
   waitUntil([&] {
     sweep();
     return runner_.world().shapes()[place] == nullptr;
@@ -261,9 +263,9 @@ Result<std::string> RequestHandler::reload(const control::Peer& peer, const Requ
   for (const uint32_t place : old)
     if (auto done = release(place); !done) return Error{done.error()};
   auto json = cameAnswer(scene->models);
-  tellReplaced(json, scene->models, log_);
-  tellWarnings(peer, scene->models, json);
-  if (const auto kept = tellKept(*scene); !kept.empty()) json["kept"] = kept;
+  addReplaced(json, scene->models, log_);
+  addWarnings(peer, scene->models, json);
+  if (const auto kept = reportKeptSettings(*scene); !kept.empty()) json["kept"] = kept;
   return lineOf(json);
 }
 
@@ -275,12 +277,12 @@ void RequestHandler::takePermission(const scene::Clients& wanted) {
   if (given.mode == scene::ClientMode::kOff || !given.push) return;
   if (!may && leads_.mayPush())
     log_(HSP_LOG_WARNING, scene_file_, "programs may no longer push; their forces ramp out");
-  leads_.letPush(may);
+  leads_.setMayPush(may);
   if (!may) leads_.endPushes();
 }
 
 /// Returns, and logs, the settings of the scene that a reload cannot apply to the run.
-std::vector<std::string> RequestHandler::tellKept(const scene::Scene& wanted) const {
+std::vector<std::string> RequestHandler::reportKeptSettings(const scene::Scene& wanted) const {
   std::vector<std::string> kept = keptSettings(runner_.scene(), wanted);
   if (!leads_.mayPush()) std::erase(kept, "clients.mode"), std::erase(kept, "clients.push");
   if (!kept.empty())

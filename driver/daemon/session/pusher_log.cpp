@@ -27,18 +27,18 @@ const char* describe(ClientForces::Refusal why) {
   return "";
 }
 
-PusherLog::Told& PusherLog::at(uint32_t arm, uint32_t place) {
+PusherLog::Reported& PusherLog::at(uint32_t arm, uint32_t place) {
   if (arm >= told_.size()) told_.resize(arm + 1);
   return told_[arm][place % ClientForces::kMost];
 }
 
-std::string PusherLog::who(const Told& told) {
+std::string PusherLog::who(const Reported& told) {
   return fmt::format("process {} ({})", told.pid, told.program);
 }
 
 PusherLog::Message PusherLog::begins(uint32_t arm, uint32_t place, pid_t pid, const std::string& program) {
   const std::lock_guard lock(mutex_);
-  Told& told = at(arm, place) = Told();
+  Reported& told = at(arm, place) = Reported();
   told.pid = pid;
   told.program = program;
   return {HSP_LOG_INFO, who(told) + " pushes on it"};
@@ -46,7 +46,7 @@ PusherLog::Message PusherLog::begins(uint32_t arm, uint32_t place, pid_t pid, co
 
 PusherLog::Message PusherLog::ends(uint32_t arm, uint32_t place, End how, const ClientForces::Client& client) {
   const std::lock_guard lock(mutex_);
-  Told& told = at(arm, place);
+  Reported& told = at(arm, place);
   const std::string name = who(told);
   told.pid = 0;
   const double given = client.given.load(kRelaxed);
@@ -56,21 +56,21 @@ PusherLog::Message PusherLog::ends(uint32_t arm, uint32_t place, End how, const 
   return {HSP_LOG_WARNING, fmt::format("{} ended while it pushed with {:.3g} N: its force ramped out", name, given)};
 }
 
-std::vector<PusherLog::Message> PusherLog::look(uint32_t arm, const ClientForces& forces, double now) {
+std::vector<PusherLog::Message> PusherLog::update(uint32_t arm, const ClientForces& forces, double now) {
   const std::lock_guard lock(mutex_);
   std::vector<Message> messages;
   for (uint32_t place = 0; place < ClientForces::kMost; ++place) {
-    Told& told = at(arm, place);
+    Reported& told = at(arm, place);
     if (told.pid == 0) continue;
     const ClientForces::Client& client = forces.clients()[place];
-    lookAtSilence(told, client, messages);
-    lookAtRefusals(told, client, now, messages);
-    lookAtBound(told, client, forces.bound(), messages);
+    checkSilence(told, client, messages);
+    checkRefusals(told, client, now, messages);
+    checkBound(told, client, forces.bound(), messages);
   }
   return messages;
 }
 
-void PusherLog::lookAtSilence(Told& told, const ClientForces::Client& client, std::vector<Message>& messages) {
+void PusherLog::checkSilence(Reported& told, const ClientForces::Client& client, std::vector<Message>& messages) {
   const double quiet = client.quiet.load(kRelaxed);
   if (!told.silent && quiet > kSilent)
     messages.push_back(
@@ -84,8 +84,8 @@ void PusherLog::lookAtSilence(Told& told, const ClientForces::Client& client, st
   told.quiet = quiet;
 }
 
-void PusherLog::lookAtRefusals(Told& told, const ClientForces::Client& client, double now,
-                               std::vector<Message>& messages) {
+void PusherLog::checkRefusals(Reported& told, const ClientForces::Client& client, double now,
+                              std::vector<Message>& messages) {
   const uint64_t refused = client.refused.load(kRelaxed);
   if (refused == told.refused || now - told.refused_at < kRefusedPeriod) return;
   told.refused = refused;
@@ -95,8 +95,8 @@ void PusherLog::lookAtRefusals(Told& told, const ClientForces::Client& client, d
                                     who(told), refused == 1 ? "was" : "were", describe(client.why.load(kRelaxed)))});
 }
 
-void PusherLog::lookAtBound(Told& told, const ClientForces::Client& client, double bound,
-                            std::vector<Message>& messages) {
+void PusherLog::checkBound(Reported& told, const ClientForces::Client& client, double bound,
+                           std::vector<Message>& messages) {
   constexpr double kRounding = 1e-3;  // tolerance, for a program such as libHD that limits its force to the same bound
   if (told.bounded || client.bounded.load(kRelaxed) == 0) return;
   if (client.asked.load(kRelaxed) <= bound * (1 + kRounding)) return;

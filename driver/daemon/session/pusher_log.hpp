@@ -34,11 +34,11 @@ class PusherLog {
   /// [any] Called when a program stops pushing. @param client its counts
   Message ends(uint32_t arm, uint32_t place, End how, const ClientForces::Client& client);
   /// [any] Returns messages about changes since the last call, of the programs on an arm. @param now [s]
-  std::vector<Message> look(uint32_t arm, const ClientForces& forces, double now);
+  std::vector<Message> update(uint32_t arm, const ClientForces& forces, double now);
 
  private:
   /// What was already reported about a program.
-  struct Told {
+  struct Reported {
     pid_t pid = 0;  ///< 0 if the place is empty
     std::string program;
     bool silent = false, bounded = false;
@@ -46,15 +46,16 @@ class PusherLog {
     uint64_t refused = 0;
     double refused_at = -kRefusedPeriod;
   };
-  static std::string who(const Told& told);
-  Told& at(uint32_t arm, uint32_t place);
-  static void lookAtSilence(Told& told, const ClientForces::Client& client, std::vector<Message>& messages);
-  static void lookAtRefusals(Told& told, const ClientForces::Client& client, double now,
-                             std::vector<Message>& messages);
-  static void lookAtBound(Told& told, const ClientForces::Client& client, double bound, std::vector<Message>& messages);
+  static std::string who(const Reported& told);
+  Reported& at(uint32_t arm, uint32_t place);
+  static void checkSilence(Reported& told, const ClientForces::Client& client, std::vector<Message>& messages);
+  static void checkRefusals(Reported& told, const ClientForces::Client& client, double now,
+                            std::vector<Message>& messages);
+  static void checkBound(Reported& told, const ClientForces::Client& client, double bound,
+                         std::vector<Message>& messages);
 
   std::mutex mutex_;  // programs come and go on the thread of the control socket
-  std::vector<std::array<Told, ClientForces::kMost>> told_;
+  std::vector<std::array<Reported, ClientForces::kMost>> told_;
 };
 
 /// [any] Returns why an answer was refused, such as "a number is not finite".

@@ -189,7 +189,7 @@ class Replay::Player final : public Clock {
         order.push = newPushSlot(row.target, row.place);
       else if (order.kind == Order::Kind::kLead)
         order.slot = newSlot(row.param, row.target);
-      replay_.loop_->give(order);
+      replay_.loop_->post(order);
     }
   }
 

@@ -16,7 +16,7 @@
 #include "record/dump_folder.hpp"
 #include "session/foreign_files.hpp"
 #include "session/geometry_answer.hpp"
-#include "session/patience.hpp"
+#include "session/wait_until.hpp"
 
 namespace hapticd::servo {
 
@@ -67,8 +67,8 @@ RequestHandler::RequestHandler(Runner& runner, LoadScene load, host::Services::L
       dump_folder_(std::move(dump_folder)),
       scene_file_(std::filesystem::absolute(runner.scene().file).string()),
       places_(runner.world().places()),
-      leads_([this](const Order& order) { return give(order); }, runner.scene().clients.exclusive,
-             [this](uint32_t arm, const Leads::Pusher& who, Leads::News news) { tellOfPusher(arm, who, news); }) {
+      leads_([this](const Order& order) { return post(order); }, runner.scene().clients.exclusive,
+             [this](uint32_t arm, const Leads::Pusher& who, Leads::PushEvent news) { reportPusher(arm, who, news); }) {
   for (size_t i = 0; i < runner.scene().models.size(); ++i) places_[i] = {runner.scene().models[i], true, true};
 }
 
@@ -82,7 +82,7 @@ control::Reply RequestHandler::answer(const control::Peer& peer, const std::stri
     attached_ = Descriptor();
     given_files_ = std::move(files);
     code_ = "failed";
-    const auto done = obey(peer, *request);
+    const auto done = execute(peer, *request);
     passed_.reset();
     if (!done) return control::withId(control::refusal(done.error(), code_), id);
     return {control::withId(*done, id), std::move(attached_)};
@@ -91,7 +91,7 @@ control::Reply RequestHandler::answer(const control::Peer& peer, const std::stri
   }
 }
 
-Result<std::string> RequestHandler::tell(const control::Peer& peer, const Request& request) {
+Result<std::string> RequestHandler::answerQuery(const control::Peer& peer, const Request& request) {
   switch (request.kind) {
     case Request::Kind::kStatus:
       return statusAnswer(session(), name_, socket_);
@@ -131,7 +131,7 @@ Result<std::string> RequestHandler::tell(const control::Peer& peer, const Reques
   }
 }
 
-Result<std::string> RequestHandler::obey(const control::Peer& peer, const Request& request) {
+Result<std::string> RequestHandler::execute(const control::Peer& peer, const Request& request) {
   const std::string good = lineOf({{"ok", true}});
   const auto plain = [&](Result<void> done) -> Result<std::string> {
     if (!done) return Error{done.error()};
@@ -159,11 +159,11 @@ Result<std::string> RequestHandler::obey(const control::Peer& peer, const Reques
       runner_.stop();
       return good;
     default:
-      return obeyForModels(peer, request);
+      return executeForModels(peer, request);
   }
 }
 
-Result<std::string> RequestHandler::obeyForModels(const control::Peer& peer, const Request& request) {
+Result<std::string> RequestHandler::executeForModels(const control::Peer& peer, const Request& request) {
   Result<void> done;
   switch (request.kind) {
     case Request::Kind::kMove:
@@ -175,7 +175,7 @@ Result<std::string> RequestHandler::obeyForModels(const control::Peer& peer, con
     case Request::Kind::kEnable:
       return enable(request.model);
     case Request::Kind::kDisable:
-      done = able(request.model, false);
+      done = setEnabled(request.model, false);
       break;
     case Request::Kind::kSet:
       done = set(request);
@@ -184,7 +184,7 @@ Result<std::string> RequestHandler::obeyForModels(const control::Peer& peer, con
       done = remove(request.model);
       break;
     default:
-      return tell(peer, request);
+      return answerQuery(peer, request);
   }
   if (!done) return Error{done.error()};
   return lineOf({{"ok", true}});
@@ -200,15 +200,15 @@ Result<uint32_t> RequestHandler::placeOf(const std::string& model) const {
                                document::suggestion(model.substr(0, 100), names));
 }
 
-Result<void> RequestHandler::give(const Order& order) {
-  if (!runner_.giveOrder(order)) return refuse("busy", "too many orders are waiting; the servo may have stopped");
+Result<void> RequestHandler::post(const Order& order) {
+  if (!runner_.postOrder(order)) return refuse("busy", "too many orders are waiting; the servo may have stopped");
   ++given_;
   if (!waitUntil([&] { return runner_.loop().ordersDone() >= given_; }))
     return refuse("timeout", "the servo did not carry out the order within 2 s; it may have stopped: see status");
   return {};
 }
 
-Result<void> RequestHandler::able(const std::string& model, bool enabled) {
+Result<void> RequestHandler::setEnabled(const std::string& model, bool enabled) {
   const auto place = placeOf(model);
   if (!place) return Error{place.error()};
   if (const std::string why = enabled ? silencedWhy(session(), *place) : ""; !why.empty())
@@ -220,7 +220,7 @@ Result<void> RequestHandler::able(const std::string& model, bool enabled) {
   order.target = *place;
   if (enabled) order.param = Order::kOnceFree;
   places_[*place].enabled = enabled;
-  return give(order);
+  return post(order);
 }
 
 /// Enables a model. If a tip is inside, the model is not felt until the tip has left; the answer says so.
@@ -228,7 +228,7 @@ Result<std::string> RequestHandler::enable(const std::string& model) {
   // [s] Time in which the servo has surely stepped the model once. This can be short because a disabled model is still
   // traced; only its force is off.
   constexpr double kMet = 0.02;
-  if (auto done = able(model, true); !done) return Error{done.error()};
+  if (auto done = setEnabled(model, true); !done) return Error{done.error()};
   nlohmann::ordered_json json = {{"ok", true}};
   const auto place = placeOf(model);
   if (!place) return Error{place.error()};
@@ -276,7 +276,7 @@ Result<void> RequestHandler::set(const Request& request) {
     return refuse("consent", what +
                                  ": a hand may feel this change suddenly, so whoever holds the arm must agree\n "
                                  " fix: add \"consent\": true, or hapticd ctl set --consent");
-  auto given = give(order);
+  auto given = post(order);
   if (given) remember(places_[*place].model, *param, order);
   return given;
 }
@@ -300,7 +300,7 @@ Result<std::string> RequestHandler::move(const Request& request) {
   std::fill_n(order.orientation, 4, 0.0);
   if (request.turns) std::copy_n(request.orientation.data(), 4, order.orientation);
   order.seconds = request.seconds.value_or(0);
-  if (auto given = give(order); !given) return Error{given.error()};
+  if (auto given = post(order); !given) return Error{given.error()};
   // Safe to read: the servo has obeyed, and only this thread gives orders that change the move.
   return lineOf({{"ok", true}, {"seconds", runner_.world().core().models()[*place].glide.seconds()}});
 }
@@ -320,7 +320,7 @@ Result<void> RequestHandler::clear(const control::Peer& peer, const std::string&
     Order order;
     order.kind = Order::Kind::kClear;
     order.target = i;
-    if (auto given = give(order); !given) return given;
+    if (auto given = post(order); !given) return given;
   }
   return found ? Result<void>() : refuse("unknown", noSuchDevice(runner_.scene(), device));
 }

@@ -43,7 +43,7 @@ class RequestHandler {
   /// waiting for other requests. @return the answer, or nothing if the line is not such a request
   std::optional<control::Reply> urgent(const control::Peer& peer, const std::string& line);
   /// [any] Called from the thread of answer(). Returns what depends on the peer's connection.
-  control::Standing standing(const control::Peer& peer) const { return {stays(peer), listeners_.count(peer.id) > 0}; }
+  control::KeepAlive keepAlive(const control::Peer& peer) const { return {stays(peer), listeners_.count(peer.id) > 0}; }
   /// [any] Called from the thread of answer(). Returns new events for a subscriber, one line each; "" if there are
   /// none.
   std::string news(const control::Peer& peer);
@@ -59,10 +59,10 @@ class RequestHandler {
     code_ = code;
     return Error{std::move(why)};
   }
-  Result<std::string> obey(const control::Peer& peer, const control::Request& request);
-  Result<std::string> obeyForModels(const control::Peer& peer, const control::Request& request);
+  Result<std::string> execute(const control::Peer& peer, const control::Request& request);
+  Result<std::string> executeForModels(const control::Peer& peer, const control::Request& request);
   /// Answers requests that change nothing.
-  Result<std::string> tell(const control::Peer& peer, const control::Request& request);
+  Result<std::string> answerQuery(const control::Peer& peer, const control::Request& request);
   Session session() const { return {runner_, places_, leads_, scene_file_}; }
   Result<std::string> eventsAfter(double after) const;
   Result<std::string> subscribe(const control::Peer& peer);
@@ -70,7 +70,7 @@ class RequestHandler {
   size_t staying() const;
   static void remember(scene::Model& model, const hsp_param& param, const Order& order);
   Result<uint32_t> placeOf(const std::string& model) const;
-  void tellOfPusher(uint32_t arm, const Leads::Pusher& pusher, Leads::News news);
+  void reportPusher(uint32_t arm, const Leads::Pusher& pusher, Leads::PushEvent news);
   Result<uint32_t> armOf(const std::string& device) const;
   Result<Leads::Target> pushOf(const std::string& device) const;
   Result<Leads::Target> leadOf(const control::Request& request) const;
@@ -80,9 +80,9 @@ class RequestHandler {
   Result<void> attach(std::unique_ptr<SealedMemory>& kept, const char* name, size_t bytes,
                       SealedMemory::Writers writers);
   Result<void> unlead(const control::Peer& peer, const control::Request& request);
-  Result<void> give(const Order& order);
+  Result<void> post(const Order& order);
   Result<std::string> enable(const std::string& model);
-  Result<void> able(const std::string& model, bool enabled);
+  Result<void> setEnabled(const std::string& model, bool enabled);
   Result<void> set(const control::Request& request);
   Result<std::string> move(const control::Request& request);
   Result<void> clear(const control::Peer& peer, const std::string& device);
@@ -94,15 +94,15 @@ class RequestHandler {
   Result<std::string> add(const control::Peer& peer, const control::Request& request);
   Result<void> refuseQuarantined(const std::vector<scene::Model>& models) const;
   Result<void> adopt(const std::vector<scene::Model>& models);
-  void tellWarnings(const control::Peer& peer, const std::vector<scene::Model>& models,
-                    nlohmann::ordered_json& json) const;
+  void addWarnings(const control::Peer& peer, const std::vector<scene::Model>& models,
+                   nlohmann::ordered_json& json) const;
   nlohmann::ordered_json cameAnswer(const std::vector<scene::Model>& models);
   nlohmann::ordered_json waitingOf(const std::vector<scene::Model>& models, double met) const;
   Result<void> remove(const std::string& model);
   Result<void> release(uint32_t place);
   Result<std::string> reload(const control::Peer& peer, const control::Request& request);
   void takePermission(const scene::Clients& wanted);
-  std::vector<std::string> tellKept(const scene::Scene& wanted) const;
+  std::vector<std::string> reportKeptSettings(const scene::Scene& wanted) const;
   void sweep();
 
   Runner& runner_;

@@ -199,7 +199,7 @@ void RunFiles::serve(Runner& runner, const std::string& device_file, host::Catal
   service.answer = [this](const control::Peer& peer, const std::string& line, std::vector<Descriptor> files) {
     return handler_->answer(peer, line, std::move(files));
   };
-  service.standing = [this](const control::Peer& peer) { return handler_->standing(peer); };
+  service.keep_alive = [this](const control::Peer& peer) { return handler_->keepAlive(peer); };
   service.news = [this](const control::Peer& peer) { return handler_->news(peer); };
   service.urgent = [this](const control::Peer& peer, const std::string& line) { return handler_->urgent(peer, line); };
   service.left = [this](const control::Peer& peer) { handler_->left(peer); };

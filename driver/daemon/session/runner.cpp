@@ -16,7 +16,7 @@
 #include "sim/proximity_thread.hpp"
 #include "watch/crash.hpp"
 #include "watch/end_watch.hpp"
-#include "watch/ended.hpp"
+#include "watch/idle_target.hpp"
 #include "watch/notify.hpp"
 #include "watch/watchdog.hpp"
 #include "world/arm_force.hpp"
@@ -54,34 +54,34 @@ std::string noFifo(int priority, const std::error_code& code, bool hardware) {
 /// Returns the module whose code keeps the run from ending, or nullptr.
 const Owner* keepsTheEnd() {
   for (const Worker worker : {Worker::kServo, Worker::kMain, Worker::kSearch, Worker::kControl})
-    if (const Owner* owner = calledBy(worker)) return owner;
+    if (const Owner* owner = ownerOfWorker(worker)) return owner;
   return nullptr;
 }
 
 /// [main] Makes the watchdog of a run, which ends a hung process and names the module that hangs. @param may_lag true
 /// if late ticks are normal on this machine
-std::unique_ptr<watch::Watchdog> watchdogOf(watch::Watched& watched, bool may_lag) {
+std::unique_ptr<watch::Watchdog> watchdogOf(watch::WatchTarget& watched, bool may_lag) {
   using watch::Watchdog;
-  const auto hung = [&watched] { watch::dieOf("a step that did not come back", watched.inServo()); };
+  const auto hung = [&watched] { watch::endByFault("a step that did not come back", watched.inServo()); };
   auto watchdog =
       std::make_unique<Watchdog>(watched, hung, may_lag ? Watchdog::kMissedInVirtualMachine : Watchdog::kMissedAfter,
                                  may_lag ? Watchdog::kStuckInVirtualMachine : Watchdog::kStuckAfter);
-  watchdog->onLateEnd([] { watch::endAnyway(keepsTheEnd()); });
+  watchdog->onLateEnd([] { watch::forceEnd(keepsTheEnd()); });
   return watchdog;
 }
 
 /// Ends the process if a call of a module after the last tick did not return. If no module is in a call, it returns,
 /// and is called again later.
 void dieOfStop() {
-  if (const Owner* keeps = keepsTheEnd()) watch::dieOf("a stop() that did not come back", keeps);
+  if (const Owner* keeps = keepsTheEnd()) watch::endByFault("a stop() that did not come back", keeps);
 }
 
 /// Runs the loop in virtual time. @param after called after the last tick; it calls modules, which may hang as well
-Result<void> runInVirtualTime(Loop& loop, const watch::Watched& watched, const std::function<void()>& after) {
+Result<void> runInVirtualTime(Loop& loop, const watch::WatchTarget& watched, const std::function<void()>& after) {
   const auto hung = [] {
-    if (const Owner* keeps = keepsTheEnd()) watch::dieOf("a step that did not come back", keeps);
+    if (const Owner* keeps = keepsTheEnd()) watch::endByFault("a step that did not come back", keeps);
   };
-  watch::EndWatch end(watched, [] { watch::endAnyway(keepsTheEnd()); }, hung);
+  watch::EndWatch end(watched, [] { watch::forceEnd(keepsTheEnd()); }, hung);
   if (const auto code = end.start()) return Error{"cannot start the thread that watches the end: " + code.message()};
   loop.run();
   end.lastCalls(dieOfStop);
@@ -92,8 +92,8 @@ Result<void> runInVirtualTime(Loop& loop, const watch::Watched& watched, const s
 }  // namespace
 
 Runner::~Runner() {
-  const Working working(Worker::kMain);
-  watch::Ended ended;
+  const WorkerScope working(Worker::kMain);
+  watch::IdleTarget ended;
   const watch::CrashGuard crash(ended, options_.state_dir);
   recorder_.reset();
   loop_.reset();
@@ -199,7 +199,7 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
   Result<void> done;
   if (recorder_)
     if (const auto code = recorder_->start()) return Error{"cannot start the recording thread: " + code.message()};
-  const Working working(Worker::kMain);
+  const WorkerScope working(Worker::kMain);
   WatchedServo watched(*loop_, arms_, *telemetry_);
   const watch::CrashGuard crash(watched, options_.state_dir);
   os::prepareSignalStack();  // this thread may run searches, and so code of plugins
@@ -238,7 +238,7 @@ void Runner::lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::
       feeder.feed(clock.now(), loop_->ticks());
       if (!warnings_.empty() && !anyhow) break;
       host::Services::passOn(log::write);
-      event_log_->tell(*telemetry_->flight());
+      event_log_->logNewEvents(*telemetry_->flight());
       every(*this);
     }
     clock.waitUntil(clock.now() + proximity.turn(kStatusPeriod));
@@ -249,16 +249,16 @@ void Runner::lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::
 
 /// The function of the servo thread. @param runs false if the rights that the arms need are missing
 void Runner::serve(bool runs) {
-  const Working working(Worker::kServo);
+  const WorkerScope working(Worker::kServo);
   if (guard_ && runs) guard_->arm(true);
   if (runs) loop_->run();
   if (guard_ && loop_->silent()) guard_->arm(false);  // the last command was zero: no cut is needed
 }
 
-Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every,
+Result<void> Runner::runReal(watch::WatchTarget& watched, const std::function<void(const Runner&)>& every,
                              const std::function<void()>& ended) {
   const Nanoseconds begun = monotonicNow();
-  sim::ProximityThread proximity(world_->proximity(), [this] { return loop_->wantsSearch(); });
+  sim::ProximityThread proximity(world_->proximity(), [this] { return loop_->needsSearch(); });
   if (const auto code = proximity.start()) return Error{"cannot start the proximity thread: " + code.message()};
   lockMemory();
   const os::DmaLatencyHold awake;
@@ -268,7 +268,7 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
     return Error{"cannot start the watchdog thread: " + code.message()};
   std::vector<std::string> refused;  // written by the servo thread until `ready`, then read by this thread
   const bool anyhow = onlySimulated() || options_.allow_non_rt, locked = warnings_.empty();
-  if (guard_) tellGuard();
+  if (guard_) updateGuard();
   os::Thread servo;
   const auto code = servo.start("hapticd-servo", [this, &ready, &refused, anyhow, locked] {
     refused = enterRealTime();
@@ -294,7 +294,7 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   if (guard_) guard_->arm(false);
   proximity.stop();
   host::Services::passOn(log::write);
-  event_log_->tell(*telemetry_->flight());
+  event_log_->logNewEvents(*telemetry_->flight());
   ended();
   watchdog->stop();
   if (!loop_->finished())

@@ -17,7 +17,7 @@
 #include "session/event_log.hpp"
 #include "session/telemetry.hpp"
 #include "watch/guard_process.hpp"
-#include "watch/watched.hpp"
+#include "watch/watch_target.hpp"
 #include "world/world.hpp"
 
 namespace hapticd::sim {
@@ -73,20 +73,20 @@ class Runner {
   World& world() { return *world_; }
   const World& world() const { return *world_; }
   /// [any] Gives an order to the servo. Only one thread may call this.
-  bool giveOrder(const Order& order) { return loop_->give(order); }
+  bool postOrder(const Order& order) { return loop_->post(order); }
   Door& door() { return loop_->door(); }
   /// [main] Called after the run: removes the file of the black box.
   void endBlackBox() { telemetry_->flight()->ring().removeFile(); }
-  /// [any] Called from the thread of giveOrder() when a model takes a place, or has left it (`name` is "").
+  /// [any] Called from the thread of postOrder() when a model takes a place, or has left it (`name` is "").
   void nameModel(uint32_t place, const std::string& name, const std::string& plugin);
-  /// [any] Called from the thread of giveOrder() when a program is about to lead.
+  /// [any] Called from the thread of postOrder() when a program is about to lead.
   void nameLeader(pid_t pid, const std::string& program) { event_log_->leads(pid, program); }
-  /// [any] Called from the thread of giveOrder() when a program begins to push on an arm.
+  /// [any] Called from the thread of postOrder() when a program begins to push on an arm.
   void namePusher(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
-  /// [any] Called from the thread of giveOrder() when a program has stopped pushing.
+  /// [any] Called from the thread of postOrder() when a program has stopped pushing.
   void forgetPusher(uint32_t arm, uint32_t place, PusherLog::End how);
-  /// [any] Called from the thread of giveOrder(): adds the counts of a program that pushed to the report.
-  void book(const record::ClientReport& client) { telemetry_->pushed(client); }
+  /// [any] Called from the thread of postOrder(): adds the counts of a program that pushed to the report.
+  void recordClient(const record::ClientReport& client) { telemetry_->pushed(client); }
 
   /// Folder for the quarantine list and for files after a crash; "" if there is none.
   const std::string& stateDir() const { return options_.state_dir; }
@@ -121,7 +121,7 @@ class Runner {
   Runner(const scene::Scene& scene, const RunOptions& options) : scene_(scene), options_(options) {}
   Result<void> openBlackBox(const LoopSettings& settings);
   Result<void> openArms(const host::Services::Log& log);
-  Result<void> runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every,
+  Result<void> runReal(watch::WatchTarget& watched, const std::function<void(const Runner&)>& every,
                        const std::function<void()>& ended);
   void serve(bool runs);
   void lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::function<void(const Runner&)>& every);
@@ -130,7 +130,7 @@ class Runner {
   bool mayLag() const;
   bool needsGuard() const;
   void startGuard();
-  void tellGuard();
+  void updateGuard();
   void keepGuard();
   void openEventLog();
   void lockMemory();

@@ -32,7 +32,7 @@ void Runner::startGuard() {
 void Runner::keepGuard() {
   constexpr uint32_t kMost = 8;
   if (guards_ended_ > kMost) return;
-  if (guard_->alive()) return tellGuard();
+  if (guard_->alive()) return updateGuard();
   const bool again = ++guards_ended_ <= kMost;
   const Result<void> begun = again ? guard_->restart() : Error{"it ended repeatedly"};
   log::write(begun ? HSP_LOG_WARNING : HSP_LOG_ERROR, "",
@@ -42,11 +42,11 @@ void Runner::keepGuard() {
 }
 
 /// Tells the guard how to reach the arms, because this changes when an arm is plugged in again.
-void Runner::tellGuard() {
+void Runner::updateGuard() {
   for (uint32_t i = 0; i < arms_.size(); ++i) {
     hdv_silence how{};
     const bool there = !arms_[i]->simulated() && arms_[i]->device().silence(how);
-    guard_->tell(i, there ? &how : nullptr);
+    guard_->sendSilence(i, there ? &how : nullptr);
   }
   if (loop_->ticks() > 0 && !loop_->finished()) guard_->arm(true);
 }

@@ -46,46 +46,46 @@ std::string causeOf(const Pull& pull) {
 
 std::string silenceReason(const ModelState& model) {
   if (model.shape == nullptr) return "";
-  return silenceReason(model.shape->name(), model.guard.trouble(), model.failed_status, model.pull);
+  return silenceReason(model.shape->name(), model.guard.fault(), model.failed_status, model.pull);
 }
 
 std::string silenceReason(const hapticd_event& event, const std::string& model) {
-  const auto trouble = static_cast<Trouble>(event.code);
-  if (trouble == Trouble::kJump) return silenceReason(model, trouble, 0, {-1, -1, event.value});
-  if (trouble != Trouble::kPulls) return silenceReason(model, trouble, static_cast<int32_t>(event.value));
+  const auto trouble = static_cast<ShapeFault>(event.code);
+  if (trouble == ShapeFault::kJump) return silenceReason(model, trouble, 0, {-1, -1, event.value});
+  if (trouble != ShapeFault::kPulls) return silenceReason(model, trouble, static_cast<int32_t>(event.value));
   return silenceReason(model, trouble, 0, {event.t, -1, event.value});
 }
 
-std::string silenceReason(const std::string& model, Trouble trouble, int32_t failed_status) {
+std::string silenceReason(const std::string& model, ShapeFault trouble, int32_t failed_status) {
   return silenceReason(model, trouble, failed_status, Pull());
 }
 
-std::string silenceReason(const std::string& model, Trouble trouble, int32_t failed_status, const Pull& pull) {
+std::string silenceReason(const std::string& model, ShapeFault trouble, int32_t failed_status, const Pull& pull) {
   const std::string who = "model " + model + ": its plugin ";
   switch (trouble) {
-    case Trouble::kNone:
-    case Trouble::kLost:
+    case ShapeFault::kNone:
+    case ShapeFault::kLost:
       return "";
-    case Trouble::kNotFinite:
+    case ShapeFault::kNotFinite:
       return who + "gave a force, pose or foot point that is not finite; it was silenced";
-    case Trouble::kBadStatus:
+    case ShapeFault::kBadStatus:
       return who + "returned status " + std::to_string(failed_status) +
              ", which a step may not return; it was silenced";
-    case Trouble::kOverrun:
+    case ShapeFault::kOverrun:
       return who +
              "took longer than the budget of a tick, several times; it was silenced; measure it with: hapticd plugin "
              "check FILE.so";
-    case Trouble::kJump:
+    case ShapeFault::kJump:
       return who + "gave forces that jumped by more than its claimed stiffness allows" + sizeOf(pull) +
              "; it was silenced; " + onPurpose(pull) + "test it with: hapticd plugin check FILE.so";
-    case Trouble::kTwists:
+    case ShapeFault::kTwists:
       return who +
              "gave torques that jumped by more than its claimed stiffness allows; it was silenced; test it with: "
              "hapticd plugin "
              "check FILE.so";
-    case Trouble::kNotUnit:
+    case ShapeFault::kNotUnit:
       return who + "gave a pose whose quaternion does not have length 1; it was silenced";
-    case Trouble::kPulls:
+    case ShapeFault::kPulls:
       return who + "pulled the probe into its surface" + placeOf(pull) + ": " + causeOf(pull) +
              ", although it reports to push only (HSP_R_PUSHES); it was silenced; test it "
              "with: hapticd plugin check FILE.so, which also says where";

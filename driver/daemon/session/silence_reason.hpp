@@ -10,15 +10,15 @@ namespace hapticd::servo {
 
 struct ModelState;
 struct Pull;
-enum class Trouble : uint8_t;
+enum class ShapeFault : uint8_t;
 
 /// [main] Returns why the model was silenced and what to do; "" if it was not silenced.
 std::string silenceReason(const ModelState& model);
 /// [main] Returns the same text from the data of a model. @param failed_status the first status that step() returned
 /// and that the ABI does not allow
-std::string silenceReason(const std::string& model, Trouble trouble, int32_t failed_status);
+std::string silenceReason(const std::string& model, ShapeFault trouble, int32_t failed_status);
 /// [main] Returns the same text with more detail. @param pull the pull, or the largest jump, for which it was silenced
-std::string silenceReason(const std::string& model, Trouble trouble, int32_t failed_status, const Pull& pull);
+std::string silenceReason(const std::string& model, ShapeFault trouble, int32_t failed_status, const Pull& pull);
 /// [main] Returns the text for an event of kind HAPTICD_SILENCED.
 std::string silenceReason(const hapticd_event& event, const std::string& model);
 

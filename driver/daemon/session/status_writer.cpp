@@ -41,7 +41,7 @@ void StatusWriter::name(uint32_t place, const std::string& name, const std::stri
   model.name.write(named(name, plugin));
 }
 
-void StatusWriter::tick(const status::Now& now, Nanoseconds late, Nanoseconds spent, const Core& core,
+void StatusWriter::tick(const status::TickStatus& now, Nanoseconds late, Nanoseconds spent, const Core& core,
                         const std::vector<std::unique_ptr<Arm>>& arms,
                         std::span<const record::ContactStatistics> books) noexcept HSP_RT {
   status::Page& page = file_->page();
@@ -49,7 +49,7 @@ void StatusWriter::tick(const status::Now& now, Nanoseconds late, Nanoseconds sp
   page.lateness_us.add(static_cast<double>(late) * 1e-3);
   page.compute_us.add(static_cast<double>(spent) * 1e-3);
   for (uint32_t i = 0; i < page.arms; ++i) {
-    status::ArmNow arm;
+    status::ArmStatus arm;
     for (int axis = 0; axis < 3; ++axis) {
       arm.position[axis] = arms[i]->probe().position[axis];
       arm.force[axis] = arms[i]->force()[axis];
@@ -89,7 +89,7 @@ void StatusWriter::models(uint64_t tick, const Core& core,
   for (const uint32_t place : core.live()) {
     if (place >= status::kMaxModels) break;  // places grow, so the rest has no entry either
     const ModelState& model = core.models()[place];
-    status::ModelNow now;
+    status::ModelStatus now;
     now.depth = std::numeric_limits<double>::quiet_NaN();
     for (uint32_t probe = 0; probe < core.probeCount(); ++probe) {
       const Contact& contact = core.contact(place, probe);
@@ -100,7 +100,7 @@ void StatusWriter::models(uint64_t tick, const Core& core,
     now.gain = model.guard.gain();
     now.tick = tick;
     now.status = model.status;
-    now.trouble = static_cast<uint32_t>(model.guard.trouble());
+    now.trouble = static_cast<uint32_t>(model.guard.fault());
     now.failed_status = model.failed_status;
     now.waits = model.until_free ? 1 : 0;
     page.model[place].now.write(now);

@@ -26,7 +26,7 @@ class StatusWriter {
 
   /// [rt] Called after a tick. Copies only models that changed, so models far away cost nothing.
   /// @param books statistics by the place of a model
-  void tick(const status::Now& now, Nanoseconds late, Nanoseconds spent, const Core& core,
+  void tick(const status::TickStatus& now, Nanoseconds late, Nanoseconds spent, const Core& core,
             const std::vector<std::unique_ptr<Arm>>& arms,
             std::span<const record::ContactStatistics> books) noexcept HSP_RT;
 

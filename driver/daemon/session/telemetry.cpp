@@ -58,7 +58,7 @@ void Telemetry::name(uint32_t place, const std::string& name, const std::string&
   plugins_[place] = plugin;
 }
 
-void Telemetry::tick(double t, double dt, Nanoseconds late, const Spent& spent, const Core& core,
+void Telemetry::tick(double t, double dt, Nanoseconds late, const TickDuration& spent, const Core& core,
                      const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
   BlackBoxRow row;
   row.t = t;
@@ -68,10 +68,10 @@ void Telemetry::tick(double t, double dt, Nanoseconds late, const Spent& spent, 
   lateness_us_.add(row.lateness_us);
   compute_us_.add(row.compute_us);
   arms_us_.add(static_cast<double>(spent.in_arms) * 1e-3);
-  bookModels(dt, core, arms, row);
+  recordModels(dt, core, arms, row);
   if (flight_) flight_->tick(t, dt, late, spent.total, core, arms);
-  if (status_) status_->tick({booked_, overruns_, missed_, t}, late, spent.total, core, arms, models_);
-  ++booked_;
+  if (status_) status_->tick({recorded_, overruns_, missed_, t}, late, spent.total, core, arms, models_);
+  ++recorded_;
   for (size_t i = 0; i < arms.size() && i < stops_.size(); ++i)
     if (arms[i]->probe().valid) stops_[i].add(arms[i]->info(), arms[i]->sample());
   if (!arms.empty()) {
@@ -99,8 +99,8 @@ bool Telemetry::held(const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP
   return !arms.empty() && std::all_of(arms.begin(), arms.end(), is);
 }
 
-void Telemetry::bookArms(uint32_t index, double dt, const Core& core,
-                         const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+void Telemetry::recordArms(uint32_t index, double dt, const Core& core,
+                           const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
   for (uint32_t arm = 0; arm < devices_.size() && arm < core.probeCount(); ++arm) {
     if (arm < arms.size() && arms[arm]->limiter().fault() == Fault::kStopped) continue;
     const Contact& contact = core.contact(index, arm);
@@ -110,12 +110,12 @@ void Telemetry::bookArms(uint32_t index, double dt, const Core& core,
   }
 }
 
-void Telemetry::bookWork(uint32_t index, const Core& core,
-                         const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+void Telemetry::recordWork(uint32_t index, const Core& core,
+                           const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
   for (uint32_t arm = 0; arm < stops_.size() && arm < core.probeCount() && arm < arms.size(); ++arm)
     if (arms[arm]->probe().valid)
-      work_[index * stops_.size() + arm].add(booked_, Eigen::Map<const Vector3d>(core.contact(index, arm).world.force),
-                                             arms[arm]->probe().position);
+      work_[index * stops_.size() + arm].add(
+          recorded_, Eigen::Map<const Vector3d>(core.contact(index, arm).world.force), arms[arm]->probe().position);
 }
 
 /// Returns the force [N] with which a contact pulls the probe deeper in, or 0.
@@ -124,14 +124,14 @@ double Telemetry::pullOf(const Contact& contact, const Arm& arm) noexcept HSP_RT
   return pulls ? Eigen::Map<const Vector3d>(contact.world.force).norm() : 0;
 }
 
-void Telemetry::bookModels(double dt, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms,
-                           BlackBoxRow& row) noexcept HSP_RT {
+void Telemetry::recordModels(double dt, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms,
+                             BlackBoxRow& row) noexcept HSP_RT {
   const bool pushed = !held(arms);
   for (const uint32_t index : core.live()) {
     const ModelState& model = core.models()[index];
     if (model.status < row.status) row.status = model.status;
     double depth = -HUGE_VAL, force = 0;
-    Odd odd;
+    ImproperForce odd;
     bool held = false;
     for (uint32_t probe = 0; probe < core.probeCount(); ++probe) {
       const Contact& contact = core.contact(index, probe);
@@ -153,9 +153,9 @@ void Telemetry::bookModels(double dt, const Core& core, const std::vector<std::u
     if (depth > -HUGE_VAL && model.status >= HSP_OK) models_[index].addFoot(held, model.status == HSP_DEGRADED);
     // The force with which a model in trouble fades out is not its answer, so it is not counted.
     const bool any = odd.untraced + odd.depthless + odd.outside + odd.pull > 0;
-    if (any && pushed && model.status >= HSP_OK && !model.guard.quarantined()) bookOdd(index, odd);
-    bookArms(index, dt, core, arms);
-    if (pushed) bookWork(index, core, arms);
+    if (any && pushed && model.status >= HSP_OK && !model.guard.quarantined()) recordImproper(index, odd);
+    recordArms(index, dt, core, arms);
+    if (pushed) recordWork(index, core, arms);
     if (depth > -HUGE_VAL && (row.model == UINT32_MAX || depth > row.depth_m)) {
       row.depth_m = static_cast<float>(depth);
       row.model = index;
@@ -163,7 +163,7 @@ void Telemetry::bookModels(double dt, const Core& core, const std::vector<std::u
   }
 }
 
-void Telemetry::bookOdd(uint32_t index, const Odd& odd) noexcept HSP_RT {
+void Telemetry::recordImproper(uint32_t index, const ImproperForce& odd) noexcept HSP_RT {
   if (odd.untraced > 0) models_[index].addUntraced(odd.untraced);
   if (odd.depthless > 0) models_[index].addDepthless(odd.depthless);
   if (odd.outside > 0) models_[index].addOutside(odd.outside);

@@ -68,7 +68,7 @@ class Telemetry final : public TickLog {
   }
 
   /// [rt] Adds one tick to the statistics.
-  void tick(double t, double dt, Nanoseconds late, const Spent& spent, const Core& core,
+  void tick(double t, double dt, Nanoseconds late, const TickDuration& spent, const Core& core,
             const Arms& arms) noexcept HSP_RT override;
 
   /// [rt] `missed` whole periods were skipped.
@@ -94,19 +94,19 @@ class Telemetry final : public TickLog {
   void keep(const BlackBoxRow& row) noexcept HSP_RT;
   std::vector<record::ArmContact> armsOf(size_t place) const;
   static bool held(const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
-  void bookArms(uint32_t index, double dt, const Core& core,
-                const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+  void recordArms(uint32_t index, double dt, const Core& core,
+                  const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
   /// [N] Largest force of a model on any probe in a tick, in cases without a proper contact: nothing traced, no depth,
   /// or outside the surface; and its largest pull.
-  struct Odd {
+  struct ImproperForce {
     double untraced = 0, depthless = 0, outside = 0, pull = 0;
   };
-  void bookOdd(uint32_t index, const Odd& odd) noexcept HSP_RT;
-  void bookWork(uint32_t index, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+  void recordImproper(uint32_t index, const ImproperForce& odd) noexcept HSP_RT;
+  void recordWork(uint32_t index, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
   record::ModelReport reportOf(size_t place) const;
   static double pullOf(const Contact& contact, const Arm& arm) noexcept HSP_RT;
-  void bookModels(double dt, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms,
-                  BlackBoxRow& row) noexcept HSP_RT;
+  void recordModels(double dt, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms,
+                    BlackBoxRow& row) noexcept HSP_RT;
 
   std::vector<std::string> names_, plugins_;
   std::vector<record::ModelReport> left_;  ///< reports of models that have left
@@ -127,7 +127,7 @@ class Telemetry final : public TickLog {
   Nanoseconds elapsed_ = 0;
   std::unique_ptr<Flight> flight_;
   std::unique_ptr<StatusWriter> status_;
-  uint64_t booked_ = 0;
+  uint64_t recorded_ = 0;
 };
 
 }  // namespace hapticd::servo

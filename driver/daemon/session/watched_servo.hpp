@@ -6,11 +6,11 @@
 
 #include "servo/loop/loop.hpp"
 #include "session/telemetry.hpp"
-#include "watch/watched.hpp"
+#include "watch/watch_target.hpp"
 
 namespace hapticd::servo {
 
-class WatchedServo final : public watch::Watched {
+class WatchedServo final : public watch::WatchTarget {
  public:
   /// [main] The arguments must outlive this object.
   WatchedServo(Loop& loop, std::vector<std::unique_ptr<Arm>>& arms, const Telemetry& telemetry);
@@ -24,7 +24,7 @@ class WatchedServo final : public watch::Watched {
   Nanoseconds stopAsked() const noexcept override { return loop_.stopAsked(); }
   void cut(double stuck_for) noexcept override;
   bool cutLeft() const noexcept override;
-  const Owner* inServo() const noexcept override { return calledBy(Worker::kServo); }
+  const Owner* inServo() const noexcept override { return ownerOfWorker(Worker::kServo); }
   const void* blackBox() const noexcept override;
   size_t blackBoxBytes() const noexcept override;
 

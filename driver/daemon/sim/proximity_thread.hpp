@@ -6,8 +6,8 @@
 #include <atomic>
 #include <functional>
 
-#include "base/blame.hpp"
 #include "base/clock.hpp"
+#include "base/code_owner.hpp"
 #include "base/os.hpp"
 #include "sim/proximity.hpp"
 
@@ -17,7 +17,7 @@ class ProximityThread {
  public:
   /// @param wants_search [any] returns true if a search is needed now, without waiting for the period
   ProximityThread(Proximity& proximity, std::function<bool()> wants_search)
-      : proximity_(proximity), wants_search_(std::move(wants_search)) {}
+      : proximity_(proximity), needs_search_(std::move(wants_search)) {}
   ~ProximityThread() { stop(); }
 
   /// [main] Searches once, so that tracing starts with the first tick.
@@ -50,18 +50,18 @@ class ProximityThread {
 
   void loop() {
     constexpr Nanoseconds kPoll = 1'000'000;  // longest delay of an urgent search
-    const Working working(Worker::kSearch);
+    const WorkerScope working(Worker::kSearch);
     RealClock clock(0);
     for (Nanoseconds next = clock.now(); !stop_;) {
       const Nanoseconds now = clock.waitUntil(clock.now() + kPoll);
-      if (now < next && !wants_search_()) continue;
+      if (now < next && !needs_search_()) continue;
       next = now + link::kSearchPeriod;
       proximity_.search();
     }
   }
 
   Proximity& proximity_;
-  std::function<bool()> wants_search_;
+  std::function<bool()> needs_search_;
   std::atomic<bool> stop_{false};
   os::Thread thread_;
 };

@@ -54,23 +54,23 @@ class SharedHistogram {
 };
 
 /// Number and times of the last tick.
-struct Now {
+struct TickStatus {
   uint64_t tick = 0, overruns = 0, missed = 0;
   double t = 0;  ///< [s]
 };
 
-struct ArmNow {
+struct ArmStatus {
   double position[3] = {}, force[3] = {};  ///< [m] position of the tip; [N] force as sent; world frame
   uint64_t sequence = 0;                   ///< number of the newest sample
   uint32_t fault = 0, valid = 0;
 };
 
-struct ModelNow {
+struct ModelStatus {
   double depth = 0, force = 0, gain = 0;  ///< [m] depth, NaN if not traced; [N] force; factor of the force, 0 to 1
   uint64_t tick = 0;                      ///< tick in which it was last stepped
   int32_t status = 0;
   uint32_t iterations = 0;
-  uint32_t trouble = 0;       ///< servo::Trouble: why it is not felt
+  uint32_t trouble = 0;       ///< servo::ShapeFault: why it is not felt
   int32_t failed_status = 0;  ///< the first status that step() returned and that the ABI does not allow; 0: none
   /// waits: 1 if it was added or enabled with a tip inside, and is not felt until the tip has left. none: unused.
   uint32_t waits = 0, none = 0;
@@ -87,7 +87,7 @@ struct Pusher {
   char program[56] = {};
   uint64_t pid = 0;  ///< 0 if the place is empty
 };
-struct PusherNow {
+struct PusherStatus {
   uint64_t answers = 0, in_time = 0, next_tick = 0, silences = 0;
   double force = 0, largest = 0;  ///< [N] its force now; its largest force so far
 };
@@ -101,21 +101,21 @@ struct Page {
   std::atomic<uint64_t> magic{0};
   uint32_t bytes = 0, arms = 0, models = 0, pid = 0;
   double rate = 0;  ///< [Hz] rate of the servo, as asked for
-  Slot<Now> now;
+  Slot<TickStatus> now;
   SharedHistogram lateness_us, compute_us;
   struct {
     Slot<Name> name;
-    Slot<ArmNow> now;
+    Slot<ArmStatus> now;
   } arm[kMaxArms];
   struct {
     Slot<Name> name;
-    Slot<ModelNow> now;
+    Slot<ModelStatus> now;
     SharedHistogram step_us;
   } model[kMaxModels];
   double answer_time = 0;  ///< [s] longest time in a tick for which the servo waits for programs' answers
   struct {
     Slot<Pusher> who;
-    Slot<PusherNow> now;
+    Slot<PusherStatus> now;
   } pusher[kMaxArms * kPushersOfArm];  ///< places of arm i begin at i * kPushersOfArm
   Slot<ModelFeet> feet[kMaxModels];    ///< feet of each model, by its place
 };

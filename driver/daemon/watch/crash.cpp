@@ -15,10 +15,10 @@
 #include "base/fatal_signals_posix.hpp"
 #include "base/os.hpp"
 #include "base/owner_file.hpp"
-#include "watch/death.hpp"
-#include "watch/ended.hpp"
+#include "watch/crash_steps.hpp"
+#include "watch/idle_target.hpp"
 #include "watch/process_end.hpp"
-#include "watch/signal_words.hpp"
+#include "watch/signal_names.hpp"
 
 namespace hapticd::watch {
 
@@ -26,7 +26,7 @@ namespace {
 
 /// Everything that the signal handler needs, prepared before, because a handler cannot allocate memory.
 struct Prepared {
-  std::atomic<Watched*> servo{nullptr};
+  std::atomic<WatchTarget*> servo{nullptr};
   std::atomic<int> process{0};       ///< the watched process; in a fork of it the handler does nothing
   std::atomic<bool> leaving{false};  ///< the process ends normally, so a call of exit() is not a fault
   char dir[kLongestPath] = "";       // folder for the black box and the quarantine file; "": neither is written
@@ -42,11 +42,11 @@ bool sentByOther(const siginfo_t& info) noexcept {
 /// Returns the owner of the code that raised a signal; nullptr if the owner is unknown. The owner counts as unknown if
 /// another process sent the signal, or if it was sent to the whole process: no name is better than a wrong one.
 const Owner* culpritOf(int signal, const siginfo_t& info, const void* context) noexcept {
-  const bool own_fault = wordsOfCrash(signal) != nullptr && info.si_code > 0;
+  const bool own_fault = crashName(signal) != nullptr && info.si_code > 0;
   const bool raised = info.si_code == SI_TKILL && info.si_pid == getpid();
   if (!own_fault && !raised) return nullptr;
-  if (const Owner* called = calledHere()) return called;
-  return isWorker() ? nullptr : ownerInterrupted(context);  // perhaps a thread that a plugin or module started
+  if (const Owner* called = currentOwner()) return called;
+  return isWorker() ? nullptr : interruptedOwner(context);  // perhaps a thread that a plugin or module started
 }
 
 /// True if malloc() or free() aborted because its own data were overwritten. The code that overwrote them has returned
@@ -66,7 +66,7 @@ bool isForeign(const Owner& owner) noexcept {
 }
 
 /// Returns the watched servo; nullptr if there is none, or if this process is a fork of the watched one.
-Watched* watchedHere() noexcept {
+WatchTarget* watchedHere() noexcept {
   return prepared.process.load() == getpid() ? prepared.servo.load() : nullptr;
 }
 
@@ -77,15 +77,15 @@ void dieBySystem(int signal) noexcept {
 }
 
 void onFatal(int signal, siginfo_t* info, void* context) {
-  Watched* servo = watchedHere();
-  const bool other = wordsOfCrash(signal) == nullptr && sentByOther(*info);
+  WatchTarget* servo = watchedHere();
+  const bool other = crashName(signal) == nullptr && sentByOther(*info);
   if ((servo == nullptr && prepared.servo.load() != nullptr) || (other && servo != nullptr && !servo->drives()))
     return dieBySystem(signal);
   if (servo != nullptr && other) {
     servo->stop();
     Line()
         .add("\nwarning: the run ends by ")
-        .add(words(signal).text())
+        .add(signalName(signal).text())
         .add(", which another process sent\n")
         .write(STDERR_FILENO);
     return;
@@ -98,19 +98,19 @@ void onFatal(int signal, siginfo_t* info, void* context) {
   const Suspicion suspicion = culprit != nullptr || !own ? Suspicion::kNone
                               : torn                     ? Suspicion::kTorn
                                                          : Suspicion::kCrash;
-  die(servo, prepared.dir, {words(signal).text(), culprit, suspicion});
+  endInSteps(servo, prepared.dir, {signalName(signal).text(), culprit, suspicion});
 }
 
 /// Handles Ctrl-C, SIGTERM and similar signals. If this process sent the signal itself, a module did it and no person
 /// wished it, so it counts as a fault.
 void onStop(int signal, siginfo_t* info, void* context) {
   const bool own = info->si_code <= 0 && info->si_code != SI_TIMER && info->si_pid == getpid();
-  if (own && watchedHere() != nullptr) dieOf(words(signal).text(), culpritOf(signal, *info, context));
+  if (own && watchedHere() != nullptr) endByFault(signalName(signal).text(), culpritOf(signal, *info, context));
   if (void (*former)(int) = os::formerStop(signal)) return former(signal);
-  const Owner* keeps = watchedHere() != nullptr ? calledHere() : nullptr;
+  const Owner* keeps = watchedHere() != nullptr ? currentOwner() : nullptr;
   if (keeps != nullptr) {
     Line line;
-    addOwner(line.add("\nwarning: ended by ").add(words(signal).text()).add(" while "), *keeps).add(" was");
+    addOwner(line.add("\nwarning: ended by ").add(signalName(signal).text()).add(" while "), *keeps).add(" was");
     addCall(line, *keeps, callNameHere()).add("\n");
     line.write(STDERR_FILENO);
   }
@@ -121,9 +121,9 @@ void onStop(int signal, siginfo_t* info, void* context) {
 /// run.
 void dieOfExit(const char* what) noexcept {
   if (prepared.leaving.load() || watchedHere() == nullptr) return;
-  const Owner* culprit = calledHere();
+  const Owner* culprit = currentOwner();
   if (culprit == nullptr && !isWorker()) culprit = ownerOnStack(__builtin_frame_address(0));
-  dieOf(what, culprit);
+  endByFault(what, culprit);
 }
 
 void onExit() {
@@ -132,7 +132,7 @@ void onExit() {
 
 }  // namespace
 
-void guardAgainstCrash(Watched& servo, const std::filesystem::path& dir) {
+void guardAgainstCrash(WatchTarget& servo, const std::filesystem::path& dir) {
   static const bool at_exit = std::atexit(&onExit) == 0 && std::at_quick_exit(&onExit) == 0;
   (void)at_exit;  // atexit() fails only if there is no memory; the next allocation reports that
   const std::string text = dir.string();
@@ -155,7 +155,7 @@ void forgetCrash() {
 
 void guardTheEnd(const std::filesystem::path& dir) {
 #ifndef HAPTICD_SANITIZED
-  static Ended& nothing = *new Ended;  // the handlers outlive every static object
+  static IdleTarget& nothing = *new IdleTarget;  // the handlers outlive every static object
   prepared.leaving.store(true);
   guardAgainstCrash(nothing, dir);
   os::onStopSignals(nullptr);
@@ -165,7 +165,7 @@ void guardTheEnd(const std::filesystem::path& dir) {
 #endif
 }
 
-CrashGuard::CrashGuard(Watched& servo, const std::filesystem::path& dir)
+CrashGuard::CrashGuard(WatchTarget& servo, const std::filesystem::path& dir)
     : before_(prepared.servo.load()), dir_before_(prepared.dir) {
 #ifndef HAPTICD_SANITIZED
   guardAgainstCrash(servo, dir);
@@ -181,8 +181,8 @@ CrashGuard::~CrashGuard() {
 #endif
 }
 
-void endAnyway(const Owner* keeps) noexcept {
-  Watched* servo = prepared.servo.load();
+void forceEnd(const Owner* keeps) noexcept {
+  WatchTarget* servo = prepared.servo.load();
   if (servo == nullptr) endProcess(1);
   cutAndAwait(*servo);
   Line line;
@@ -196,8 +196,8 @@ void endAnyway(const Owner* keeps) noexcept {
   endProcess(1);
 }
 
-void dieOf(const char* reason, const Owner* culprit) noexcept {
-  die(prepared.servo.load(), prepared.dir, {reason, culprit, Suspicion::kNone});
+void endByFault(const char* reason, const Owner* culprit) noexcept {
+  endInSteps(prepared.servo.load(), prepared.dir, {reason, culprit, Suspicion::kNone});
 }
 
 }  // namespace hapticd::watch

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "watch/watched.hpp"
+#include "watch/watch_target.hpp"
 
 namespace hapticd::watch {
 
@@ -13,7 +13,7 @@ namespace hapticd::watch {
 /// process sends a signal that is not a crash, such as SIGUSR1, the run ends normally. SIGTERM and the like keep their
 /// former effect, unless this process sent them itself.
 /// @param dir folder for the black box and the quarantine file; if it is empty, neither is written
-void guardAgainstCrash(Watched& servo, const std::filesystem::path& dir);
+void guardAgainstCrash(WatchTarget& servo, const std::filesystem::path& dir);
 
 /// [main] Ends the watching of the servo, so that it may be destroyed.
 void forgetCrash();
@@ -26,22 +26,22 @@ void guardTheEnd(const std::filesystem::path& dir);
 /// do nothing here, because the sanitizers have their own handlers.
 class CrashGuard {
  public:
-  CrashGuard(Watched& servo, const std::filesystem::path& dir);
+  CrashGuard(WatchTarget& servo, const std::filesystem::path& dir);
   ~CrashGuard();
   CrashGuard(const CrashGuard&) = delete;
   CrashGuard& operator=(const CrashGuard&) = delete;
 
  private:
-  Watched* before_;
+  WatchTarget* before_;
   std::filesystem::path dir_before_;
 };
 
 /// [any] Does what the signal handler does, and ends the process with exit code 1. Async-signal-safe.
 /// @param reason such as "Segmentation fault" @param culprit owner of the code that did it; nullptr blames nobody
-[[noreturn]] void dieOf(const char* reason, const Owner* culprit) noexcept;
+[[noreturn]] void endByFault(const char* reason, const Owner* culprit) noexcept;
 
 /// [any] Switches the motors off and ends the process at once, because it was told to end and did not. No plugin is put
 /// in quarantine. @param keeps owner of the code that did not return; nullptr if it is unknown
-[[noreturn]] void endAnyway(const Owner* keeps) noexcept;
+[[noreturn]] void forceEnd(const Owner* keeps) noexcept;
 
 }  // namespace hapticd::watch

@@ -26,19 +26,20 @@ void EndWatch::lastCalls(std::function<void()> stuck) {
 
 void EndWatch::watch() {
   std::unique_lock lock(mutex_);
-  while (!stopped_.wait_for(lock, std::chrono::nanoseconds(kLookEvery), [this] { return stop_; })) look(monotonicNow());
+  while (!stopped_.wait_for(lock, std::chrono::nanoseconds(kLookEvery), [this] { return stop_; }))
+    check(monotonicNow());
 }
 
 /// A run with slow ticks gets the time to ramp its forces out. A run whose tick never ends cannot do that, so it is
 /// ended.
-void EndWatch::look(Nanoseconds now) noexcept {
+void EndWatch::check(Nanoseconds now) noexcept {
   if (stuck_) {
     looked_last_ += kLookEvery;
     if (looked_last_ >= kWaitsForLast) stuck_();
     return;
   }
   const uint64_t ticks = servo_.ticks();
-  lookForHang(ticks);
+  checkForHang(ticks);
   const bool moved = std::exchange(ticks_, ticks) != ticks;
   if (servo_.stopAsked() == 0 || moved) {
     still_since_ = now;
@@ -49,7 +50,7 @@ void EndWatch::look(Nanoseconds now) noexcept {
 
 /// Time is counted by the number of calls, not by a clock. So a process that was stopped by a debugger, or a laptop
 /// that slept, does not count as hanging.
-void EndWatch::lookForHang(uint64_t ticks) noexcept {
+void EndWatch::checkForHang(uint64_t ticks) noexcept {
   const Nanoseconds begun = servo_.tickBegun(), cpu = servo_.cpuTime();
   const bool same = std::exchange(tick_begun_, begun) == begun && begun != 0 && ticks == ticks_;
   if (!same) looked_ = 0, cpu_before_ = cpu;

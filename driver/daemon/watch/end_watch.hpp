@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "base/os.hpp"
-#include "watch/watched.hpp"
+#include "watch/watch_target.hpp"
 
 namespace hapticd::watch {
 
@@ -20,15 +20,15 @@ class EndWatch {
   /// [ns] longest processor time of a tick. No useful shape takes this long, and processor time does not grow on a busy
   /// machine.
   static constexpr Nanoseconds kHungAfter = 5'000'000'000;
-  /// [ns] longest time of a tick that waits for something, such as a lock or a file, counted in calls of look().
+  /// [ns] longest time of a tick that waits for something, such as a lock or a file, counted in calls of check().
   static constexpr Nanoseconds kWaitsAfter = 30'000'000'000;
   /// [ns] longest time of the calls after the last tick, in which a module may wait for its own threads, counted in
-  /// calls of look().
+  /// calls of check().
   static constexpr Nanoseconds kWaitsForLast = 10'000'000'000;
 
   /// [main] @param late ends a process that was asked to end @param hung ends a process whose tick hangs; if it finds
   /// nobody to blame it returns, and is called again later
-  EndWatch(const Watched& servo, std::function<void()> late, std::function<void()> hung)
+  EndWatch(const WatchTarget& servo, std::function<void()> late, std::function<void()> hung)
       : servo_(servo), late_(std::move(late)), hung_(std::move(hung)) {}
   ~EndWatch();
   EndWatch(const EndWatch&) = delete;
@@ -39,13 +39,13 @@ class EndWatch {
   /// @param stuck ends the process after that; if it finds nobody to blame it returns, and is called again later
   void lastCalls(std::function<void()> stuck);
   /// [any] Checks the servo once. The thread only calls this, every kLookEvery.
-  void look(Nanoseconds now) noexcept;
+  void check(Nanoseconds now) noexcept;
 
  private:
   void watch();
-  void lookForHang(uint64_t ticks) noexcept;
+  void checkForHang(uint64_t ticks) noexcept;
 
-  const Watched& servo_;
+  const WatchTarget& servo_;
   std::function<void()> late_, hung_, stuck_;
   uint64_t ticks_ = UINT64_MAX;
   Nanoseconds still_since_ = 0;

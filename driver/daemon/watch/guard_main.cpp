@@ -69,11 +69,11 @@ class GuardLoop {
 
   /// Watches until the daemon has ended.
   void run() {
-    while (listen()) look(monotonicNow());
+    while (listen()) checkTicks(monotonicNow());
     if (beat_.armed.load() == 0) return;
     constexpr int kTimes = 3;  // the first command may fail while the kernel cancels a transfer of the daemon
     for (int i = 0; i < kTimes; ++i) silenceAll(true);
-    tell("the daemon has ended");
+    printEnd("the daemon has ended");
   }
 
  private:
@@ -98,7 +98,7 @@ class GuardLoop {
   }
 
   /// Checks that ticks go on. If a check comes late, the machine may have stood still, so only part of the time counts.
-  void look(Nanoseconds now) {
+  void checkTicks(Nanoseconds now) {
     const Nanoseconds way = now - std::exchange(last_, now);
     const uint64_t ticks = beat_.ticks.load();
     if (beat_.armed.load() == 0 || std::exchange(ticks_, ticks) != ticks) {
@@ -109,7 +109,7 @@ class GuardLoop {
     still_ += way <= kOnTime ? way : kLook;
     if (still_ > patience_ && !std::exchange(silenced_, true)) {
       silenceAll(false);
-      tell("the servo makes no more ticks");
+      printEnd("the servo makes no more ticks");
     }
     if (still_ > kKillAfter && getppid() == daemon_) kill(daemon_, SIGKILL);
   }
@@ -121,7 +121,7 @@ class GuardLoop {
       if (target.fd && (gone || target.how.kind != HDV_BY_USB)) failed_ = !silence(target) || failed_;
   }
 
-  void tell(const char* why) const {
+  void printEnd(const char* why) const {
     std::fprintf(stderr, "guard: %s: %s\n", why,
                  failed_ ? "an arm could not be switched off; switch it off yourself" : "the arms were switched off");
   }

@@ -101,7 +101,7 @@ GuardProcess::~GuardProcess() {
   if (process_ > 0) waitpid(process_, nullptr, 0);
 }
 
-void GuardProcess::tell(uint32_t arm, const hdv_silence* how) {
+void GuardProcess::sendSilence(uint32_t arm, const hdv_silence* how) {
   const uint64_t epoch = how != nullptr ? how->epoch : UINT64_MAX;
   const auto known = told_.find(arm);
   if (known != told_.end() && known->second == epoch) return;

@@ -25,7 +25,7 @@ class GuardProcess {
 
   /// [main] Tells the guard how to switch an arm off; nullptr if that is impossible now. The same data are sent only
   /// once.
-  void tell(uint32_t arm, const hdv_silence* how);
+  void sendSilence(uint32_t arm, const hdv_silence* how);
   /// [main] Starts or ends the watching. The guard must watch from the first tick on, but not while the process is
   /// stopped on purpose (Ctrl-Z).
   void arm(bool watches) noexcept { beat_->armed.store(watches ? 1 : 0); }
@@ -33,7 +33,7 @@ class GuardProcess {
   std::atomic<uint64_t>& ticks() noexcept { return beat_->ticks; }
   /// [main] True if the guard process lives.
   bool alive() noexcept;
-  /// [main] Starts a new guard in place of one that has ended. tell() must be called again for every arm.
+  /// [main] Starts a new guard in place of one that has ended. sendSilence() must be called again for every arm.
   Result<void> restart();
 
  private:

@@ -29,9 +29,9 @@ bool Watchdog::check(Nanoseconds now) noexcept {
   watchEnd();
   const uint64_t tick = servo_.ticks();
   const Nanoseconds begun = servo_.tickBegun(), next = servo_.nextTick();
-  if (begun != 0 && now > begun) return judge({tick, false}, now - begun, seen);
+  if (begun != 0 && now > begun) return checkPhase({tick, false}, now - begun, seen);
   // In a simulation, late ticks can hurt nobody.
-  if (begun == 0 && next != 0 && now > next && !servo_.simulated()) return judge({tick, true}, now - next, seen);
+  if (begun == 0 && next != 0 && now > next && !servo_.simulated()) return checkPhase({tick, true}, now - next, seen);
   phase_ = {};
   return false;
 }
@@ -44,7 +44,7 @@ void Watchdog::watchEnd() noexcept {
 
 /// Judges the present phase at one check, and returns true if it cut the motors. @param overdue [ns] time since the
 /// tick began, or should have begun @param seen [ns] part of the time before this check that counts
-bool Watchdog::judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcept {
+bool Watchdog::checkPhase(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcept {
   if (!(phase == phase_)) {  // the first check in this phase
     phase_ = phase;
     cpu_at_phase_ = servo_.cpuTime();

@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "base/os.hpp"
-#include "watch/watched.hpp"
+#include "watch/watch_target.hpp"
 
 namespace hapticd::watch {
 
@@ -35,7 +35,7 @@ class Watchdog {
 
   /// [main] @param hung ends the process @param missed_after [ns] longest delay of the start of a tick
   /// @param stuck_after [ns] longest duration of a tick
-  Watchdog(Watched& servo, std::function<void()> hung, Nanoseconds missed_after = kMissedAfter,
+  Watchdog(WatchTarget& servo, std::function<void()> hung, Nanoseconds missed_after = kMissedAfter,
            Nanoseconds stuck_after = kStuckAfter)
       : servo_(servo), hung_(std::move(hung)), missed_after_(missed_after), stuck_after_(stuck_after) {}
   ~Watchdog() { stop(); }
@@ -63,13 +63,13 @@ class Watchdog {
     bool waits = false;
     bool operator==(const Phase&) const = default;
   };
-  bool judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcept;
+  bool checkPhase(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcept;
   void watchEnd() noexcept;
   Nanoseconds patience(Phase phase) const noexcept;
   void watchHung(Phase phase) noexcept;
   bool mayBePaused(Phase phase, Nanoseconds stuck) const noexcept;
 
-  Watched& servo_;
+  WatchTarget& servo_;
   std::function<void()> hung_, late_;
   Nanoseconds missed_after_, stuck_after_;
 

@@ -91,7 +91,7 @@ Result<std::unique_ptr<host::ShapeInstance>> World::prepare(const scene::Model& 
   return shape;
 }
 
-void World::keep(uint32_t place, std::unique_ptr<host::ShapeInstance> shape, const scene::Model& model) {
+void World::store(uint32_t place, std::unique_ptr<host::ShapeInstance> shape, const scene::Model& model) {
   shapes_[place] = std::move(shape);
   proximity_->add(place, *shapes_[place], startPose(model), activation_.max_probes);
 }

@@ -36,7 +36,7 @@ class World {
   Result<std::unique_ptr<host::ShapeInstance>> prepare(const scene::Model& model, const host::Services::Log& log) const;
 
   /// [main] Puts a shape into an empty place, keeps it alive, and adds it to the proximity search.
-  void keep(uint32_t place, std::unique_ptr<host::ShapeInstance> shape, const scene::Model& model);
+  void store(uint32_t place, std::unique_ptr<host::ShapeInstance> shape, const scene::Model& model);
 
   /// [main] Removes the model of a place from the proximity search. Call it before the servo is told to release the
   /// model.

@@ -21,7 +21,7 @@ Arm::~Arm() {
   hapticd_lead_end(lead_);
 }
 
-bool Arm::look(hapticd_state& state) {
+bool Arm::readState(hapticd_state& state) {
   constexpr int kPatienceMs = 500;
   hapticd_state newer;
   if (hapticd_next_state(client_, device_, UINT64_MAX, kPatienceMs, &state) != 1) return false;
@@ -44,7 +44,7 @@ Result<void> Arm::push(const double force[3]) {
   return {};
 }
 
-void Arm::wanted(double force[3]) const {
+void Arm::readForce(double force[3]) const {
   const std::lock_guard guard(lock_);
   const bool holds = nowNs() < heard_ns_ + kHoldsNs;
   for (int i = 0; i < 3; ++i) force[i] = holds ? force_[i] : 0;
@@ -61,7 +61,7 @@ void Arm::run() {
     hapticd_push push{};
     push.tick = state.tick;
     push.woke_ns = nowNs();
-    wanted(push.force);
+    readForce(push.force);
     push.written_ns = nowNs();
     hapticd_lead_push(lead_, &push);
   }

@@ -25,11 +25,11 @@ class Arm {
 
   const std::string& name() const { return name_; }
   /// [main] Reads the newest state. Returns false if no new states come any more.
-  bool look(hapticd_state& state);
+  bool readState(hapticd_state& state);
   /// [main] Sets the force [N, world frame] that is applied from now on. The first call begins a lead of the force.
   Result<void> push(const double force[3]);
   /// [main] Returns the force that is applied now [N].
-  void wanted(double force[3]) const;
+  void readForce(double force[3]) const;
 
  private:
   void run();

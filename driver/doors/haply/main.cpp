@@ -23,43 +23,43 @@ void onEnd(int) {
   told_to_end = true;
 }
 
-void say(int number, const std::string& what) {
+void print(int number, const std::string& what) {
   if (!what.empty()) std::fprintf(stderr, "program %d: %s\n", number, what.c_str());
 }
 
 /// Serves one program, until it leaves or the daemon ends.
-void converse(websocket::Channel& channel, const std::string& daemon, int number) {
+void serveProgram(websocket::Channel& channel, const std::string& daemon, int number) {
   constexpr int kSendMs = 2000;
   auto session = haply::Session::open(daemon, number);
-  if (!session) return say(number, session.error());
+  if (!session) return print(number, session.error());
   std::string text = (*session)->inventory();
   while (!text.empty() && !told_to_end && channel.send(text, kSendMs)) {
     constexpr int kSilentMs = 30'000;  // [ms] a program that is silent for longer counts as gone
     const auto message = channel.receive(kSilentMs);
     if (!message) return;
     text = (*session)->answer(*message);
-    say(number, (*session)->complaint());
+    print(number, (*session)->takeProblem());
   }
-  if (text.empty()) say(number, "the daemon reports no more ticks");
+  if (text.empty()) print(number, "the daemon reports no more ticks");
 }
 
-struct Visit {
+struct ProgramThread {
   std::thread thread;
   std::atomic<bool> over{false};
 };
 
 void serve(websocket::Listener& listener, const std::string& daemon) {
-  std::list<Visit> visits;
+  std::list<ProgramThread> visits;
   for (int number = 1; !told_to_end;) {
-    visits.remove_if([](Visit& visit) {
+    visits.remove_if([](ProgramThread& visit) {
       if (visit.over) visit.thread.join();
       return visit.over.load();
     });
     std::shared_ptr<websocket::Channel> channel = listener.accept(kLookMs);
     if (!channel || visits.size() >= kMostSessions) continue;
-    Visit& visit = visits.emplace_back();
+    ProgramThread& visit = visits.emplace_back();
     visit.thread = std::thread([&visit, channel, daemon, number] {
-      converse(*channel, daemon, number);
+      serveProgram(*channel, daemon, number);
       visit.over = true;
     });
     ++number;

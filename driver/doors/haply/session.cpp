@@ -82,13 +82,13 @@ Session::~Session() {
   hapticd_close(client_);
 }
 
-std::string Session::tell(bool all) {
+std::string Session::stateMessage(bool all) {
   Json arms = Json::array(), grips = Json::array();
   for (const auto& arm : arms_) {
     hapticd_state state;
-    if (!arm->look(state)) return "";
+    if (!arm->readState(state)) return "";
     double wanted[3];
-    arm->wanted(wanted);
+    arm->readForce(wanted);
     Json& one = arms.emplace_back(Json{{"device_id", arm->name()}, {"state", stateOf(state, wanted, basis_)}});
     one["status"] = {{"calibrated", (state.flags & HAPTICD_GOOD) != 0},
                      {"in_use", true},
@@ -104,60 +104,60 @@ std::string Session::tell(bool all) {
 }
 
 std::string Session::inventory() {
-  return tell(true);
+  return stateMessage(true);
 }
 
 std::string Session::answer(const std::string& message) {
   const Json json = Json::parse(message, nullptr, false);
   bool all = false;
   if (json.is_object()) {
-    obey(json);
+    execute(json);
     all = childOf(json, "session").contains("force_render_full_state");
   } else {
-    complain("a message is not a JSON object");
+    noteProblem("a message is not a JSON object");
   }
-  return tell(all);
+  return stateMessage(all);
 }
 
-void Session::obey(const Json& message) {
+void Session::execute(const Json& message) {
   const Json& permutation = childOf(childOf(childOf(childOf(message, "session"), "configure"), "basis"), "permutation");
   if (permutation.is_string() && !basis_.set(permutation.get<std::string>()))
-    complain("the basis \"" + permutation.get<std::string>().substr(0, 40) +
-             "\" is not a permutation of X, Y and Z, such as \"XZY\"");
+    noteProblem("the basis \"" + permutation.get<std::string>().substr(0, 40) +
+                "\" is not a permutation of X, Y and Z, such as \"XZY\"");
   for (const Json& device : childOf(message, "inverse3")) {
     const Json& id = childOf(device, "device_id");
     if (!id.is_string()) continue;
     const auto arm = std::find_if(arms_.begin(), arms_.end(), [&](const auto& one) { return one->name() == id; });
     if (arm == arms_.end())
-      complain("there is no arm \"" + id.get<std::string>().substr(0, 100) + "\"");
+      noteProblem("there is no arm \"" + id.get<std::string>().substr(0, 100) + "\"");
     else
-      obeyArm(**arm, childOf(device, "commands"));
+      executeForArm(**arm, childOf(device, "commands"));
   }
 }
 
-void Session::obeyArm(Arm& arm, const Json& commands) {
+void Session::executeForArm(Arm& arm, const Json& commands) {
   if (!commands.is_object()) return;
   for (const auto& [name, command] : commands.items()) {
     double force[3];
     if (name == "probe_position") continue;
     if (name != "set_cursor_force") {
-      complain("the command " + name.substr(0, 60) +
-               " is not known here; only set_cursor_force and probe_position are known");
+      noteProblem("the command " + name.substr(0, 60) +
+                  " is not known here; only set_cursor_force and probe_position are known");
     } else if (!readVector(childOf(command, "values"), force)) {
-      complain("set_cursor_force needs values with three finite numbers x, y and z");
+      noteProblem("set_cursor_force needs values with three finite numbers x, y and z");
     } else {
       const auto world = basis_.toWorld(force);
-      if (auto pushed = arm.push(world.data()); !pushed) complain(pushed.error());
+      if (auto pushed = arm.push(world.data()); !pushed) noteProblem(pushed.error());
     }
   }
 }
 
-void Session::complain(const std::string& what) {
+void Session::noteProblem(const std::string& what) {
   if (!complained_) complaint_ = what;
   complained_ = true;
 }
 
-std::string Session::complaint() {
+std::string Session::takeProblem() {
   return std::exchange(complaint_, "");
 }
 

@@ -25,14 +25,14 @@ class Session {
   /// [main] Returns the answer to a message, or "" if the daemon reports no more ticks.
   std::string answer(const std::string& message);
   /// [main] Returns what the program asked for but cannot have, or "". Each problem is returned once.
-  std::string complaint();
+  std::string takeProblem();
 
  private:
   Session(hapticd_client* client, int number) : client_(client), number_(number) {}
-  void obey(const nlohmann::json& message);
-  void obeyArm(Arm& arm, const nlohmann::json& commands);
-  void complain(const std::string& what);
-  std::string tell(bool all);
+  void execute(const nlohmann::json& message);
+  void executeForArm(Arm& arm, const nlohmann::json& commands);
+  void noteProblem(const std::string& what);
+  std::string stateMessage(bool all);
 
   hapticd_client* client_;
   int number_;

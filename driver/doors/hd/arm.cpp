@@ -72,7 +72,7 @@ void scaleTo(double v[3], double most) {
 
 }  // namespace
 
-void Arm::open(std::shared_ptr<Link> link, Facts facts) {
+void Arm::open(std::shared_ptr<Link> link, DeviceFacts facts) {
   // [s] time in which a force that is switched on grows from zero to the largest force.
   constexpr double kRampTime = 0.05;
   link_ = std::move(link);
@@ -86,7 +86,7 @@ void Arm::open(std::shared_ptr<Link> link, Facts facts) {
                   bitOf(HD_ONE_FRAME_LIMIT);
   bounds_ = {0, 0, facts_.max_force / kRampTime};
   refresh();
-  see(frame_);
+  fillFrame(frame_);
 }
 
 void Arm::close() {
@@ -96,7 +96,7 @@ void Arm::close() {
 }
 
 /// Takes a new state of the arm, unless another thread has already taken a newer one.
-void Arm::look(const hapticd_state& state) {
+void Arm::update(const hapticd_state& state) {
   if (seen_ && state.tick <= now_.tick) return;
   seen_ = true;
   now_ = state;
@@ -105,24 +105,24 @@ void Arm::look(const hapticd_state& state) {
 }
 
 void Arm::tick(const hapticd_state& state, uint64_t ns) {
-  look(state);
+  update(state);
   woke_ns_ = ns;
 }
 
 void Arm::refresh() {
   hapticd_state state;
-  if (isOpen() && link_->next(UINT64_MAX, 0, state) == 1) look(state);
+  if (isOpen() && link_->next(UINT64_MAX, 0, state) == 1) update(state);
 }
 
 /// A new frame begins with the force of the last frame.
 const Frame& Arm::newest() {
   refresh();
   newest_ = frame_;
-  see(newest_);
+  fillFrame(newest_);
   return newest_;
 }
 
-void Arm::see(Frame& frame) const {
+void Arm::fillFrame(Frame& frame) const {
   frame.state = now_;
   if (facts_.pushable)  // the daemon estimates a velocity for programs that push
     std::copy_n(now_.velocity, 3, frame.velocity);
@@ -138,7 +138,7 @@ void Arm::begin(uint64_t scheduler_tick) {
   last_ = frame_;
   if (scheduler_tick == UINT64_MAX) refresh();
   frame_ = {};
-  see(frame_);
+  fillFrame(frame_);
   in_frame_ = true;
   reportFault();
 }
@@ -165,7 +165,7 @@ void Arm::end(uint64_t scheduler_tick, uint64_t ns, bool pushes) {
   double force[3], torque[3];
   std::copy_n(frame_.force, 3, force), std::copy_n(frame_.torque, 3, torque);
   addJointTorque(force, torque);
-  tellOfLimit(force);
+  reportLimit(force);
   if (const HDerror error = checked(ns, force); error != HD_SUCCESS) {
     errors_.push(error, handle_);
     std::fill_n(force, 3, 0.0);
@@ -194,7 +194,7 @@ void Arm::addJointTorque(double force[3], double torque[3]) const {
 
 /// Reports an error when the daemon begins to limit the program's force, because the user then feels less than the
 /// program asked for.
-void Arm::tellOfLimit(const double force[3]) {
+void Arm::reportLimit(const double force[3]) {
   const bool beyond = forceOn() && facts_.max_force > 0 && allFinite(force) && sizeOf(force) > facts_.max_force;
   const bool tells = isEnabled(HD_SOFTWARE_FORCE_LIMIT) && isEnabled(HD_MAX_FORCE_CLAMPING);
   if (beyond && tells && !told_limit_) errors_.push(HD_EXCEEDED_MAX_FORCE, handle_);
@@ -262,7 +262,7 @@ double Arm::motorTemperature(int joint) const {
   if (place >= kMost) return 0;
   std::fill_n(celsius, kMost, facts_.motors[place].ambient);
   link_->temperatures(celsius, kMost);
-  const Facts::Motor& motor = facts_.motors[place];
+  const DeviceFacts::Motor& motor = facts_.motors[place];
   const double span = motor.hottest - motor.ambient;
   return span > 0 ? std::clamp((celsius[place] - motor.ambient) / span, 0.0, 1.0) : 0;
 }

@@ -30,12 +30,12 @@ class Arm {
  public:
   explicit Arm(HHD handle, ErrorStack& errors) : handle_(handle), errors_(errors) {}
 
-  void open(std::shared_ptr<Link> link, Facts facts);
+  void open(std::shared_ptr<Link> link, DeviceFacts facts);
   void close();
   bool isOpen() const { return link_ != nullptr; }
   bool alive() const { return isOpen() && link_->alive(); }
   const std::shared_ptr<Link>& link() const { return link_; }
-  const Facts& facts() const { return facts_; }
+  const DeviceFacts& facts() const { return facts_; }
 
   /// To be called when a tick of the scheduler begins. @param ns time of the beginning (CLOCK_MONOTONIC)
   void tick(const hapticd_state& state, uint64_t ns);
@@ -66,11 +66,11 @@ class Arm {
   int32_t light = 0;                         ///< value of HD_USER_STATUS_LIGHT; no arm has this light
 
  private:
-  void look(const hapticd_state& state);
+  void update(const hapticd_state& state);
   void refresh();
-  void see(Frame& frame) const;
+  void fillFrame(Frame& frame) const;
   void reportFault();
-  void tellOfLimit(const double force[3]);
+  void reportLimit(const double force[3]);
   HDerror checked(uint64_t ns, double force[3]) const;
   void addJointTorque(double force[3], double torque[3]) const;
   void answer(uint64_t tick, const double force[3], const double torque[3], uint64_t ns);
@@ -78,7 +78,7 @@ class Arm {
   HHD handle_;
   ErrorStack& errors_;
   std::shared_ptr<Link> link_;
-  Facts facts_;
+  DeviceFacts facts_;
   Motion motion_;
   hapticd_state now_{};
   Frame frame_, last_, newest_;

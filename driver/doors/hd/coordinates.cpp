@@ -8,25 +8,25 @@ namespace hapticd::hd {
 namespace {
 
 /// Returns the rotation that turns a program's vectors into the world frame.
-Eigen::Quaterniond turnOf(const Facts& facts) {
+Eigen::Quaterniond turnOf(const DeviceFacts& facts) {
   return {facts.turn[0], facts.turn[1], facts.turn[2], facts.turn[3]};
 }
 
 }  // namespace
 
-void fromWorld(const Facts& facts, double v[3]) {
+void fromWorld(const DeviceFacts& facts, double v[3]) {
   if (facts.is_world) return;
   Eigen::Map<Eigen::Vector3d> mapped(v);
   mapped = turnOf(facts).conjugate() * Eigen::Vector3d(mapped);
 }
 
-void toWorld(const Facts& facts, double v[3]) {
+void toWorld(const DeviceFacts& facts, double v[3]) {
   if (facts.is_world) return;
   Eigen::Map<Eigen::Vector3d> mapped(v);
   mapped = turnOf(facts) * Eigen::Vector3d(mapped);
 }
 
-void toProgram(const Facts& facts, hapticd_state& state) {
+void toProgram(const DeviceFacts& facts, hapticd_state& state) {
   if (facts.is_world) return;
   for (int i = 0; i < 3; ++i) state.position[i] -= facts.origin[i];
   for (double* v : {state.position, state.velocity, state.sent}) fromWorld(facts, v);

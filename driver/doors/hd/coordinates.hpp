@@ -8,10 +8,10 @@
 namespace hapticd::hd {
 
 /// Converts a state of the daemon to the coordinates of programs, still in SI units.
-void toProgram(const Facts& facts, hapticd_state& state);
+void toProgram(const DeviceFacts& facts, hapticd_state& state);
 
 /// Converts a force or torque from the axes of programs to the axes of the world, and back.
-void toWorld(const Facts& facts, double v[3]);
-void fromWorld(const Facts& facts, double v[3]);
+void toWorld(const DeviceFacts& facts, double v[3]);
+void fromWorld(const DeviceFacts& facts, double v[3]);
 
 }  // namespace hapticd::hd

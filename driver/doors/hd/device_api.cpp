@@ -41,7 +41,7 @@ HHD refuse(Library& all, int number, const std::string& why) {
 }
 
 /// Puts an opened arm into the place of an arm of the same name whose daemon has ended, or into a free place.
-HHD keep(Library& all, const std::string& wanted, std::shared_ptr<Link> link, Facts facts) {
+HHD keep(Library& all, const std::string& wanted, std::shared_ptr<Link> link, DeviceFacts facts) {
   const Guard guard(all.lock);
   HHD handle = 0;
   const Arm* there = openOf(all, wanted, handle);
@@ -68,7 +68,7 @@ HHD init(HDstring name) {
   }
   std::string why;
   int number = 0;
-  Facts facts;
+  DeviceFacts facts;
   auto link = Link::open(wanted, facts, why, number);
   if (!link) return refuse(all, number, why);
   return keep(all, wanted, std::move(link), std::move(facts));

@@ -19,28 +19,29 @@ using Json = nlohmann::json;
 constexpr size_t kFull = 6;  // degrees of freedom of a pose
 
 /// Arms whose names HDAPI programs know, with the usable workspace in mm that the maker publishes.
-struct Known {
+struct KnownModel {
   const char* product;  ///< part of the product name that the device reports
   const char* model;    ///< value of HD_DEVICE_MODEL_TYPE
   double size[3];
 };
-constexpr Known kKnown[] = {
+constexpr KnownModel kKnown[] = {
     {"Premium 1.5", "PHANTOM Premium 1.5", {381, 267, 191}},
     {"Premium 3.0", "PHANTOM Premium 3.0", {838, 584, 406}},
     {"Falcon", "", {102, 102, 102}},
     {"Sarcos", "", {1000, 1000, 1000}},
 };
-constexpr Known kOther = {"", "", {160, 120, 70}};
+constexpr KnownModel kOther = {"", "", {160, 120, 70}};
 
-const Known& knownAs(const std::string& product) {
-  const auto found = std::find_if(std::begin(kKnown), std::end(kKnown),
-                                  [&](const Known& known) { return product.find(known.product) != std::string::npos; });
+const KnownModel& knownAs(const std::string& product) {
+  const auto found = std::find_if(std::begin(kKnown), std::end(kKnown), [&](const KnownModel& known) {
+    return product.find(known.product) != std::string::npos;
+  });
   return found != std::end(kKnown) ? *found : kOther;
 }
 
 /// Sets the usable workspace to a box around the place where the arm stands, and the largest workspace to a box with
 /// the same middle whose sides are a quarter longer.
-void readWorkspace(const Known& known, const Json& mount, Facts& facts) {
+void readWorkspace(const KnownModel& known, const Json& mount, DeviceFacts& facts) {
   constexpr double kBeyondUsable = 1.25;
   double place[3];
   for (size_t i = 0; i < 3; ++i) place[i] = mount.at("position").at(i).get<double>() - facts.origin[i];
@@ -54,7 +55,7 @@ void readWorkspace(const Known& known, const Json& mount, Facts& facts) {
 }
 
 /// Reads the coordinates of the programs: the axes of the world or of the arm's mount, with another origin.
-void readFrame(const Json& clients, const Json& mount, Facts& facts) {
+void readFrame(const Json& clients, const Json& mount, DeviceFacts& facts) {
   const bool of_device = clients.value("frame", "world") == "device";
   double origin[3] = {};
   for (size_t i = 0; i < 3; ++i) origin[i] = clients.contains("origin") ? clients["origin"].at(i).get<double>() : 0.0;
@@ -66,7 +67,7 @@ void readFrame(const Json& clients, const Json& mount, Facts& facts) {
 }
 
 /// Reads the part of the device file that is for HDAPI programs.
-void readHd(const Json& device, Facts& facts) {
+void readHd(const Json& device, DeviceFacts& facts) {
   const Json hd = device.value("hd", Json::object());
   const auto words = [&](const char* key, std::string& text) {
     if (const std::string given = hd.value(key, ""); !given.empty()) text = given;
@@ -83,7 +84,7 @@ void readHd(const Json& device, Facts& facts) {
   facts.output_dof = std::min(facts.input_dof, facts.output_dof);
 }
 
-void readInfo(const Json& info, Facts& facts) {
+void readInfo(const Json& info, DeviceFacts& facts) {
   // [s] largest damping divided by largest stiffness; a wall at 1 kHz is stable with it.
   constexpr double kDampingTime = 1e-3;
   facts.joints = info.at("joint_count");
@@ -100,7 +101,7 @@ void readInfo(const Json& info, Facts& facts) {
   facts.firmware = std::strtod(facts.firmware_text.c_str(), nullptr);
 }
 
-void readScene(const Json& scene, size_t device, Facts& facts) {
+void readScene(const Json& scene, size_t device, DeviceFacts& facts) {
   const Json& arm = scene.at("devices").at(device);
   const Json& limits = arm.at("limits");
   if (const Json& enable = limits.at("enable"); enable.is_object()) facts.enable_button = enable.value("button", -1);
@@ -117,12 +118,12 @@ void readScene(const Json& scene, size_t device, Facts& facts) {
 
 }  // namespace
 
-bool readFacts(const char* about, int device, Facts& facts) try {
+bool readFacts(const char* about, int device, DeviceFacts& facts) try {
   const auto place = static_cast<size_t>(device);
   const Json json = Json::parse(about);
   const Json& arm = json.at("devices").at(place);
   const std::string product = arm.at("info").at("product");
-  const Known& known = knownAs(product);
+  const KnownModel& known = knownAs(product);
   facts.name = arm.at("name");
   facts.model = known.model[0] != '\0' ? known.model : product.empty() ? facts.name : product;
   facts.driver = json.at("hapticd");

@@ -8,7 +8,7 @@
 
 namespace hapticd::hd {
 
-struct Facts {
+struct DeviceFacts {
   std::string name, model, vendor = "hapticd", serial, driver;  ///< `name` is the name that the daemon uses
   std::string firmware_text;
   double firmware = 0;  ///< the first number in the text of the firmware version
@@ -41,7 +41,7 @@ struct Facts {
 
 /// [main] Reads the facts of one device. @param about JSON in which the daemon describes itself @return false if it
 /// cannot be understood
-bool readFacts(const char* about, int device, Facts& facts);
+bool readFacts(const char* about, int device, DeviceFacts& facts);
 
 /// [any] Returns a copy of the text that lives as long as the process, because programs may keep strings of the HDAPI.
 HDstring keptForever(const std::string& text);

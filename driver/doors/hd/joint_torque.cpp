@@ -22,11 +22,11 @@ Eigen::Matrix<double, N, 1> solved(const Eigen::Matrix<double, N, N>& J, const E
 }
 
 template <int N>
-Eigen::Matrix<double, N, N> columnsOf(const Facts& facts, const hapticd_jacobian& jacobian) {
+Eigen::Matrix<double, N, N> columnsOf(const DeviceFacts& facts, const hapticd_jacobian& jacobian) {
   Eigen::Matrix<double, N, N> J;
   for (int row = 0; row < N; ++row)
     for (int i = 0; i < N; ++i) {
-      const Facts::Joint& joint = facts.joint_of[static_cast<size_t>(i)];
+      const DeviceFacts::Joint& joint = facts.joint_of[static_cast<size_t>(i)];
       J(row, i) = joint.sign * jacobian.rows[row][joint.joint];
     }
   return J;
@@ -34,7 +34,7 @@ Eigen::Matrix<double, N, N> columnsOf(const Facts& facts, const hapticd_jacobian
 
 }  // namespace
 
-void wrenchOf(const Facts& facts, const hapticd_jacobian& jacobian, const double torque[6], double force[3],
+void wrenchOf(const DeviceFacts& facts, const hapticd_jacobian& jacobian, const double torque[6], double force[3],
               double moment[3]) {
   Eigen::Map<Eigen::Vector3d> f(force), m(moment);
   f.setZero(), m.setZero();

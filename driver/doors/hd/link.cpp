@@ -45,7 +45,7 @@ std::string forPrograms(std::string text) {
 
 }  // namespace
 
-std::shared_ptr<Link> Link::open(const std::string& name, Facts& facts, std::string& why, int& number) {
+std::shared_ptr<Link> Link::open(const std::string& name, DeviceFacts& facts, std::string& why, int& number) {
   const char* wanted = std::getenv("HAPTICD_NAME");
   hapticd_error error;
   errno = 0;

@@ -15,7 +15,7 @@ class Link {
  public:
   /// [main] Connects to the daemon of $HAPTICD_NAME. @param name name of the arm; empty for the first arm @param why
   /// gets the reason of a failure and its fix @param number gets errno, or 0 @return nullptr if it cannot connect
-  static std::shared_ptr<Link> open(const std::string& name, Facts& facts, std::string& why, int& number);
+  static std::shared_ptr<Link> open(const std::string& name, DeviceFacts& facts, std::string& why, int& number);
   Link(hapticd_client* client, int device) : client_(client), device_(device) {}
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;

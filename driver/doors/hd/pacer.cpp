@@ -35,7 +35,7 @@ double Pacer::rate() const {
   return library_.rate();
 }
 
-Pacer::Lead Pacer::first() const {
+Pacer::LeadingArm Pacer::first() const {
   const Guard guard(library_.lock);
   for (size_t i = 0; i < kMostArms; ++i)
     if (const Arm& arm = library_.arms()[i]; arm.isOpen()) return {arm.link(), static_cast<HHD>(i)};
@@ -44,7 +44,7 @@ Pacer::Lead Pacer::first() const {
 
 uint64_t Pacer::wait() {
   const std::lock_guard waiting(waiting_);
-  const Lead lead = first();
+  const LeadingArm lead = first();
   if (lead.link != followed_.lock()) {
     followed_ = lead.link;
     seen_ = UINT64_MAX, silent_since_ns_ = 0, lost_ = false;
@@ -62,7 +62,7 @@ uint64_t Pacer::wait() {
   return ns;
 }
 
-bool Pacer::waitFor(const Lead& lead, hapticd_state& state) {
+bool Pacer::waitFor(const LeadingArm& lead, hapticd_state& state) {
   const auto period = static_cast<uint64_t>(static_cast<double>(kSecond) / rate());
   const bool alone = !lead.link || lost_ || silent_since_ns_ != 0;
   if (!alone) {
@@ -74,7 +74,7 @@ bool Pacer::waitFor(const Lead& lead, hapticd_state& state) {
 }
 
 /// Called if no state came in time. Reports the error once, until states come again.
-void Pacer::missed(const Lead& lead) {
+void Pacer::missed(const LeadingArm& lead) {
   const uint64_t now = nowNs();
   if (silent_since_ns_ == 0) silent_since_ns_ = now, looked_ns_ = 0;
   if (lost_ || now - looked_ns_ < kLookNs) return;
@@ -84,7 +84,7 @@ void Pacer::missed(const Lead& lead) {
   library_.errors.push(HD_COMM_ERROR, lead.handle, ECONNRESET);
 }
 
-void Pacer::show(const Lead& lead, const hapticd_state& state, uint64_t ns) {
+void Pacer::show(const LeadingArm& lead, const hapticd_state& state, uint64_t ns) {
   const Guard guard(library_.lock);
   for (Arm& arm : library_.arms()) {
     if (!arm.isOpen()) continue;

@@ -26,14 +26,14 @@ class Pacer {
   double rate() const;
 
  private:
-  struct Lead {
+  struct LeadingArm {
     std::shared_ptr<Link> link;
     HHD handle = HD_INVALID_HANDLE;
   };
-  Lead first() const;
-  bool waitFor(const Lead& lead, hapticd_state& state);
-  void missed(const Lead& lead);
-  void show(const Lead& lead, const hapticd_state& state, uint64_t ns);
+  LeadingArm first() const;
+  bool waitFor(const LeadingArm& lead, hapticd_state& state);
+  void missed(const LeadingArm& lead);
+  void show(const LeadingArm& lead, const hapticd_state& state, uint64_t ns);
 
   Library& library_;
   std::mutex waiting_;

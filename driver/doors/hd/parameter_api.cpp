@@ -76,7 +76,7 @@ void hdGetLongv(HDenum name, HDlong* values) {
 HDstring hdGetString(HDenum name) try {
   Library& all = library();
   const Guard guard(all.lock);
-  static const auto& nobody = *new Facts;
+  static const auto& nobody = *new DeviceFacts;
   const Arm* arm = name == HD_VERSION ? nullptr : all.currentArm();
   if (arm == nullptr && name != HD_VERSION) return "";
   const std::string* text = textOf(arm != nullptr ? arm->facts() : nobody, name);

@@ -53,7 +53,7 @@ unsigned listeningTime(bool real_time, double rate) {
 }
 
 /// Prints which rates are possible, because the error HD_INVALID_VALUE does not say it.
-void tellRates(double wanted, double daemon) {
+void reportRates(double wanted, double daemon) {
   constexpr int kShown = 6;
   char text[256];
   int at =
@@ -233,7 +233,7 @@ bool Scheduler::isScheduled(HDSchedulerHandle handle, bool wait) {
 bool Scheduler::setRate(double rate) {
   const double daemon = pacer_.rate(), every = std::round(daemon / rate);
   // Rates are whole numbers: 333 and 334 both mean every third tick of 1000.
-  if (!(rate > 0) || rate > daemon || std::abs(daemon / every - rate) >= 1) return tellRates(rate, daemon), false;
+  if (!(rate > 0) || rate > daemon || std::abs(daemon / every - rate) >= 1) return reportRates(rate, daemon), false;
   wanted_rate_ = rate;
   return true;
 }

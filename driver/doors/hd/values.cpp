@@ -20,7 +20,7 @@ void copy(const double* from, int count, double factor, double* out) {
 }
 
 /// Writes a value of a frame: of the open frame for CURRENT_..., of the frame before it for LAST_....
-struct OfFrame {
+struct FrameValue {
   HDenum current, last;
   int count;
   void (*get)(const Arm& arm, const Frame& frame, double* out);
@@ -58,7 +58,7 @@ void threeJoints(const Arm& arm, const Frame& frame, size_t first, double* out) 
   nothing(arm, frame, out);
   const auto& joints = arm.facts().joint_of;
   for (size_t i = 0; i < 3 && first + i < joints.size(); ++i) {
-    const Facts::Joint& joint = joints[first + i];
+    const DeviceFacts::Joint& joint = joints[first + i];
     out[i] = joint.sign * frame.state.joints[joint.joint] + joint.offset;
   }
 }
@@ -82,7 +82,7 @@ void gimbalTorque(const Arm&, const Frame& frame, double* out) {
   copy(frame.joint_torque + kTurnJoints, 3, kMmPerMetre, out);
 }
 
-constexpr OfFrame kOfFrames[] = {
+constexpr FrameValue kOfFrames[] = {
     {HD_CURRENT_BUTTONS, HD_LAST_BUTTONS, 1, buttons},
     {HD_CURRENT_SAFETY_SWITCH, HD_LAST_SAFETY_SWITCH, 1, safetySwitch},
     {HD_CURRENT_INKWELL_SWITCH, HD_LAST_INKWELL_SWITCH, 1, inkwell},
@@ -102,15 +102,15 @@ constexpr OfFrame kOfFrames[] = {
 };
 
 /// Writes a value of the arm or of the scheduler.
-struct OfArm {
+struct ArmValue {
   HDenum name;
   int count;
-  void (*get)(const Asked& asked, double* out);
+  void (*get)(const Query& asked, double* out);
 };
 
 /// Returns the largest stiffness for programs. A program that answers one tick late makes walls buzz at a third of the
 /// stiffness that shapes can have.
-double stiffness(const Asked& asked) {
+double stiffness(const Query& asked) {
   constexpr double kLate = 3;
   const bool in_time = sysconf(_SC_NPROCESSORS_ONLN) > 1 && asked.scheduler.realTime();
   return asked.arm.facts().max_stiffness / (in_time ? 1 : kLate);
@@ -121,50 +121,50 @@ double torque(const Arm& arm) {
   return arm.facts().output_dof > 3 ? arm.facts().max_torque * kMmPerMetre : 0;
 }
 
-void temperatures(const Asked& asked, double* out) {
+void temperatures(const Query& asked, double* out) {
   for (int i = 0; i < asked.arm.facts().output_dof; ++i) out[i] = asked.arm.motorTemperature(i);
 }
 
-constexpr OfArm kOfArms[] = {
-    {HD_MAX_WORKSPACE_DIMENSIONS, 6, [](const Asked& a, double* o) { copy(a.arm.facts().workspace, 6, 1, o); }},
-    {HD_USABLE_WORKSPACE_DIMENSIONS, 6, [](const Asked& a, double* o) { copy(a.arm.facts().usable, 6, 1, o); }},
-    {HD_TABLETOP_OFFSET, 1, [](const Asked& a, double* o) { o[0] = a.arm.facts().tabletop; }},
-    {HD_INPUT_DOF, 1, [](const Asked& a, double* o) { o[0] = a.arm.facts().input_dof; }},
-    {HD_OUTPUT_DOF, 1, [](const Asked& a, double* o) { o[0] = a.arm.facts().output_dof; }},
-    {HD_CALIBRATION_STYLE, 1, [](const Asked&, double* o) { o[0] = HD_CALIBRATION_AUTO; }},
-    {HD_DEVICE_FIRMWARE_VERSION, 1, [](const Asked& a, double* o) { o[0] = a.arm.facts().firmware; }},
-    {HD_UPDATE_RATE, 1, [](const Asked& a, double* o) { o[0] = a.scheduler.rate(); }},
-    {HD_INSTANTANEOUS_UPDATE_RATE, 1, [](const Asked& a, double* o) { o[0] = a.scheduler.instantaneousRate(); }},
-    {HD_NOMINAL_MAX_STIFFNESS, 1, [](const Asked& a, double* o) { o[0] = stiffness(a); }},
-    {HD_NOMINAL_MAX_FORCE, 1, [](const Asked& a, double* o) { o[0] = a.arm.facts().max_force; }},
-    {HD_NOMINAL_MAX_CONTINUOUS_FORCE, 1, [](const Asked& a, double* o) { o[0] = a.arm.facts().continuous_force; }},
-    {HD_NOMINAL_MAX_DAMPING, 1, [](const Asked& a, double* o) { o[0] = a.arm.facts().max_damping; }},
-    {HD_NOMINAL_MAX_TORQUE_STIFFNESS, 1, [](const Asked&, double* o) { o[0] = 0; }},
-    {HD_NOMINAL_MAX_TORQUE_DAMPING, 1, [](const Asked&, double* o) { o[0] = 0; }},
-    {HD_NOMINAL_MAX_TORQUE_FORCE, 1, [](const Asked& a, double* o) { o[0] = torque(a.arm); }},
-    {HD_NOMINAL_MAX_TORQUE_CONTINUOUS_FORCE, 1, [](const Asked&, double* o) { o[0] = 0; }},
-    {HD_SOFTWARE_VELOCITY_LIMIT, 1, [](const Asked& a, double* o) { o[0] = a.arm.bounds().velocity; }},
-    {HD_SOFTWARE_FORCE_IMPULSE_LIMIT, 1, [](const Asked& a, double* o) { o[0] = a.arm.bounds().impulse; }},
-    {HD_FORCE_RAMPING_RATE, 1, [](const Asked& a, double* o) { o[0] = a.arm.bounds().ramp; }},
-    {HD_JOINT_ANGLE_REFERENCES, 3, [](const Asked&, double* o) { std::fill_n(o, 3, 0.0); }},
-    {HD_USER_STATUS_LIGHT, 1, [](const Asked& a, double* o) { o[0] = a.arm.light; }},
+constexpr ArmValue kOfArms[] = {
+    {HD_MAX_WORKSPACE_DIMENSIONS, 6, [](const Query& a, double* o) { copy(a.arm.facts().workspace, 6, 1, o); }},
+    {HD_USABLE_WORKSPACE_DIMENSIONS, 6, [](const Query& a, double* o) { copy(a.arm.facts().usable, 6, 1, o); }},
+    {HD_TABLETOP_OFFSET, 1, [](const Query& a, double* o) { o[0] = a.arm.facts().tabletop; }},
+    {HD_INPUT_DOF, 1, [](const Query& a, double* o) { o[0] = a.arm.facts().input_dof; }},
+    {HD_OUTPUT_DOF, 1, [](const Query& a, double* o) { o[0] = a.arm.facts().output_dof; }},
+    {HD_CALIBRATION_STYLE, 1, [](const Query&, double* o) { o[0] = HD_CALIBRATION_AUTO; }},
+    {HD_DEVICE_FIRMWARE_VERSION, 1, [](const Query& a, double* o) { o[0] = a.arm.facts().firmware; }},
+    {HD_UPDATE_RATE, 1, [](const Query& a, double* o) { o[0] = a.scheduler.rate(); }},
+    {HD_INSTANTANEOUS_UPDATE_RATE, 1, [](const Query& a, double* o) { o[0] = a.scheduler.instantaneousRate(); }},
+    {HD_NOMINAL_MAX_STIFFNESS, 1, [](const Query& a, double* o) { o[0] = stiffness(a); }},
+    {HD_NOMINAL_MAX_FORCE, 1, [](const Query& a, double* o) { o[0] = a.arm.facts().max_force; }},
+    {HD_NOMINAL_MAX_CONTINUOUS_FORCE, 1, [](const Query& a, double* o) { o[0] = a.arm.facts().continuous_force; }},
+    {HD_NOMINAL_MAX_DAMPING, 1, [](const Query& a, double* o) { o[0] = a.arm.facts().max_damping; }},
+    {HD_NOMINAL_MAX_TORQUE_STIFFNESS, 1, [](const Query&, double* o) { o[0] = 0; }},
+    {HD_NOMINAL_MAX_TORQUE_DAMPING, 1, [](const Query&, double* o) { o[0] = 0; }},
+    {HD_NOMINAL_MAX_TORQUE_FORCE, 1, [](const Query& a, double* o) { o[0] = torque(a.arm); }},
+    {HD_NOMINAL_MAX_TORQUE_CONTINUOUS_FORCE, 1, [](const Query&, double* o) { o[0] = 0; }},
+    {HD_SOFTWARE_VELOCITY_LIMIT, 1, [](const Query& a, double* o) { o[0] = a.arm.bounds().velocity; }},
+    {HD_SOFTWARE_FORCE_IMPULSE_LIMIT, 1, [](const Query& a, double* o) { o[0] = a.arm.bounds().impulse; }},
+    {HD_FORCE_RAMPING_RATE, 1, [](const Query& a, double* o) { o[0] = a.arm.bounds().ramp; }},
+    {HD_JOINT_ANGLE_REFERENCES, 3, [](const Query&, double* o) { std::fill_n(o, 3, 0.0); }},
+    {HD_USER_STATUS_LIGHT, 1, [](const Query& a, double* o) { o[0] = a.arm.light; }},
 };
 
 }  // namespace
 
-int numbersOf(const Asked& asked, HDenum name, double out[kMostNumbers]) {
-  for (const OfFrame& value : kOfFrames) {
+int numbersOf(const Query& asked, HDenum name, double out[kMostNumbers]) {
+  for (const FrameValue& value : kOfFrames) {
     if (value.current != name && value.last != name) continue;
     value.get(asked.arm, value.current == name ? asked.current : asked.arm.last(), out);
     return value.count;
   }
-  for (const OfArm& value : kOfArms)
+  for (const ArmValue& value : kOfArms)
     if (value.name == name) return value.get(asked, out), value.count;
   if (name == HD_MOTOR_TEMPERATURE) return temperatures(asked, out), asked.arm.facts().output_dof;
   return textOf(asked.arm.facts(), name) != nullptr ? -1 : 0;
 }
 
-const std::string* textOf(const Facts& facts, HDenum name) {
+const std::string* textOf(const DeviceFacts& facts, HDenum name) {
   static const auto& version = *new std::string("3.40.0");
   switch (name) {
     case HD_VERSION:

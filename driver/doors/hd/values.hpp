@@ -9,17 +9,17 @@ namespace hapticd::hd {
 constexpr int kMostNumbers = 16;
 
 /// Says from which arm and frame a parameter is read.
-struct Asked {
+struct Query {
   Arm& arm;
   const Frame& current;  ///< the frame that CURRENT_... means for the caller
   const Scheduler& scheduler;
 };
 
 /// Writes the numbers of a parameter. @return how many, 0 if there is no such parameter, or -1 if it is a text
-int numbersOf(const Asked& asked, HDenum name, double out[kMostNumbers]);
+int numbersOf(const Query& asked, HDenum name, double out[kMostNumbers]);
 
 /// Returns the text of a parameter, or nullptr if it is not a text.
-const std::string* textOf(const Facts& facts, HDenum name);
+const std::string* textOf(const DeviceFacts& facts, HDenum name);
 
 /// Returns how many numbers a call needs to set a parameter, or 0 if it cannot be set.
 int numbersToSet(HDenum name);

@@ -106,14 +106,14 @@ std::string pathOf(std::string_view target) {
   return std::string(target.substr(0, target.find('?')));
 }
 
-Doorkeeper::Doorkeeper(unsigned short port)
+AccessPolicy::AccessPolicy(unsigned short port)
     : token_(secret()), session_(secret()), cookie_name_("hapticd-view-" + std::to_string(port)) {}
 
-std::string Doorkeeper::cookie() const {
+std::string AccessPolicy::cookie() const {
   return cookie_name_ + "=" + session_ + "; Path=/; HttpOnly; SameSite=Strict";
 }
 
-Admission Doorkeeper::judge(const RequestHead& head) const {
+Admission AccessPolicy::check(const RequestHead& head) const {
   if (!loopback(head.host)) return refused(421, "this server answers only to the hosts localhost, 127.0.0.1 and [::1]");
   Admission admission;
   if (head.upgrade) choose(head.protocols, admission);

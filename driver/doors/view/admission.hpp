@@ -28,16 +28,16 @@ struct Admission {
 };
 
 /// The secrets of one view: 128 random bits each, as hexadecimal text.
-class Doorkeeper {
+class AccessPolicy {
  public:
   /// [main] Makes the secrets from random numbers. @param port becomes part of the cookie's name, because browsers
   /// share cookies between ports
-  explicit Doorkeeper(unsigned short port);
+  explicit AccessPolicy(unsigned short port);
 
   /// [main] Decides about a request. It checks the name of the host first (against DNS rebinding), then the origin,
   /// then the secret. A page of another origin may only open a Foxglove WebSocket, which only reads, and only with the
   /// token in its URL, never by the cookie.
-  Admission judge(const RequestHead& head) const;
+  Admission check(const RequestHead& head) const;
 
   const std::string& token() const { return token_; }
   std::string cookie() const;  ///< [main] value of Set-Cookie

@@ -38,10 +38,10 @@ std::vector<record::Column> columnsOf(const Json& about, const std::string& stre
   return columns;
 }
 
-class Foxglove final : public Conversation {
+class FoxgloveSession final : public PeerSession {
  public:
-  Foxglove(Peer& peer, Stage& stage) : peer_(peer), stage_(stage), alive_(std::make_shared<bool>(true)) {}
-  ~Foxglove() override { *alive_ = false; }
+  FoxgloveSession(Peer& peer, Stage& stage) : peer_(peer), stage_(stage), alive_(std::make_shared<bool>(true)) {}
+  ~FoxgloveSession() override { *alive_ = false; }
 
   void onText(std::string_view text) override;
   void onBinary(std::span<const std::byte>) override {}  // this server ignores messages that clients publish
@@ -76,7 +76,7 @@ class Foxglove final : public Conversation {
   uint64_t newest_ = 0;  ///< [ns] time of the newest tick, since 1970
 };
 
-void Foxglove::onTick() {
+void FoxgloveSession::onTick() {
   if (stage_.rows() == nullptr) return;
   if (run_ != stage_.run()) begin();
   if (!peer_.idle()) return;  // the rows stay in the black box until later
@@ -85,7 +85,7 @@ void Foxglove::onTick() {
   sendScene();
 }
 
-void Foxglove::begin() {
+void FoxgloveSession::begin() {
   run_ = stage_.run();
   const RowSource& rows = *stage_.rows();
   next_.clear();
@@ -105,7 +105,7 @@ void Foxglove::begin() {
   advertise();
 }
 
-void Foxglove::advertise() {
+void FoxgloveSession::advertise() {
   channels_.clear();
   subscriptions_.clear();
   const auto add = [&](size_t stream, const std::string& topic, const char* encoding, const std::string& type,
@@ -135,13 +135,13 @@ void Foxglove::advertise() {
 
 /// Returns 1 + the client's number of a subscription to the channel, or 0 if nobody has subscribed. The client may
 /// choose any number, including 0.
-uint32_t Foxglove::subscriptionOf(uint32_t channel) const {
+uint32_t FoxgloveSession::subscriptionOf(uint32_t channel) const {
   for (const auto& [subscription, of] : subscriptions_)
     if (of == channel) return subscription + 1;
   return 0;
 }
 
-void Foxglove::sendStream(size_t stream) {
+void FoxgloveSession::sendStream(size_t stream) {
   const RowSource& rows = *stage_.rows();
   const RowStream& what = rows.streams()[stream];
   const auto channel =
@@ -172,7 +172,7 @@ void Foxglove::sendStream(size_t stream) {
   }
 }
 
-void Foxglove::send(uint32_t subscription, uint64_t time, std::string_view head, std::string_view body) {
+void FoxgloveSession::send(uint32_t subscription, uint64_t time, std::string_view head, std::string_view body) {
   std::string bytes(1, kMessageData);
   bytes.append(reinterpret_cast<const char*>(&subscription), sizeof subscription);
   bytes.append(reinterpret_cast<const char*>(&time), sizeof time);
@@ -180,25 +180,25 @@ void Foxglove::send(uint32_t subscription, uint64_t time, std::string_view head,
   peer_.binary(std::make_shared<const std::string>(std::move(bytes)));
 }
 
-void Foxglove::sendTransforms() {
+void FoxgloveSession::sendTransforms() {
   const uint32_t subscription = subscriptionOf(tfChannel());
   if (subscription != 0 && newest_ != 0) send(subscription - 1, newest_, "", tfMessage(frames_->all(), newest_));
 }
 
 /// Sends the triangles of every model, when somebody subscribes and when the list of models changes.
-void Foxglove::sendScene() {
+void FoxgloveSession::sendScene() {
   const uint32_t subscription = subscriptionOf(sceneChannel());
   if (subscription == 0 || list_number_ == stage_.listNumber() || stage_.list().empty()) return;
   list_number_ = stage_.listNumber();
   for (const Json& model : stage_.list().value("models", Json::array())) {
     const std::string name = model.value("name", "");
-    stage_.draw(name, [this, name, subscription, alive = alive_](const Drawn& drawn) {
+    stage_.draw(name, [this, name, subscription, alive = alive_](const DrawnModel& drawn) {
       if (*alive && drawn.mesh) send(subscription - 1, newest_, "", sceneUpdate(name, *drawn.mesh, newest_));
     });
   }
 }
 
-void Foxglove::onText(std::string_view text) {
+void FoxgloveSession::onText(std::string_view text) {
   const Json request = document::parseJson(text);
   if (!request.is_object()) return;
   const std::string op = request.contains("op") && request["op"].is_string() ? request["op"] : "";
@@ -222,8 +222,8 @@ void Foxglove::onText(std::string_view text) {
 
 }  // namespace
 
-std::unique_ptr<Conversation> converseInFoxglove(Peer& peer, Stage& stage) {
-  return std::make_unique<Foxglove>(peer, stage);
+std::unique_ptr<PeerSession> startFoxgloveSession(Peer& peer, Stage& stage) {
+  return std::make_unique<FoxgloveSession>(peer, stage);
 }
 
 }  // namespace hapticd::view

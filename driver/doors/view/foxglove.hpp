@@ -10,6 +10,6 @@
 namespace hapticd::view {
 
 /// [main] Both arguments outlive the conversation.
-std::unique_ptr<Conversation> converseInFoxglove(Peer& peer, Stage& stage);
+std::unique_ptr<PeerSession> startFoxgloveSession(Peer& peer, Stage& stage);
 
 }  // namespace hapticd::view

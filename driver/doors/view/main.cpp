@@ -52,12 +52,12 @@ void openBrowser(const std::string& url) {
 }
 
 /// Calls onTick() of every conversation 60 times per second, and checks whether the daemon has ended.
-class Heart {
+class Heartbeat {
  public:
-  Heart(boost::asio::io_context& io, Stage& stage, Server& server, std::string lock_file)
+  Heartbeat(boost::asio::io_context& io, Stage& stage, Server& server, std::string lock_file)
       : io_(io), timer_(io), stage_(stage), server_(server), lock_file_(std::move(lock_file)) {}
 
-  void beat() {
+  void scheduleNext() {
     timer_.expires_after(kTick);
     timer_.async_wait([this](const boost::system::error_code& error) {
       if (error) return;
@@ -66,7 +66,7 @@ class Heart {
         server_.tick();
       }
       if (!lock_file_.empty() && ++beats_ % kLook == 0 && !daemonLives(lock_file_)) return io_.stop();
-      beat();
+      scheduleNext();
     });
   }
 
@@ -81,8 +81,8 @@ class Heart {
   unsigned beats_ = 0;
 };
 
-std::unique_ptr<Conversation> converse(Subprotocol protocol, Peer& peer, Stage& stage) {
-  return protocol == Subprotocol::kFoxglove ? converseInFoxglove(peer, stage) : converseNatively(peer, stage);
+std::unique_ptr<PeerSession> startSession(Subprotocol protocol, Peer& peer, Stage& stage) {
+  return protocol == Subprotocol::kFoxglove ? startFoxgloveSession(peer, stage) : startNativeSession(peer, stage);
 }
 
 int view(const Options& options) {
@@ -100,7 +100,7 @@ int view(const Options& options) {
     return kBadInput;
   }
   auto server = Server::listen(io, options.port,
-                               [&](Subprotocol protocol, Peer& peer) { return converse(protocol, peer, stage); });
+                               [&](Subprotocol protocol, Peer& peer) { return startSession(protocol, peer, stage); });
   if (!server) {
     std::fprintf(stderr, "error: %s\n", server.error().c_str());
     return kFailed;
@@ -110,8 +110,8 @@ int view(const Options& options) {
   if (options.open) openBrowser((*server)->url());
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   signals.async_wait([&](const auto&, int) { io.stop(); });
-  Heart heart(io, stage, **server, lock_file);
-  heart.beat();
+  Heartbeat heartbeat(io, stage, **server, lock_file);
+  heartbeat.scheduleNext();
   io.run();
   return 0;
 }

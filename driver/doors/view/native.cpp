@@ -38,10 +38,10 @@ uint64_t oldest(const RowSource& rows, size_t stream) {
   return begin == 0 ? 0 : std::min(begin + kMargin, rows.end(stream));
 }
 
-class Native final : public Conversation {
+class NativeSession final : public PeerSession {
  public:
-  Native(Peer& peer, Stage& stage) : peer_(peer), stage_(stage), alive_(std::make_shared<bool>(true)) {}
-  ~Native() override { *alive_ = false; }
+  NativeSession(Peer& peer, Stage& stage) : peer_(peer), stage_(stage), alive_(std::make_shared<bool>(true)) {}
+  ~NativeSession() override { *alive_ = false; }
 
   void onText(std::string_view text) override;
   void onBinary(std::span<const std::byte> bytes) override;
@@ -49,7 +49,7 @@ class Native final : public Conversation {
 
  private:
   void begin();
-  void tellChanges();
+  void sendChanges();
   void sendRows();
   void sendRows(size_t stream, uint64_t end);
   void jump();
@@ -78,7 +78,7 @@ class Native final : public Conversation {
   uint32_t next_lead_ = 1;
 };
 
-void Native::onTick() {
+void NativeSession::onTick() {
   if (stage_.rows() == nullptr) {
     if (run_ == 0 && peer_.idle() && status_number_ != stage_.statusNumber() + 1) {
       status_number_ = stage_.statusNumber() + 1;
@@ -87,7 +87,7 @@ void Native::onTick() {
     return;
   }
   if (run_ != stage_.run()) begin();
-  tellChanges();
+  sendChanges();
   if (!peer_.idle()) return;  // a slow page gets only the newest values; others are skipped
   sendRows();
   sendVertices();
@@ -95,7 +95,7 @@ void Native::onTick() {
 }
 
 /// Called when a run was found: sends its description, and the first rows for this page.
-void Native::begin() {
+void NativeSession::begin() {
   run_ = stage_.run();
   const RowSource& rows = *stage_.rows();
   Json streams = Json::array();
@@ -124,7 +124,7 @@ void Native::begin() {
   }
 }
 
-void Native::tellChanges() {
+void NativeSession::sendChanges() {
   if (list_number_ != stage_.listNumber() && !stage_.list().empty()) {
     list_number_ = stage_.listNumber();
     Json list = stage_.list();
@@ -138,7 +138,7 @@ void Native::tellChanges() {
   peer_.text(status.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-void Native::sendRows() {
+void NativeSession::sendRows() {
   const RowSource& rows = *stage_.rows();
   if (playback_) {
     playback_->advance();
@@ -156,13 +156,13 @@ void Native::sendRows() {
 
 /// Called when the place in the recording has jumped. Makes the page forget its rows, and sends it the rows before the
 /// new place.
-void Native::jump() {
+void NativeSession::jump() {
   if (!playback_->takeJumped()) return;
   peer_.text(R"({"type":"reset"})");
   next_ = playback_->rowsFrom(kBacklogSeconds);
 }
 
-void Native::sendRows(size_t stream, uint64_t end) {
+void NativeSession::sendRows(size_t stream, uint64_t end) {
   const RowSource& rows = *stage_.rows();
   const RowStream& what = rows.streams()[stream];
   uint64_t& next = next_[stream];
@@ -183,7 +183,7 @@ void Native::sendRows(size_t stream, uint64_t end) {
   peer_.binary(std::make_shared<const std::string>(std::move(bytes)));
 }
 
-void Native::sendVertices() {
+void NativeSession::sendVertices() {
   for (const auto& [model, live] : stage_.live()) {
     if (!live.vertices || frames_[model] == live.frame) continue;
     frames_[model] = live.frame;
@@ -192,7 +192,7 @@ void Native::sendVertices() {
 }
 
 /// Requests, for each body of a recording, the shape at the page's present place, as soon as the last answer has come.
-void Native::askBodies() {
+void NativeSession::askBodies() {
   const double now = playback_->time();
   for (const std::string& model : stage_.bodies()) {
     Body& body = bodies_[model];
@@ -206,7 +206,7 @@ void Native::askBodies() {
   }
 }
 
-void Native::onText(std::string_view text) {
+void NativeSession::onText(std::string_view text) {
   Json request = document::parseJson(text);
   const bool good = request.is_object() && request.contains("do") && request["do"].is_string();
   const Json id = request.is_object() && request.contains("id") ? request["id"] : Json();
@@ -215,7 +215,7 @@ void Native::onText(std::string_view text) {
   request.erase("id");
   if (word == "geometry") return draw(id, request);
   if (playback_ && Playback::knows(word)) {
-    const std::string error = playback_->obey(request);
+    const std::string error = playback_->execute(request);
     jump();
     return answer(id, error.empty() ? Json({{"ok", true}}) : Json({{"ok", false}, {"error", error}}));
   }
@@ -231,7 +231,7 @@ void Native::onText(std::string_view text) {
 
 /// Takes a message with the record of a lead: u32 lead, u32 0, hapticd_target. An unknown lead is ignored, because it
 /// may have ended meanwhile.
-void Native::onBinary(std::span<const std::byte> bytes) {
+void NativeSession::onBinary(std::span<const std::byte> bytes) {
   constexpr size_t kHead = 8;
   uint32_t number = 0;
   if (bytes.size() < kHead) return;
@@ -240,7 +240,7 @@ void Native::onBinary(std::span<const std::byte> bytes) {
   if (lead != leads_.end()) lead->second->put(bytes.subspan(kHead));
 }
 
-void Native::lead(const Json& id, const Json& request) {
+void NativeSession::lead(const Json& id, const Json& request) {
   std::erase_if(leads_, [](const auto& known) { return known.second->refused(); });
   if (leads_.size() >= kMostLeads)
     return answer(id, {{"ok", false}, {"error", "this page already has 4 leads, which is the limit: end one of them"}});
@@ -254,23 +254,23 @@ void Native::lead(const Json& id, const Json& request) {
       });
 }
 
-void Native::unlead(const Json& id, const Json& request) {
+void NativeSession::unlead(const Json& id, const Json& request) {
   const auto it = request.find("lead");
   const bool known = it != request.end() && it->is_number_unsigned() && leads_.erase(it->get<uint32_t>()) == 1;
   answer(id, known ? Json({{"ok", true}}) : Json({{"ok", false}, {"error", "there is no such lead"}}));
 }
 
-void Native::answer(const Json& id, Json answer) {
+void NativeSession::answer(const Json& id, Json answer) {
   answer["type"] = "answer";
   answer["id"] = id;
   peer_.text(answer.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 /// Answers a request for triangles. The mesh is sent as bytes, directly before the answer that names it.
-void Native::draw(const Json& id, const Json& request) {
+void NativeSession::draw(const Json& id, const Json& request) {
   if (!request.contains("model") || !request["model"].is_string())
     return answer(id, {{"ok", false}, {"error", "geometry needs a model"}});
-  stage_.draw(request["model"], [this, id, alive = alive_](const Drawn& drawn) {
+  stage_.draw(request["model"], [this, id, alive = alive_](const DrawnModel& drawn) {
     if (!*alive) return;
     if (!drawn.mesh) return answer(id, {{"ok", false}, {"error", drawn.error}});
     peer_.binary(drawn.mesh);
@@ -278,7 +278,7 @@ void Native::draw(const Json& id, const Json& request) {
   });
 }
 
-void Native::pass(const Json& id, Json request) {
+void NativeSession::pass(const Json& id, Json request) {
   stage_.daemon().ask(request, [this, id, alive = alive_](const Json& said, const Descriptor&) {
     if (*alive) answer(id, said);
   });
@@ -286,8 +286,8 @@ void Native::pass(const Json& id, Json request) {
 
 }  // namespace
 
-std::unique_ptr<Conversation> converseNatively(Peer& peer, Stage& stage) {
-  return std::make_unique<Native>(peer, stage);
+std::unique_ptr<PeerSession> startNativeSession(Peer& peer, Stage& stage) {
+  return std::make_unique<NativeSession>(peer, stage);
 }
 
 }  // namespace hapticd::view

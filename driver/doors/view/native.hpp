@@ -13,6 +13,6 @@
 namespace hapticd::view {
 
 /// [main] Both arguments outlive the conversation.
-std::unique_ptr<Conversation> converseNatively(Peer& peer, Stage& stage);
+std::unique_ptr<PeerSession> startNativeSession(Peer& peer, Stage& stage);
 
 }  // namespace hapticd::view

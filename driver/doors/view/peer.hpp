@@ -30,12 +30,12 @@ class Peer {
 
 /// The protocol over one connection. It is made when the connection opens, and destroyed after the connection has
 /// ended.
-class Conversation {
+class PeerSession {
  public:
-  Conversation() = default;
-  virtual ~Conversation() = default;
-  Conversation(const Conversation&) = delete;
-  Conversation& operator=(const Conversation&) = delete;
+  PeerSession() = default;
+  virtual ~PeerSession() = default;
+  PeerSession(const PeerSession&) = delete;
+  PeerSession& operator=(const PeerSession&) = delete;
 
   virtual void onText(std::string_view text) = 0;               ///< [main] a text message came
   virtual void onBinary(std::span<const std::byte> bytes) = 0;  ///< [main] a binary message came

@@ -81,7 +81,7 @@ bool Playback::knows(const std::string& word) {
   return word == "play" || word == "pause" || word == "seek";
 }
 
-std::string Playback::obey(const Json& request) {
+std::string Playback::execute(const Json& request) {
   const std::string word = request.value("do", "");
   const auto number = [&](const char* key, double otherwise) {
     const auto it = request.find(key);

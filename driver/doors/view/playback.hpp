@@ -19,7 +19,7 @@ class Playback {
   static bool knows(const std::string& word);  ///< [any] true for play, pause and seek
   /// [main] Does what a request says: {"do": "play", "speed": 1, "loop": true}, {"do": "pause"} or {"do": "seek", "t":
   /// seconds}. @return an error, or ""
-  std::string obey(const Json& request);
+  std::string execute(const Json& request);
 
   void advance();                                              ///< [main] advances by the time since the last call
   double time() const { return t_; }                           ///< [s] [main]

@@ -97,7 +97,7 @@ class Socket final : public Peer, public std::enable_shared_from_this<Socket> {
   std::deque<Outgoing> waiting_;  ///< the first message is being sent
   size_t waiting_bytes_ = 0;
   bool ended_ = false, paused_ = false;
-  std::unique_ptr<Conversation> conversation_;
+  std::unique_ptr<PeerSession> conversation_;
 };
 
 /// One HTTP connection: it answers requests until it becomes a WebSocket.
@@ -125,10 +125,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
 class ServerImpl final : public Server {
  public:
   ServerImpl(asio::io_context& io, tcp::acceptor v4, Converse converse)
-      : v4_(std::move(v4)), v6_(io), doorkeeper_(v4_.local_endpoint().port()), converse_(std::move(converse)) {}
+      : v4_(std::move(v4)), v6_(io), access_policy_(v4_.local_endpoint().port()), converse_(std::move(converse)) {}
 
   std::string url() const override {
-    return "http://127.0.0.1:" + std::to_string(v4_.local_endpoint().port()) + "/?token=" + doorkeeper_.token();
+    return "http://127.0.0.1:" + std::to_string(v4_.local_endpoint().port()) + "/?token=" + access_policy_.token();
   }
   ~ServerImpl() override {
     for (Socket* socket : register_->sockets) socket->endConversation();
@@ -144,8 +144,8 @@ class ServerImpl final : public Server {
     accept(v4_);
     if (v6_.is_open()) accept(v6_);
   }
-  const Doorkeeper& doorkeeper() const { return doorkeeper_; }
-  const Converse& converse() const { return converse_; }
+  const AccessPolicy& accessPolicy() const { return access_policy_; }
+  const Converse& startSession() const { return converse_; }
   bool full() const { return sockets() >= kMostSockets; }
   const std::shared_ptr<Register>& connected() const { return register_; }
 
@@ -174,7 +174,7 @@ class ServerImpl final : public Server {
   }
 
   tcp::acceptor v4_, v6_;
-  Doorkeeper doorkeeper_;
+  AccessPolicy access_policy_;
   Converse converse_;
   std::shared_ptr<Register> register_ = std::make_shared<Register>();
 };
@@ -204,7 +204,7 @@ void Connection::onRead(ErrorCode error) {
     return refuse(400, "this is not HTTP");
   if (error) return;  // the client is gone, or too slow: the socket closes with this object
   const RequestHead head = headOf(parser_->get());
-  const Admission admission = server_.doorkeeper().judge(head);
+  const Admission admission = server_.accessPolicy().check(head);
   if (admission.status != 200) return refuse(admission.status, admission.why);
   if (!head.upgrade) return answer(admission);
   if (server_.full()) return refuse(503, "8 pages are open, which is the limit: close one of them");
@@ -219,7 +219,7 @@ void Connection::answer(const Admission& admission) {
   if (asset.bytes.empty()) return refuse(404, "there is no such file");
   response_ = Response(http::status::ok, request.version());
   response_.set(http::field::content_type, text({asset.type.data(), asset.type.size()}));
-  if (admission.give_cookie) response_.set(http::field::set_cookie, server_.doorkeeper().cookie());
+  if (admission.give_cookie) response_.set(http::field::set_cookie, server_.accessPolicy().cookie());
   response_.body() = {asset.bytes.data(), asset.bytes.size()};
   response_.keep_alive(request.keep_alive());
   send();
@@ -278,7 +278,7 @@ void Socket::open(Request request, const Admission& admission) {
 }
 
 void Socket::onOpen(Subprotocol protocol) {
-  conversation_ = server_.converse()(protocol, *this);
+  conversation_ = server_.startSession()(protocol, *this);
   read();
 }
 

@@ -27,7 +27,7 @@ class Server {
   static constexpr size_t kMostSockets = 8, kMostConnections = 32;
 
   /// Makes the conversation of a new WebSocket; `peer` outlives it.
-  using Converse = std::function<std::unique_ptr<Conversation>(Subprotocol, Peer& peer)>;
+  using Converse = std::function<std::unique_ptr<PeerSession>(Subprotocol, Peer& peer)>;
 
   /// [main] Listens on 127.0.0.1 and, if it exists, on ::1. @param port 0 for any free port
   static Result<std::unique_ptr<Server>> listen(boost::asio::io_context& io, unsigned short port, Converse converse);

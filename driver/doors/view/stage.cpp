@@ -180,12 +180,12 @@ void Stage::findTouched() {
   }
 }
 
-void Stage::draw(const std::string& model, std::function<void(const Drawn&)> drawn) {
+void Stage::draw(const std::string& model, std::function<void(const DrawnModel&)> drawn) {
   const auto known = meshes_.find(model);
   if (known != meshes_.end()) return drawn(known->second);
   const uint64_t run = run_;
   daemon_->ask(geometryOf(model), [this, model, run, drawn](const Json& answer, const Descriptor& memory) {
-    Drawn result;
+    DrawnModel result;
     if (answer.value("ok", false)) result.mesh = meshMessage(answer, memory.get());
     if (!result.mesh) result.error = answer.value("error", std::string("the model's triangles cannot be read"));
     if (run == run_ && result.mesh && !soft_.contains(model)) meshes_[model] = result;

@@ -25,7 +25,7 @@ struct StageOptions {
 };
 
 /// The triangles of a model, or the reason why there are none.
-struct Drawn {
+struct DrawnModel {
   Message mesh;  ///< message for pages with the triangles (see mesh.hpp)
   std::string error;
 };
@@ -53,7 +53,7 @@ class Stage {
   boost::asio::io_context& io() { return io_; }
 
   /// [main] Calls `drawn` with the triangles of a model, which come from the cache if the model does not deform.
-  void draw(const std::string& model, std::function<void(const Drawn&)> drawn);
+  void draw(const std::string& model, std::function<void(const DrawnModel&)> drawn);
 
   /// [main] Calls `drawn` with the vertices that a body of the recording had at time t [s], or with nullptr if they are
   /// not available. It is not called if the run changes before.
@@ -93,7 +93,7 @@ class Stage {
   uint64_t run_ = 0, list_number_ = 0, status_number_ = 0;
   bool was_connected_ = false;
   Clock::time_point next_find_{}, next_poll_{};
-  std::map<std::string, Drawn> meshes_;
+  std::map<std::string, DrawnModel> meshes_;
   std::map<std::string, Live> live_;
   std::map<std::string, Soft> soft_;
   uint64_t next_contact_ = 0;  ///< next row to read of the stream of contacts

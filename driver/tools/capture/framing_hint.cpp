@@ -89,7 +89,7 @@ struct Best {
   const Capture& begin;
   double part;  ///< share of the bytes in good reports, which a framing must exceed
   std::string words;
-  void look(const codec::Wire& wire, const std::string& how) {
+  void add(const codec::Wire& wire, const std::string& how) {
     const double good = goodWith(wire, begin);
     if (good > part) part = good, words = how;
   }
@@ -98,19 +98,19 @@ struct Best {
 /// Tries other escapes, the usual ones first.
 void tryEscapes(const codec::Wire& wire, Best& best) {
   const Escape& escape = wire.framing.escape;
-  const auto look = [&](int mark, int flip) {
+  const auto addEscape = [&](int mark, int flip) {
     if (!isMark(wire, mark))
-      best.look(withEscape(wire, static_cast<uint8_t>(mark), static_cast<uint8_t>(flip)),
-                "with framing.escape: {mark: " + hexByte(mark) + ", xor: " + hexByte(flip) + "}");
+      best.add(withEscape(wire, static_cast<uint8_t>(mark), static_cast<uint8_t>(flip)),
+               "with framing.escape: {mark: " + hexByte(mark) + ", xor: " + hexByte(flip) + "}");
   };
-  for (int flip = 1; escape.used && flip < 256; ++flip) look(escape.mark, flip);
+  for (int flip = 1; escape.used && flip < 256; ++flip) addEscape(escape.mark, flip);
   for (const int flip : {0x20, 0xff, 0x80, 0x40})
-    for (int mark = 0; mark < 256; ++mark) look(mark, flip);
+    for (int mark = 0; mark < 256; ++mark) addEscape(mark, flip);
   if (!isMark(wire, 0xdb))
-    best.look(asSlip(wire), "with framing.escape: {mark: 0xdb, codes: [[0xc0, 0xdc], [0xdb, 0xdd]]}");
+    best.add(asSlip(wire), "with framing.escape: {mark: 0xdb, codes: [[0xc0, 0xdc], [0xdb, 0xdd]]}");
   codec::Wire plain = wire;
   plain.framing.escape = {};
-  if (escape.used) best.look(plain, "without framing.escape");
+  if (escape.used) best.add(plain, "without framing.escape");
 }
 
 /// Tries another start mark, and with it another end mark if both were the same.
@@ -120,10 +120,9 @@ void tryMarks(const codec::Wire& wire, Best& best) {
   for (int mark = 0; mark < 256; ++mark) {
     if (framing.escape.used && mark == framing.escape.mark) continue;
     if (framing.start >= 0)
-      best.look(withMarks(wire, mark, both ? mark : framing.end),
-                "with framing.start" + std::string(both ? " and end: " : ": ") + hexByte(mark));
-    if (framing.end >= 0 && !both)
-      best.look(withMarks(wire, framing.start, mark), "with framing.end: " + hexByte(mark));
+      best.add(withMarks(wire, mark, both ? mark : framing.end),
+               "with framing.start" + std::string(both ? " and end: " : ": ") + hexByte(mark));
+    if (framing.end >= 0 && !both) best.add(withMarks(wire, framing.start, mark), "with framing.end: " + hexByte(mark));
   }
 }
 

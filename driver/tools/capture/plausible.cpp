@@ -6,13 +6,13 @@
 #include <cstdio>
 #include <map>
 
-#include "capture/other_reading.hpp"
+#include "capture/alternative_decoding.hpp"
 
 namespace hapticd::capture {
 namespace {
 
 /// The positions of one joint in all good reports.
-struct Course {
+struct JointSeries {
   std::vector<double> at;
   double least = HUGE_VAL, most = -HUGE_VAL;
 
@@ -43,7 +43,7 @@ Stops stopsOf(const ArmFacts& arm, size_t joint) {
 
 /// Returns a text if the joint goes beyond its stops. If its zero is not known yet, returns a text if its positions
 /// span more than the range between them.
-std::string beyondStops(const Course& course, const Stops& stops) {
+std::string beyondStops(const JointSeries& course, const Stops& stops) {
   constexpr double kTurns = 4 * M_PI;  // a joint with stops cannot make two turns
   const double way = course.most - course.least;
   if (stops.given ? !leavesStops(course.at, stops) : way <= kTurns * 1.1) return "";
@@ -59,7 +59,7 @@ std::string beyondStops(const Course& course, const Stops& stops) {
          ": is scale in rad (for degrees: scale_degrees), with the turns of the motor in one turn of the joint?";
 }
 
-std::string jumps(const Course& course, const codec::Wire& wire, const ArmFacts& arm) {
+std::string jumps(const JointSeries& course, const codec::Wire& wire, const ArmFacts& arm) {
   constexpr double kLarge = 0.5;  // [rad] a smaller step is never called a jump
   // a few reports may be missing in between
   const double most = std::max(kLarge, 5 * arm.max_speed / std::max(wire.rate, 1.0));
@@ -76,7 +76,7 @@ std::string jumps(const Course& course, const codec::Wire& wire, const ArmFacts&
 }
 
 /// Returns a text if positions that wrap span more than the range between the stops. Their zero is unknown.
-std::string tooLongAWay(const Course& course, Stops stops) {
+std::string tooLongAWay(const JointSeries& course, Stops stops) {
   stops.placed = false;
   if (!stops.given || course.at.empty() || !leavesStops(course.at, stops)) return "";
   const double way = course.most - course.least, room = stops.high - stops.low;
@@ -87,7 +87,7 @@ std::string tooLongAWay(const Course& course, Stops stops) {
 }
 
 /// Returns a text if all joints moved, but none of them far, because a scale that is too small has no other symptom.
-std::string shortWays(const std::map<size_t, Course>& courses, const ArmFacts& arm) {
+std::string shortWays(const std::map<size_t, JointSeries>& courses, const ArmFacts& arm) {
   // shares of the range between the stops: kMoved tells whether a joint moved at all, kShort whether it moved far
   constexpr double kShort = 0.4, kMoved = 0.01;
   constexpr size_t kEnough = 100;  // [reports] least number to judge a joint
@@ -107,9 +107,10 @@ std::string shortWays(const std::map<size_t, Course>& courses, const ArmFacts& a
 }
 
 /// Returns what is wrong with one joint; "" if nothing is.
-std::string oddCourse(const codec::Wire& wire, const codec::Field& field, const ArmFacts& arm, const Course& course) {
+std::string implausibleSeries(const codec::Wire& wire, const codec::Field& field, const ArmFacts& arm,
+                              const JointSeries& course) {
   const Stops stops = stopsOf(arm, field.index);
-  std::string wrong = otherReading(field, course.at, stops);
+  std::string wrong = alternativeDecoding(field, course.at, stops);
   if (wrong.empty()) wrong = jumps(course, wire, arm);
   return wrong.empty() ? beyondStops(course, stops) : wrong;
 }
@@ -118,15 +119,15 @@ std::string oddCourse(const codec::Wire& wire, const codec::Field& field, const 
 
 std::string implausible(const codec::Wire& wire, const ArmFacts& arm, const Decoded& decoded) {
   std::string text;
-  std::map<size_t, Course> courses;
+  std::map<size_t, JointSeries> courses;
   for (const codec::Field& field : wire.input.fields) {
     if (field.role != codec::Role::kPosition || field.index >= arm.joints) continue;
-    Course& course = courses[field.index];
+    JointSeries& course = courses[field.index];
     const double round = field.wraps ? std::ldexp(std::abs(field.scale), field.bits) : 0;
     for (const DecodedReport& report : decoded.reports)
       if (report.verdict == codec::Verdict::kGood) course.add(report.state.position[field.index], round);
     const std::string wrong =
-        field.wraps ? tooLongAWay(course, stopsOf(arm, field.index)) : oddCourse(wire, field, arm, course);
+        field.wraps ? tooLongAWay(course, stopsOf(arm, field.index)) : implausibleSeries(wire, field, arm, course);
     if (!wrong.empty()) text += "joint " + std::to_string(field.index + 1) + ": " + wrong + "\n";
   }
   return text.empty() ? shortWays(courses, arm) : text;

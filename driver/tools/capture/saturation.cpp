@@ -32,8 +32,8 @@ std::pair<double, double> rangeOf(const Field& field) {
 
 }  // namespace
 
-void Saturation::look(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns,
-                      const double* values, int line) {
+void Saturation::add(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns,
+                     const double* values, int line) {
   for (size_t i = 0; i < columns.size(); ++i) {
     const Field* field = fieldOf(to_arm ? wire.output : wire.input, columns[i]);
     if (field == nullptr || (field->wraps && std::isfinite(values[i]))) continue;
@@ -65,7 +65,7 @@ void Saturation::keep(const std::string& column, const std::string& sentence) {
     ++known->further;
 }
 
-std::vector<std::string> Saturation::told() const {
+std::vector<std::string> Saturation::findings() const {
   std::vector<std::string> all;
   for (const Column& column : columns_) {
     all.push_back(column.first);

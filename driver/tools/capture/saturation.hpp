@@ -17,12 +17,12 @@ class Saturation {
 
   /// [main] Examines one row, in the form that encodeRow() takes. @param to_arm true for a command to the arm; false
   /// for a report from it
-  void look(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns, const double* values,
-            int line);
+  void add(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns, const double* values,
+           int line);
 
   /// [main] Returns one sentence for each column with such numbers, in the order of their first lines: "line 5:
   /// torque1: 0.7 is beyond what its field can carry, -0.5 to 0.5; sent as 0.5; so are 12 further rows".
-  std::vector<std::string> told() const;
+  std::vector<std::string> findings() const;
 
  private:
   struct Column {

@@ -86,7 +86,7 @@ std::string forceContinuous(const Recipe& recipe, uint64_t) {
                          // its surface at once
     last = p, force = step.force;
     bool held = false;
-    claim.judge(step, bounds, kConformanceDt, held);
+    claim.check(step, bounds, kConformanceDt, held);
     jumps += held ? 1 : 0;
     return jumps >= 3 ? jumped(jump, way, bounds.stiffness) : std::string();
   });

@@ -78,7 +78,7 @@ Finding claims(const scene::Device& device) {
   const Opened opened = openArm(device);
   if (opened.arm == nullptr) return Finding::skipped("the arm was not opened");
   const auto has = [&](const char* name) {
-    host::tellCall("extension");
+    host::noteCall("extension");
     return opened.arm->description().extension(opened.arm->handle(), name) != nullptr;
   };
   const uint32_t claimed = opened.claimed;
@@ -110,7 +110,7 @@ std::optional<std::vector<double>> placeAfter(const scene::Device& device, doubl
   hdv_start how{};
   how.struct_size = sizeof how;
   how.rate_hz = 1000;
-  host::tellCall("start");
+  host::noteCall("start");
   if (!opened.arm->start(how)) return std::nullopt;
   hdv_command off{};
   off.struct_size = sizeof off;
@@ -121,12 +121,12 @@ std::optional<std::vector<double>> placeAfter(const scene::Device& device, doubl
   bool good = true;
   for (uint64_t tick = 0; tick < kTicks && good; ++tick) {
     sample = {};
-    host::tellCall("read");
+    host::noteCall("read");
     good = opened.arm->read(tick * kPeriod, sample) >= 0;
-    host::tellCall("write");
+    host::noteCall("write");
     good = good && opened.arm->write(tick * kPeriod, off) >= 0;
   }
-  host::tellCall("stop");
+  host::noteCall("stop");
   opened.arm->stop();
   if (!good) return std::nullopt;
   return std::vector<double>(sample.position, sample.position + info.joint_count);
@@ -238,7 +238,7 @@ const std::vector<Test>& tests() {
 
 Outcome tryOne(const Test& test, const scene::Device& device, int limit_ms) {
   shareOverrun();
-  host::Trail trail;
+  host::ChildProgress trail;
   const auto said = host::runInChild(
       [&] {
         host::followCalls(&trail);

@@ -13,9 +13,9 @@ namespace hapticd::device_check {
 static uint32_t claimsOf(const host::DeviceInstance& arm) {
   hdv_info info{};
   info.struct_size = sizeof info;
-  host::tellCall("open");
+  host::noteCall("open");
   if (arm.description().open(arm.handle(), &info) < 0) return 0;
-  host::tellCall("close");
+  host::noteCall("close");
   arm.description().close(arm.handle());
   return info.capabilities;
 }
@@ -40,7 +40,7 @@ std::string readFor(host::DeviceInstance& arm, hdv_sample& sample,
   how.rate_hz = 1000;
   how.time_ns = static_cast<uint64_t>(monotonicNow());
   how.gravity[1] = -9.81;
-  host::tellCall("start");
+  host::noteCall("start");
   if (const auto started = arm.start(how); !started) return started.error();
   hdv_command off{};
   off.struct_size = sizeof off;
@@ -52,15 +52,15 @@ std::string readFor(host::DeviceInstance& arm, hdv_sample& sample,
     if (!simulated) std::this_thread::sleep_for(std::chrono::nanoseconds(kPeriod));
     one.now_ns = simulated ? how.time_ns + static_cast<uint64_t>(i) * kPeriod : static_cast<uint64_t>(monotonicNow());
     sample = {};
-    host::tellCall("read");
+    host::noteCall("read");
     around([&] { one.read = arm.read(one.now_ns, sample); });
-    host::tellCall("write");
+    host::noteCall("write");
     around([&] { one.write = arm.write(one.now_ns, off); });
     wrong = look(one);
   }
-  host::tellCall("stop");
+  host::noteCall("stop");
   arm.stop();
-  host::tellCall("close");
+  host::noteCall("close");
   return wrong;
 }
 

@@ -131,7 +131,7 @@ void tooMuch(const Node* list, const char* key, double limit, const char* what, 
 
 }  // namespace
 
-void adviseTable(const Node& root, const std::string& file, document::Problems& warnings) {
+void warnOfTable(const Node& root, const std::string& file, document::Problems& warnings) {
   const Node *dh = find(root, {"parameters", "arm", "dh"}), *kind = find(root, {"parameters", "arm", "kind"});
   if (kind != nullptr && kind->scalar == "chain") {
     sameAxis(dh, file, warnings);
@@ -141,7 +141,7 @@ void adviseTable(const Node& root, const std::string& file, document::Problems& 
   if (const auto stuck = stuckJoint(root, file)) warnings.push_back(*stuck);
 }
 
-void adviseWeights(const Node& root, const std::string& file, document::Problems& warnings) {
+void warnOfWeights(const Node& root, const std::string& file, document::Problems& warnings) {
   constexpr double kHeavy = 20, kStrong = 200;  // [kg]; [N m] of a joint
   tooMuch(find(root, {"parameters", "arm", "masses"}), "parameters.arm.masses", kHeavy, "too heavy for a link", "kg",
           "g", file, warnings);

@@ -12,10 +12,10 @@ namespace hapticd::diagnostics {
 
 /// [main] Warns of a table of Denavit-Hartenberg parameters whose columns are in another order, of a joint that cannot
 /// move, and of keys that an arm of this kind does not have. @param root content of a device file
-void adviseTable(const document::Node& root, const std::string& file, document::Problems& warnings);
+void warnOfTable(const document::Node& root, const std::string& file, document::Problems& warnings);
 
 /// [main] Warns of masses and torques that no arm for a hand has, unless the same key has a warning already.
-void adviseWeights(const document::Node& root, const std::string& file, document::Problems& warnings);
+void warnOfWeights(const document::Node& root, const std::string& file, document::Problems& warnings);
 
 /// [main] Returns a warning about the first joint whose stops leave it no room, if there is one.
 std::optional<document::Problem> stuckJoint(const document::Node& root, const std::string& file);

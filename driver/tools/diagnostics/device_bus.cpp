@@ -13,10 +13,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Known public vendor and product ids; a product of "" stands for every product of the vendor.
-struct Known {
+struct KnownDevice {
   const char *vendor, *product, *name, *module;
 };
-constexpr Known kKnown[] = {
+constexpr KnownDevice kKnown[] = {
     {"0403", "cb48", "Novint Falcon", "usb_bulk"},
     {"1234", "0006", "WoodenHaptics (mbed, HID)", "usb_hid"},
     {"16c0", "0486", "WoodenHaptics / Polhem (Teensy, HID)", "usb_hid"},
@@ -45,7 +45,7 @@ std::vector<fs::path> sorted(const fs::path& dir) {
 void scanUsb(const fs::path& sys, const fs::path& dev, std::vector<BusDevice>& found) {
   for (const fs::path& device : sorted(sys / "bus/usb/devices")) {
     const std::string vendor = lineOf(device / "idVendor"), product = lineOf(device / "idProduct");
-    for (const Known& known : kKnown) {
+    for (const KnownDevice& known : kKnown) {
       if (vendor != known.vendor || (known.product[0] != '\0' && product != known.product)) continue;
       int bus = 0, number = 0;
       char node[32] = "";

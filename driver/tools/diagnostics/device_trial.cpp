@@ -99,7 +99,7 @@ void placeComplaints(const std::string& error, const Node& parameters, const Nod
 /// The answer of the child process: "+" if it made the instance, then a line for each doubt; or "-" and the error.
 constexpr char kMade = '+', kNotMade = '-';
 
-std::string madeInChild(const scene::Device& device, host::Trail& trail) {
+std::string madeInChild(const scene::Device& device, host::ChildProgress& trail) {
   host::followCalls(&trail);
   const auto made = host::DeviceInstance::create(device, nullptr);
   if (!made) return kNotMade + made.error();
@@ -131,7 +131,7 @@ static void placeDoubt(const std::string& doubt, const Node& root, const std::st
 
 ModuleTrial tryModule(const scene::Device& device) {
   constexpr int kLimitMs = 10'000;
-  host::Trail trail;
+  host::ChildProgress trail;
   const auto said = host::runInChild([&] { return madeInChild(device, trail); }, kLimitMs);
   if (!said) {
     const std::string call = trail.call();

@@ -108,7 +108,7 @@ Eigen::Vector3d originOf(const Node& mount) {
 constexpr double kHandBegins = 0.07;  ///< [m] the hand's radius and approach from the world's origin
 
 /// Where the twin stands, and in which direction its hand presses.
-struct Stand {
+struct TwinPose {
   std::string mount, hand;  ///< as YAML, "" if nothing is needed; hand is the text after `center` in the block `hand`
   bool pressing = true;     ///< false: the tip has no straight line along which to press
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
@@ -128,8 +128,8 @@ std::string poseOf(const RestPose& rest, bool limits) {
 
 /// For a flat arm, or one of fewer than three joints: the hand pushes it along its plane, starting exactly where it
 /// rests.
-Stand standOfFlat(const RestPose& rest, const std::string& pose) {
-  Stand stand;
+TwinPose standOfFlat(const RestPose& rest, const std::string& pose) {
+  TwinPose stand;
   stand.center = rest.tip - kHandBegins * rest.push;
   stand.mount = fmt::format(
       "mount: {{position: {}}}    # the arm's file has none: with {} this puts its tip 7 cm beside the shapes' "
@@ -143,8 +143,8 @@ Stand standOfFlat(const RestPose& rest, const std::string& pose) {
 
 /// Returns where the twin stands: at the mount of its arm, or for a chain without a mount, so that its tip is where
 /// scenes expect a hand.
-Stand standOf(const Node& mount, const Node& arm, bool chain) {
-  Stand stand;
+TwinPose standOf(const Node& mount, const Node& arm, bool chain) {
+  TwinPose stand;
   stand.center = originOf(mount);
   if (mount.isMap()) stand.mount = "mount: " + flowText(mount) + "\n";
   if (mount.isMap() || !chain) return stand;
@@ -175,7 +175,7 @@ std::string jointOf(const Node& parameters, const Node& arm, bool chain) {
          comment + "\n";
 }
 
-std::string handOf(const Stand& stand) {
+std::string handOf(const TwinPose& stand) {
   if (!stand.pressing) return "hand: {script: none}    # the tip of this arm has no straight line to press along\n";
   return fmt::format(
       "# The hand that holds it, device frame: it presses a sphere of 0.05 m about the world's origin. The arm must\n"
@@ -209,7 +209,7 @@ Result<std::string> twinOf(const Node& root, const std::string& file) {
     return Error{file + ": parameters.arm.others: joints that do not carry the tip have no twin"};
   const Node &mount = below(root, "mount"), &limits = below(root, "limits");
   const double rate = document::toNumber(below(below(parameters, "wire"), "rate").scalar).value_or(1000);
-  const Stand stand = standOf(mount, arm, kind == "chain");
+  const TwinPose stand = standOf(mount, arm, kind == "chain");
   std::string text = fmt::format(
       "# A simulated arm with the mechanism of {}, written by `hapticd device twin`; it needs no hardware.\n"
       "hapticd-device: 1\nmodule: simulated\nname: twin of {}\n",

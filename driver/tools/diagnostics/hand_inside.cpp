@@ -10,8 +10,8 @@ namespace hapticd::diagnostics {
 namespace {
 
 /// Warns of surfaces that face the wrong way: the tip is not between them, and yet counts as inside.
-void tellTurned(const scene::Scene& scene, const InsideTip& inside, const std::string& where,
-                document::Problems& warnings) {
+void reportTurned(const scene::Scene& scene, const InsideTip& inside, const std::string& where,
+                  document::Problems& warnings) {
   const scene::Model& model = scene.models[inside.model];
   const scene::Value *sides = givenIn(model.parameters, "sides"), *geometry = givenIn(model.parameters, "geometry");
   const scene::Value* at = sides != nullptr ? sides : geometry;
@@ -28,21 +28,21 @@ void tellTurned(const scene::Scene& scene, const InsideTip& inside, const std::s
 
 }  // namespace
 
-bool goesRound(const scene::Device& device, const HandScript& hand, const scene::Model& model,
-               const host::ShapeInstance& shape) {
+bool circlesModel(const scene::Device& device, const HandScript& hand, const scene::Model& model,
+                  const host::ShapeInstance& shape) {
   Eigen::AlignedBox3d box;
   if (!shape.bounds(box.min().data(), box.max().data())) return false;
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
   return box.contains(Eigen::Vector3d(model.pose.orientation.conjugate() * (center - model.pose.position)));
 }
 
-void tellInside(const scene::Scene& scene, const InsideTip& inside, document::Problems& warnings) {
+void reportInside(const scene::Scene& scene, const InsideTip& inside, document::Problems& warnings) {
   const scene::Model& model = scene.models[inside.model];
   const scene::Device& device = scene.devices[inside.device];
   const std::string where =
       fmt::format("the hand starts inside {}: at [{:.4g}, {:.4g}, {:.4g}] the tip is {:.3g} mm deep", model.name,
                   inside.tip.x(), inside.tip.y(), inside.tip.z(), inside.depth * 1e3);
-  if (inside.beyond_box) return tellTurned(scene, inside, where, warnings);
+  if (inside.beyond_box) return reportTurned(scene, inside, where, warnings);
   const scene::Value* radius = givenIn(device.parameters, "hand.radius");
   if (inside.round && radius != nullptr && radius->place.file == scene.file.string())
     return document::report(warnings, radius->place, "hand.radius",

@@ -21,11 +21,11 @@ struct InsideTip {
 };
 
 /// Returns true if the centre of the hand's script lies in the box of the model: the hand then moves round the model.
-bool goesRound(const scene::Device& device, const HandScript& hand, const scene::Model& model,
-               const host::ShapeInstance& shape);
+bool circlesModel(const scene::Device& device, const HandScript& hand, const scene::Model& model,
+                  const host::ShapeInstance& shape);
 
 /// [main] Warns of one such tip: at the surfaces if they face the wrong way, at the radius of the hand if it is too
 /// small, otherwise at the pose of the model.
-void tellInside(const scene::Scene& scene, const InsideTip& inside, document::Problems& warnings);
+void reportInside(const scene::Scene& scene, const InsideTip& inside, document::Problems& warnings);
 
 }  // namespace hapticd::diagnostics

@@ -64,7 +64,7 @@ std::string wayOf(const HandScript& hand) {
   }
 }
 
-void judgeSpeed(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
+void checkSpeed(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
                 document::Problems& warnings) {
   const double speed = hand.speed();
   if (speed <= kFastestHand * 1.001) return;
@@ -79,8 +79,8 @@ void judgeSpeed(const scene::Scene& scene, const scene::Device& device, const Ha
 }
 
 /// Warns of a path file whose times seem to be in ms, because its hand is extremely slow.
-void judgeCrawl(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
-                document::Problems& warnings) {
+void checkSlowMotion(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
+                     document::Problems& warnings) {
   constexpr double kCrawl = 2e-3, kLong = 10, kFar = 5e-3;  // [m/s]; [s]; [m] a shorter path counts as rest
   if (hand.kind != Kind::kPath || hand.path_end < kLong || hand.path_way < kFar) return;
   if (hand.path_speed > 10 * kCrawl || hand.path_way > kCrawl * hand.path_end) return;
@@ -92,7 +92,7 @@ void judgeCrawl(const scene::Scene& scene, const scene::Device& device, const Ha
 }
 
 /// Warns of a sweep that was meant in degrees. Returns true if it was, so that the speed needs no warning of its own.
-bool judgeSweep(const scene::Device& device, const HandScript& hand, const UnreadKeys& unread,
+bool checkSweep(const scene::Device& device, const HandScript& hand, const UnreadKeys& unread,
                 document::Problems& warnings) {
   const scene::Value* sweep = givenIn(device.parameters, "hand.sweep");
   const bool may_stroke = hand.kind == Kind::kStroke || unread.has("hand.script");
@@ -144,7 +144,7 @@ double HandScript::speed() const {
   }
 }
 
-double HandScript::once() const {
+double HandScript::cycleTime() const {
   constexpr double kRest = 1;  // [s] how long a hand that holds still is watched
   if (kind == Kind::kPath) return path_end;
   const bool repeats =
@@ -168,23 +168,23 @@ std::optional<HandScript> handScriptOf(const scene::Device& device) {
   return hand;
 }
 
-document::Problems hastyHands(const scene::Scene& scene, const UnreadKeys& unread) {
+document::Problems fastHands(const scene::Scene& scene, const UnreadKeys& unread) {
   document::Problems warnings;
   for (const scene::Device& device : scene.devices) {
     const auto hand = handScriptOf(device);
     if (!hand) continue;
-    const bool wide = judgeSweep(device, *hand, unread, warnings);
+    const bool wide = checkSweep(device, *hand, unread, warnings);
     const size_t before = warnings.size();
     if (wide && hand->sweep <= 360 && !unread.has("hand")) {  // judged as it is once its sweep is mended
       HandScript mended = *hand;
       mended.sweep *= std::numbers::pi / 180;
-      judgeSpeed(scene, device, mended, warnings);
+      checkSpeed(scene, device, mended, warnings);
     } else if (!wide && !unread.has("hand")) {
-      judgeSpeed(scene, device, *hand, warnings);
-      judgeCrawl(scene, device, *hand, warnings);
+      checkSpeed(scene, device, *hand, warnings);
+      checkSlowMotion(scene, device, *hand, warnings);
     }
     document::Problems of_values;
-    judgeHandValues(scene, device, *hand, unread, of_values);
+    checkHandValues(scene, device, *hand, unread, of_values);
     for (document::Problem& one : of_values)  // a hand that is too fast has a warning already
       if (warnings.size() == before || one.key != "hand.rate") warnings.push_back(std::move(one));
   }

@@ -23,10 +23,10 @@ struct HandScript {
   double path_way = 0;                                       ///< [m] length of that path
 
   /// True if the hand moves by itself: there is a hand, and no program leads it.
-  bool goes() const { return kind != Kind::kNone && kind != Kind::kGuided; }
+  bool moves() const { return kind != Kind::kNone && kind != Kind::kGuided; }
   bool presses() const { return kind == Kind::kPress || kind == Kind::kTap; }
-  double speed() const;  ///< [m/s] greatest speed of its motion
-  double once() const;   ///< [s] time until it has done its whole motion once
+  double speed() const;      ///< [m/s] greatest speed of its motion
+  double cycleTime() const;  ///< [s] time until it has done its whole motion once
 };
 
 inline constexpr double kFastestHand = 2;  ///< [m/s] greatest speed of a human hand that strokes, presses or taps
@@ -50,6 +50,6 @@ std::optional<HandScript> handScriptOf(const scene::Device& device);
 /// [main] Warns of strokes of more than half a turn to either side, which were meant in degrees, of a hand that is
 /// faster than human hands, of a path so slow that its times were not meant in s, and of values that no hand has.
 /// @param unread keys with problems, on which no judgement depends
-document::Problems hastyHands(const scene::Scene& scene, const UnreadKeys& unread = {});
+document::Problems fastHands(const scene::Scene& scene, const UnreadKeys& unread = {});
 
 }  // namespace hapticd::diagnostics

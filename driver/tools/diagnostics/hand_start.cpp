@@ -13,9 +13,9 @@
 #include "diagnostics/hand_inside.hpp"
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/key_place.hpp"
-#include "diagnostics/limit_advice.hpp"
-#include "diagnostics/untouchable.hpp"
-#include "diagnostics/walk_advice.hpp"
+#include "diagnostics/limit_warnings.hpp"
+#include "diagnostics/unreachable_models.hpp"
+#include "diagnostics/walk_warnings.hpp"
 #include "host/child.hpp"
 #include "host/device_instance.hpp"
 #include "host/wire.hpp"
@@ -89,8 +89,8 @@ std::vector<InsideTip> tipsInside(const scene::Scene& scene, const servo::World&
         inside.beyond_box = !box.contains(core.models()[model].frame.pointToModel(inside.tip));
       const auto hand = handScriptOf(device);
       constexpr double kAbout = 0.3;  // [m] a hand does not go round a larger model
-      inside.round = hand && hand->goes() && hand->radius + inside.depth < kAbout &&
-                     hand->kind != HandScript::Kind::kPath && goesRound(device, *hand, scene.models[model], shape);
+      inside.round = hand && hand->moves() && hand->radius + inside.depth < kAbout &&
+                     hand->kind != HandScript::Kind::kPath && circlesModel(device, *hand, scene.models[model], shape);
       all.push_back(inside);
     }
   return all;
@@ -156,17 +156,18 @@ std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<
   core.tick(0, 0, tips);
   document::Problems warnings;
   const std::vector<InsideTip> inside = tipsInside(scene, **world, core, hands);
-  for (const InsideTip& one : inside) tellInside(scene, one, warnings);
+  for (const InsideTip& one : inside) reportInside(scene, one, warnings);
   const uint32_t far = packFar(scene, **world, core, hands, found);
   std::vector<TipReach> reaches;
   for (const Hand& hand : hands) reaches.push_back({hand.probe.position, hand.reach});
   packProblems(warnings, found);
-  if (far == 0 && tips.size() == scene.devices.size()) packProblems(outOfReach(scene, **world, core, reaches), found);
+  if (far == 0 && tips.size() == scene.devices.size())
+    packProblems(unreachableModels(scene, **world, core, reaches), found);
   packProblems(enclosedModels(scene, **world), found);
   // The hands run their scripts only if they start in the right place, because other warnings would follow from a wrong
   // start.
   if (inside.empty() && far == 0 && may_walk && tips.size() == scene.devices.size())
-    packProblems(adviseWalk(scene, **world, strays), found);
+    packProblems(warnOfWalk(scene, **world, strays), found);
   return found.take();
 }
 
@@ -192,8 +193,8 @@ std::string tryStart(const scene::Scene& scene, const scene::Device& device, boo
 
 /// Reports a refusal at the place of the key that it names. The key stands at the beginning, or after what could not be
 /// done: "device 'name': cannot be opened: hand.axis is zero, expected a direction".
-void tellRefused(const scene::Scene& scene, const scene::Device& device, const std::string& told,
-                 document::Problems& problems) {
+void reportRefused(const scene::Scene& scene, const scene::Device& device, const std::string& told,
+                   document::Problems& problems) {
   const std::string before = "device '" + device.name + "': ";
   size_t begin = told.rfind(before, 0) == 0 ? before.size() : told.size();
   while (begin < told.size()) {
@@ -213,7 +214,7 @@ void tellRefused(const scene::Scene& scene, const scene::Device& device, const s
   document::report(problems, placeOfHand(device), "hand", told.substr(told.rfind(before, 0) == 0 ? before.size() : 0));
 }
 
-void tellFar(const scene::Scene& scene, const std::string& list, uint32_t count, document::Problems& warnings) {
+void reportFar(const scene::Scene& scene, const std::string& list, uint32_t count, document::Problems& warnings) {
   host::Unpacker in(list);
   for (; count > 0; --count) {
     const uint32_t device = in.count();
@@ -235,7 +236,7 @@ document::Problems refusedArms(const scene::Scene& scene, bool needs_velocity) {
   for (const scene::Device& device : scene.devices) {
     if (device.module != "simulated") continue;
     const auto told = host::runInChild([&] { return tryStart(scene, device, needs_velocity); }, kHandLimitMs);
-    if (told && *told != "=") tellRefused(scene, device, *told, problems);
+    if (told && *told != "=") reportRefused(scene, device, *told, problems);
   }
   return problems;
 }
@@ -253,13 +254,13 @@ document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog
       std::any_of(given.begin(), given.end(), [](const scene::Value& value) { return value.id.starts_with("hand."); });
   if (!own_hand)  // a scene gives it one
     std::erase_if(problems, [](const document::Problem& one) { return one.key.starts_with("hand"); });
-  for (const document::Problem& one : hastyHands(alone)) warnings.push_back(one);
+  for (const document::Problem& one : fastHands(alone)) warnings.push_back(one);
   return problems;
 }
 
 namespace {
 
-/// Returns true if the hands of a scene move as their scripts say, at most too often. @param warnings of hastyHands()
+/// Returns true if the hands of a scene move as their scripts say, at most too often. @param warnings of fastHands()
 bool moveAsMeant(const scene::Scene& scene, const document::Problems& warnings) {
   const auto hasty = [](const scene::Device& device) {
     const auto hand = handScriptOf(device);
@@ -272,16 +273,16 @@ bool moveAsMeant(const scene::Scene& scene, const document::Problems& warnings) 
 
 }  // namespace
 
-document::Problems adviseHands(const scene::Scene& scene, const std::vector<bool>& strays) {
+document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool>& strays) {
   document::Problems warnings;
   if (scene.models.empty() || scene.models.size() > kMostModels || scene.devices.empty()) return warnings;
-  warnings = hastyHands(scene);
+  warnings = fastHands(scene);
   const bool may_walk = moveAsMeant(scene, warnings);
   const auto told = host::runInChild([&] { return tryTips(scene, may_walk, strays); }, kHandLimitMs);
   if (!told) return warnings;  // the trial of the models reports a model that crashes
   host::Unpacker in(*told);
   const uint32_t far = in.count();
-  tellFar(scene, in.text(), far, warnings);
+  reportFar(scene, in.text(), far, warnings);
   for (document::Problem& one : readProblems(in)) warnings.push_back(std::move(one));
   return warnings;
 }

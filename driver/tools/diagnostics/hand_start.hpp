@@ -14,9 +14,10 @@ namespace hapticd::diagnostics {
 /// [main] Warns if the tip of an arm is inside a model at the first tick, with the depth, and if an arm can reach none
 /// of the models. Simulated hands are where their script begins, other arms in the pose of their calibration. If there
 /// is no such warning and all arms are simulated, their hands then run their scripts through the scene: see
-/// walk_advice.hpp. The models are set up in a child process. @param scene scene with the devices that a run would use
-/// @param strays models that move as nobody meant, as for adviseWalk()
-document::Problems adviseHands(const scene::Scene& scene, const std::vector<bool>& strays = {});
+/// walk_warnings.hpp. The models are set up in a child process. @param scene scene with the devices that a run would
+/// use
+/// @param strays models that move as nobody meant, as for warnOfWalk()
+document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool>& strays = {});
 
 /// [main] Returns a problem for each simulated arm that `run` would refuse, with the text of `run`: an arm that cannot
 /// reach the start of its hand's motion, or that lacks the enable button. The arms are started in a child process.
@@ -25,7 +26,7 @@ document::Problems adviseHands(const scene::Scene& scene, const std::vector<bool
 document::Problems refusedArms(const scene::Scene& scene, bool needs_velocity);
 
 /// [main] Does the same for one device file. If the file has no hand, scenes give it one, so its hand is not judged.
-/// @param warnings gets the warnings of hastyHands() about its hand
+/// @param warnings gets the warnings of fastHands() about its hand
 document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog& catalog,
                                 document::Problems& warnings);
 

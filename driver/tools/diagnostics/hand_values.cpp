@@ -31,7 +31,7 @@ class HandValues {
   }
 
   /// Warns of a force of the hand's unrest that was given in mN.
-  void judgeUnrest(const char* id, double most, double usual) const {
+  void checkTremor(const char* id, double most, double usual) const {
     if (!isAbove(id, most)) return;
     const double force = read(id)->number;
     tell(id, fmt::format("{0:g} N shakes the hand far more than a person's hand (about {1:g} N); the value must be in "
@@ -50,7 +50,7 @@ bool isRepeated(const HandScript& hand) {
   return hand.kind == HandScript::Kind::kStroke || hand.kind == HandScript::Kind::kCircle || hand.presses();
 }
 
-void judgeRate(const HandValues& values, const HandScript& hand) {
+void checkHandRate(const HandValues& values, const HandScript& hand) {
   constexpr double kOften = 12;  // [Hz] nobody moves a hand so often
   if (!isRepeated(hand) || !values.isAbove("hand.rate", kOften)) return;
   values.tell("hand.rate", fmt::format("{0:g} times a second is more often than a person moves a hand; the value must "
@@ -58,7 +58,7 @@ void judgeRate(const HandValues& values, const HandScript& hand) {
                                        hand.rate, hand.rate / 60));
 }
 
-void judgeSpring(const HandValues& values, const HandScript& hand) {
+void checkSpring(const HandValues& values, const HandScript& hand) {
   constexpr double kSoft = 5, kAway = 0.01;  // [N/m]; [m]
   const scene::Value* spring = values.read("hand.stiffness");
   const bool moves = isRepeated(hand) || hand.kind == HandScript::Kind::kPath;
@@ -71,27 +71,27 @@ void judgeSpring(const HandValues& values, const HandScript& hand) {
 
 }  // namespace
 
-void judgeHandValues(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
+void checkHandValues(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
                      const UnreadKeys& unread, document::Problems& warnings) {
   constexpr double kHeavy = 5, kLong = 10;                   // [kg] heavier than a forearm; [s] that check watches
   constexpr double kTremor = 1, kWander = 2;                 // [N]
   constexpr double kUsualTremor = 0.05, kUsualWander = 0.1;  // [N] the module's defaults
-  if (!hand.goes()) return;
+  if (!hand.moves()) return;
   const HandValues values(scene, device, unread, warnings);
   if (values.isAbove("hand.mass", kHeavy))
     values.tell("hand.mass",
                 fmt::format("{0:g} kg is more than a hand and its forearm weigh at the tip (about 0.2 to "
                             "1 kg); the value must be in kg: {0:g} g is {1:g} kg",
                             values.read("hand.mass")->number, values.read("hand.mass")->number * kThousandth));
-  values.judgeUnrest("hand.tremor", kTremor, kUsualTremor);
-  values.judgeUnrest("hand.wander", kWander, kUsualWander);
+  values.checkTremor("hand.tremor", kTremor, kUsualTremor);
+  values.checkTremor("hand.wander", kWander, kUsualWander);
   if (values.isAbove("hand.lead_in", kLong))
     values.tell("hand.lead_in", fmt::format("{0:g} s pass before the script begins; the value must be in s: {0:g} ms "
                                             "is {1:g} s",
                                             hand.lead_in, hand.lead_in * kThousandth));
   if (unread.has("hand.script")) return;
-  judgeRate(values, hand);
-  judgeSpring(values, hand);
+  checkHandRate(values, hand);
+  checkSpring(values, hand);
 }
 
 }  // namespace hapticd::diagnostics

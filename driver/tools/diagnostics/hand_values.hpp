@@ -10,7 +10,7 @@ namespace hapticd::diagnostics {
 
 /// [main] Warns of a mass, a spring, a tremor, a rate or a lead-in that was meant in another unit. @param unread keys
 /// with problems, on which no judgement depends
-void judgeHandValues(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
+void checkHandValues(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
                      const UnreadKeys& unread, document::Problems& warnings);
 
 }  // namespace hapticd::diagnostics

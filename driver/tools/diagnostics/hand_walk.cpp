@@ -48,12 +48,12 @@ class WalkLog final : public servo::TickLog {
   void overrun(uint64_t) noexcept HSP_RT override {}
   void finish(uint64_t, Nanoseconds, long, uint64_t) noexcept override {}
 
-  void tick(double t, double, Nanoseconds, const servo::Spent&, const servo::Core& core,
+  void tick(double t, double, Nanoseconds, const servo::TickDuration&, const servo::Core& core,
             const servo::Arms& arms) noexcept HSP_RT override {
     constexpr uint64_t kLookEvery = 64;  // ticks
     if (ended_) return;
-    for (uint32_t i = 0; i < walk_.models.size(); ++i) lookAtModel(i, core, arms);
-    for (uint32_t i = 0; i < arms.size(); ++i) lookAtArm(i, core, *arms[i]);
+    for (uint32_t i = 0; i < walk_.models.size(); ++i) observeModel(i, core, arms);
+    for (uint32_t i = 0; i < arms.size(); ++i) observeArm(i, core, *arms[i]);
     if (ticks_++ % kLookEvery == 0) spoiled_ = processorSeconds() - begun_ > kMostProcessor;
     const bool all =
         std::all_of(walk_.arms.begin(), walk_.arms.end(), [](const WalkedArm& arm) { return arm.touched; });
@@ -65,7 +65,7 @@ class WalkLog final : public servo::TickLog {
   }
 
  private:
-  void lookAtModel(uint32_t index, const servo::Core& core, const servo::Arms& arms) noexcept HSP_RT {
+  void observeModel(uint32_t index, const servo::Core& core, const servo::Arms& arms) noexcept HSP_RT {
     const servo::ModelState& state = core.models()[index];
     WalkedModel& seen = walk_.models[index];
     if (ticks_ == 0) began_at_[index] = state.frame.origin_world;
@@ -97,7 +97,7 @@ class WalkLog final : public servo::TickLog {
     seen.touched += inside;
   }
 
-  void lookAtArm(uint32_t index, const servo::Core& core, const servo::Arm& arm) noexcept HSP_RT {
+  void observeArm(uint32_t index, const servo::Core& core, const servo::Arm& arm) noexcept HSP_RT {
     WalkedArm& seen = walk_.arms[index];
     const servo::Clips& clips = arm.limiter().clips();
     const double asked = core.force(index).norm();
@@ -139,7 +139,7 @@ std::optional<Walk> walkHands(const scene::Scene& scene, servo::World& world) {
                     : Result<std::unique_ptr<servo::Arm>>(Error{"not simulated"});
     if (!arm || !(*arm)->start(0, scene.servo.gravity)) return std::nullopt;  // refusedArms() reports why
     arms.push_back(std::move(*arm));
-    once = std::max(once, hand->once());
+    once = std::max(once, hand->cycleTime());
   }
   servo::LoopSettings settings;
   settings.period_ns = static_cast<Nanoseconds>(std::llround(1e9 / scene.servo.rate));

@@ -44,7 +44,7 @@ const scene::Value* valueNamed(const scene::Model& model, std::string& text) {
 }
 
 /// Texts about models, each with the number of its model, packed so that they can come from the child.
-class Remarks {
+class PackedTexts {
  public:
   void add(size_t model, const std::string& text) {
     ++count_;
@@ -77,7 +77,7 @@ class Remarks {
 };
 
 /// Warns of parameters for moving bodies on a model that does not move by forces.
-void adviseMotion(const scene::Model& model, size_t index, document::Problems& warnings) {
+void warnOfMotion(const scene::Model& model, size_t index, document::Problems& warnings) {
   for (const scene::Value& value : model.parameters)
     for (const char* id : {"mass", "inertia", "gravity", "drag", "angular_drag", "joint", "tether", "velocity"})
       if (value.id == id)
@@ -87,7 +87,7 @@ void adviseMotion(const scene::Model& model, size_t index, document::Problems& w
 }
 
 /// Reports a crash, an exit or a hang, with the model whose plugin caused it.
-void reportEnd(const std::string& how, const host::Trail& trail, const scene::Scene& scene,
+void reportEnd(const std::string& how, const host::ChildProgress& trail, const scene::Scene& scene,
                document::Problems& problems) {
   const uint32_t index = trail.item();
   if (*trail.call() == '\0' || index >= scene.models.size())
@@ -115,7 +115,7 @@ std::optional<Eigen::AlignedBox3d> readBox(host::Unpacker& in) {
 }
 
 /// What the set-up of one model showed.
-struct Tried {
+struct TrialResult {
   std::string error;     ///< why it was refused; "" if it was not
   double stiffness = 0;  ///< [N/m]
   bool idle = false, reads_velocity = false;
@@ -124,9 +124,9 @@ struct Tried {
 
 using Log = std::function<void(int, const std::string&, const std::string&)>;
 
-Tried tryOne(const scene::Scene& scene, const scene::Model& model, uint32_t index, double max_force, const Log& log,
-             host::Trail& trail) {
-  Tried tried;
+TrialResult tryOne(const scene::Scene& scene, const scene::Model& model, uint32_t index, double max_force,
+                   const Log& log, host::ChildProgress& trail) {
+  TrialResult tried;
   trail.mark(index, "create() or set");
   auto shape = host::ShapeInstance::create(model, log);
   if (!shape) {
@@ -151,12 +151,12 @@ Tried tryOne(const scene::Scene& scene, const scene::Model& model, uint32_t inde
 
 /// Sets up a refused model without the parameter that the plugin objects to, and again, so that further objections and
 /// the size of the model are known. What would only follow from a missing parameter is not added to the problems.
-Tried tryWithout(const scene::Scene& scene, uint32_t index, double max_force, std::string error, const Log& log,
-                 host::Trail& trail, Remarks& problems) {
+TrialResult tryWithout(const scene::Scene& scene, uint32_t index, double max_force, std::string error, const Log& log,
+                       host::ChildProgress& trail, PackedTexts& problems) {
   constexpr int kMost = 3;  // parameters that are left out
   scene::Model rest = scene.models[index];
   std::vector<std::string> left_out;
-  Tried tried;
+  TrialResult tried;
   for (int round = 0; round < kMost; ++round) {
     const scene::Value* named = valueNamed(rest, error);
     if (named == nullptr) break;
@@ -174,15 +174,16 @@ Tried tryWithout(const scene::Scene& scene, uint32_t index, double max_force, st
   return tried;
 }
 
-std::string tryAll(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound, host::Trail& trail) {
-  Remarks problems, warnings;
+std::string tryAll(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound,
+                   host::ChildProgress& trail) {
+  PackedTexts problems, warnings;
   host::Packer claims, boxes;
   for (uint32_t i = 0; i < scene.models.size(); ++i) {
     const Log log = [&](int level, const std::string&, const std::string& text) {
       if (level == HSP_LOG_WARNING) warnings.add(i, text);
     };
     const bool left_out = i < unsound.size() && unsound[i];
-    Tried tried = left_out ? Tried{} : tryOne(scene, scene.models[i], i, max_force, log, trail);
+    TrialResult tried = left_out ? TrialResult{} : tryOne(scene, scene.models[i], i, max_force, log, trail);
     if (!tried.error.empty()) {
       problems.add(i, tried.error);
       tried = tryWithout(scene, i, max_force, tried.error, log, trail, problems);
@@ -200,18 +201,18 @@ std::string tryAll(const scene::Scene& scene, double max_force, const std::vecto
 ModelTrial tryModels(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound) {
   ModelTrial trial;
   if (scene.models.empty()) return trial;
-  host::Trail trail;
+  host::ChildProgress trail;
   const auto told = host::runInChild([&] { return tryAll(scene, max_force, unsound, trail); }, kTrialLimitMs);
   if (!told) {
     reportEnd(told.error(), trail, scene, trial.problems);
     return trial;
   }
   host::Unpacker in(*told);
-  trial.problems = Remarks::read(in, scene);
-  trial.warnings = Remarks::read(in, scene);
+  trial.problems = PackedTexts::read(in, scene);
+  trial.warnings = PackedTexts::read(in, scene);
   for (size_t i = 0; i < scene.models.size() && in.good(); ++i) {
     trial.stiffness.push_back(in.real());
-    if (in.count() != 0) adviseMotion(scene.models[i], i, trial.warnings);
+    if (in.count() != 0) warnOfMotion(scene.models[i], i, trial.warnings);
     trial.needs_velocity = in.count() != 0 || trial.needs_velocity;
   }
   for (size_t i = 0; i < scene.models.size() && in.good(); ++i) trial.boxes.push_back(readBox(in));

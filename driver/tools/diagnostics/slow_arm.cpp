@@ -27,8 +27,8 @@ double forceOf(const scene::Device& device, double own) {
 
 /// Adds the warning. If the arm's own rate is too low, it is placed at the rate in the device file, otherwise at the
 /// rate of the servo.
-void tellSlow(const scene::Scene& scene, const scene::Device& device, const std::string& slow,
-              document::Problems& warnings) {
+void reportSlow(const scene::Scene& scene, const scene::Device& device, const std::string& slow,
+                document::Problems& warnings) {
   const bool own = slow.starts_with("its own rate");
   for (const char* key : {"parameters.wire.rate", "parameters.rate"})
     if (const auto place = own ? placeOfKey(device.file, key) : std::nullopt)
@@ -56,7 +56,7 @@ document::Problems slowArms(const scene::Scene& scene) {
   document::Problems warnings;
   for (const scene::Device& device : scene.devices)
     if (const std::string slow = slownessOf(device, scene.servo.rate); !slow.empty())
-      tellSlow(scene, device, slow, warnings);
+      reportSlow(scene, device, slow, warnings);
   return warnings;
 }
 

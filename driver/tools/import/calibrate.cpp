@@ -12,7 +12,7 @@
 #include "document/csv.hpp"
 #include "document/node.hpp"
 #include "import/active_model.hpp"
-#include "import/dents.hpp"
+#include "import/indentation.hpp"
 
 namespace hapticd::importing {
 namespace {
@@ -197,7 +197,7 @@ Result<void> save(const std::string& file, const std::string& text) {
   return {};
 }
 
-void tell(const std::vector<Answer>& answers, const std::vector<double>& forces, const Calibration& options) {
+void printFit(const std::vector<Answer>& answers, const std::vector<double>& forces, const Calibration& options) {
   double worst = 0, squares = 0;
   for (std::size_t j = 0; j < answers.size(); ++j) {
     const double error = forces[j] / answers[j].force - 1;
@@ -238,7 +238,7 @@ Result<std::vector<double>> fitStiffness(const Body& body, const std::vector<Ans
 }
 
 /// Fits `fitted.reach`, and reports how well the body matches the given dents.
-Result<void> fitShear(const Body& body, const std::vector<Dent>& dents, const Calibration& options,
+Result<void> fitShear(const Body& body, const std::vector<Indentation>& dents, const Calibration& options,
                       host::Catalog& catalog, Fitted& fitted) {
   Fitted tried{fitted.stiffness, 0, true};
   const auto write = [&](double reach) {
@@ -279,20 +279,20 @@ Result<void> calibrate(const Calibration& options, host::Catalog& catalog) {
   if (!answers) return Error{answers.error()};
   const auto body = readBody(options.body);
   if (!body) return Error{body.error()};
-  std::vector<Dent> dents;
+  std::vector<Indentation> dents;
   if (!options.dents.empty()) {
     if (body->columns == 0)
       return Error{
           options.body +
           ": has vertices, expected a grid of points: the dents of a mesh cannot be fitted, its rings fix them"};
-    auto read = readDents(options.dents);
+    auto read = readIndentations(options.dents);
     if (!read) return Error{read.error()};
     dents = std::move(*read);
   }
   Fitted fitted;
   const auto forces = fitStiffness(*body, *answers, options, catalog, fitted);
   if (!forces) return Error{forces.error()};
-  tell(*answers, *forces, options);
+  printFit(*answers, *forces, options);
   return dents.empty() ? Result<void>{} : fitShear(*body, dents, options, catalog, fitted);
 }
 

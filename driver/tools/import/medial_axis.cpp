@@ -39,7 +39,7 @@ struct Ball {
 /// sample i, with the ripples of its triangles.
 Ball shrink(const SurfaceSamples& samples, const NearestPoints& nearest, uint32_t i, double start, double least_angle) {
   const Vector3d &p = samples.points[i], &n = samples.normals[i];
-  const NearestPoints::Beyond opposite{p, -n, std::sin(least_angle / 2)};
+  const NearestPoints::HalfSpaceFilter opposite{p, -n, std::sin(least_angle / 2)};
   Ball ball{p - start * n, start};
   for (int k = 0; k < kMostShrinks; ++k) {
     // Points outside the ball are not asked for, because on a flat face thousands of points are nearly as near.
@@ -170,10 +170,10 @@ class Parts {
 };
 
 /// Tells which edges and triangles of balls stay inside the body.
-class Soundness {
+class InsideTest {
  public:
-  Soundness(const std::vector<Ball>& kept, const SurfaceSamples& samples, const NearestPoints& nearest,
-            double tolerance)
+  InsideTest(const std::vector<Ball>& kept, const SurfaceSamples& samples, const NearestPoints& nearest,
+             double tolerance)
       : kept_(kept), samples_(samples), nearest_(nearest), tolerance_(tolerance) {}
 
   bool edge(int a, int b) const {
@@ -210,7 +210,7 @@ using Edges = std::set<std::array<int, 2>>;
 
 /// Joins parts that are still separate by the shortest edges inside the body, in case the samples were too few to find
 /// them.
-void bridgeGaps(const std::vector<Ball>& kept, const Soundness& sound, Parts& parts, Edges& edges) {
+void bridgeGaps(const std::vector<Ball>& kept, const InsideTest& sound, Parts& parts, Edges& edges) {
   std::vector<std::pair<double, std::array<int, 2>>> gaps;
   const int count = static_cast<int>(kept.size());
   for (int a = 0; a < count && parts.count() > 1; ++a)
@@ -228,7 +228,8 @@ void bridgeGaps(const std::vector<Ball>& kept, const Soundness& sound, Parts& pa
 }
 
 /// Adds edges and triangles between the balls nearest to the same witness, if they stay inside the body.
-void join(const std::vector<Ball>& kept, const std::vector<Ball>& witnesses, const Soundness& sound, MedialAxis& axis) {
+void join(const std::vector<Ball>& kept, const std::vector<Ball>& witnesses, const InsideTest& sound,
+          MedialAxis& axis) {
   Edges edges, refused;
   std::set<std::array<int, 3>> triangles;
   for (const Ball& witness : witnesses) {
@@ -331,7 +332,7 @@ Result<MedialAxis> medialAxis(const SurfaceSamples& samples, const MedialOptions
   progress(std::to_string(kept.size()) + " spheres; joining them");
   for (const Ball& ball : kept)
     axis.spheres.emplace_back(ball.center.x(), ball.center.y(), ball.center.z(), ball.radius);
-  join(kept, balls, Soundness(kept, samples, nearest, options.tolerance), axis);
+  join(kept, balls, InsideTest(kept, samples, nearest, options.tolerance), axis);
   return axis;
 }
 

@@ -125,7 +125,7 @@ Result<void> report(const MedialImport& options, const MedialOptions& settings, 
 }
 
 /// Warns of a large body, because its file was probably in millimetres.
-void tellSize(const Eigen::AlignedBox3d& box, const std::string& file) {
+void printSize(const Eigen::AlignedBox3d& box, const std::string& file) {
   const Vector3d size = box.sizes();
   std::printf("%s: %.4g x %.4g x %.4g m\n", file.c_str(), size.x(), size.y(), size.z());
   std::fflush(stdout);
@@ -164,7 +164,7 @@ Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalo
 Result<void> importMedial(const MedialImport& options, const Triangles& mesh, host::Catalog& catalog) {
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : mesh.points) box.extend(p);
-  tellSize(box, options.file);
+  printSize(box, options.file);
   MedialOptions settings;
   settings.tolerance = options.tolerance > 0 ? options.tolerance : kToleranceShare * box.diagonal().norm();
   settings.most_spheres = options.most_spheres;

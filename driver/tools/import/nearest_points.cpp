@@ -32,15 +32,15 @@ void NearestPoints::build(std::size_t first, std::size_t last) {
   build(middle + 1, last);
 }
 
-uint32_t NearestPoints::nearest(const Vector3d& p, const Beyond* only, double limit) const {
+uint32_t NearestPoints::nearest(const Vector3d& p, const HalfSpaceFilter* only, double limit) const {
   uint32_t best = UINT32_MAX;
   double best2 = limit * limit;
-  look(0, order_.size(), p, only, best, best2);
+  search(0, order_.size(), p, only, best, best2);
   return best;
 }
 
-void NearestPoints::look(std::size_t first, std::size_t last, const Vector3d& p, const Beyond* only, uint32_t& best,
-                         double& best2) const {
+void NearestPoints::search(std::size_t first, std::size_t last, const Vector3d& p, const HalfSpaceFilter* only,
+                           uint32_t& best, double& best2) const {
   if (first == last) return;
   const std::size_t middle = (first + last) / 2;
   const uint32_t root = order_[middle];
@@ -53,9 +53,9 @@ void NearestPoints::look(std::size_t first, std::size_t last, const Vector3d& p,
     best = root;
   }
   const double beyond = p[axis_[middle]] - points_[root][axis_[middle]];
-  beyond < 0 ? look(first, middle, p, only, best, best2) : look(middle + 1, last, p, only, best, best2);
+  beyond < 0 ? search(first, middle, p, only, best, best2) : search(middle + 1, last, p, only, best, best2);
   if (beyond * beyond < best2)
-    beyond < 0 ? look(middle + 1, last, p, only, best, best2) : look(first, middle, p, only, best, best2);
+    beyond < 0 ? search(middle + 1, last, p, only, best, best2) : search(first, middle, p, only, best, best2);
 }
 
 }  // namespace hapticd::importing

@@ -12,18 +12,18 @@ class NearestPoints {
  public:
   explicit NearestPoints(const std::vector<Eigen::Vector3d>& points);  ///< [main] `points` must outlive this
   /// A restriction of the points: only points q with (q - from) . inward > sine * |q - from| count.
-  struct Beyond {
+  struct HalfSpaceFilter {
     Eigen::Vector3d from, inward;
     double sine;
   };
   /// [main] Returns the index of the point nearest to p, or UINT32_MAX if no point counts or none is nearer than
   /// `limit`.
-  uint32_t nearest(const Eigen::Vector3d& p, const Beyond* only = nullptr, double limit = HUGE_VAL) const;
+  uint32_t nearest(const Eigen::Vector3d& p, const HalfSpaceFilter* only = nullptr, double limit = HUGE_VAL) const;
 
  private:
   void build(std::size_t first, std::size_t last);
-  void look(std::size_t first, std::size_t last, const Eigen::Vector3d& p, const Beyond* only, uint32_t& best,
-            double& best2) const;
+  void search(std::size_t first, std::size_t last, const Eigen::Vector3d& p, const HalfSpaceFilter* only,
+              uint32_t& best, double& best2) const;
 
   const std::vector<Eigen::Vector3d>& points_;
   std::vector<uint32_t> order_;  ///< indices of the points; the middle of each range is the root of its subtree

@@ -31,7 +31,7 @@ int windowOf(const scene::Velocity& velocity) {
   return velocity.estimator == "window" ? static_cast<int>(velocity.parameter) : 1;
 }
 
-void judgeModel(const scene::Scene& scene, size_t index, const scene::Device& device, const hdv_info& info,
+void checkModel(const scene::Scene& scene, size_t index, const scene::Device& device, const hdv_info& info,
                 double alone, double stiffness, document::Problems& problems) {
   const scene::Model& model = scene.models[index];
   const std::string key = "models[" + std::to_string(index) + "]";
@@ -61,7 +61,7 @@ void judgeModel(const scene::Scene& scene, size_t index, const scene::Device& de
 }
 
 /// Warns of a force that the arm cannot sustain. Simulated arms are left out, because their motors cannot burn.
-void judgeHeat(const scene::Device& device, const hdv_info& info, document::Problems& problems) {
+void checkHeat(const scene::Device& device, const hdv_info& info, document::Problems& problems) {
   const double most = device.limits.force > 0 ? device.limits.force : info.max_force;
   const bool guarded = !device.limits.motors.empty() || (info.capabilities & HDV_C_SIMULATED) != 0;
   if (guarded || info.continuous_force <= 0 || most <= info.continuous_force) return;
@@ -73,8 +73,8 @@ void judgeHeat(const scene::Device& device, const hdv_info& info, document::Prob
 }
 
 /// Compares the rate of the servo with that of the samples, and checks which of them drives the loop.
-void judgeRate(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
-               document::Problems& problems) {
+void checkLoopRate(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
+                   document::Problems& problems) {
   constexpr double kSlack = 1.001;
   const std::string file = scene.file.string(), rates = text(scene.servo.rate) + " Hz";
   const std::string own = " (" + text(info.rate_hz) + " Hz)", nearest = "; nearest: " + text(info.rate_hz) + " Hz";
@@ -130,14 +130,14 @@ document::Problems unstableSettings(const scene::Scene& scene, const scene::Devi
   const double alone =
       info.mass_kg > 0 ? passivity::maxStiffnessAlone(info.mass_kg, windowOf(scene.servo.velocity), period) : 0;
   for (size_t i = 0; i < scene.models.size() && i < stiffness.size(); ++i)
-    judgeModel(scene, i, device, info, alone, stiffness[i], problems);
+    checkModel(scene, i, device, info, alone, stiffness[i], problems);
   const std::string file = scene.file.string();
   if (scene.servo.budget_us > period * 1e6)
     document::report(problems, file, 0, 0, "servo.budget_us",
                      text(scene.servo.budget_us) + " us is longer than the period of " + text(period * 1e6) +
                          " us, so every tick may be late; nearest: " + text(0.8 * period * 1e6) + " us");
-  judgeHeat(device, info, problems);
-  judgeRate(scene, device, info, problems);
+  checkHeat(device, info, problems);
+  checkLoopRate(scene, device, info, problems);
   return problems;
 }
 

@@ -55,7 +55,7 @@ class ContactState {
   /// true, the contact has not changed, and this foot seen from side() is the result of the tick.
   /// @param height [m] height of the probe above the face, along its outward normal
   /// @param distance [m] distance from the probe to the foot
-  bool goesOn(double height, double distance, const Eigen::Vector3d& p, const ContactRule& rule) noexcept {
+  bool isUnchanged(double height, double distance, const Eigen::Vector3d& p, const ContactRule& rule) noexcept {
     const double out = side_ * height;
     if (phase_ == Phase::kHeld && rule.hysteresis > 0) return out < 0;
     if (!(rule.hysteresis > 0)) return rule.sides == Sides::kFront;
@@ -67,11 +67,11 @@ class ContactState {
     return true;
   }
 
-  /// [rt] A shortcut like goesOn(), for a probe that was outside in the last tick and can have met only the face of its
-  /// foot since then. If the function returns true, the probe has only passed by this face, however near.
+  /// [rt] A shortcut like isUnchanged(), for a probe that was outside in the last tick and can have met only the face
+  /// of its foot since then. If the function returns true, the probe has only passed by this face, however near.
   /// @param last position of the probe in the last tick [m]
-  bool passesBy(double height, double distance, const Eigen::Vector3d& last, const Eigen::Vector3d& p,
-                const ContactRule& rule) noexcept {
+  bool isPassing(double height, double distance, const Eigen::Vector3d& last, const Eigen::Vector3d& p,
+                 const ContactRule& rule) noexcept {
     const double side = rule.sides == Sides::kBoth ? side_ : (rule.sides == Sides::kFront ? 1 : -1);
     if (phase_ != Phase::kOutside || from_ != last || !(side * height > kTouching)) return false;
     from_ = p;

@@ -68,7 +68,7 @@ RigidBody::RigidBody(const RigidBodyLaw& law, const Vector3d& position, const Qu
   x_ = start_ = position + model * law.center;
   pivot_world_ = position + model * law.pivot;
   axis_world_ = law.joint == Joint::kFree ? Vector3d::UnitY() : Vector3d(model * law.axis.normalized());
-  if (law.joint == Joint::kHinge) hang();
+  if (law.joint == Joint::kHinge) initializeHinge();
   start_turn_ = turn_.quaternion();
 }
 
@@ -76,7 +76,7 @@ void RigidBody::step(const Vector3d& force, const Vector3d& torque, double dt) n
   if (!(dt > 0) || !std::isfinite(dt)) return;
   const Vector3d pushed = force.allFinite() ? force : Vector3d::Zero().eval();
   const Vector3d t = torque.allFinite() ? torque : Vector3d::Zero().eval();
-  if (law_.joint == Joint::kHinge) return swing(pushed, t, dt);
+  if (law_.joint == Joint::kHinge) return stepHinge(pushed, t, dt);
   const Vector3d f = pushed + law_.mass * gravity_;
   if (law_.joint == Joint::kSlider) return translate(axis_world_ * axis_world_.dot(f), dt);
   translate(f, dt);
@@ -97,7 +97,7 @@ Eigen::Matrix<double, 3, 6> pointRows(const Vector3d& lever) noexcept {
 /// Returns the torsional stiffness [N m/rad] of a contact whose normal turns with the body, and which turns the body
 /// back to face the probe. If the contact would turn the body over instead (a press from behind the centre), the
 /// stiffness is 0.
-Matrix3d facing(const Press& press, const Vector3d& lever) noexcept {
+Matrix3d facing(const PredictedContact& press, const Vector3d& lever) noexcept {
   const double push = std::max(0.0, -press.outward.dot(press.force)) * std::max(0.0, press.outward.dot(lever));
   return push * (Matrix3d::Identity() - press.outward * press.outward.transpose());
 }
@@ -133,14 +133,14 @@ RigidBody::Vector6d RigidBody::changeUnder(const Matrix6d& resisting, const Vect
   return free * (free.dot(impulse) / free.dot(resisting * free));
 }
 
-void RigidBody::step(std::span<const Press> presses, double dt) noexcept {
+void RigidBody::step(std::span<const PredictedContact> presses, double dt) noexcept {
   if (presses.empty() || !(dt > 0)) return step(Vector3d::Zero(), Vector3d::Zero(), dt);
   const Matrix6d own = ownResistance(dt);
   Matrix6d resisting = own;
   Vector6d own_impulse = ownImpulse(dt);
   Vector6d impulse = own_impulse;
   const Vector3d rate = angular();
-  for (const Press& press : presses) {
+  for (const PredictedContact& press : presses) {
     const Vector3d lever = press.point - x_;
     const Eigen::Matrix<double, 3, 6> rows = pointRows(lever);
     resisting += dt * rows.transpose() * press.give * rows;
@@ -150,7 +150,7 @@ void RigidBody::step(std::span<const Press> presses, double dt) noexcept {
     impulse.tail<3>() -= back * rate;
   }
   const Vector6d change = changeUnder(resisting, impulse);
-  for (const Press& press : presses) {
+  for (const PredictedContact& press : presses) {
     const Vector3d lever = press.point - x_;
     const Eigen::Matrix<double, 3, 6> rows = pointRows(lever);
     own_impulse += dt * rows.transpose() * forceAfter(press, rows * change);
@@ -216,7 +216,7 @@ void RigidBody::decay(double time) noexcept {
   l_ = q * left.cwiseProduct(q.conjugate() * l_);
 }
 
-void RigidBody::swing(const Vector3d& force, const Vector3d& torque, double dt) noexcept {
+void RigidBody::stepHinge(const Vector3d& force, const Vector3d& torque, double dt) noexcept {
   const double moment = axis_world_.dot(torque + (x_ - pivot_world_).cross(force));
   const PendulumState next = advance(hinge_, {hinge_angle_ - hinge_rest_, hinge_rate_}, moment, dt);
   hinge_rate_ = next.rate;
@@ -233,7 +233,7 @@ void RigidBody::poseHinge(double angle) noexcept {
 }
 
 /// Sets up the hinge as a pendulum: weight and tether pull the centre of mass, on its circle, toward one lowest point.
-void RigidBody::hang() noexcept {
+void RigidBody::initializeHinge() noexcept {
   const Vector3d out = (start_ - pivot_world_) - axis_world_ * axis_world_.dot(start_ - pivot_world_);
   const double down = law_.tether * out.squaredNorm() + law_.mass * gravity_.dot(out);
   const double aside = law_.mass * gravity_.dot(axis_world_.cross(out));

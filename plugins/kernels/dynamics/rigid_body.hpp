@@ -5,8 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include "kernels/dynamics/contact_prediction.hpp"
 #include "kernels/dynamics/pendulum.hpp"
-#include "kernels/dynamics/press.hpp"
 #include "kernels/dynamics/rotation.hpp"
 #include "kernels/dynamics/top.hpp"
 
@@ -54,7 +54,7 @@ class RigidBody {
   /// The motion stays bounded for every mass and stiffness; the price is an additional damping ratio of w dt/2, with
   /// w^2 = k/m. Forces held constant in the step would need a damping B > k dt/2 and a mass above B dt/2 (test
   /// Coupling.HeldForcesAreStableOnlyAboveTheirBounds).
-  void step(std::span<const Press> presses, double dt) noexcept;
+  void step(std::span<const PredictedContact> presses, double dt) noexcept;
 
   /// [rt] Returns the velocity [m/s] of the point of the body that is at `point` [m], in the world frame.
   Eigen::Vector3d velocityAt(const Eigen::Vector3d& point) const noexcept;
@@ -82,11 +82,11 @@ class RigidBody {
   void translate(const Eigen::Vector3d& force, double dt) noexcept;
   void rotate(const Eigen::Vector3d& torque, double dt) noexcept;
   void decay(double time) noexcept;
-  void hang() noexcept;
+  void initializeHinge() noexcept;
   void setHingeVelocities() noexcept;
   void poseHinge(double angle) noexcept;
   void spin(double dt) noexcept;
-  void swing(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double dt) noexcept;
+  void stepHinge(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double dt) noexcept;
   using Vector6d = Eigen::Matrix<double, 6, 1>;
   using Matrix6d = Eigen::Matrix<double, 6, 6>;
   Vector6d changeUnder(const Matrix6d& resisting, const Vector6d& impulse) const noexcept;

@@ -161,7 +161,7 @@ BodyForce Body::press(const Vector3d& p, const SkeletonFoot& foot, const Vector3
 /// If the far end of a spring lies below the contact, the spring gets shorter while the contact comes down to that
 /// level, and it pushes the probe inward. At worst it reduces the slope of the normal spring by its stiffness times
 /// (rest length / least length - 1).
-void Body::judgeMonotonicity(const SkeletonFoot& at, const Vector3d& normal, MonotonicityReport& report) const {
+void Body::checkMonotonicityAt(const SkeletonFoot& at, const Vector3d& normal, MonotonicityReport& report) const {
   const double k = stiffness_.evaluate(at.u, at.v).f;
   const Neighbours neighbours = neighboursOf(at, normal);
   double slope = k, worst = 1, total = 0;
@@ -192,10 +192,10 @@ MonotonicityReport Body::checkMonotonicity() const {
     if (skeleton_.curve()) {
       const Vector3d side = s.Sv.unitOrthogonal(), other = s.Sv.cross(side).normalized();
       for (const Vector3d& normal : {side, Vector3d(-side), other, Vector3d(-other)})
-        judgeMonotonicity(at, normal, report);
+        checkMonotonicityAt(at, normal, report);
     } else if (cross.norm() > 0) {
-      judgeMonotonicity(at, at.across, report);
-      judgeMonotonicity(at, -at.across, report);
+      checkMonotonicityAt(at, at.across, report);
+      checkMonotonicityAt(at, -at.across, report);
     }
   };
   const auto& [tu, tv] = skeleton_.parameters();

@@ -114,7 +114,7 @@ class Body {
   Neighbours neighboursOf(const SkeletonFoot& foot, const Eigen::Vector3d& normal) const noexcept;
   /// Updates `report` if the springs reduce the slope of the force along `normal` more here than at the places examined
   /// before.
-  void judgeMonotonicity(const SkeletonFoot& at, const Eigen::Vector3d& normal, MonotonicityReport& report) const;
+  void checkMonotonicityAt(const SkeletonFoot& at, const Eigen::Vector3d& normal, MonotonicityReport& report) const;
   std::vector<Oscillator> materialOf(const BodyData& data) const;
   std::vector<Tissue> tissueOf(const std::vector<Oscillator>& material) const;
 

@@ -207,7 +207,7 @@ Deformation::Reach Deformation::reachOf(double u, double v) const noexcept {
     const int span = spline::findSpan(grid.knots[a], grid.degree[a], at[a]);
     spline::basisFunctions(grid.knots[a], grid.degree[a], span, at[a], values);
     const std::span<const double> basis(values.data(), static_cast<std::size_t>(grid.degree[a]) + 1);
-    moved[a] = influence(basis, span, options().influence[a], Choice::kLargest);
+    moved[a] = influence(basis, span, options().influence[a], PointSelection::kLargest);
     all[a] = whole(basis, span);
   }
   Reach reach;

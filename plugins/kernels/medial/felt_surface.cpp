@@ -120,7 +120,7 @@ double FeltSurface::shift(const FeltPlace& place) const noexcept {
 }
 
 /// Returns the displacement [m/N] of the contour at `a` within a tick, per force at `b`.
-double FeltSurface::give(const FeltPlace& a, const FeltPlace& b, double dt) noexcept {
+double FeltSurface::complianceBetween(const FeltPlace& a, const FeltPlace& b, double dt) noexcept {
   const double along = inwardOf(a.normal).cwiseProduct(shares_).dot(inwardOf(b.normal));
   if (&a == &b && uniform()) {
     prepare(materials_.front(), dt);
@@ -149,7 +149,7 @@ void FeltSurface::wake(uint32_t node) noexcept {
 
 /// Moves the surface inward to a displacement [m], if the present one is less, as a long press does. Moving toward the
 /// rest position removes energy.
-void FeltSurface::bring(const FeltPlace& place, double displacement) noexcept {
+void FeltSurface::setDisplacement(const FeltPlace& place, double displacement) noexcept {
   const double ratio = contactRatio();
   const double lag = displacement - shift(place);
   if (!(lag > 0) || !(place.scale > 0)) return;
@@ -166,11 +166,11 @@ void FeltSurface::bring(const FeltPlace& place, double displacement) noexcept {
   }
 }
 
-void FeltSurface::swing(double dt) noexcept {
+void FeltSurface::stepFree(double dt) noexcept {
   if (nodes_->awake_.empty()) return;
   if (uniform() && branch_.empty()) {
     prepare(materials_.front(), dt);
-    return swingAlike(materials_.front().step);
+    return stepFreeUniform(materials_.front().step);
   }
   for (const uint32_t i : nodes_->awake_) {
     Nodes::Node& node = nodes_->nodes_[i];
@@ -189,7 +189,7 @@ void FeltSurface::swing(double dt) noexcept {
   }
 }
 
-void FeltSurface::swingAlike(const ViscoelasticStep& step) noexcept {
+void FeltSurface::stepFreeUniform(const ViscoelasticStep& step) noexcept {
   const double xx = step.xx, xv = step.xv, vx = step.vx, vv = step.vv;
   Nodes::Node* const nodes = nodes_->nodes_.data();
   for (const uint32_t i : nodes_->awake_) {
@@ -210,7 +210,8 @@ void FeltSurface::solve(double dt, std::span<FeltContact> contacts) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
     contacts[i].mean = 0;
     ahead[i] = contacts[i].depth - shift(contacts[i].place);
-    for (std::size_t j = 0; j <= i; ++j) gives[i][j] = gives[j][i] = give(contacts[i].place, contacts[j].place, dt);
+    for (std::size_t j = 0; j <= i; ++j)
+      gives[i][j] = gives[j][i] = complianceBetween(contacts[i].place, contacts[j].place, dt);
   }
   for (int sweep = 0; sweep < (count > 1 ? kMostSweeps : 1); ++sweep) {
     bool settled = true;
@@ -256,7 +257,7 @@ void FeltSurface::push(const FeltContact& contact) noexcept {
 
 /// Keeps nodes awake at a place that a probe touches, or nearly touches, however little they move: no node is put to
 /// rest under a probe.
-void FeltSurface::keepAwake(std::span<const FeltContact> contacts) noexcept {
+void FeltSurface::wakeContacts(std::span<const FeltContact> contacts) noexcept {
   for (const FeltContact& contact : contacts)
     if (contact.inside > -kNearby)
       for (std::size_t i = 0; i < contact.place.count; ++i) touched_[contact.place.nodes[i].node] = tick_;
@@ -264,7 +265,7 @@ void FeltSurface::keepAwake(std::span<const FeltContact> contacts) noexcept {
 
 /// Puts nodes to rest that no contact holds and whose motion nobody feels.
 /// @return true if a node was put to rest
-bool FeltSurface::letSleep() noexcept {
+bool FeltSurface::trySleep() noexcept {
   bool some = false;
   std::vector<uint32_t>& awake = nodes_->awake_;
   for (std::size_t k = 0; k < awake.size();) {
@@ -317,20 +318,20 @@ void FeltSurface::advance(double dt, std::span<FeltContact> contacts) noexcept {
   for (FeltContact& contact : contacts) {
     fit(contact.place);
     if (contact.placed)
-      bring(contact.place, contact.depth * (1 - 1 / contactRatio()));
+      setDisplacement(contact.place, contact.depth * (1 - 1 / contactRatio()));
     else if (contact.fresh)
-      bring(contact.place, std::min(contact.depth, 0.0));
+      setDisplacement(contact.place, std::min(contact.depth, 0.0));
     if (!contact.known || contact.placed) contact.before = contact.depth - shift(contact.place);
   }
   if (dt > 0) {
     if (dt >= settle_ && contacts.empty()) return reset();
-    swing(dt);
+    stepFree(dt);
     solve(dt, contacts);
   } else {
     for (FeltContact& contact : contacts) contact.inside = contact.depth - shift(contact.place);
   }
-  keepAwake(contacts);
-  const bool changed = tick_ % kLooksForSleep == 0 && letSleep();
+  wakeContacts(contacts);
+  const bool changed = tick_ % kLooksForSleep == 0 && trySleep();
   for (FeltContact& contact : contacts) {
     if (changed && contact.inside <= -kNearby) contact.inside = contact.depth - shift(contact.place);
     contact.force = contact.place.contact * std::max(0.0, contact.inside);

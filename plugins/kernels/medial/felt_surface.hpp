@@ -101,14 +101,14 @@ class FeltSurface {
   Material& materialOf(std::size_t node) noexcept { return materials_[which_.empty() ? 0 : which_[node]]; }
   const Material& materialOf(std::size_t node) const noexcept { return materials_[which_.empty() ? 0 : which_[node]]; }
   double shift(const FeltPlace& place) const noexcept;
-  double give(const FeltPlace& a, const FeltPlace& b, double dt) noexcept;
-  void bring(const FeltPlace& place, double displacement) noexcept;
-  void swing(double dt) noexcept;
-  void swingAlike(const ViscoelasticStep& step) noexcept;
+  double complianceBetween(const FeltPlace& a, const FeltPlace& b, double dt) noexcept;
+  void setDisplacement(const FeltPlace& place, double displacement) noexcept;
+  void stepFree(double dt) noexcept;
+  void stepFreeUniform(const ViscoelasticStep& step) noexcept;
   void solve(double dt, std::span<FeltContact> contacts) noexcept;
   void push(const FeltContact& contact) noexcept;
-  void keepAwake(std::span<const FeltContact> contacts) noexcept;
-  bool letSleep() noexcept;
+  void wakeContacts(std::span<const FeltContact> contacts) noexcept;
+  bool trySleep() noexcept;
   Eigen::Vector3d slopeAt(const FeltPlace& place) const noexcept;
   Eigen::Vector4d twiceEnergy() const noexcept;
   Eigen::Vector4d twiceEnergyAlike() const noexcept;

@@ -5,7 +5,7 @@
 
 namespace hapticd::medial {
 
-Influence influence(std::span<const double> basis, int span, int p_prime, Choice choice) noexcept {
+Influence influence(std::span<const double> basis, int span, int p_prime, PointSelection choice) noexcept {
   const int degree = static_cast<int>(basis.size()) - 1;
   const int count = std::clamp(p_prime, 1, degree + 1);
   const auto squares = [&](int start) {
@@ -16,7 +16,7 @@ Influence influence(std::span<const double> basis, int span, int p_prime, Choice
   };
   int start = (degree + 1 - count) / 2;
   double sum = squares(start);
-  for (int s = 0; choice == Choice::kLargest && s + count <= degree + 1; ++s) {
+  for (int s = 0; choice == PointSelection::kLargest && s + count <= degree + 1; ++s) {
     if (squares(s) > sum) {
       start = s;
       sum = squares(s);

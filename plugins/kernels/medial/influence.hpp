@@ -17,7 +17,7 @@ struct Influence {
 };
 
 /// How p' of the p + 1 control points that act on a point are chosen.
-enum class Choice {
+enum class PointSelection {
   /// takes the p' control points in the middle. The paper's index range, corrected: k - (p + p' - 1) / 2 .. k - (p + 1
   /// - p') / 2
   kCentral,
@@ -30,7 +30,7 @@ enum class Choice {
 /// + 1 both choices agree, and the weights are continuous from span to span.
 /// @param basis the p + 1 values of the basis functions at the point
 /// @param span k, the knot span of the point
-Influence influence(std::span<const double> basis, int span, int p_prime, Choice choice) noexcept;
+Influence influence(std::span<const double> basis, int span, int p_prime, PointSelection choice) noexcept;
 
 /// How skeleton and radius share a contact of depth delta: the skeleton moves by split * delta, and the radius shrinks
 /// by (1 - split) * delta. So the touched side always moves by delta, and the opposite side by (1 - 2 split) delta

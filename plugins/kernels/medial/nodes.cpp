@@ -134,7 +134,8 @@ void Nodes::place(std::size_t i, const Vector4d& displacement, const Vector4d& r
   nodes_[i].v = rate;
 }
 
-void Nodes::yield(const Hold& contact, std::span<const NodeWeight> felt, std::span<const NodeWeight> moved) noexcept {
+void Nodes::yield(const NodeContact& contact, std::span<const NodeWeight> felt,
+                  std::span<const NodeWeight> moved) noexcept {
   Vector4d inward;
   inward << -contact.normal, -1;  // displacement of the contour = inward . (skeleton, radius)
   Vector4d share;

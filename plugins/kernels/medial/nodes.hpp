@@ -68,7 +68,7 @@ class Nodes {
   friend class FeltSurface;  // moves the nodes itself if the surface is felt
 
   /// A contact at which the probe holds the contour.
-  struct Hold {
+  struct NodeContact {
     Eigen::Vector3d normal;  ///< outward unit normal
     double depth, speed;     ///< [m] depth of the probe below the contour at rest; [m/s] speed at which it grows
   };
@@ -78,7 +78,7 @@ class Nodes {
   /// deeper.
   /// @param felt the nodes that shape the contour at the contact
   /// @param moved the nodes that give way; the sum of the products of both weights is 1
-  void yield(const Hold& contact, std::span<const NodeWeight> felt, std::span<const NodeWeight> moved) noexcept;
+  void yield(const NodeContact& contact, std::span<const NodeWeight> felt, std::span<const NodeWeight> moved) noexcept;
 
  private:
   struct alignas(32) Node {

@@ -63,7 +63,7 @@ ViscoelasticStep creep(const SurfaceElement& e, double dt) noexcept {
   return step;
 }
 
-ViscoelasticStep swing(const SurfaceElement& e, double dt) noexcept {
+ViscoelasticStep oscillate(const SurfaceElement& e, double dt) noexcept {
   const OscillatorStep o = oscillatorStep({e.mass, e.damping, e.stiffness}, dt);
   return {o.xx, o.xv, 0, o.xf, o.vx, o.vv, 0, o.vf, 0, 0, 0, 0};
 }
@@ -122,7 +122,7 @@ SurfaceElement dampedForTick(const SurfaceElement& element, double dt) noexcept 
 
 ViscoelasticStep viscoelasticStep(const SurfaceElement& e, double dt) noexcept {
   if (e.branch > 0 && (e.mass > 0 || e.damping > 0)) return relax(e, dt);
-  return e.mass > 0 ? swing(e, dt) : creep(e, dt);
+  return e.mass > 0 ? oscillate(e, dt) : creep(e, dt);
 }
 
 double settleTime(const SurfaceElement& e, double least) noexcept {

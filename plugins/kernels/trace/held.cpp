@@ -21,7 +21,7 @@ constexpr int kMostCandidates = 8;  ///< most surfaces that are tested for a cro
 constexpr double kBeyond = 1e-9;
 
 /// A point where a straight path meets a patch.
-struct Meeting {
+struct PathHit {
   Array2d uv{0, 0};
   double share = 0;          ///< position on the path, 0 at its start and 1 at its end
   Vector3d normal{0, 0, 1};  ///< outward, unit
@@ -30,7 +30,7 @@ struct Meeting {
 
 /// Solves S(u, v) = from + share * way by Newton's method, starting from a point near by. Each evaluation reduces
 /// `budget` by 1.
-Meeting meet(const Patch& patch, const Vector3d& from, const Vector3d& way, Meeting at, int& budget) noexcept {
+PathHit intersect(const Patch& patch, const Vector3d& from, const Vector3d& way, PathHit at, int& budget) noexcept {
   constexpr int kMostSteps = 6;
   const double enough = std::max(kMet, kRounding * (from.lpNorm<1>() + way.lpNorm<1>()));
   spline::SurfacePoint E;
@@ -178,10 +178,10 @@ bool Tracer::crosses(int track, const Vector3d& from, const Vector3d& p, Crossin
   const double before = (from - foot.S).dot(n), after = (p - foot.S).dot(n);
   if (std::abs(before) > kMet) crossing.side = before > 0 ? 1 : -1;
   if (!(crossing.side * after < 0)) return false;
-  Meeting start;
+  PathHit start;
   start.uv = foot.uv;
   start.share = std::clamp(before / (before - after), 0.0, 1.0);
-  const Meeting met = meet(patch, from, way, start, budget_);
+  const PathHit met = intersect(patch, from, way, start, budget_);
   if (!met.found) {  // use the tangent plane instead of the surface, unless the path passes beside the patch
     crossing.share = start.share;
     return foot.sides == 0 && patch.sidesAt(met.uv) == 0;

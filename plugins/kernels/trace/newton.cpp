@@ -232,7 +232,7 @@ static_assert(offsetof(LocalFoot, distance) == offsetof(LocalFoot, uv) + 3 * kSt
 static_assert(offsetof(LocalFoot, residual) == offsetof(LocalFoot, distance) + sizeof(double));
 static_assert(offsetof(LocalFoot, height) == offsetof(LocalFoot, distance) + 2 * sizeof(double));
 
-bool evaluateInside(QuickState& state, double u, double v, double* point) noexcept {
+bool evaluateInside(WarmStepState& state, double u, double v, double* point) noexcept {
   const auto& patch = *static_cast<const Patch*>(state.patch);
   if (!(u > patch.lo[0] && u < patch.hi[0] && v > patch.lo[1] && v < patch.hi[1])) return false;
   auto& E = *static_cast<spline::SurfacePoint*>(static_cast<void*>(point));
@@ -242,7 +242,7 @@ bool evaluateInside(QuickState& state, double u, double v, double* point) noexce
 }
 
 void prepare(const Patch& patch, Iterate& at) noexcept {
-  static const QuickKernels& kernels = quickKernels(spline::Instructions::kFastest);
+  static const WarmStepKernels& kernels = warmStepKernels(spline::Instructions::kFastest);
   kernels.forms(at.E.S.data(), at.state);
   at.state.calm2 = 0;
   at.state.sign = patch.sign;
@@ -311,13 +311,13 @@ void startNewton(const Patch& patch, Iterate& at, LocalFoot& foot) noexcept {
   prepare(patch, at);
 }
 
-bool mayStepAgain(const Patch& patch, QuickResult result, Iterate& at, LocalFoot& foot) noexcept {
-  if (result == QuickResult::kNearer) ++foot.evaluations;
-  if (result == QuickResult::kFarther) {
+bool mayStepAgain(const Patch& patch, WarmStepResult result, Iterate& at, LocalFoot& foot) noexcept {
+  if (result == WarmStepResult::kNearer) ++foot.evaluations;
+  if (result == WarmStepResult::kFarther) {
     evaluate(patch, at.uv, at);  // restores the point before the step, which costs less than a copy in every tick
     foot.evaluations += 2;
   }
-  return result == QuickResult::kNearer;
+  return result == WarmStepResult::kNearer;
 }
 
 void descend(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance, int max_evaluations,

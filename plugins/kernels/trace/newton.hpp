@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "kernels/trace/patch.hpp"
-#include "kernels/trace/quick.hpp"
+#include "kernels/trace/warm_step.hpp"
 
 namespace hapticd::trace {
 
@@ -21,10 +21,10 @@ struct Iterate {
   Eigen::Array2d uv{0, 0};
   spline::SurfacePoint E{};
   Known known = Known::kParameters;
-  QuickState state{};
+  WarmStepState state{};
 };
 
-/// A foot on one patch. QuickState::step writes the members up to `height`, in this order.
+/// A foot on one patch. WarmStepState::step writes the members up to `height`, in this order.
 struct LocalFoot {
   alignas(32) Eigen::Array2d uv{0, 0};
   alignas(32) Eigen::Vector3d S;
@@ -44,10 +44,10 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 
 /// [rt] These functions are the parts of newtonFoot() that most ticks do not need. startNewton() prepares quick steps.
-/// mayStepAgain() counts a quick step that found no foot, and returns true if another one makes sense. descend() finds
+/// mayStepAgain() counts a warm step that found no foot, and returns true if another one makes sense. descend() finds
 /// the foot from any point.
 void startNewton(const Patch& patch, Iterate& at, LocalFoot& foot) noexcept;
-bool mayStepAgain(const Patch& patch, QuickResult result, Iterate& at, LocalFoot& foot) noexcept;
+bool mayStepAgain(const Patch& patch, WarmStepResult result, Iterate& at, LocalFoot& foot) noexcept;
 void descend(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
              LocalFoot& foot) noexcept;
 
@@ -57,16 +57,16 @@ void descend(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, double t
 /// the estimated error is below `tolerance` [m] or after `max_evaluations`. `at` becomes the last evaluated point.
 inline void newtonFoot(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
                        LocalFoot& foot) noexcept {
-  constexpr int kQuickSteps = 3;
+  constexpr int kWarmSteps = 3;
   foot.evaluations = 0;
   if (at.known != Iterate::Known::kAll) [[unlikely]]
     startNewton(patch, at, foot);
   const bool precise = p.lpNorm<1>() * kRounding <= tolerance;
-  for (int i = 0; precise && i < kQuickSteps && foot.evaluations + 2 <= max_evaluations; ++i) {
-    const QuickResult result =
+  for (int i = 0; precise && i < kWarmSteps && foot.evaluations + 2 <= max_evaluations; ++i) {
+    const WarmStepResult result =
         at.state.step(p.data(), tolerance * tolerance, at.uv.data(), at.E.S.data(), at.state, foot.uv.data());
-    if (result == QuickResult::kFoot || result == QuickResult::kSameFoot) [[likely]] {
-      foot.evaluations += result == QuickResult::kFoot;
+    if (result == WarmStepResult::kFoot || result == WarmStepResult::kSameFoot) [[likely]] {
+      foot.evaluations += result == WarmStepResult::kFoot;
       foot.sides = 0;
       foot.converged = foot.regular = true;
       return;

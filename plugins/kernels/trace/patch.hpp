@@ -77,7 +77,7 @@ struct Patch {
   }
   /// [any] True if the surface continues beyond one of these sides. Then a foot there may not be a local minimum of the
   /// distance.
-  bool goesOn(SideMask mask) const noexcept {
+  bool continuesBeyond(SideMask mask) const noexcept {
     for (int side = 0; side < kSides; ++side)
       if ((mask & bit(side)) && sides[static_cast<std::size_t>(side)].kind != SideKind::kFree) return true;
     return false;

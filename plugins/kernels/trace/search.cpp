@@ -114,7 +114,7 @@ class Search {
   void keepValley(int patch, const LocalFoot& foot) {
     const Patch& piece = model_.patch(patch);
     // this foot is not a minimum if the distance still falls beyond a common side
-    if (!foot.converged || piece.goesOn(foot.sides)) return;
+    if (!foot.converged || piece.continuesBeyond(foot.sides)) return;
     for (const Valley& valley : valleys_)
       if (valley.near.surface == piece.source && (valley.point - foot.S).norm() < same_) return;
     valleys_.push_back({{piece.source, foot.uv[0], foot.uv[1], foot.distance}, foot.S, patch});

@@ -119,15 +119,15 @@ int Tracer::refine(int track, const Vector3d& p, const TraceOptions& options) no
 }
 
 /// True if the state of the contact does not change, so that the nearest foot is the result of this tick.
-inline bool Tracer::goesOn(const Vector3d& p, const Vector3d& last, const TraceOptions& options) noexcept {
+inline bool Tracer::isUnchanged(const Vector3d& p, const Vector3d& last, const TraceOptions& options) noexcept {
   Contact& contact = contacts_[0];
   const LocalFoot& foot = tracks_[nearest_].foot;
   if (contact.held >= 0 && contact.held != nearest_) return false;
   if (options.rule.hysteresis > 0 && !(foot.regular && foot.converged)) return false;
-  if (contact.state.goesOn(foot.height, foot.distance, p, options.rule)) [[likely]]
+  if (contact.state.isUnchanged(foot.height, foot.distance, p, options.rule)) [[likely]]
     return true;
   return options.rule.hysteresis > 0 && tracks_.isAlone(nearest_, (p - last).norm()) &&
-         contact.state.passesBy(foot.height, foot.distance, last, p, options.rule);
+         contact.state.isPassing(foot.height, foot.distance, last, p, options.rule);
 }
 
 Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
@@ -149,7 +149,7 @@ Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
     nearest_ = note(nearest_);
     parts_[static_cast<std::size_t>(tracks_[nearest_].part)].nearest = nearest_;
     if (tracks_[nearest_].foot.sides == 0 && model_.partCount() == 1 && tracks_.isNearest(nearest_) &&
-        goesOn(p, last, options)) [[likely]] {
+        isUnchanged(p, last, options)) [[likely]] {
       if (options.rule.sides == contact::Sides::kFront) [[likely]]
         return describe(nearest_, p, budget - budget_);
       return contact::seenFrom(describe(nearest_, p, budget - budget_), contacts_[0].state.side());
@@ -222,7 +222,7 @@ int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions
 /// True if a rival cannot become the nearest before the next search, or if it has reached a side beyond which the
 /// neighbouring patch follows this foot.
 bool Tracer::isHopeless(const Track& rival, double best) const noexcept {
-  return rival.foot.distance > best + Model::kSoon || model_.patch(rival.patch).goesOn(rival.foot.sides);
+  return rival.foot.distance > best + Model::kSoon || model_.patch(rival.patch).isUnchanged(rival.foot.sides);
 }
 
 /// Replaces a foot by the foot found from (u, v) on the same patch, if the new foot is nearer. Returns true if it was

@@ -78,7 +78,7 @@ class Tracer {
   struct Part {
     int nearest = -1;  ///< track with the nearest foot of the part, or -1
     double depth = 0;  ///< [m] depth of the probe (above 0 inside) when the part's nearest foot was last certain
-    double way = 0;    ///< [m] Tracks::way() at that time
+    double way = 0;    ///< [m] Tracks::pathLength() at that time
     bool known = false;
   };
 
@@ -102,7 +102,7 @@ class Tracer {
   int nearestTrack(int part) const noexcept {
     return part < 0 ? nearest_ : parts_[static_cast<std::size_t>(part)].nearest;
   }
-  bool goesOn(const Eigen::Vector3d& p, const Eigen::Vector3d& last, const TraceOptions& options) noexcept;
+  bool isUnchanged(const Eigen::Vector3d& p, const Eigen::Vector3d& last, const TraceOptions& options) noexcept;
   void hold(int part, int track) noexcept;
   contact::Followed follow(int part, double side, const Eigen::Vector3d& p, const TraceOptions& options,
                            Foot& foot) noexcept;

@@ -57,7 +57,7 @@ void Tracks::offer(int patch, const Array2d& uv, double distance, double best, b
   for (int i = patch; i >= 0; i = (*this)[i].rival)
     if ((*this)[i].touched < told_before_ && !(*this)[i].held) return set(i, inside, bound);
   // If the distance falls beyond a common side, the neighbour has its own record of that minimum.
-  if (!(distance < best) && piece.goesOn(piece.sidesAt(inside))) return;
+  if (!(distance < best) && piece.continuesBeyond(piece.sidesAt(inside))) return;
   if (const Track* rival = newRival(patch)) set(static_cast<int>(rival - tracks_.data()), inside, bound);
 }
 

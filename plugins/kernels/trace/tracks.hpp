@@ -69,7 +69,9 @@ class Tracks {
     if (way_ > kLongestWay) [[unlikely]]
       countAnew();
   }
-  double way() const noexcept { return way_; }  ///< [rt] [m] length of the probe's path; it is sometimes reset to 0
+  double pathLength() const noexcept {
+    return way_;
+  }  ///< [rt] [m] length of the probe's path; it is sometimes reset to 0
   /// [rt] Records the distance of a foot that was refined in this tick, less its residual, because the true foot may be
   /// nearer by that much.
   void refined(int index) noexcept {

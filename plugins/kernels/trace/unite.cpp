@@ -53,7 +53,7 @@ bool Tracer::refreshPart(int part, const Vector3d& p, const Vector3d& last, cons
                          Foot& foot) noexcept {
   const Part& known = parts_[static_cast<std::size_t>(part)];
   Contact& contact = contactOf(part);
-  const double most = known.depth + kSteepest * (tracks_.way() - known.way);
+  const double most = known.depth + kSteepest * (tracks_.pathLength() - known.way);
   if (!contact.state.held() && known.known && most < -reach) return false;
   if (!(options.rule.hysteresis > 0)) {
     hold(part, -1);
@@ -67,7 +67,7 @@ bool Tracer::refreshPart(int part, const Vector3d& p, const Vector3d& last, cons
 /// Computes the nearest foot of a part and updates parts_. Returns false if there is none in this tick.
 bool Tracer::nearestOfPart(int part, const Vector3d& p, const TraceOptions& options, Foot& foot) noexcept {
   Part& known = parts_[static_cast<std::size_t>(part)];
-  const double most = known.depth + kSteepest * (tracks_.way() - known.way);
+  const double most = known.depth + kSteepest * (tracks_.pathLength() - known.way);
   if (known.nearest >= 0 && (tracks_[known.nearest].slot < 0 || tracks_[known.nearest].part != part))
     known.nearest = -1;
   if (known.nearest < 0 || known.nearest != nearest_) known.nearest = nearestOf(part, known.nearest, p, options);
@@ -76,7 +76,7 @@ bool Tracer::nearestOfPart(int part, const Vector3d& p, const TraceOptions& opti
   if (known.nearest == nearest_ || tracks_.mostPromising(foot.distance, part) < 0) {
     known.known = true;
     known.depth = behindPlane(foot);
-    known.way = tracks_.way();
+    known.way = tracks_.pathLength();
     return true;
   }
   // There was no budget left, and another foot may be nearer. By this foot alone the probe may seem much too deep, so

@@ -76,12 +76,12 @@ void bells() {
   servo::Door door;
   const servo::Arms none;
   const auto both = [&](int i) {
-    door.tell({static_cast<uint64_t>(i), 0, 0, 0}, none);
+    door.publish({static_cast<uint64_t>(i), 0, 0, 0}, none);
     door.written(static_cast<uint64_t>(i));
   };
   cost("nobody asked for states or the bell", nothing, both);
   static hapticd_bell bell{};
-  door.hangBell(&bell);
+  door.setBell(&bell);
   cost("the bell, nobody waits", nothing, both);
   cost("the bell, somebody says that he waits (one FUTEX_WAKE)", [](int) { bell.rows_waiting = 1; }, both);
 }

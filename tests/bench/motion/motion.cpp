@@ -35,16 +35,16 @@ RigidBody bodyOf(Joint joint, double angular_damping, const Vector3d& rate) {
 void pressed(benchmark::State& state, Joint joint) {
   RigidBody body = bodyOf(joint, 0.01, {0.3, 1, 0.2});
   const auto count = static_cast<size_t>(state.range(0));
-  std::array<Press, 8> presses;
+  std::array<PredictedContact, 8> presses;
   for (auto _ : state) {
     for (size_t i = 0; i < count; ++i) {
-      Pressing last;
+      LastContact last;
       last.normal = Vector3d(1, 0.1 * static_cast<double>(i), -0.2).normalized();
       last.point = body.center() + 0.05 * last.normal;
       last.probe = last.point - 1e-3 * last.normal;
       last.depth = 1e-3;
       last.law = {1000, 5, 1, 1e-3};
-      presses[i] = foresee(last, last.probe, 0.01, body.velocityAt(last.point), kTick);
+      presses[i] = predict(last, last.probe, 0.01, body.velocityAt(last.point), kTick);
     }
     body.step({presses.data(), count}, kTick);
     benchmark::DoNotOptimize(body.position());

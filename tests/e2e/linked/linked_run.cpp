@@ -24,7 +24,7 @@ class Printer final : public servo::TickLog {
   void begin(Nanoseconds, const servo::Arms&) noexcept HSP_RT override {}
   void order(const servo::Order&) noexcept HSP_RT override {}
   void overrun(uint64_t) noexcept HSP_RT override {}
-  void tick(double t, double, Nanoseconds, const servo::Spent&, const servo::Core& core,
+  void tick(double t, double, Nanoseconds, const servo::TickDuration&, const servo::Core& core,
             const servo::Arms& arms) noexcept HSP_RT override {
     const Eigen::Vector3d asked = core.force(0), sent = arms[0]->force();
     std::printf("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", t, asked.x(), asked.y(), asked.z(), sent.x(), sent.y(),

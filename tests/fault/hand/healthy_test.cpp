@@ -28,7 +28,7 @@ TEST_P(SteepLaw, OfASphereIsNotSilencedUnderTaps) {
                                            "HERE/models/sphere.yaml, stiffness: 800, exponent: " +
                                            std::to_string(GetParam()) + ", damping: " + damping + "}\n")});
       const auto sent = tap(scenario, 0.05, speed);
-      EXPECT_EQ(scenario.trouble(), Trouble::kNone) << speed << " m/s, damping " << damping;
+      EXPECT_EQ(scenario.trouble(), ShapeFault::kNone) << speed << " m/s, damping " << damping;
       EXPECT_GT(largest(sent), 2.5) << speed;
     }
 }
@@ -41,7 +41,7 @@ TEST_P(SteepLaw, OfAPendulumIsNotSilencedUnderTaps) {
                            "0.25, damping: 0.002, stiffness: 1000, exponent: " +
                            std::to_string(GetParam()) + "}\n")});
     const auto sent = tap(scenario, 0.05, speed);
-    EXPECT_EQ(scenario.trouble(), Trouble::kNone) << speed << " m/s";
+    EXPECT_EQ(scenario.trouble(), ShapeFault::kNone) << speed << " m/s";
     EXPECT_GT(largest(sent), 1) << speed;
   }
 }
@@ -55,7 +55,7 @@ TEST(Edges, OfABoxAreNoKicks) {
     scenario.moveTo(Vector3d(0.07 * std::cos(4 * t), 0.07 * std::sin(4 * t), 0.001).cwiseMax(-0.048).cwiseMin(0.048));
     return Nanoseconds{0};
   });
-  EXPECT_EQ(scenario.trouble(), Trouble::kNone);
+  EXPECT_EQ(scenario.trouble(), ShapeFault::kNone);
   EXPECT_GT(largest(sent), 1);
 }
 
@@ -65,7 +65,7 @@ TEST(Snaps, OfAButtonAreNoKicks) {
                          "HERE/models/box.yaml, stiffness: 2000, detent: [[0, 0], [0.003, 5], [0.004, 0.5], "
                          "[0.006, 3]]}\n")});
   const auto sent = tap(scenario, 0.05, 0.6, 2);
-  EXPECT_EQ(scenario.trouble(), Trouble::kNone);
+  EXPECT_EQ(scenario.trouble(), ShapeFault::kNone);
   EXPECT_GT(largest(sent), 2);
 }
 
@@ -73,7 +73,7 @@ TEST(Snaps, ThroughAShellAreNoKicks) {
   Scenario scenario({.models = shipped("  - name: shell\n    plugin: nurbs_rigid\n    parameters: {geometry: "
                                        "HERE/models/sphere.yaml, stiffness: 1500, sides: both, pop_through: 4}\n")});
   const auto sent = tap(scenario, 0.05, 0.6, 2);
-  EXPECT_EQ(scenario.trouble(), Trouble::kNone);
+  EXPECT_EQ(scenario.trouble(), ShapeFault::kNone);
   EXPECT_GT(largest(sent), 2);
 }
 

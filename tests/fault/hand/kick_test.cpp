@@ -44,7 +44,7 @@ TEST_P(Kick, IsHeldBackAndThenSilenced) {
     if (sent.t > 0.2) {
       ASSERT_EQ(sent.force.norm(), 0) << sent.t;
     }
-  EXPECT_EQ(kicked.scenario.core().models()[0].guard.trouble(), Trouble::kJump);
+  EXPECT_EQ(kicked.scenario.core().models()[0].guard.fault(), ShapeFault::kJump);
 }
 std::string nameOfHow(const testing::TestParamInfo<How>& given) {
   static constexpr const char* kNames[] = {"Turns", "Vibrates", "Steps", "TracedTurns", "Hides", "Spins"};
@@ -66,7 +66,7 @@ TEST_P(KickAtRate, IsHeldBackAndThenSilenced) {
     if (s.t > begins + std::max(0.03, 10 / rate)) {
       ASSERT_EQ(s.force.norm(), 0) << s.t;
     }
-  EXPECT_EQ(scenario.trouble(), Trouble::kJump);
+  EXPECT_EQ(scenario.trouble(), ShapeFault::kJump);
 }
 INSTANTIATE_TEST_SUITE_P(Each, KickAtRate,
                          testing::Combine(testing::Values(100.0, 10000.0), testing::Values(kTurns, kSteps)));
@@ -78,8 +78,8 @@ TEST(KickBesideAnother, SilencesTheCulpritAlone) {
     models[culprit] = kicking(kTurns, 8);
     Scenario scenario({.models = models, .limit = bare});
     const std::vector<Sent> sent = scenario.run(0.6);
-    EXPECT_EQ(scenario.trouble(culprit), Trouble::kJump);
-    EXPECT_EQ(scenario.trouble(1 - culprit), Trouble::kNone);
+    EXPECT_EQ(scenario.trouble(culprit), ShapeFault::kJump);
+    EXPECT_EQ(scenario.trouble(1 - culprit), ShapeFault::kNone);
     EXPECT_NEAR(sent.back().force.norm(), 8, 1e-9) << "the other one is felt as before";
   }
 }
@@ -96,13 +96,13 @@ TEST_P(KickOfASurface, IsSilencedThoughItsNormalTurnsToo) {
     }
   }
   EXPECT_LE(felt, static_cast<int>(Claim::kPasses) + 1);
-  EXPECT_EQ(kicked.scenario.core().models()[0].guard.trouble(), Trouble::kJump);
+  EXPECT_EQ(kicked.scenario.core().models()[0].guard.fault(), ShapeFault::kJump);
 }
 INSTANTIATE_TEST_SUITE_P(Each, KickOfASurface, testing::Values(kTracedTurns, kHides), nameOfHow);
 
 TEST(KickOnPurpose, IsFeltAsFarAsItIsReported) {
   Kicked kicked(kicking(kVibrates, 3, 3));
-  EXPECT_EQ(kicked.scenario.core().models()[0].guard.trouble(), Trouble::kNone);
+  EXPECT_EQ(kicked.scenario.core().models()[0].guard.fault(), ShapeFault::kNone);
   double most = 0;
   for (const Sent& sent : kicked.sent) most = std::max(most, sent.t > 0.4 ? sent.force.norm() : 0);
   EXPECT_GT(most, 2.9);
@@ -112,28 +112,28 @@ TEST(KickOnPurpose, IsBoundedByTheReport) {
   Kicked kicked(kicking(kVibrates, 8, 3));
   EXPECT_LE(largest(kicked.sent), 3 + 0.02 * Claim::kDrift);
   EXPECT_EQ(kicked.sent.back().force.norm(), 0);
-  EXPECT_EQ(kicked.scenario.core().models()[0].guard.trouble(), Trouble::kJump);
+  EXPECT_EQ(kicked.scenario.core().models()[0].guard.fault(), ShapeFault::kJump);
 }
 
 /// A click that somebody wants must be told by how much it was too large, and what to report.
 TEST(KickOnPurpose, ThatIsNotReportedIsToldWithItsSizeItsTimeAndTheCure) {
   Kicked kicked(kicking(kSteps, 8));
   const ModelState& model = kicked.scenario.core().models()[0];
-  EXPECT_EQ(model.guard.trouble(), Trouble::kJump);
+  EXPECT_EQ(model.guard.fault(), ShapeFault::kJump);
   EXPECT_NEAR(model.pull.force, 8, 1e-9) << "out of nothing";
   EXPECT_NEAR(model.pull.t, 0.1, 2e-3) << "after a hundred ticks of peace";
   const std::string why = silenceReason(model);
   EXPECT_NE(why.find("; the largest jump was 8 N at 0.1"), std::string::npos) << why;
   EXPECT_NE(why.find("if on purpose, call reportJumps(report, 8)"), std::string::npos) << why;
   Kicked reported(kicking(kSteps, 8, 8));
-  EXPECT_EQ(reported.scenario.core().models()[0].guard.trouble(), Trouble::kNone) << "the cure holds";
+  EXPECT_EQ(reported.scenario.core().models()[0].guard.fault(), ShapeFault::kNone) << "the cure holds";
 }
 
 /// 1 mN became 8.5 N.
 TEST(PoseThatStretches, IsRefusedAndNamed) {
   Kicked kicked(kicking(kStretches, 0), 0.3);
   EXPECT_EQ(largest(kicked.sent), 0);
-  EXPECT_EQ(kicked.scenario.core().models()[0].guard.trouble(), Trouble::kNotUnit);
+  EXPECT_EQ(kicked.scenario.core().models()[0].guard.fault(), ShapeFault::kNotUnit);
 }
 
 /// Presses to a depth of 5 mm and stays there.
@@ -147,7 +147,7 @@ std::vector<Sent> press(Scenario& scenario) {
 TEST(SurfaceThatOnlyPushes, IsSilencedAndNamedWhenItPulls) {
   Scenario scenario({.models = {hostile("pulling", {value(1, HSP_BOOL, 1)})}, .limit = bare});
   EXPECT_LE(largest(press(scenario)), 0.1) << "found with the first newton";
-  EXPECT_EQ(scenario.trouble(), Trouble::kPulls);
+  EXPECT_EQ(scenario.trouble(), ShapeFault::kPulls);
   const Pull& pull = scenario.core().models()[0].pull;
   EXPECT_NEAR(pull.t, 0.101, 1e-9) << "the first tick inside: 0.1 m/s, from 10 mm above";
   EXPECT_NEAR(pull.depth, 1e-4, 1e-9);
@@ -162,21 +162,21 @@ TEST(SurfaceThatOnlyPushes, IsSilencedAndNamedWhenItPulls) {
 TEST(SurfaceThatOnlyPushes, IsToldThatItsDepthWasLeftAtZero) {
   Scenario scenario({.models = {hostile("pulling", {value(2, HSP_BOOL, 1)})}, .limit = bare});
   press(scenario);
-  EXPECT_EQ(scenario.trouble(), Trouble::kPulls);
+  EXPECT_EQ(scenario.trouble(), ShapeFault::kPulls);
   const std::string why = silenceReason(scenario.core().models()[0]);
   EXPECT_NE(why.find("at a depth of 0 mm: its depth_m was left at 0 inside, or its force has the wrong sign"),
             std::string::npos)
       << why;
   Scenario claimless({.models = {hostile("pulling", {value(1, HSP_BOOL, 0), value(2, HSP_BOOL, 1)})}, .limit = bare});
   press(claimless);
-  EXPECT_EQ(claimless.trouble(), Trouble::kNone);
+  EXPECT_EQ(claimless.trouble(), ShapeFault::kNone);
   EXPECT_GT(claimless.telemetry().report({}).models[0].contact.depthless().ticks, 10u);
 }
 
 TEST(SurfaceThatOnlyPushes, IsAClaimThatNobodyMustMake) {
   Scenario scenario({.models = {hostile("pulling", {value(1, HSP_BOOL, 0)})}, .limit = bare});
   EXPECT_GT(largest(press(scenario)), 3);
-  EXPECT_EQ(scenario.trouble(), Trouble::kNone);
+  EXPECT_EQ(scenario.trouble(), ShapeFault::kNone);
   const record::ContactStatistics contact = scenario.telemetry().report({}).models[0].contact;
   EXPECT_GT(2 * contact.pulls().ticks, contact.contactTicks()) << "but the report tells of its pull";
   EXPECT_GT(contact.pulls().max_force, 3);

@@ -106,7 +106,7 @@ class Scenario {
   bool motorsOn() const { return page_->motors.on.load() != 0; }                      ///< as of now
   double motorForce() const { return Eigen::Vector3d(page_->motors.torque).norm(); }  ///< [N] the same
   Fault fault() { return arm().limiter().fault(); }
-  Trouble trouble(uint32_t model = 0) { return core().models()[model].guard.trouble(); }
+  ShapeFault trouble(uint32_t model = 0) { return core().models()[model].guard.fault(); }
 
   /// Runs for so many seconds and gives what was sent, each tick's command; without the ramp at the end of the run.
   std::vector<Sent> run(double seconds, const Before& before = [](double) { return Nanoseconds{0}; }) {

@@ -16,8 +16,8 @@ using Eigen::Vector3d;
 constexpr int kTicks = 130;  ///< of a schedule: the force ramps in, faults, all is well, silence, cleared
 constexpr int kWellAt = 95, kLookAt = 120, kBatch = 40;
 constexpr int kPluginFaults = 5;
-const Trouble kBlamed[] = {Trouble::kNone, Trouble::kNotFinite, Trouble::kBadStatus,
-                           Trouble::kLost, Trouble::kJump,      Trouble::kNotUnit};
+const ShapeFault kBlamed[] = {ShapeFault::kNone, ShapeFault::kNotFinite, ShapeFault::kBadStatus,
+                              ShapeFault::kLost, ShapeFault::kJump,      ShapeFault::kNotUnit};
 
 enum Kind { kLost, kAtFault, kQuiet, kWriteFails, kNotANumber, kJumps, kTooFast, kOrientation, kLate, kHold, kKinds };
 
@@ -105,7 +105,7 @@ class Player {
   void order(Order::Kind kind) {
     Order order;
     order.kind = kind;
-    scenario_.loop().give(order);
+    scenario_.loop().post(order);
   }
 
   /// Of each fault once the schedule is over: silence, a name that fits, and an end by the user's order.
@@ -162,7 +162,7 @@ TEST(Schedules, OfRandomFaultsLeaveNoForceOnAndBlameNoInnocent) {
     ASSERT_EQ(player.left_on, 0u) << "batch " << batch;
     ASSERT_EQ(player.misnamed, 0u) << "batch " << batch;
     ASSERT_EQ(scenario.trouble(0), kBlamed[how]) << "batch " << batch;
-    ASSERT_EQ(scenario.trouble(1), Trouble::kNone) << "batch " << batch;
+    ASSERT_EQ(scenario.trouble(1), ShapeFault::kNone) << "batch " << batch;
     ASSERT_FALSE(scenario.motorsOn()) << "after the end, batch " << batch;
     faults += player.faults, unharmed += player.unharmed;
     for (int i = 0; i < kKinds; ++i) kinds[i] += player.kinds[i];

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/blame.hpp"
+#include "base/code_owner.hpp"
 #include "servo/arm/velocity_use.hpp"
 #include "servo/safety/held_command.hpp"
 #include "servo/velocity/estimator_delay.hpp"
@@ -289,7 +289,7 @@ void Arm::heatMotors(double dt) noexcept HSP_RT {
 
 void Arm::cut(double after) noexcept {
   if (cut_.exchange(true)) return;
-  const Owner* in = calledBy(Worker::kServo);
+  const Owner* in = ownerOfWorker(Worker::kServo);
   stuck_here_.store(in != nullptr && in->device && in->name == name_, std::memory_order_release);
   cut_after_.store(after);
   if (device_->cut()) return;

@@ -138,7 +138,7 @@ class Arm {
  private:
   Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter,
       const ArmOptions& options);
-  bool judge(hsp_status status, Nanoseconds now) noexcept HSP_RT;
+  bool checkSample(hsp_status status, Nanoseconds now) noexcept HSP_RT;
   void trip(Fault fault, double measured = 0) noexcept HSP_RT;
   void findCut(CutFound when) noexcept HSP_RT;
   void recover(double dt, bool pushes) noexcept HSP_RT;

@@ -46,7 +46,7 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   const bool told = sampled && (sample_.sequence > 0 || as_found_);  // before the first report the buttons are unknown
   limiter_.watchButtons(told ? std::optional(sample_.buttons) : std::nullopt);
   found_pressed_.store(limiter_.foundPressed(), std::memory_order_relaxed);
-  probe_.valid = judge(read_status_, now) && locate();
+  probe_.valid = checkSample(read_status_, now) && locate();
   if (!probe_.valid) {
     tip_known_ = false;
     if (velocity_) velocity_->reset();
@@ -64,7 +64,7 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   return probe_;
 }
 
-bool Arm::judge(hsp_status status, Nanoseconds now) noexcept HSP_RT {
+bool Arm::checkSample(hsp_status status, Nanoseconds now) noexcept HSP_RT {
   well_ = false;
   if (status < 0 || (sample_.flags & HDV_S_LOST) != 0) {
     trip(Fault::kDeviceLost);

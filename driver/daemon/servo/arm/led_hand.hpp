@@ -45,7 +45,7 @@ class LedHand {
 
   const hapticd_target* taken() const noexcept { return lead_.taken(); }  ///< record of the last step, or nullptr
   uint64_t refused() const noexcept { return lead_.refused(); }
-  Follow::Refusal why() const noexcept { return lead_.why(); }  ///< reason of the last refusal
+  PoseFollower::Refusal why() const noexcept { return lead_.why(); }  ///< reason of the last refusal
 
  private:
   const hdv_ext_hand* hand_;

@@ -33,7 +33,7 @@ Core::Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& 
       torques_(probe_count, Vector3d::Zero()),
       exchanges_(probe_count),
       present_(static_cast<uint32_t>(models.size())) {
-  serve(Uses{});
+  serve(RequiredResults{});
   claim_step_.former = settings.former_claims;
   for (size_t i = 0; i < models.size(); ++i) models_[i] = stateOf(*models[i], scene.models[i]);
   live_.reserve(models_.size());
@@ -65,7 +65,7 @@ ModelState Core::stateOf(host::ShapeInstance& shape, const scene::Model& describ
   return model;
 }
 
-void Core::serve(const Uses& uses) {
+void Core::serve(const RequiredResults& uses) {
   uses_ = uses;
   uses_.max_force.resize(probe_count_, 0);
   uses_.max_torque.resize(probe_count_, 0);
@@ -84,7 +84,7 @@ void Core::publish(double t, std::span<const Probe> probes) noexcept HSP_RT {
 
 void Core::tick(double t, double dt, std::span<const Probe> probes) noexcept HSP_RT {
   receiveRecords();
-  wants_search_ = false;
+  needs_search_ = false;
   preempted_ = false;
   cpu_timed_ = suspicious_ > 0;
   if (suspicious_ > 0) --suspicious_;
@@ -155,13 +155,13 @@ void Core::findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     jumped_[i] = 0;
     if (!probes[i].valid) {
-      wants_search_ = true;  // the tip may be far away in the next sample
+      needs_search_ = true;  // the tip may be far away in the next sample
       continue;
     }
     const double travel = (probes[i].position - last_position_[i]).norm();
     if (seen_[i] != 0 && travel > settings_.max_probe_speed * dt) {
       jumped_[i] = 1;
-      wants_search_ = true;
+      needs_search_ = true;
     }
     seen_[i] = 1;
     last_position_[i] = probes[i].position;
@@ -202,10 +202,10 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   }
   hsp_pose pose = model.pose;
   callShape(model, dt, pose);
-  const Trouble trouble = judge(model, index, dt, pose);
+  const ShapeFault fault = checkAnswer(model, index, dt, pose);
   if (model.pull.force > 0 && model.pull.t < 0) model.pull.t = t;
   const double gain_before = model.guard.gain();
-  const bool good = trouble == Trouble::kNone;
+  const bool good = fault == ShapeFault::kNone;
   double pace = dt;
   const bool wanted = model.enabled && (!model.until_free || !good || enters(model, probes, pace));
   const double gain = model.guard.gain(good, wanted, pace);
@@ -223,7 +223,7 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
     }
     forces_[i] += ConstMap(contact.world.force);
     if (uses_.torque) torques_[i] += ConstMap(contact.world.torque);
-    if (uses_.exchange) bookContact(model, contact, i);
+    if (uses_.exchange) recordContact(model, contact, i);
   }
 }
 
@@ -247,7 +247,7 @@ void Core::callShape(ModelState& model, double dt, hsp_pose& pose) noexcept HSP_
   step.change_count = model.change_count;
   model.change_count = 0;
 
-  const Begun begun = beginCost();
+  const CostStart begun = beginCost();
   model.status = model.guard.quarantined() ? HSP_E_STATE : model.shape->step(step);
   if (model.level > 0) {
     ++model.degraded_ticks;

@@ -84,7 +84,7 @@ struct CoreSettings {
 };
 
 /// Which results of a tick the arms use; set before the first tick. Other results are not computed.
-struct Uses {
+struct RequiredResults {
   bool torque = true;    ///< true if an arm can apply torques, or torques are written to a file
   bool exchange = true;  ///< true if an arm has a passivity controller
   /// [N] Largest force that each arm lets through, by probe; 0 or missing: unknown.
@@ -99,7 +99,7 @@ class Core {
        const CoreSettings& settings, link::Link& link);
 
   /// [main] Called before the first tick. Without this call, every result is computed.
-  void serve(const Uses& uses);
+  void serve(const RequiredResults& uses);
 
   /// [rt] Called before the first tick. `epoch` is the CLOCK_MONOTONIC time [s] of t = 0; leaders use that clock.
   void startAt(double epoch) noexcept HSP_RT { epoch_ = epoch; }
@@ -114,7 +114,7 @@ class Core {
   std::span<const LoadShedding::Change> shedLoad() noexcept HSP_RT;
 
   /// [rt] Called before tick(): obeys an order that concerns a model. Returns false if that is impossible.
-  bool obey(const Order& order, double t) noexcept HSP_RT;
+  bool apply(const Order& order, double t) noexcept HSP_RT;
 
   /// [any] Gives the number of a model that has left the run, so that its shape may be destroyed. Returns false if
   /// there is none. Only one thread may call it.
@@ -134,7 +134,7 @@ class Core {
     return contacts_[size_t{model} * probe_count_ + probe];
   }
   /// True if the last tick had a jump or a lost track, so that a proximity search should run at once.
-  bool wantsSearch() const noexcept { return wants_search_; }
+  bool needsSearch() const noexcept { return needs_search_; }
   /// Number of transforms in the last tick: one per model and probe, and two per traced foot (point and normal). Models
   /// whose frame is the world frame need none.
   uint32_t transforms() const noexcept { return transforms_; }
@@ -155,25 +155,25 @@ class Core {
   void findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT;
   void stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
   bool mayRest(const ModelState& model, uint32_t index, double dt) const noexcept HSP_RT;
-  struct Begun {
+  struct CostStart {
     Nanoseconds wall = 0, cpu = 0;  ///< 0: not measured
   };
-  Begun beginCost() const noexcept HSP_RT;
-  void takeCost(ModelState& model, const Begun& begun) noexcept HSP_RT;
+  CostStart beginCost() const noexcept HSP_RT;
+  void takeCost(ModelState& model, const CostStart& begun) noexcept HSP_RT;
   bool excused() noexcept HSP_RT;
   bool setLevel(ModelState& model, uint32_t level) noexcept HSP_RT;
   void fillProbe(const ModelState& model, const Probe& probe, uint32_t index, double t) noexcept HSP_RT;
   void callShape(ModelState& model, double dt, hsp_pose& pose) noexcept HSP_RT;
-  Trouble judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT;
+  ShapeFault checkAnswer(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT;
   void fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP_RT;
-  Trouble holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT;
-  Trouble holdToClaim(ModelState& model, uint32_t index, uint32_t probe, double dt) noexcept HSP_RT;
+  ShapeFault holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT;
+  ShapeFault holdToClaim(ModelState& model, uint32_t index, uint32_t probe, double dt) noexcept HSP_RT;
   bool holdTorque(const ModelState& model, Claim& claim, uint32_t probe, double dt) noexcept HSP_RT;
   bool pulls(ModelState& model) noexcept HSP_RT;
-  Trouble holdToTime(ModelState& model) noexcept HSP_RT;
-  Trouble takePose(ModelState& model, hsp_pose pose) noexcept HSP_RT;
-  void bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT;
-  void bookContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT;
+  ShapeFault holdToTime(ModelState& model) noexcept HSP_RT;
+  ShapeFault takePose(ModelState& model, hsp_pose pose) noexcept HSP_RT;
+  void recordMotion(const ModelState& model, uint32_t index) noexcept HSP_RT;
+  void recordContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT;
   void takeContact(ModelState& model, uint32_t index, uint32_t probe, double gain) noexcept HSP_RT;
   bool enters(ModelState& model, std::span<const Probe> probes, double& pace) const noexcept HSP_RT;
   void clearContacts(uint32_t index) noexcept HSP_RT;
@@ -181,7 +181,7 @@ class Core {
   void sendTransform(ModelState& model, uint32_t index) noexcept HSP_RT;
 
   CoreSettings settings_;
-  Uses uses_;
+  RequiredResults uses_;
   link::Link& link_;
   uint32_t probe_count_;
   std::vector<ModelState> models_;
@@ -205,7 +205,7 @@ class Core {
   std::vector<passivity::Exchange> exchanges_;
   SpscRing<uint32_t> released_{256};
   uint32_t leaving_ = 0, present_ = 0;
-  bool wants_search_ = true;
+  bool needs_search_ = true;
   uint32_t transforms_ = 0;
   double epoch_ = 0;
   uint64_t tick_ = 0;

@@ -49,7 +49,7 @@ bool Core::holdTorque(const ModelState& model, Claim& claim, uint32_t probe, dou
   step.orientation = Eigen::Vector4d::UnitW();
   if (reads) step.orientation = last_orientation_[probe].coeffs();
   bool held = false;
-  const Vector3d let = claim.judgeTorque(step, model.claims, dt, held);
+  const Vector3d let = claim.checkTorque(step, model.claims, dt, held);
   if (held) Map(out.torque) = model.frame.vectorToModel(let);
   return held;
 }
@@ -73,10 +73,10 @@ void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, con
 }  // namespace
 
 /// Reduces force and torque of the answer to this probe to what the claim allows, and returns which of them was larger.
-/// This function and its caller are inlined into judge(): they run for every answer in every tick, and a call costs as
-/// much as they do.
-[[gnu::always_inline]] inline Trouble Core::holdToClaim(ModelState& model, uint32_t index, uint32_t probe,
-                                                        double dt) noexcept HSP_RT {
+/// This function and its caller are inlined into checkAnswer(): they run for every answer in every tick, and a call
+/// costs as much as they do.
+[[gnu::always_inline]] inline ShapeFault Core::holdToClaim(ModelState& model, uint32_t index, uint32_t probe,
+                                                           double dt) noexcept HSP_RT {
   hsp_contact& out = outputs_[probe];
   const hsp_probe& in = inputs_[probe];
   ClaimStep& step = claim_step_;
@@ -95,52 +95,53 @@ void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, con
   Claim& claim = claims_[size_t{index} * probe_count_ + probe];
   const bool twists = uses_.torque && !settings_.former_claims && holdTorque(model, claim, probe, dt);
   bool held = false;
-  const Vector3d let = claim.judge(step, model.claims, dt, held);
-  if (!held && !twists) return Trouble::kNone;
+  const Vector3d let = claim.check(step, model.claims, dt, held);
+  if (!held && !twists) return ShapeFault::kNone;
   if (held) {
     if (!claim.excused()) noteJump(model, step, let, out);
     Map(out.force) = model.frame.vectorToModel(let);
     Map(out.torque) *= std::min(1.0, let.norm() / step.force.norm());
   }
-  return claim.excused() ? Trouble::kNone : held ? Trouble::kJump : Trouble::kTwists;
+  return claim.excused() ? ShapeFault::kNone : held ? ShapeFault::kJump : ShapeFault::kTwists;
 }
 
 /// Checks an answer without other errors against the time for a step and the claims of the shape.
-[[gnu::always_inline]] inline Trouble Core::holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
+[[gnu::always_inline]] inline ShapeFault Core::holdToClaims(ModelState& model, uint32_t index,
+                                                            double dt) noexcept HSP_RT {
   constexpr int kJumps = 3;
-  Trouble trouble = Trouble::kNone;
+  ShapeFault fault = ShapeFault::kNone;
   if (model.moves) turn_.noalias() = model.frame.R_world_model * model.before.R_world_model.transpose();
   for (uint32_t i = 0; i < probe_count_; ++i) {
-    const Trouble beyond = holdToClaim(model, index, i, dt);
-    if (beyond != Trouble::kNone) trouble = model.guard.strike(beyond, kJumps);
+    const ShapeFault beyond = holdToClaim(model, index, i, dt);
+    if (beyond != ShapeFault::kNone) fault = model.guard.strike(beyond, kJumps);
   }
-  if ((model.shape->report().flags & HSP_R_PUSHES) != 0 && pulls(model)) return model.guard.enter(Trouble::kPulls);
-  return trouble == Trouble::kNone ? holdToTime(model) : trouble;
+  if ((model.shape->report().flags & HSP_R_PUSHES) != 0 && pulls(model)) return model.guard.enter(ShapeFault::kPulls);
+  return fault == ShapeFault::kNone ? holdToTime(model) : fault;
 }
 
 /// Decides whether the answers of a model may be felt. A model that moves itself takes its new pose.
-Trouble Core::judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT {
+ShapeFault Core::checkAnswer(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT {
   bool answers_finite = true;
   for (const hsp_contact& out : outputs_) answers_finite &= finite(out);
   const bool moves_itself = (model.shape->report().flags & HSP_R_MOVES) != 0;
-  Trouble trouble = Trouble::kNone;
-  if (moves_itself && answers_finite) trouble = takePose(model, pose);
-  if (uses_.exchange && model.moves && dt > 0) bookMotion(model, index);
-  if (trouble != Trouble::kNotUnit)
-    trouble = model.guard.judge(model.status, answers_finite && trouble == Trouble::kNone);
+  ShapeFault fault = ShapeFault::kNone;
+  if (moves_itself && answers_finite) fault = takePose(model, pose);
+  if (uses_.exchange && model.moves && dt > 0) recordMotion(model, index);
+  if (fault != ShapeFault::kNotUnit)
+    fault = model.guard.check(model.status, answers_finite && fault == ShapeFault::kNone);
   else
-    model.guard.enter(trouble);
-  if (trouble == Trouble::kNone) trouble = holdToClaims(model, index, dt);
-  if (trouble == Trouble::kBadStatus && model.failed_status == HSP_OK) model.failed_status = model.status;
-  if (trouble == Trouble::kLost) {
+    model.guard.enter(fault);
+  if (fault == ShapeFault::kNone) fault = holdToClaims(model, index, dt);
+  if (fault == ShapeFault::kBadStatus && model.failed_status == HSP_OK) model.failed_status = model.status;
+  if (fault == ShapeFault::kLost) {
     model.shape->reset();
     for (uint32_t i = 0; i < probe_count_; ++i) claims_[size_t{index} * probe_count_ + i].forget();
-    wants_search_ = true;
+    needs_search_ = true;
   }
-  return trouble;
+  return fault;
 }
 
-/// Replaces the answer by a part of the last good force, to fade out a model in trouble.
+/// Replaces the answer by a part of the last good force, to fade out a faulty model.
 void Core::fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP_RT {
   Contact& last = contacts_[size_t{index} * probe_count_ + probe];
   last.traced = false;
@@ -160,7 +161,7 @@ bool Core::pulls(ModelState& model) noexcept HSP_RT {
 
 /// Adds the work that a moving model did on the probe: the force of the last tick times the motion of the surface since
 /// then.
-void Core::bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT {
+void Core::recordMotion(const ModelState& model, uint32_t index) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     const Contact& held = contacts_[size_t{index} * probe_count_ + i];
     const ConstMap force(held.world.force);
@@ -174,7 +175,7 @@ void Core::bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT {
 
 /// Adds the energy that a contact can give back: at most force times depth, for any wall whose force grows with depth.
 /// A soft shape reports its energy itself.
-void Core::bookContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT {
+void Core::recordContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT {
   const ConstMap force(contact.world.force);
   if (force.isZero(0)) return;
   double recoverable = HUGE_VAL;
@@ -185,17 +186,17 @@ void Core::bookContact(const ModelState& model, const Contact& contact, uint32_t
   exchanges_[probe].recoverable += std::isfinite(recoverable) ? recoverable : HUGE_VAL;
 }
 
-Trouble Core::takePose(ModelState& model, hsp_pose pose) noexcept HSP_RT {
+ShapeFault Core::takePose(ModelState& model, hsp_pose pose) noexcept HSP_RT {
   constexpr double kUnit = 1e-3;  // the same tolerance as for quaternions in scenes
   constexpr double kExact = 1e-12;
-  if (!finite(pose.position, 13)) return Trouble::kNotFinite;
+  if (!finite(pose.position, 13)) return ShapeFault::kNotFinite;
   Eigen::Map<Eigen::Vector4d> q(pose.orientation);
   const double length = q.norm();
-  if (!(std::abs(length - 1) <= kUnit)) return Trouble::kNotUnit;
+  if (!(std::abs(length - 1) <= kUnit)) return ShapeFault::kNotUnit;
   if (std::abs(length - 1) > kExact) q /= length;
   model.pose = pose;
   model.frame = Frame::of(pose);
-  return Trouble::kNone;
+  return ShapeFault::kNone;
 }
 
 void Core::takeContact(ModelState& model, uint32_t index, uint32_t probe, double gain) noexcept HSP_RT {

@@ -23,12 +23,12 @@ bool Core::mayRest(const ModelState& model, uint32_t index, double dt) const noe
   return true;
 }
 
-Core::Begun Core::beginCost() const noexcept HSP_RT {
+Core::CostStart Core::beginCost() const noexcept HSP_RT {
   if (!settings_.measure) return {};
   return {monotonicNow(), cpu_timed_ ? os::cpuTimeOfThread() : 0};
 }
 
-void Core::takeCost(ModelState& model, const Begun& begun) noexcept HSP_RT {
+void Core::takeCost(ModelState& model, const CostStart& begun) noexcept HSP_RT {
   // [ticks] CPU time is measured for this many ticks after a tick that was too long
   constexpr uint32_t kSuspicion = 100;
   model.step_ns = monotonicNow() - begun.wall;
@@ -68,7 +68,7 @@ std::span<const LoadShedding::Change> Core::shedLoad() noexcept HSP_RT {
     spent += model.step_ns;
   }
   if (spent > settings_.budget_ns && excused()) return {};
-  const auto changes = shedding_.judge(loads_, settings_.budget_ns);
+  const auto changes = shedding_.findChanges(loads_, settings_.budget_ns);
   for (const LoadShedding::Change& change : changes) setLevel(models_[change.model], change.level);
   return changes;
 }
@@ -81,15 +81,15 @@ bool Core::setLevel(ModelState& model, uint32_t level) noexcept HSP_RT {
   return true;
 }
 
-Trouble Core::holdToTime(ModelState& model) noexcept HSP_RT {
+ShapeFault Core::holdToTime(ModelState& model) noexcept HSP_RT {
   constexpr int kOverruns = 4;
-  if (std::exchange(model.overran_then, false)) return model.guard.strike(Trouble::kOverrun, kOverruns);
+  if (std::exchange(model.overran_then, false)) return model.guard.strike(ShapeFault::kOverrun, kOverruns);
   const bool overran = settings_.budget_ns > 0 && settings_.measure && model.step_ns > settings_.budget_ns;
   const bool may_hasten = settings_.evaluation_ns > 0 || model.level < Accuracy::kCoarsest;
-  if (!overran || may_hasten) return Trouble::kNone;
-  if (excused()) return Trouble::kNone;
+  if (!overran || may_hasten) return ShapeFault::kNone;
+  if (excused()) return ShapeFault::kNone;
   model.overran = true;
-  return model.guard.strike(Trouble::kOverrun, kOverruns);
+  return model.guard.strike(ShapeFault::kOverrun, kOverruns);
 }
 
 }  // namespace hapticd::servo

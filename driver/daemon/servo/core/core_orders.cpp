@@ -7,7 +7,7 @@
 
 namespace hapticd::servo {
 
-bool Core::obey(const Order& order, double t) noexcept HSP_RT {
+bool Core::apply(const Order& order, double t) noexcept HSP_RT {
   if (order.target >= models_.size()) return false;
   ModelState& model = models_[order.target];
   if (order.kind == Order::Kind::kAdopt) return adopt(model, order);

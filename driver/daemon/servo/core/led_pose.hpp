@@ -5,7 +5,7 @@
 
 #include "hapticd/shape.h"
 #include "link/lead.hpp"
-#include "servo/core/follow.hpp"
+#include "servo/core/pose_follower.hpp"
 
 namespace hapticd::servo {
 
@@ -42,7 +42,7 @@ class LedPose {
   /// CLOCK_MONOTONIC [s] at t = 0
   void step(double t, double dt, double epoch, hsp_pose& pose) noexcept HSP_RT {
     fresh_ = false;
-    if (slot_ != nullptr && slot_->take(seen_, taken_)) judge(t, epoch);
+    if (slot_ != nullptr && slot_->take(seen_, taken_)) check(t, epoch);
     follow_.step(t, dt, pose);
   }
 
@@ -51,13 +51,13 @@ class LedPose {
   /// Returns how many records of this leader were refused so far.
   uint64_t refused() const noexcept { return refused_; }
   /// Returns why the last refused record was refused.
-  Follow::Refusal why() const noexcept { return why_; }
+  PoseFollower::Refusal why() const noexcept { return why_; }
 
  private:
-  void judge(double t, double epoch) noexcept HSP_RT {
+  void check(double t, double epoch) noexcept HSP_RT {
     double* const q = taken_.orientation;
     if (turns_ == Turns::kNever && q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0) q[0] = 1;
-    if (const auto why = Follow::refusalOf(taken_, epoch + t); why != Follow::Refusal::kNone) {
+    if (const auto why = PoseFollower::refusalOf(taken_, epoch + t); why != PoseFollower::Refusal::kNone) {
       why_ = why;
       ++refused_;
       return;
@@ -68,8 +68,8 @@ class LedPose {
   const link::PoseSlot* slot_ = nullptr;
   uint64_t seen_ = 0, refused_ = 0;
   hapticd_target taken_{};
-  Follow follow_;
-  Follow::Refusal why_ = Follow::Refusal::kNone;
+  PoseFollower follow_;
+  PoseFollower::Refusal why_ = PoseFollower::Refusal::kNone;
   Turns turns_;
   bool active_ = false, fresh_ = false;
 };

@@ -16,8 +16,8 @@ bool lowers(const Load& load) noexcept HSP_RT {
 
 }  // namespace
 
-std::span<const LoadShedding::Change> LoadShedding::judge(std::span<const Load> loads,
-                                                          uint64_t budget_ns) noexcept HSP_RT {
+std::span<const LoadShedding::Change> LoadShedding::findChanges(std::span<const Load> loads,
+                                                                uint64_t budget_ns) noexcept HSP_RT {
   count_ = 0;
   uint64_t spent = 0;
   for (const Load& load : loads) spent += load.step_ns;

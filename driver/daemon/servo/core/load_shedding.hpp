@@ -51,7 +51,7 @@ class LoadShedding {
 
   /// [rt] Returns the changes of accuracy for the next tick. @param loads costs of the shapes that were stepped
   /// @param budget_ns time for all shapes together
-  std::span<const Change> judge(std::span<const Load> loads, uint64_t budget_ns) noexcept HSP_RT;
+  std::span<const Change> findChanges(std::span<const Load> loads, uint64_t budget_ns) noexcept HSP_RT;
 
  private:
   void lower(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT;

@@ -31,10 +31,10 @@ class Door {
   /// [any] Called once at most. @param page stateBytes() bytes of zeros, valid until the loop has ended
   void showState(std::byte* page, uint32_t arms) noexcept;
   /// [any] Called once at most. @param bell zeroed, valid until the loop has ended
-  void hangBell(hapticd_bell* bell) noexcept { bell_.store(bell, std::memory_order_release); }
+  void setBell(hapticd_bell* bell) noexcept { bell_.store(bell, std::memory_order_release); }
 
   /// [rt] Called after the arms were read: writes their state and rings the bell.
-  void tell(const TickTime& tick, const Arms& arms) noexcept HSP_RT {
+  void publish(const TickTime& tick, const Arms& arms) noexcept HSP_RT {
     if (std::byte* page = state_.load(std::memory_order_acquire); page != nullptr) write(page, tick, arms);
     if (hapticd_bell* bell = bell_.load(std::memory_order_acquire); bell != nullptr)
       ring(bell->state, bell->state_waiting, tick.number);

@@ -39,8 +39,8 @@ Arm* pacingArm(const scene::Servo& servo, const Arms& arms) {
   return found != arms.end() ? found->get() : nullptr;
 }
 
-Uses usesOf(const Arms& arms) {
-  Uses uses{false, false, {}, {}};
+RequiredResults usesOf(const Arms& arms) {
+  RequiredResults uses{false, false, {}, {}};
   for (const auto& arm : arms) {
     uses.torque |= arm->turns();
     uses.exchange |= arm->passivity() != nullptr;
@@ -164,15 +164,15 @@ bool Loop::simulated() const noexcept HSP_RT {
   return std::all_of(arms_.begin(), arms_.end(), [](const auto& arm) { return arm->simulated(); });
 }
 
-void Loop::obey(double t) noexcept HSP_RT {
+void Loop::applyOrders(double t) noexcept HSP_RT {
   constexpr int kOrdersPerTick = 16;
-  obeyHolds();
+  applyHolds();
   Order order;
   for (int i = 0; i < kOrdersPerTick && orders_.pop(order); ++i) {
     if (!isToArm(order)) {
-      core_.obey(order, t);
+      core_.apply(order, t);
     } else if (order.target < arms_.size()) {
-      obey(order, *arms_[order.target]);
+      applyOrder(order, *arms_[order.target]);
     }
     log_.order(order);
     orders_done_.store(orders_done_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
@@ -180,7 +180,7 @@ void Loop::obey(double t) noexcept HSP_RT {
 }
 
 /// Turns holds into orders, so that they are recorded. Unlike other orders, they do not wait in the queue.
-void Loop::obeyHolds() noexcept HSP_RT {
+void Loop::applyHolds() noexcept HSP_RT {
   const uint64_t held = hold_.load(std::memory_order_relaxed);
   if (held == 0) return;
   Order order;
@@ -188,13 +188,13 @@ void Loop::obeyHolds() noexcept HSP_RT {
   for (uint32_t i = 0; i < arms_.size() && i < 64; ++i) {
     if (((held >> i) & 1u) == 0) continue;
     order.target = i;
-    obey(order, *arms_[i]);
+    applyOrder(order, *arms_[i]);
     log_.order(order);
   }
   hold_.fetch_and(~held, std::memory_order_release);
 }
 
-void Loop::obey(const Order& order, Arm& arm) noexcept HSP_RT {
+void Loop::applyOrder(const Order& order, Arm& arm) noexcept HSP_RT {
   switch (order.kind) {
     case Order::Kind::kClear:
       return arm.clear();
@@ -269,20 +269,20 @@ Nanoseconds Loop::skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HS
 }
 
 void Loop::tick(const TickTime& tick) noexcept HSP_RT {
-  obey(tick.t);
+  applyOrders(tick.t);
   shedLoad();
   for (const auto& arm : arms_) arm->hand().step(tick.t, tick.dt, epoch_);
   read_time_ = monotonicNow();
   for (size_t i = 0; i < arms_.size(); ++i) probes_[i] = arms_[i]->read(tick.time, tick.dt);
   read_time_ = monotonicNow() - read_time_;
-  door_.tell(tick, arms_);
+  door_.publish(tick, arms_);
   core_.publish(tick.t, probes_);
   if (settings_.lockstep) search(tick.t);
   core_.tick(tick.t, tick.dt, probes_);
   if (settings_.answer_time > 0) listen(tick);
   for (uint32_t i = 0; i < arms_.size(); ++i) write(i, tick);
   logTimedDecisions();
-  wants_search_.store(core_.wantsSearch(), std::memory_order_relaxed);
+  needs_search_.store(core_.needsSearch(), std::memory_order_relaxed);
 }
 
 /// Waits until every program that keeps up has answered, or until answer_time is over. It waits busily, because a sleep

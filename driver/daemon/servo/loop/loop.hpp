@@ -29,7 +29,7 @@ struct LoopSettings {
 Arm* pacingArm(const scene::Servo& servo, const Arms& arms);
 
 /// [main] Returns which results of a tick these arms use.
-Uses usesOf(const Arms& arms);
+RequiredResults usesOf(const Arms& arms);
 
 class Loop {
  public:
@@ -46,7 +46,7 @@ class Loop {
 
   /// [any] Queues an order. Orders are obeyed in turn, at the start of a tick. Only one thread may call this. Returns
   /// false if the queue is full; the order is then lost.
-  bool give(const Order& order) noexcept { return orders_.push(order); }
+  bool post(const Order& order) noexcept { return orders_.push(order); }
   /// [any] Returns how many orders were obeyed or refused so far.
   uint64_t ordersDone() const noexcept { return orders_done_.load(std::memory_order_acquire); }
 
@@ -77,7 +77,7 @@ class Loop {
   /// [any] Returns the number of ticks done so far, for watchdogs and status lines.
   uint64_t ticks() const noexcept { return tick_count_.load(std::memory_order_relaxed); }
   /// [any] True if the core lost a track or saw a jump, so that a proximity search is needed now.
-  bool wantsSearch() const noexcept { return wants_search_.load(std::memory_order_relaxed); }
+  bool needsSearch() const noexcept { return needs_search_.load(std::memory_order_relaxed); }
   /// [any] Returns the CLOCK_MONOTONIC time at which the tick in progress began, or 0 between two ticks.
   Nanoseconds tickBegun() const noexcept { return tick_begun_.load(std::memory_order_relaxed); }
   /// [any] Returns the CLOCK_MONOTONIC time by which the next tick must have begun, or 0 if there will be none.
@@ -96,9 +96,9 @@ class Loop {
   void publishTick(uint64_t number, Nanoseconds ended) noexcept HSP_RT;
   void countFromHere() noexcept;
   void beat() noexcept HSP_RT;
-  void obey(double t) noexcept HSP_RT;
-  void obey(const Order& order, Arm& arm) noexcept HSP_RT;
-  void obeyHolds() noexcept HSP_RT;
+  void applyOrders(double t) noexcept HSP_RT;
+  void applyOrder(const Order& order, Arm& arm) noexcept HSP_RT;
+  void applyHolds() noexcept HSP_RT;
   void logTimedDecisions() noexcept HSP_RT;
   void shedLoad() noexcept HSP_RT;
   void search(double t) noexcept;
@@ -130,7 +130,7 @@ class Loop {
   SpscRing<Order> orders_{256};
   std::atomic<uint64_t> orders_done_{0};
   std::atomic<uint64_t> hold_{0};
-  std::atomic<bool> stop_{false}, wants_search_{true}, finished_{false}, silent_{false};
+  std::atomic<bool> stop_{false}, needs_search_{true}, finished_{false}, silent_{false};
   std::atomic<uint64_t> tick_count_{0}, late_dry_cycles_{0};
   std::atomic<Nanoseconds> first_tick_{0}, tick_begun_{0}, next_tick_{0}, stop_asked_{0};
   std::atomic<os::CpuClock> cpu_clock_{os::kNoCpuClock};

@@ -16,7 +16,7 @@ namespace hapticd::servo {
 using Arms = std::vector<std::unique_ptr<Arm>>;
 
 /// How long a tick took.
-struct Spent {
+struct TickDuration {
   Nanoseconds total = 0;
   Nanoseconds in_arms = 0;  ///< part of `total` for the arms: physics of simulated arms, transfers of others
 };
@@ -34,7 +34,7 @@ class TickLog {
   /// `missed` whole periods were skipped.
   virtual void overrun(uint64_t missed) noexcept HSP_RT = 0;
   /// The tick at t [s], dt [s] after the last one, woke `late` after its deadline and took `spent`.
-  virtual void tick(double t, double dt, Nanoseconds late, const Spent& spent, const Core& core,
+  virtual void tick(double t, double dt, Nanoseconds late, const TickDuration& spent, const Core& core,
                     const Arms& arms) noexcept HSP_RT = 0;
   /// The run ended. Page faults and allocations count from the end of the warm-up.
   virtual void finish(uint64_t ticks, Nanoseconds elapsed, long page_faults, uint64_t allocations) noexcept = 0;

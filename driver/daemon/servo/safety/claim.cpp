@@ -25,7 +25,7 @@ double stiffnessOf(const ClaimBounds& bounds) noexcept HSP_RT {
 
 }  // namespace
 
-Vector3d Claim::judge(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT {
+Vector3d Claim::check(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT {
   Vector3d let = step.force;
   // Compares squares, so that most ticks need no square root.
   if (const double most = step.max_force, square = let.squaredNorm(); most > 0 && square > most * most)
@@ -43,7 +43,7 @@ Vector3d Claim::judge(const ClaimStep& step, const ClaimBounds& bounds, double d
     const Vector3d change = let - from;
     const double square = change.squaredNorm();
     if (!surelyExplained(square, step, bounds)) {
-      const Room room{explained(step, bounds, dt) + turned, std::max(kStep, bounds.jump), kDrift * dt};
+      const ChangeBounds room{explained(step, bounds, dt) + turned, std::max(kStep, bounds.jump), kDrift * dt};
       follows = holdBack(let, from, change, room, step, dt, held);
     }
   }
@@ -62,7 +62,7 @@ bool Claim::surelyExplained(double square, const ClaimStep& step, const ClaimBou
 
 /// Moves `let` back toward `from` until the change fits `room`. @return the share of the change by which the explained
 /// force moves toward the new one
-double Claim::holdBack(Vector3d& let, const Vector3d& from, const Vector3d& change, const Room& room,
+double Claim::holdBack(Vector3d& let, const Vector3d& from, const Vector3d& change, const ChangeBounds& room,
                        const ClaimStep& step, double dt, bool& held) noexcept HSP_RT {
   const double size = change.norm(), most = room.moved + room.jump, follows = room.moved + room.drift;
   held = size > most && !mayJump(step);
@@ -137,7 +137,7 @@ void Claim::remember(const ClaimStep& step, const ClaimBounds& bounds) noexcept 
 
 /// Bounds torques like forces: on a handle of length l, a stiffness k gives k l^2 per radian, and a jump f of the force
 /// gives a jump f l of the torque.
-Vector3d Claim::judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT {
+Vector3d Claim::checkTorque(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT {
   Vector3d let = step.torque;
   if (const double size = let.norm(); step.max_torque > 0 && size > step.max_torque) let *= step.max_torque / size;
   held = false;
@@ -149,7 +149,7 @@ Vector3d Claim::judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, do
     const double round = angle(step, bounds), speed = dt > 0 ? round / dt : 0;
     const double moved =
         explained(step, bounds, dt) + kHandle * (stiffnessOf(bounds) * round + kMargin * bounds.damping * speed);
-    const Room room{kHandle * moved + turned, kHandle * std::max(kStep, bounds.jump), kHandle * kDrift * dt};
+    const ChangeBounds room{kHandle * moved + turned, kHandle * std::max(kStep, bounds.jump), kHandle * kDrift * dt};
     follows = holdBack(let, from, let - from, room, step, dt, held);
   }
   explained_torque_ = from + follows * (let - from);

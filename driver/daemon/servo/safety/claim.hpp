@@ -31,7 +31,7 @@ struct ClaimStep {
   /// [N] largest force that the arm lets through, 0: unknown; larger forces are reduced to it first
   double max_force = 0;
   uint32_t in = 0, out = 0;  ///< HSP_IN_*, HSP_OUT_*
-  // Only judgeTorque() uses these.
+  // Only checkTorque() uses these.
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m] torque on the probe
   /// Orientation x y z w of the probe in the world; constant if the shape does not use the orientation.
   Eigen::Vector4d orientation = Eigen::Vector4d::UnitW();
@@ -73,11 +73,11 @@ class Claim {
 
   /// [rt] Returns the force of `step`, or the part of it that the claim allows, world frame.
   /// @param dt [s] since the last step  @param held becomes true if the force was held back
-  Eigen::Vector3d judge(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
+  Eigen::Vector3d check(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
-  /// [rt] Like judge(), but for the torque of `step`. Call it before judge(), because judge() stores the place of the
+  /// [rt] Like check(), but for the torque of `step`. Call it before check(), because check() stores the place of the
   /// probe.
-  Eigen::Vector3d judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
+  Eigen::Vector3d checkTorque(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
   /// [rt] Somebody set a live parameter of the model: in the next step the force may change without an explanation.
   void expectChange() noexcept HSP_RT { asked_ = true; }
@@ -91,13 +91,13 @@ class Claim {
 
  private:
   /// How large a change may be, [N] or [N m].
-  struct Room {
+  struct ChangeBounds {
     double moved;  ///< part that motion explains
     double jump;   ///< jump that is allowed in addition
     double drift;  ///< slow change that is always allowed in this step
   };
-  double holdBack(Eigen::Vector3d& let, const Eigen::Vector3d& from, const Eigen::Vector3d& change, const Room& room,
-                  const ClaimStep& step, double dt, bool& held) noexcept HSP_RT;
+  double holdBack(Eigen::Vector3d& let, const Eigen::Vector3d& from, const Eigen::Vector3d& change,
+                  const ChangeBounds& room, const ClaimStep& step, double dt, bool& held) noexcept HSP_RT;
   bool mayJump(const ClaimStep& step) noexcept HSP_RT;
   double angle(const ClaimStep& step, const ClaimBounds& bounds) const noexcept HSP_RT;
   bool surelyExplained(double square, const ClaimStep& step, const ClaimBounds& bounds) const noexcept HSP_RT;

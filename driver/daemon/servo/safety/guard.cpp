@@ -5,21 +5,21 @@
 
 namespace hapticd::servo {
 
-Trouble Guard::judge(hsp_status status, bool finite) noexcept HSP_RT {
-  if (!finite) return enter(Trouble::kNotFinite);
-  if (status == HSP_E_NUMERIC) return enter(Trouble::kLost);
-  if (status < 0 || status > HSP_DEGRADED) return enter(Trouble::kBadStatus);
-  return Trouble::kNone;
+ShapeFault Guard::check(hsp_status status, bool finite) noexcept HSP_RT {
+  if (!finite) return enter(ShapeFault::kNotFinite);
+  if (status == HSP_E_NUMERIC) return enter(ShapeFault::kLost);
+  if (status < 0 || status > HSP_DEGRADED) return enter(ShapeFault::kBadStatus);
+  return ShapeFault::kNone;
 }
 
-Trouble Guard::enter(Trouble trouble) noexcept HSP_RT {
-  if (!quarantined()) trouble_ = trouble;
-  return trouble;
+ShapeFault Guard::enter(ShapeFault fault) noexcept HSP_RT {
+  if (!quarantined()) fault_ = fault;
+  return fault;
 }
 
-Trouble Guard::strike(Trouble trouble, int strikes) noexcept HSP_RT {
+ShapeFault Guard::strike(ShapeFault fault, int strikes) noexcept HSP_RT {
   strikes_ += kForgivenAfter;
-  return strikes_ > (strikes - 1) * kForgivenAfter ? enter(trouble) : Trouble::kNone;
+  return strikes_ > (strikes - 1) * kForgivenAfter ? enter(fault) : ShapeFault::kNone;
 }
 
 double Guard::gain(bool good, bool wanted, double dt) noexcept HSP_RT {

@@ -9,7 +9,7 @@
 namespace hapticd::servo {
 
 /// Why a shape is not felt.
-enum class Trouble : uint8_t {
+enum class ShapeFault : uint8_t {
   kNone,
   kLost,       ///< HSP_E_NUMERIC: the shape is reset and tried again
   kNotFinite,  ///< a force or a pose was not a number: never trusted again
@@ -35,14 +35,14 @@ class Guard {
   static constexpr double kFadeInOfField = 1;
 
   /// [rt] Judges the answer of one step. @param finite true if all its numbers are finite
-  Trouble judge(hsp_status status, bool finite) noexcept HSP_RT;
+  ShapeFault check(hsp_status status, bool finite) noexcept HSP_RT;
 
-  /// [rt] Notes a trouble that judge() cannot see. Once the shape is quarantined, the first reason is kept.
-  Trouble enter(Trouble trouble) noexcept HSP_RT;
+  /// [rt] Notes a fault that check() cannot see. Once the shape is quarantined, the first reason is kept.
+  ShapeFault enter(ShapeFault fault) noexcept HSP_RT;
 
-  /// [rt] Notes that one step took too long, or that one force was beyond the claim. This becomes a trouble if it
+  /// [rt] Notes that one step took too long, or that one force was beyond the claim. This becomes a fault if it
   /// happens `strikes` times within a hundred ticks, or, over a longer time, more often than once in a hundred ticks.
-  Trouble strike(Trouble trouble, int strikes) noexcept HSP_RT;
+  ShapeFault strike(ShapeFault fault, int strikes) noexcept HSP_RT;
 
   /// [rt] Returns the factor for the force of this tick. @param good true if the step succeeded @param wanted true if
   /// the model is enabled
@@ -53,15 +53,15 @@ class Guard {
 
   /// Returns the factor of the last tick.
   double gain() const noexcept { return gain_; }
-  bool quarantined() const noexcept { return trouble_ > Trouble::kLost; }
-  Trouble trouble() const noexcept { return trouble_; }  ///< the trouble that quarantined it, else the last one
+  bool quarantined() const noexcept { return fault_ > ShapeFault::kLost; }
+  ShapeFault fault() const noexcept { return fault_; }  ///< the fault that quarantined it, else the last one
 
  private:
   static constexpr int kForgivenAfter = 100;  ///< [ticks] after this many ticks one strike is forgiven
   int strikes_ = 0;
   // starts at 1, because the first contact begins with zero force anyway (Eq. 4 of Thompson et al. 1999)
   double gain_ = 1;
-  Trouble trouble_ = Trouble::kNone;
+  ShapeFault fault_ = ShapeFault::kNone;
 };
 
 }  // namespace hapticd::servo

@@ -15,7 +15,7 @@
 
 namespace hapticd::client {
 
-bool Rows::isFile(const std::string& file) const {
+bool RowFile::isFile(const std::string& file) const {
   struct stat info{};
   return stat(file.c_str(), &info) == 0 && info.st_dev == device_ && info.st_ino == inode_;
 }
@@ -39,7 +39,7 @@ Mapping::~Mapping() {
   if (data_ != nullptr) munmap(data_, bytes_);
 }
 
-void tell(hapticd_error* error, const char* code, const std::string& text) {
+void setError(hapticd_error* error, const char* code, const std::string& text) {
   if (error == nullptr) return;
   *error = {};
   std::strncpy(error->code, code, sizeof error->code - 1);
@@ -52,8 +52,8 @@ namespace {
 /// system's folder.
 std::string baseOf(const std::string& name) {
   const std::string own = status::runtimeFolder(false) + "/" + name, system = "/run/hapticd/" + name;
-  const auto isThere = [](const std::string& base) { return access((base + ".sock").c_str(), F_OK) == 0; };
-  return !isThere(own) && isThere(system) ? system : own;
+  const auto fileExists = [](const std::string& base) { return access((base + ".sock").c_str(), F_OK) == 0; };
+  return !fileExists(own) && fileExists(system) ? system : own;
 }
 
 /// Changes a message that mentions the option --name, which a program that uses this library may not have.
@@ -67,17 +67,17 @@ std::string forPrograms(std::string text) {
 hapticd_client* connect(const std::string& name, hapticd_error* error) {
   const std::string base = baseOf(name);
   auto line = control::Client::connect(base + ".sock");
-  if (!line) return tell(error, "gone", forPrograms(line.error())), nullptr;
-  auto rows = Rows::open(base + ".blackbox.h5");
-  if (!rows) return tell(error, "damaged", rows.error()), nullptr;
+  if (!line) return setError(error, "gone", forPrograms(line.error())), nullptr;
+  auto rows = RowFile::open(base + ".blackbox.h5");
+  if (!rows) return setError(error, "damaged", rows.error()), nullptr;
   return new hapticd_client(base, std::move(*line), std::move(*rows));
 }
 
 bool refused(const std::string& line, hapticd_error* error) {
   const Json json = Json::parse(line, nullptr, false);
   if (json.is_object() && json.value("ok", false)) return false;
-  if (!json.is_object()) return tell(error, "damaged", "the answer is not JSON: " + line), true;
-  tell(error, json.value("code", std::string("failed")).c_str(), json.value("error", std::string("refused")));
+  if (!json.is_object()) return setError(error, "damaged", "the answer is not JSON: " + line), true;
+  setError(error, json.value("code", std::string("failed")).c_str(), json.value("error", std::string("refused")));
   return true;
 }
 
@@ -95,12 +95,12 @@ void endInOrder(hapticd_client& client, const hapticd_lead& lead) try {
 }  // namespace hapticd::client
 
 using hapticd::client::Answer;
-using hapticd::client::tell;
+using hapticd::client::setError;
 
 bool hapticd_client::ask(const std::string& request, Answer& answer, hapticd_error* error) {
   const std::lock_guard lock(asking);
   auto reply = line.askForMore(request);
-  if (!reply) return tellOfSilence(reply.error(), error), false;
+  if (!reply) return reportSilence(reply.error(), error), false;
   answer = {std::move(reply->line), std::move(reply->descriptor)};
   return !hapticd::client::refused(answer.line, error);
 }
@@ -122,15 +122,15 @@ std::byte* hapticd_client::page(const char* request, hapticd::client::Mapping& k
 }
 
 /// Reports why there was no answer: the daemon has ended, it has closed this connection, or it takes too long.
-void hapticd_client::tellOfSilence(const std::string& problem, hapticd_error* error) {
-  if (!line.ended()) return tell(error, "timeout", problem);
+void hapticd_client::reportSilence(const std::string& problem, hapticd_error* error) {
+  if (!line.ended()) return setError(error, "timeout", problem);
   // [us] wait before the check, because a daemon that ends closes its connections first.
   constexpr useconds_t kMeanwhile = 20'000;
   usleep(kMeanwhile);
-  if (ended() || access((base + ".sock").c_str(), F_OK) != 0) return tell(error, "gone", problem);
-  tell(error, "too_many",
-       "the daemon closed this connection, because it was silent and other programs needed its place\n"
-       "  fix: connect again");
+  if (ended() || access((base + ".sock").c_str(), F_OK) != 0) return setError(error, "gone", problem);
+  setError(error, "too_many",
+           "the daemon closed this connection, because it was silent and other programs needed its place\n"
+           "  fix: connect again");
 }
 
 /// Checks whether the daemon still runs, because the end of the connection does not show it: the daemon may close a
@@ -144,10 +144,10 @@ const char* hapticd_version(void) {
 }
 
 hapticd_client* hapticd_connect(const char* name, hapticd_error* error) try {
-  tell(error, "", "");
+  setError(error, "", "");
   return hapticd::client::connect(name != nullptr ? name : "hapticd", error);
 } catch (const std::exception& problem) {
-  tell(error, "failed", problem.what());
+  setError(error, "failed", problem.what());
   return nullptr;
 }
 
@@ -174,9 +174,9 @@ int hapticd_alive(hapticd_client* client) {
 }
 
 long hapticd_ask(hapticd_client* client, const char* request, char* answer, size_t bytes, hapticd_error* error) try {
-  tell(error, "", "");
+  setError(error, "", "");
   if (std::strchr(request, '\n') != nullptr)
-    return tell(error, "bad_request", "a request must be one line, but this one has several"), -1;
+    return setError(error, "bad_request", "a request must be one line, but this one has several"), -1;
   Answer got;
   const bool done = client->ask(request, got, error);
   if (answer != nullptr && bytes > 0) {
@@ -186,7 +186,7 @@ long hapticd_ask(hapticd_client* client, const char* request, char* answer, size
   }
   return done ? static_cast<long>(got.line.size()) : -1;
 } catch (const std::exception& problem) {
-  tell(error, "failed", problem.what());
+  setError(error, "failed", problem.what());
   return -1;
 }
 

@@ -59,9 +59,9 @@ struct Stream {
 };
 
 /// The black box of a daemon.
-class Rows {
+class RowFile {
  public:
-  static Result<Rows> open(const std::string& file);
+  static Result<RowFile> open(const std::string& file);
   const std::string& about() const { return about_; }
   const std::vector<std::string>& devices() const { return devices_; }
   /// Returns the time [ns] from one tick to the next.
@@ -91,7 +91,7 @@ struct Answer {
 };
 
 /// Fills in `error`, which may be nullptr.
-void tell(hapticd_error* error, const char* code, const std::string& text);
+void setError(hapticd_error* error, const char* code, const std::string& text);
 
 /// Ends a lead with a request, so that it ends in order. Called before the client ends.
 void endInOrder(hapticd_client& client, const hapticd_lead& lead);
@@ -100,7 +100,7 @@ void endInOrder(hapticd_client& client, const hapticd_lead& lead);
 
 /// The client of client.h: the connection, the black box, and the memory that requests returned.
 struct hapticd_client {
-  hapticd_client(std::string where, hapticd::control::Client on, hapticd::client::Rows box)
+  hapticd_client(std::string where, hapticd::control::Client on, hapticd::client::RowFile box)
       : base(std::move(where)), line(std::move(on)), rows(std::move(box)) {}
   /// Sends a request and reads the answer. Returns false if the request was refused or no answer came; `error` says
   /// why.
@@ -113,11 +113,11 @@ struct hapticd_client {
 
   /// [any] Tells whether the daemon of this client has ended, so that its rows and states are old.
   bool ended();
-  void tellOfSilence(const std::string& problem, hapticd_error* error);
+  void reportSilence(const std::string& problem, hapticd_error* error);
 
   std::string base;  ///< beginning of the daemon's file names, "/run/hapticd/NAME"
   hapticd::control::Client line;
-  hapticd::client::Rows rows;
+  hapticd::client::RowFile rows;
   std::mutex asking, mapping;
   hapticd::client::Mapping bell, states;
   std::list<hapticd_lead*> leads;

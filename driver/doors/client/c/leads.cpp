@@ -10,7 +10,7 @@
 namespace {
 
 using hapticd::client::Answer;
-using hapticd::client::tell;
+using hapticd::client::setError;
 
 /// Returns why the arm gets no force, as the daemon reports it, or "" if the arm gets the force.
 std::string noForce(const std::string& answer) {
@@ -26,7 +26,7 @@ std::string requestOf(const char* word, const char* what, const char* name) {
 hapticd_lead* leadOf(hapticd_client* client, const char* what, const char* name, hapticd_error* error) try {
   hapticd_error unread;
   hapticd_error* const told = error == nullptr ? &unread : error;
-  tell(told, "", "");
+  setError(told, "", "");
   const std::string begin = requestOf("lead", what, name), end = requestOf("unlead", what, name);
   Answer answer;
   if (!client->ask(begin, answer, told)) {
@@ -34,13 +34,13 @@ hapticd_lead* leadOf(hapticd_client* client, const char* what, const char* name,
     return nullptr;
   }
   hapticd::client::Mapping memory(answer.descriptor.get(), HAPTICD_LEAD_BYTES, PROT_READ | PROT_WRITE);
-  if (memory.data() == nullptr) return tell(told, "damaged", "the memory of the lead cannot be mapped"), nullptr;
+  if (memory.data() == nullptr) return setError(told, "damaged", "the memory of the lead cannot be mapped"), nullptr;
   auto* lead = new hapticd_lead{client, end, std::string_view(what) == "force", std::move(memory)};
   client->leads.push_back(lead);
-  if (const std::string why = noForce(answer.line); !why.empty()) tell(told, "no_force", why);
+  if (const std::string why = noForce(answer.line); !why.empty()) setError(told, "no_force", why);
   return lead;
 } catch (const std::exception& problem) {
-  tell(error, "failed", problem.what());
+  setError(error, "failed", problem.what());
   return nullptr;
 }
 

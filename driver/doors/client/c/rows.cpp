@@ -28,10 +28,10 @@ const char* kept(Stream& stream, const nlohmann::json& column, const char* key) 
 
 }  // namespace
 
-Result<Rows> Rows::open(const std::string& file) {
+Result<RowFile> RowFile::open(const std::string& file) {
   const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return Error{"cannot read " + file + ": " + std::strerror(errno)};
-  Rows rows;
+  RowFile rows;
   rows.memory_ = Mapping(fd, 0, PROT_READ);
   struct stat info{};
   if (fstat(fd, &info) == 0) rows.device_ = info.st_dev, rows.inode_ = info.st_ino;
@@ -46,7 +46,7 @@ Result<Rows> Rows::open(const std::string& file) {
   return rows;
 }
 
-Result<void> Rows::readStreams() {
+Result<void> RowFile::readStreams() {
   auto* header = reinterpret_cast<record::FileHeader*>(memory_.at(record::kHeaderAt, sizeof(record::FileHeader)));
   if (header == nullptr || std::strncmp(header->magic, record::kRecordingFormat, sizeof header->magic) != 0 ||
       header->ring != 1 || header->stream_count > record::kMaxStreams)
@@ -79,7 +79,7 @@ Result<void> Rows::readStreams() {
   return whole ? Result<void>() : Result<void>(Error{"has no room for rows: it is damaged"});
 }
 
-Result<void> Rows::readAbout() {
+Result<void> RowFile::readAbout() {
   const auto json = nlohmann::json::parse(about_);
   for (const auto& device : json.at("devices")) devices_.push_back(device.at("name"));
   period_ = static_cast<int64_t>(1e9 / json.at("rate_hz").get<double>());
@@ -98,11 +98,11 @@ Result<void> Rows::readAbout() {
   return {};
 }
 
-uint64_t Rows::written(const Stream& stream) {
+uint64_t RowFile::written(const Stream& stream) {
   return load(*stream.written, std::memory_order_acquire);
 }
 
-long Rows::read(const Stream& stream, uint64_t& row, void* rows, size_t most) {
+long RowFile::read(const Stream& stream, uint64_t& row, void* rows, size_t most) {
   for (;;) {
     const uint64_t end = written(stream), kept = stream.capacity - 1;  // the slot after the newest row is being written
     const uint64_t first = std::min(std::max(row, end > kept ? end - kept : 0), end);
@@ -149,13 +149,13 @@ long hapticd_columns(hapticd_client* client, int stream, const hapticd_column** 
 
 uint64_t hapticd_written(hapticd_client* client, int stream) {
   const auto* found = streamOf(client, stream);
-  return found != nullptr ? hapticd::client::Rows::written(*found) : 0;
+  return found != nullptr ? hapticd::client::RowFile::written(*found) : 0;
 }
 
 long hapticd_read(hapticd_client* client, int stream, uint64_t* row, void* rows, size_t most) {
   auto* found = streamOf(client, stream);
   if (found == nullptr) return -1;
-  const long got = hapticd::client::Rows::read(*found, *row, rows, most);
+  const long got = hapticd::client::RowFile::read(*found, *row, rows, most);
   std::atomic_ref<uint64_t> handed(found->handed);
   if (*row > handed.load(std::memory_order_relaxed))
     handed.store(*row, std::memory_order_relaxed);

@@ -62,10 +62,10 @@ class ClosedLoop : public ::testing::TestWithParam<Device> {
     kinematics::JointVector q = mechanism->neutral();
     EXPECT_TRUE(mechanism->inverse(start, q));
     double deepest = 0;
-    Wish wish;
+    ArmCommand wanted;
     for (int tick = 0; tick < 2000; ++tick, now += kMs) {
       std::array<uint8_t, 64> out{};
-      arm.command({out.data(), session.command(now, wish, out)});
+      arm.command({out.data(), session.command(now, wanted, out)});
       arm.advance(0.001);
       session.receive(now, arm.report());
       session.watch(now);
@@ -83,8 +83,8 @@ class ClosedLoop : public ::testing::TestWithParam<Device> {
       kinematics::JointVector joints = Eigen::Map<const Eigen::Vector3d>(session.sample().position.data());
       EXPECT_TRUE(mechanism->jacobian(joints, J));
       const Eigen::Vector3d tau = J.topRows<3>().transpose() * Eigen::Vector3d(0, 0, stiffness * std::max(0.0, depth));
-      wish.time = now, ++wish.sequence, wish.on = true;
-      for (size_t i = 0; i < 3; ++i) wish.torque[i] = tau[static_cast<int>(i)];
+      wanted.time = now, ++wanted.sequence, wanted.on = true;
+      for (size_t i = 0; i < 3; ++i) wanted.torque[i] = tau[static_cast<int>(i)];
     }
     return deepest;
   }

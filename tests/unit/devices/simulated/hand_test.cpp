@@ -36,12 +36,12 @@ TEST(Hand, StartsOutsideAndComesIn) {
 }
 
 TEST(Hand, TremblesWithTheStrengthAsked) {
-  const Unrest tremor(0.3, 8, 12, 5);
+  const BandNoise tremor(0.3, 8, 12, 5);
   Vector3d square = Vector3d::Zero();
   constexpr int kSamples = 200000;
   for (int i = 0; i < kSamples; ++i) square += tremor.at(i * 1e-3).cwiseAbs2() / kSamples;
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(std::sqrt(square[axis]), 0.3, 0.01);
-  EXPECT_NE(Unrest(0.3, 8, 12, 6).at(1), tremor.at(1));
+  EXPECT_NE(BandNoise(0.3, 8, 12, 6).at(1), tremor.at(1));
 }
 
 TEST(Hand, RefusesAnAxisAlongItsNormal) {

@@ -34,11 +34,11 @@ class HidrawTest : public ::testing::Test {
   static bool pushUntil(Link& link, const std::function<bool(const Sample&)>& done) {
     RealClock clock(0);
     Sample sample;
-    Wish wish;
+    ArmCommand wanted;
     for (int i = 0; i < 5000; ++i) {
       link.read(sample);
-      wish.time = clock.now(), ++wish.sequence, wish.on = true, wish.torque = {0.1, 0, 0};
-      link.write(wish);
+      wanted.time = clock.now(), ++wanted.sequence, wanted.on = true, wanted.torque = {0.1, 0, 0};
+      link.write(wanted);
       if (done(sample)) return true;
       clock.waitUntil(clock.now() + 1'000'000);
     }

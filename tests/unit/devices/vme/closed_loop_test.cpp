@@ -52,7 +52,7 @@ Contact throughTheBoard(double seconds) {
   int tick = 0;
   uint64_t seen = 0;
   kinematics::JointVector tau = kinematics::JointVector::Zero(10);
-  rig.want = [&](const wire_arm::Sample& sample, wire_arm::Wish& wish) {
+  rig.want = [&](const wire_arm::Sample& sample, wire_arm::ArmCommand& wanted) {
     if (sample.sequence != seen) {
       seen = sample.sequence;
       const kinematics::JointVector q = Eigen::Map<const kinematics::JointVector>(sample.position.data(), 10);
@@ -60,7 +60,7 @@ Contact throughTheBoard(double seconds) {
       EXPECT_TRUE(arm->forward(q, tip));
       tau = torques(*arm, q, push(tip.position, tick++, contact));
     }
-    for (size_t i = 0; i < 10; ++i) wish.torque[i] = tau[static_cast<int>(i)];
+    for (size_t i = 0; i < 10; ++i) wanted.torque[i] = tau[static_cast<int>(i)];
   };
   rig.run(seconds);
   EXPECT_EQ(rig.session.trouble(), wire_arm::Trouble::kNone) << describe(rig.session.trouble());
@@ -108,13 +108,13 @@ TEST(VmeClosedLoop, OnReferencesTheArmStandsWhereItIsTold) {
   wire_arm::JointArray target{};
   bool have = false;
   const auto arm = mechanismOf(kSarcos);
-  rig.want = [&](const wire_arm::Sample& sample, wire_arm::Wish& wish) {
+  rig.want = [&](const wire_arm::Sample& sample, wire_arm::ArmCommand& wanted) {
     if (!have && sample.calibrated) target = sample.position, target[0] += 0.05, target[3] -= 0.05, have = true;
     const kinematics::JointVector q = Eigen::Map<const kinematics::JointVector>(sample.position.data(), 10);
     const kinematics::JointVector weight = torques(*arm, q, Vector3d::Zero());
-    wish.follow = have;
-    wish.position = target;
-    for (size_t i = 0; i < 10; ++i) wish.torque[i] = weight[static_cast<int>(i)];
+    wanted.follow = have;
+    wanted.position = target;
+    for (size_t i = 0; i < 10; ++i) wanted.torque[i] = weight[static_cast<int>(i)];
   };
   rig.run(2);
   ASSERT_TRUE(have);

@@ -86,7 +86,7 @@ class WindowFile {
 class Rig {
  public:
   static constexpr Nanoseconds kStep = 333'333;  ///< half a period of the board
-  using Torque = std::function<void(const wire_arm::Sample&, wire_arm::Wish&)>;
+  using Torque = std::function<void(const wire_arm::Sample&, wire_arm::ArmCommand&)>;
 
   explicit Rig(const std::string& name)
       : file(name),
@@ -139,7 +139,7 @@ class Rig {
 
  public:
   wire_arm::Session session;
-  Torque want = [](const wire_arm::Sample&, wire_arm::Wish& wish) { wish.torque[6] = 0.5; };
+  Torque want = [](const wire_arm::Sample&, wire_arm::ArmCommand& wanted) { wanted.torque[6] = 0.5; };
   bool powered = true, attached = false;
   Nanoseconds now = 1'000'000'000, open_at = 0;
   double torque = 0;  ///< [N m] of joint 7 in the newest command block
@@ -169,15 +169,15 @@ class Rig {
       attached = false;
     }
     session.watch(now);
-    wish_.time = now, ++wish_.sequence, wish_.on = true;
-    want(session.sample(), wish_);
-    const size_t out = session.command(now, wish_, bytes);
+    command_.time = now, ++command_.sequence, command_.on = true;
+    want(session.sample(), command_);
+    const size_t out = session.command(now, command_, bytes);
     if (attached) (void)mailbox_.send({bytes.data(), out});
     if ((bytes[9] & 1) != 0) open_at = now;
     torque = (bytes[9] & 1) != 0 ? 0.005 * static_cast<int16_t>(bytes[24] << 8 | bytes[25]) : 0;
   }
 
-  wire_arm::Wish wish_;
+  wire_arm::ArmCommand command_;
   int steps_ = 0;
 };
 

@@ -5,8 +5,8 @@
 #include <ctime>
 #include <string>
 
-#include "base/blame.hpp"
 #include "base/call_name.hpp"
+#include "base/code_owner.hpp"
 #include "base/owner_file.hpp"
 
 namespace hapticd {
@@ -23,8 +23,8 @@ double keepMany(int count, const std::string& kind) {
   const double begun = processorTime();
   for (int i = 0; i < count; ++i) {
     const Owner* owner = ownerOf(kind, "m" + std::to_string(i));
-    keepPlace(owner, "scene.yaml:" + std::to_string(i));
-    keepFile(owner, "8 bytes of " + kind, false);
+    setPlaceOfOwner(owner, "scene.yaml:" + std::to_string(i));
+    setFileOfOwner(owner, "8 bytes of " + kind, false);
   }
   return (processorTime() - begun) / count;
 }
@@ -42,9 +42,9 @@ TEST(Owners, ThePlaceAndTheFileThatWereKeptLastCount) {
   EXPECT_STREQ(placeOf(owner), "");
   EXPECT_STREQ(fileOf(owner), "");
   for (const char* place : {"a.yaml:4", "b.yaml:5", "b.yaml:5", "a.yaml:4"}) {
-    keepPlace(owner, place);
+    setPlaceOfOwner(owner, place);
     EXPECT_STREQ(placeOf(owner), place);
-    keepFile(owner, place, true);
+    setFileOfOwner(owner, place, true);
     EXPECT_STREQ(fileOf(owner), place);
   }
   EXPECT_EQ(foreignOwner(0), owner);

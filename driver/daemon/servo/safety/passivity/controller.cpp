@@ -62,7 +62,7 @@ Eigen::Vector3d PassivityController::update(const Eigen::Vector3d& position, con
   if (std::isfinite(exchange.supplied)) energy_ += share_ * exchange.supplied;
   if (exchange.recoverable >= 0) energy_ = std::min(energy_, exchange.recoverable);
   follow(moved(way, dt, exchange.pushed), dt);
-  bookSwing(way, dt, exchange);
+  recordSwing(way, dt, exchange);
   if (!std::isfinite(energy_) || !std::isfinite(swing_) || !velocity_.allFinite()) reset();
   if (force.squaredNorm() == 0) leaveContact(dt);
   settle(force, dt);
@@ -93,7 +93,7 @@ Eigen::Vector3d PassivityController::moved(const Eigen::Vector3d& way, double dt
 
 /// Keeps a second energy sum, of force and motion without their slow parts. The same high-pass filter acts on both, so
 /// what is passive stays passive in this sum, and what creates energy by swinging creates it here too.
-void PassivityController::bookSwing(const Eigen::Vector3d& way, double dt, const Exchange& exchange) noexcept {
+void PassivityController::recordSwing(const Eigen::Vector3d& way, double dt, const Exchange& exchange) noexcept {
   if (!exchange.pushed || !pushed_) {
     if (pushed_) energy_ = std::max(energy_, swing_);  // after a push, only the debt of the swinging part remains
     swing_ = std::min(0.0, energy_);                   // a new push does not pay an earlier debt

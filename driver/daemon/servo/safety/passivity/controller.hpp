@@ -51,7 +51,7 @@ class PassivityController {
  private:
   void follow(const Eigen::Vector3d& way, double dt) noexcept;
   Eigen::Vector3d moved(const Eigen::Vector3d& way, double dt, bool pushed) noexcept;
-  void bookSwing(const Eigen::Vector3d& way, double dt, const Exchange& exchange) noexcept;
+  void recordSwing(const Eigen::Vector3d& way, double dt, const Exchange& exchange) noexcept;
   void leaveContact(double dt) noexcept;
   void settle(const Eigen::Vector3d& force, double dt) noexcept;
   Eigen::Vector3d resistance(const Eigen::Vector3d& force) const noexcept;

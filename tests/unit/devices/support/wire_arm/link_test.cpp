@@ -87,8 +87,8 @@ class LinkTest : public ::testing::Test {
     Sample sample;
     for (int i = 0; i < 5000; ++i) {
       link.read(sample);
-      wish.time = clock.now(), ++wish.sequence, wish.on = true, wish.torque = {0.5, 0, 0};
-      link.write(wish);
+      wanted.time = clock.now(), ++wanted.sequence, wanted.on = true, wanted.torque = {0.5, 0, 0};
+      link.write(wanted);
       if (done(sample)) return true;
       clock.waitUntil(clock.now() + 1'000'000);
     }
@@ -104,7 +104,7 @@ class LinkTest : public ::testing::Test {
   std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "hapticd-link-test";
   std::mutex mutex;
   std::string said;
-  Wish wish;
+  ArmCommand wanted;
 };
 
 TEST_F(LinkTest, ReportsThatWaitedWhileTheArmMovedAreNoJump) {
@@ -162,9 +162,9 @@ TEST_F(PacedLinkTest, EachReportEndsTheWaitAndItsAnswerGoesOutBeforeTheNext) {
     link->waitForNews(monotonicNow() + 10 * kPeriod);
     link->read(sample);
     fresh += sample.sequence != before;
-    wish.time = monotonicNow(), ++wish.sequence, wish.on = true;
-    wish.torque = {(sample.sequence % 2 == 0) == even ? 0.5 : -0.5, 0, 0};
-    link->write(wish);
+    wanted.time = monotonicNow(), ++wanted.sequence, wanted.on = true;
+    wanted.torque = {(sample.sequence % 2 == 0) == even ? 0.5 : -0.5, 0, 0};
+    link->write(wanted);
   }
   link->waitForNews(monotonicNow() + kPeriod);  // lets the last one out
   // A machine that stands still for ten milliseconds is forgiven; without the wait all of them are late.
@@ -176,7 +176,7 @@ TEST_F(PacedLinkTest, EachReportEndsTheWaitAndItsAnswerGoesOutBeforeTheNext) {
 TEST_F(PacedLinkTest, ACutEndsThePushOfAServoThatIsStuckAndHoldsUntilItIsEnded) {
   auto link = startSlow();
   ASSERT_TRUE(pushUntil(*link, [&](const Sample&) { return board.pushed.load(); }));
-  link->cut();  // nobody writes any more, and the last wish is good for a second
+  link->cut();  // nobody writes any more, and the last command is good for a second
   RealClock clock(0);
   for (int i = 0; i < 500 && board.pushed; ++i) clock.waitUntil(clock.now() + 1'000'000);
   EXPECT_FALSE(board.pushed);

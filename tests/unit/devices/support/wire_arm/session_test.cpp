@@ -36,11 +36,12 @@ class Rig {
         ++board.sequence;
         std::vector<uint8_t> bytes = board.bytes();
         if (attached && (!spoil || spoil(bytes))) session_.receive(now_, bytes);
-        if (host_writes) wish_.time = now_, ++wish_.sequence, wish_.on = true, wish_.torque = {0.1, 0.1, 0.1};
+        if (host_writes)
+          command_.time = now_, ++command_.sequence, command_.on = true, command_.torque = {0.1, 0.1, 0.1};
       }
       session_.watch(now_);
       std::array<uint8_t, 64> out{};
-      const emulator::BoardCommand command({out.data(), session_.command(now_, wish_, out)});
+      const emulator::BoardCommand command({out.data(), session_.command(now_, command_, out)});
       ASSERT_TRUE(command.valid);
       current_ = command.enabled ? command.current[0] : 0;
       if (command.pushes()) pushed_at_ = now_;
@@ -63,7 +64,7 @@ class Rig {
   bool attached = true, host_writes = true;
   codec::Wire wire_;
   Session session_;
-  Wish wish_;
+  ArmCommand command_;
   Nanoseconds now_ = 1000 * kMs, pushed_at_ = 0;
   int quarter_ = 0, current_ = 0;
 };
@@ -235,7 +236,7 @@ Trouble stopped(const char* scale, const char* type = "u16") {
   for (int i = 0; i < 500; ++i, now += kMs) {
     if (i < 400) bytes[2] = static_cast<uint8_t>(i), bytes[3] = static_cast<uint8_t>(i >> 8);
     session.receive(now, bytes);
-    (void)session.command(now, Wish{}, out);
+    (void)session.command(now, ArmCommand{}, out);
     session.watch(now);
     if (i == 399 && session.trouble() != Trouble::kNone) return Trouble::kAbsent;
   }
@@ -257,7 +258,7 @@ Trouble polled(Nanoseconds period, int n) {
   std::array<uint8_t, 64> out{};
   const std::vector<uint8_t> answer(14, 0);
   for (int i = 0; i < 400; ++i, now += period) {
-    (void)session.command(now, Wish{}, out);
+    (void)session.command(now, ArmCommand{}, out);
     if (i % n == 0) session.receive(now + kMs / 10, answer);
     session.watch(now + kMs / 5);
   }

@@ -90,11 +90,11 @@ TEST(Client, KeepsWhatComesByItself) {
   ASSERT_TRUE(answer);
   EXPECT_EQ(*answer, "answer");
   for (const char* event : {"{\"event\":1}", "{\"event\":2}", "{\"event\":3}"}) {
-    const auto heard = client.hear(kLong);
+    const auto heard = client.receiveLine(kLong);
     ASSERT_TRUE(heard);
     EXPECT_EQ(*heard, event);
   }
-  EXPECT_FALSE(client.hear(kShort));
+  EXPECT_FALSE(client.receiveLine(kShort));
 }
 
 TEST(Client, WaitsOnThroughTheSignalsOfItsProgram) {

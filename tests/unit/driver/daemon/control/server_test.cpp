@@ -248,8 +248,8 @@ struct GivingRig {
       if (line != "give") return Reply("you said " + line);
       return Reply("here", Descriptor(memfd_create("given", MFD_CLOEXEC)));
     };
-    service.standing = [this](const Peer& peer) {
-      return Standing{staying.count(peer.id) > 0, listening.count(peer.id) > 0};
+    service.keep_alive = [this](const Peer& peer) {
+      return KeepAlive{staying.count(peer.id) > 0, listening.count(peer.id) > 0};
     };
     service.news = [](const Peer&) { return "news\n"; };
     service.left = [this](const Peer& peer) { staying.erase(peer.id), listening.erase(peer.id); };

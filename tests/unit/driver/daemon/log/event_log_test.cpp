@@ -34,7 +34,7 @@ TEST_F(EventWords, AreAtTheLevelThatAPersonNeeds) {
   EXPECT_EQ(of(HAPTICD_CAME).level, HSP_LOG_INFO);
   EXPECT_EQ(of(HAPTICD_DEGRADED, 0, 1).level, HSP_LOG_WARNING);
   EXPECT_EQ(of(HAPTICD_REFUSED, 0, 3).level, HSP_LOG_WARNING);
-  EXPECT_EQ(of(HAPTICD_SILENCED, static_cast<uint32_t>(Trouble::kOverrun)).level, HSP_LOG_ERROR);
+  EXPECT_EQ(of(HAPTICD_SILENCED, static_cast<uint32_t>(ShapeFault::kOverrun)).level, HSP_LOG_ERROR);
 }
 
 TEST_F(EventWords, TellHowLongNoTickCame) {
@@ -50,15 +50,15 @@ TEST_F(EventWords, NameTheModel) {
     EXPECT_EQ(of(kind).who, "door") << kind;
     EXPECT_FALSE(of(kind).text.empty()) << kind;
   }
-  const auto silenced = of(HAPTICD_SILENCED, static_cast<uint32_t>(Trouble::kNotFinite));
+  const auto silenced = of(HAPTICD_SILENCED, static_cast<uint32_t>(ShapeFault::kNotFinite));
   EXPECT_NE(silenced.text.find("model door: its plugin gave"), std::string::npos) << silenced.text;
 }
 
 TEST_F(EventWords, TellTimeAndForceOfAPull) {
-  const std::string pulled = of(HAPTICD_SILENCED, static_cast<uint32_t>(Trouble::kPulls), 0.42).text;
+  const std::string pulled = of(HAPTICD_SILENCED, static_cast<uint32_t>(ShapeFault::kPulls), 0.42).text;
   EXPECT_NE(pulled.find("into its surface, at 0.000 s with 0.42 N: its force has the wrong sign"), std::string::npos)
       << pulled;
-  const std::string status = of(HAPTICD_SILENCED, static_cast<uint32_t>(Trouble::kBadStatus), -77).text;
+  const std::string status = of(HAPTICD_SILENCED, static_cast<uint32_t>(ShapeFault::kBadStatus), -77).text;
   EXPECT_NE(status.find("status -77"), std::string::npos) << status;
 }
 
@@ -87,9 +87,9 @@ TEST_F(EventWords, OfAHoldAndOfItsEndMatch) {
 }
 
 /// Texts of one look at the programs on an arm.
-std::string look(PusherLog& log, const ClientForces& forces, double now) {
+std::string update(PusherLog& log, const ClientForces& forces, double now) {
   std::string text;
-  for (const auto& message : log.look(0, forces, now)) text += message.text + "\n";
+  for (const auto& message : log.update(0, forces, now)) text += message.text + "\n";
   return text;
 }
 
@@ -109,21 +109,22 @@ TEST(PusherWords, TellWhoAskedFallsSilentAndDies) {
   EXPECT_EQ(log.begins(0, 0, 4711, "spring").text, "process 4711 (spring) pushes on it");
   forces.begin(0, slot);
   tick(2);
-  EXPECT_EQ(look(log, forces, 0), "");
+  EXPECT_EQ(update(log, forces, 0), "");
   tick(100);
-  EXPECT_NE(look(log, forces, 0).find("(spring) asked for 100 N and gets 4 N at most"), std::string::npos);
+  EXPECT_NE(update(log, forces, 0).find("(spring) asked for 100 N and gets 4 N at most"), std::string::npos);
   tick(std::numeric_limits<double>::quiet_NaN());
   tick(2e6);
-  EXPECT_EQ(look(log, forces, 0), "2 answers of process 4711 (spring) were refused so far: a number is beyond 1e6\n");
+  EXPECT_EQ(update(log, forces, 0), "2 answers of process 4711 (spring) were refused so far: a number is beyond 1e6\n");
   tick(3);
   for (int i = 0; i < 300; ++i) forces.collect(now++, kTick);
-  EXPECT_EQ(look(log, forces, 1), "process 4711 (spring) fell silent while it pushed with 3 N: its force ramped out\n");
-  EXPECT_EQ(look(log, forces, 2), "");
+  EXPECT_EQ(update(log, forces, 1),
+            "process 4711 (spring) fell silent while it pushed with 3 N: its force ramped out\n");
+  EXPECT_EQ(update(log, forces, 2), "");
   tick(3);
-  EXPECT_NE(look(log, forces, 3).find("answers again, after about 0.3 s"), std::string::npos);
+  EXPECT_NE(update(log, forces, 3).find("answers again, after about 0.3 s"), std::string::npos);
   EXPECT_EQ(log.ends(0, 0, PusherLog::End::kLeft, forces.clients()[0]).text,
             "process 4711 (spring) ended while it pushed with 3 N: its force ramped out");
-  EXPECT_EQ(look(log, forces, 4), "");
+  EXPECT_EQ(update(log, forces, 4), "");
 }
 
 TEST_F(EventWords, KeepTheNameOfAModelThatHasLeft) {

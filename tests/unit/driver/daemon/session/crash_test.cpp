@@ -28,8 +28,9 @@ void runWatched(int how, const fs::path& dir) {
       std::make_unique<Flight>(std::move(*record::FlightRing::create(streams, record::About{})), rig.arms, 8));
   WatchedServo watched(*rig.loop, rig.arms, *rig.telemetry);
   watch::guardAgainstCrash(watched, dir);
-  const Working working(Worker::kServo);
-  watch::Watchdog watchdog(watched, [&watched] { watch::dieOf("a step that did not come back", watched.inServo()); });
+  const WorkerScope working(Worker::kServo);
+  watch::Watchdog watchdog(watched,
+                           [&watched] { watch::endByFault("a step that did not come back", watched.inServo()); });
   if (watchdog.start(81)) _exit(3);
   os::prepareSignalStack();
   rig.loop->run();
@@ -90,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(SpinningAndSleeping, LateStep, testing::Values(5, 7));
 TEST(Watch, AForceBeyondTheClaimIsNotFeltAndItsShapeIsSilenced) {
   Rig rig(0, [](Nanoseconds) { return Nanoseconds{0}; }, 300, "deadly", {number(0, HSP_ENUM, 6)});
   rig.loop->run();
-  EXPECT_EQ(rig.world->core().models()[0].guard.trouble(), Trouble::kJump);
+  EXPECT_EQ(rig.world->core().models()[0].guard.fault(), ShapeFault::kJump);
   for (const BlackBoxRow& row : rig.telemetry->blackBox()) EXPECT_LE(row.force[1], 1 + 2 * Claim::kStep);
 }
 

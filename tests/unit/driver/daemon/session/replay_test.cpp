@@ -128,7 +128,7 @@ TEST(Replay, IsTheSameWhereAShapeWasLoweredAndSilencedForItsTime) {
   rig.starve();
   rig.record();
   EXPECT_EQ(rig.world->core().models()[0].coarsest, Accuracy::kCoarsest);
-  EXPECT_EQ(rig.world->core().models()[0].guard.trouble(), Trouble::kOverrun);
+  EXPECT_EQ(rig.world->core().models()[0].guard.fault(), ShapeFault::kOverrun);
   expectSame(rig.replay());
 }
 
@@ -190,7 +190,7 @@ void animate(Recorded& rig) {
     Order order;
     order.kind = Order::Kind::kSet;
     order.value = 3 + ++tick % 2;
-    rig.loop->give(order);
+    rig.loop->post(order);
   };
 }
 
@@ -227,7 +227,7 @@ TEST(Replay, IsTheSameWhereAModelWasLed) {
     const bool begins = tick == 20 || tick == 120;
     order.kind = begins ? Order::Kind::kLead : Order::Kind::kUnlead;
     order.slot = tick == 20 ? &slot : &second;
-    if (begins || tick == 110) rig.loop->give(order);
+    if (begins || tick == 110) rig.loop->post(order);
     hapticd_target target{};
     target.position[1] = -0.1 + 0.002 * (tick - 20) + 1e-4 * static_cast<double>(random() % 10);
     target.linear[1] = 2;
@@ -258,7 +258,7 @@ struct PushedOn {
       order.place = place;
       order.kind = tick == 90 && place == 2 ? Order::Kind::kUnlead : Order::Kind::kLead;
       order.push = tick == 120 ? &again : &slots[place];
-      if (tick == 10 || (tick == 90 && place == 2) || (tick == 120 && place == 2)) rig.loop->give(order);
+      if (tick == 10 || (tick == 90 && place == 2) || (tick == 120 && place == 2)) rig.loop->post(order);
       hapticd_push push{};
       push.tick = tick - random() % 3;
       for (double& force : push.force) force = static_cast<double>(random() % 1000) * 0.004 - 2;
@@ -299,7 +299,7 @@ void helpTheHand(Recorded& rig, link::PushSlot& slot, uint64_t tick) {
     order.param = static_cast<uint32_t>(Order::Led::kForce);
     order.kind = Order::Kind::kLead;
     order.push = &slot;
-    rig.loop->give(order);
+    rig.loop->post(order);
   }
   hapticd_push push{};
   push.tick = tick;

@@ -20,7 +20,7 @@
 namespace hapticd::watch {
 namespace {
 
-struct Fake : Watched {
+struct Fake : WatchTarget {
   uint64_t tick = 0;
   Nanoseconds begun = 0, next = 0, cpu = 0, asked = 0;
   bool harmless = false;
@@ -311,7 +311,7 @@ TEST(CrashDeathTest, OneInsideTheCutOfTheMotorsStillEndsInQuarantine) {
   const auto crash = [&] {
     BadCut servo;
     guardAgainstCrash(servo, dir);
-    const Calling calling(ownerOf("bad", "model"));
+    const OwnerScope calling(ownerOf("bad", "model"));
     std::raise(SIGFPE);
   };
   EXPECT_EXIT(crash(), testing::ExitedWithCode(1), "SIGFPE.*\n.*switching the motors off crashed too");
@@ -328,7 +328,7 @@ TEST(CrashDeathTest, ACutThatNeverComesBackIsEndedByTheNextThreadThatMissesTheSe
     guardAgainstCrash(servo, "");
     std::thread servo_thread([] { std::raise(SIGFPE); });
     usleep(100'000);
-    dieOf("a step that did not come back", nullptr);
+    endByFault("a step that did not come back", nullptr);
   };
   EXPECT_EXIT(crash(), testing::ExitedWithCode(1), "");
 }
@@ -364,10 +364,10 @@ int hungIn(Fake& servo, Nanoseconds looks, Nanoseconds cpu) {
   int hung = 0;
   EndWatch watch(servo, [] {}, [&hung] { ++hung; });
   servo.begun = 0;
-  watch.look(1);
+  watch.check(1);
   servo.begun = 1;
   servo.cpu += 20 * EndWatch::kHungAfter;  // in the set-up, before the thread had told its clock
-  for (Nanoseconds i = 0; i < looks; ++i) watch.look(1), servo.cpu += cpu;
+  for (Nanoseconds i = 0; i < looks; ++i) watch.check(1), servo.cpu += cpu;
   return hung;
 }
 
@@ -385,9 +385,9 @@ TEST(EndWatch, EndsWhatDoesNotComeBackAfterTheLastTick) {
   int stuck = 0;
   EndWatch watch(servo, [] {}, [] { FAIL() << "no tick is to come"; });
   watch.lastCalls([&stuck] { ++stuck; });
-  for (Nanoseconds looks = 1; looks < EndWatch::kWaitsForLast / EndWatch::kLookEvery; ++looks) watch.look(looks);
+  for (Nanoseconds looks = 1; looks < EndWatch::kWaitsForLast / EndWatch::kLookEvery; ++looks) watch.check(looks);
   EXPECT_EQ(stuck, 0);
-  watch.look(1), watch.look(2);
+  watch.check(1), watch.check(2);
   EXPECT_EQ(stuck, 2) << "asked again, as long as nobody is to blame";
 }
 
@@ -399,7 +399,7 @@ TEST(EndWatch, LeavesSlowTicksAloneHoweverManyThereAre) {
     for (Nanoseconds looks = 0; looks < 50; ++looks) {
       servo.begun = static_cast<Nanoseconds>(servo.tick) + 1;
       servo.cpu += EndWatch::kLookEvery;
-      watch.look(1);
+      watch.check(1);
     }
   EXPECT_EQ(hung, 0);
 }

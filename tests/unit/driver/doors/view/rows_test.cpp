@@ -133,8 +133,8 @@ TEST_F(Rows, OfARecordingArePlayedFromWhereSomebodyWants) {
   auto source = openRecording(dump);
   ASSERT_TRUE(source) << source.error();
   Playback playback(**source, Json::parse((*source)->aboutJson()));
-  EXPECT_EQ(playback.obey({{"do", "pause"}}), "");
-  EXPECT_EQ(playback.obey({{"do", "seek"}, {"t", 0.050}}), "");
+  EXPECT_EQ(playback.execute({{"do", "pause"}}), "");
+  EXPECT_EQ(playback.execute({{"do", "seek"}, {"t", 0.050}}), "");
   EXPECT_TRUE(playback.takeJumped());
   EXPECT_FALSE(playback.takeJumped());
   EXPECT_EQ(playback.ends()[0], 51u) << "ticks 0 to 50";
@@ -155,7 +155,7 @@ TEST_F(Rows, OfARecordingAreNotPlayedOutsideOfIt) {
   for (const Json& bad : {Json{{"do", "seek"}}, Json{{"do", "seek"}, {"t", -1}}, Json{{"do", "seek"}, {"t", 1e300}},
                           Json{{"do", "seek"}, {"t", "1"}}, Json{{"do", "play"}, {"speed", 0}},
                           Json{{"do", "play"}, {"speed", -1}}, Json{{"do", "play"}, {"speed", 1e9}}})
-    EXPECT_NE(playback.obey(bad), "") << bad.dump();
+    EXPECT_NE(playback.execute(bad), "") << bad.dump();
   EXPECT_TRUE(Playback::knows("seek"));
   EXPECT_FALSE(Playback::knows("stop"));
 }

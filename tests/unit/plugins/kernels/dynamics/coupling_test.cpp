@@ -67,17 +67,17 @@ class Squeezed {
   Squeezed(double mass, const contact::WallLaw& wall) : body_(slab(mass)), wall_(wall), mass_(mass) {}
   void push(double speed) { body_.setVelocity(Vector3d::UnitX() * speed, Vector3d::Zero()); }
   void step(double dt) {
-    std::array<Press, 2> presses;
+    std::array<PredictedContact, 2> presses;
     size_t count = 0;
     for (const double side : {-1.0, 1.0}) {
-      Pressing last;
+      LastContact last;
       last.normal = side * Vector3d::UnitX();
       last.point = Vector3d::UnitX() * (body_.position().x() + side * kHalf);
       last.probe = side * (kHalf - kDepth) * Vector3d::UnitX();
       last.depth = depth(side);
       last.law = wall_;
       const Vector3d velocity = body_.velocityAt(last.point);
-      presses[count] = foresee(last, last.probe, last.normal.dot(velocity), velocity, dt);
+      presses[count] = predict(last, last.probe, last.normal.dot(velocity), velocity, dt);
       if (!presses[count].force.isZero(0)) ++count;
     }
     body_.step({presses.data(), count}, dt);
@@ -137,7 +137,7 @@ double tremorOfHand(double body_mass, const contact::WallLaw& wall, int window, 
   RigidBody body = slab(body_mass, 0.5, 20);
   double x = -1e-3, v = 0.1, late = 0;
   std::vector<double> positions(static_cast<size_t>(window) + 1, x), forces(static_cast<size_t>(delay) + 1, 0.0);
-  Pressing last;
+  LastContact last;
   const int ticks = static_cast<int>(8 / dt);
   for (int i = 0; i < ticks; ++i) {
     positions.insert(positions.begin(), x);
@@ -145,7 +145,7 @@ double tremorOfHand(double body_mass, const contact::WallLaw& wall, int window, 
     const double estimate = (positions.front() - positions.back()) / (window * dt);
     const Vector3d probe = x * Vector3d::UnitX();
     if (i > 0) {
-      const Press press = foresee(last, probe, estimate - body.linear().x(), body.linear(), dt);
+      const PredictedContact press = predict(last, probe, estimate - body.linear().x(), body.linear(), dt);
       body.step({&press, press.force.isZero(0) ? size_t{0} : size_t{1}}, dt);
     }
     last = {};
@@ -178,12 +178,12 @@ TEST(Coupling, AWeightlessBodyIsNoDragOnTheHand) {
   // pushed at a constant speed: no force but the mass times its acceleration, which is none
   RigidBody body = slab(1e-6);
   const contact::WallLaw wall{1000, 0, 1, 1e-3};
-  Pressing last;
+  LastContact last;
   double force = 0;
   for (int i = 0; i < 2000; ++i) {
     const Vector3d probe = (-1e-4 + 1e-4 * i) * Vector3d::UnitX();  // 0.1 m/s
     if (i > 0) {
-      const Press press = foresee(last, probe, 0, body.linear(), 1e-3);
+      const PredictedContact press = predict(last, probe, 0, body.linear(), 1e-3);
       body.step({&press, press.force.isZero(0) ? size_t{0} : size_t{1}}, 1e-3);
     }
     last = {};
@@ -203,11 +203,11 @@ TEST(Coupling, WhatTheProbeLosesTheBodyGains) {
   RigidBody body = slab(2);
   const contact::WallLaw wall{5000, 0, 1, 1e-3};
   double x = -1e-3, v = 0.3;
-  Pressing last;
+  LastContact last;
   for (int i = 0; i < 4000; ++i) {
     const Vector3d probe = x * Vector3d::UnitX();
     if (i > 0) {
-      const Press press = foresee(last, probe, 0, body.linear(), 2.5e-4);
+      const PredictedContact press = predict(last, probe, 0, body.linear(), 2.5e-4);
       body.step({&press, press.force.isZero(0) ? size_t{0} : size_t{1}}, 2.5e-4);
     }
     last = {};

@@ -188,7 +188,7 @@ TEST(RigidBody, ASliderMovesAlongItsAxisAndNeverTurns) {
 TEST(RigidBody, NotANumberPushesNothing) {
   RigidBody body = bodyOf(RigidBodyLaw{});
   body.step({NAN, 0, 0}, {0, INFINITY, 0}, 1e-3);
-  Press press;
+  PredictedContact press;
   press.force = {NAN, 0, 0};
   body.step({&press, 1}, 1e-3);
   body.step(kNothing, kNothing, NAN);

@@ -139,20 +139,21 @@ TEST(Newton, HugeAndMeaninglessProbesLeaveAPointOfThePatch) {
   EXPECT_TRUE(foot.S.allFinite());
 }
 
-/// One call of a quick kernel from `start`.
-struct Quick {
-  QuickResult result = QuickResult::kNoStep;
+/// One call of a warm-step kernel from `start`.
+struct StepOutcome {
+  WarmStepResult result = WarmStepResult::kNoStep;
   LocalFoot foot;
 };
-Quick runQuick(spline::Instructions instructions, const Patch& patch, const Array2d& start, const Vector3d& p) {
-  const QuickKernels& kernels = quickKernels(instructions);
+StepOutcome runWarmStep(spline::Instructions instructions, const Patch& patch, const Array2d& start,
+                        const Vector3d& p) {
+  const WarmStepKernels& kernels = warmStepKernels(instructions);
   Iterate at;
   at.uv = start;
-  Quick quick;
-  startNewton(patch, at, quick.foot);
+  StepOutcome outcome;
+  startNewton(patch, at, outcome.foot);
   kernels.forms(at.E.S.data(), at.state);
-  quick.result = kernels.step(p.data(), 1e-18, at.uv.data(), at.E.S.data(), at.state, quick.foot.uv.data());
-  return quick;
+  outcome.result = kernels.step(p.data(), 1e-18, at.uv.data(), at.E.S.data(), at.state, outcome.foot.uv.data());
+  return outcome;
 }
 
 TEST(Newton, EveryInstructionSetFindsTheSameFoot) {
@@ -165,10 +166,10 @@ TEST(Newton, EveryInstructionSetFindsTheSameFoot) {
     for (int i = 0; i < 200; ++i) {
       const Pair pair = anyPair(patch, random);
       const Array2d start = (pair.uv + Array2d(off(random), off(random))).max(patch.lo).min(patch.hi);
-      const Quick fast = runQuick(spline::Instructions::kFastest, patch, start, pair.probe);
-      const Quick plain = runQuick(spline::Instructions::kPortable, patch, start, pair.probe);
+      const StepOutcome fast = runWarmStep(spline::Instructions::kFastest, patch, start, pair.probe);
+      const StepOutcome plain = runWarmStep(spline::Instructions::kPortable, patch, start, pair.probe);
       ASSERT_EQ(fast.result, plain.result);
-      if (fast.result != QuickResult::kFoot) continue;
+      if (fast.result != WarmStepResult::kFoot) continue;
       ++found;
       EXPECT_LT((fast.foot.uv - plain.foot.uv).abs().maxCoeff(), 1e-13);
       EXPECT_LT((fast.foot.S - plain.foot.S).norm(), 1e-13);
@@ -217,15 +218,15 @@ TEST(Newton, TheCommonTickIsNotTriedWhereTangentsSpanNoPlaneOrTheProbeIsAtACentr
   const Model sphere = solid("sphere");
   const Patch& patch = sphere.patch(0);
   const Array2d middle = 0.5 * (patch.lo + patch.hi);
-  EXPECT_EQ(runQuick(spline::Instructions::kFastest, patch, middle, Vector3d(1e-4, 2e-4, 0)).result,
-            QuickResult::kNoStep);
+  EXPECT_EQ(runWarmStep(spline::Instructions::kFastest, patch, middle, Vector3d(1e-4, 2e-4, 0)).result,
+            WarmStepResult::kNoStep);
   spline::SurfaceData flat;
   flat.degree = {1, 1};
   flat.knots[0] = flat.knots[1] = {0, 0, 1, 1};
   flat.points = {{0, 0, 0}, {0.05, 0, 0}, {0.1, 0, 0}, {0.15, 0, 1e-8}};
   const Model needle({flat});
-  EXPECT_EQ(runQuick(spline::Instructions::kFastest, needle.patch(0), {0.5, 0.5}, Vector3d(0.06, 0, 0)).result,
-            QuickResult::kNoStep);
+  EXPECT_EQ(runWarmStep(spline::Instructions::kFastest, needle.patch(0), {0.5, 0.5}, Vector3d(0.06, 0, 0)).result,
+            WarmStepResult::kNoStep);
 }
 
 }  // namespace

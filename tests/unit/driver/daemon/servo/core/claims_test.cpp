@@ -21,10 +21,10 @@ struct Held {
     Order order;
     order.kind = Order::Kind::kSet;
     order.value = value;
-    ASSERT_TRUE(world->core().obey(order, ticks * 1e-3));
+    ASSERT_TRUE(world->core().apply(order, ticks * 1e-3));
   }
   Vector3d torque() const { return world->core().torque(0); }
-  Trouble trouble() const { return world->core().models()[0].guard.trouble(); }
+  ShapeFault trouble() const { return world->core().models()[0].guard.fault(); }
   scene::Scene scene;
   std::unique_ptr<World> world;
   int ticks = 0;
@@ -40,12 +40,12 @@ TEST(TorqueOfAShape, ThatKicksIsHeldBackAndThenSilenced) {
     }
     if (former) {
       EXPECT_EQ(most, 3) << "as it once was";
-      EXPECT_EQ(kicks.trouble(), Trouble::kNone);
+      EXPECT_EQ(kicks.trouble(), ShapeFault::kNone);
       continue;
     }
     EXPECT_LE(most, 0.25 + Claim::kHandle * Claim::kStep);
     EXPECT_EQ(kicks.torque().norm(), 0);
-    EXPECT_EQ(kicks.trouble(), Trouble::kTwists);
+    EXPECT_EQ(kicks.trouble(), ShapeFault::kTwists);
   }
 }
 
@@ -53,7 +53,7 @@ TEST(TorqueOfAShape, ThatNobodyCanFeelIsNotJudged) {
   Held kicks(testModel("turning", {number(0, HSP_REAL, 3)}));
   kicks.world->core().serve({.torque = false, .exchange = false});
   for (int i = 0; i < 200; ++i) EXPECT_EQ(kicks.tick().y(), 1);
-  EXPECT_EQ(kicks.trouble(), Trouble::kNone);
+  EXPECT_EQ(kicks.trouble(), ShapeFault::kNone);
 }
 
 /// A hand that twists by a radian, five times a second.
@@ -66,7 +66,7 @@ TEST(TorqueOfAShape, ThatFollowsTheHandIsLetThroughWhole) {
     aligns.tick(probe);
     EXPECT_NEAR(aligns.torque().norm(), 4 * std::abs(std::sin(angle / 2)), 1e-9) << i;
   }
-  EXPECT_EQ(aligns.trouble(), Trouble::kNone);
+  EXPECT_EQ(aligns.trouble(), ShapeFault::kNone);
 }
 
 TEST(LiveParameter, ThatIsSetInEveryTickOpensNoDoorForAKick) {
@@ -82,7 +82,7 @@ TEST(LiveParameter, ThatIsSetInEveryTickOpensNoDoorForAKick) {
     else
       EXPECT_LE(felt, 1 + Claim::kAsked + Claim::kAskedPerSecond);
     for (int i = 0; i < 200; ++i) kicks.tick();
-    EXPECT_EQ(kicks.trouble(), Trouble::kJump) << "as soon as nobody sets it any more";
+    EXPECT_EQ(kicks.trouble(), ShapeFault::kJump) << "as soon as nobody sets it any more";
   }
 }
 
@@ -97,7 +97,7 @@ TEST(LiveParameter, ThatIsAnimatedSilencesNobody) {
   swells.set(8);
   for (int i = 0; i < 100; ++i) swells.tick();
   EXPECT_EQ(swells.tick().y(), 8);
-  EXPECT_EQ(swells.trouble(), Trouble::kNone);
+  EXPECT_EQ(swells.trouble(), ShapeFault::kNone);
 }
 
 /// What a person sets by hand, a slider or a button, is felt at once.
@@ -108,7 +108,7 @@ TEST(LiveParameter, ThatIsSetNowAndThenIsFeltAtOnce) {
     const double wish = i < 300 ? 0 : (i - 300) / 600 % 2 == 0 ? 8 : 1;
     ASSERT_EQ(rests.tick().y(), wish) << i;
   }
-  EXPECT_EQ(rests.trouble(), Trouble::kNone);
+  EXPECT_EQ(rests.trouble(), ShapeFault::kNone);
 }
 
 }  // namespace

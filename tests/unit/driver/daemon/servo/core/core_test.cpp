@@ -113,9 +113,9 @@ TEST(Core, AMoveIsNeverFasterThanItMayBeWhereverTheModelIs) {
     int i = 0;
     for (; i < 500; ++i) tickOnce(*world, i, probeAt({0, 1, 0}));
     Fastest fastest(core.models()[0]);
-    EXPECT_TRUE(core.obey(moveTo(3, 60), i * 1e-3));
+    EXPECT_TRUE(core.apply(moveTo(3, 60), i * 1e-3));
     tickOnce(*world, i++, probeAt({0, 1, 0}));
-    EXPECT_TRUE(core.obey(moveTo(3, 0.05), i * 1e-3)) << "where it is ordered to already, at once";
+    EXPECT_TRUE(core.apply(moveTo(3, 0.05), i * 1e-3)) << "where it is ordered to already, at once";
     fastest.last = core.models()[0].pose;
     EXPECT_GT(core.models()[0].glide.seconds(), 5);
     for (const int end = i + 8000; i < end; ++i) {
@@ -137,7 +137,7 @@ TEST(Core, AMoveTurnsNoFasterThanHalfATurnASecond) {
   Fastest fastest(world->core().models()[0]);
   Order order = moveTo(0, 0.05);
   order.orientation[0] = 0, order.orientation[1] = 1;
-  EXPECT_TRUE(world->core().obey(order, 1e-3));
+  EXPECT_TRUE(world->core().apply(order, 1e-3));
   for (int i = 1; i < 2500; ++i) {
     tickOnce(*world, i, probeAt({0, 1, 0}));
     fastest.look();
@@ -156,7 +156,7 @@ TEST(Core, AMoveWithoutAnOrientationKeepsTheOneThatTheModelHas) {
   tickOnce(*world, 0, probeAt({0, 1, 0}));
   Order order = moveTo(0.01, 0);
   order.orientation[0] = 0;
-  EXPECT_TRUE(world->core().obey(order, 1e-3));
+  EXPECT_TRUE(world->core().apply(order, 1e-3));
   for (int i = 1; i < 600; ++i) tickOnce(*world, i, probeAt({0, 1, 0}));
   EXPECT_NEAR(world->core().models()[0].pose.orientation[1], turned.x(), 1e-12);
   EXPECT_NEAR(world->core().models()[0].pose.position[1], 0.01, 1e-12);
@@ -175,11 +175,11 @@ TEST(Core, AStiffnessThatWasAskedForIsNoJumpOfThePlugin) {
   auto world = testWorld(scene);
   for (int i = 0; i < 1000; ++i) {  // a hand that trembles, 5 mm deep
     const double depth = 0.005 + 2e-4 * std::sin(0.3 * i);
-    if (i == 300) world->core().obey(setFirstParameter(30000), i * 1e-3);
+    if (i == 300) world->core().apply(setFirstParameter(30000), i * 1e-3);
     const Vector3d force = tickOnce(*world, i, probeAt({0, -depth, 0}));
     EXPECT_NEAR(force.y(), depth * (i < 300 ? 800 : 30000), 1e-9) << i;
   }
-  EXPECT_EQ(world->core().models()[0].guard.trouble(), Trouble::kNone);
+  EXPECT_EQ(world->core().models()[0].guard.fault(), ShapeFault::kNone);
 }
 
 TEST(Core, BadSampleGivesNoForceAndTheNextGoodOneIsFeltAgain) {
@@ -191,7 +191,7 @@ TEST(Core, BadSampleGivesNoForceAndTheNextGoodOneIsFeltAgain) {
   Probe bad = probeAt({kNan, kNan, 1e300});
   bad.valid = false;
   EXPECT_EQ(tickOnce(*world, 1, bad), Vector3d::Zero());
-  EXPECT_TRUE(world->core().wantsSearch());
+  EXPECT_TRUE(world->core().needsSearch());
   EXPECT_DOUBLE_EQ(tickOnce(*world, 2, good).y(), 1.0);
 }
 
@@ -204,7 +204,7 @@ TEST(Core, ADampedWallMayPushAsHardAsItsDampingSays) {
     const Vector3d force = tickOnce(*world, i, probeAt({0, y, 0}, {0, v, 0}));
     EXPECT_NEAR(force.y(), y < 0 ? -1000 * y - 500 * v : 0, 1e-9) << i;
   }
-  EXPECT_EQ(world->core().models()[0].guard.trouble(), Trouble::kNone);
+  EXPECT_EQ(world->core().models()[0].guard.fault(), ShapeFault::kNone);
 }
 
 /// What has no length as a number of the machine is no number either.
@@ -271,9 +271,9 @@ TEST(Core, JumpAsksForASearchInTheNextTick) {
   auto world = testWorld(scene);
   tickOnce(*world, 0, probeAt({0, 0, 0}));
   tickOnce(*world, 1, probeAt({0.01, 0, 0}));
-  EXPECT_FALSE(world->core().wantsSearch());
+  EXPECT_FALSE(world->core().needsSearch());
   tickOnce(*world, 2, probeAt({0.13, 0, 0}));
-  EXPECT_TRUE(world->core().wantsSearch());
+  EXPECT_TRUE(world->core().needsSearch());
 }
 
 TEST(World, PluginThatThrowsAnythingIsAnErrorThatNamesTheModel) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// A led pose keeps its bounds whatever the leader says, does not lag behind an honest one, and comes to rest.
-#include "servo/core/follow.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <deque>
 #include <limits>
 #include <random>
+
+#include "servo/core/pose_follower.hpp"
 
 namespace hapticd::servo {
 namespace {
@@ -40,34 +40,34 @@ Quaterniond orientation(const hsp_pose& pose) {
 }
 
 /// Steps a follower and judges every step by its bounds.
-class Watched {
+class WatchTarget {
  public:
-  Follow follow;
+  PoseFollower follow;
   hsp_pose pose = poseAt(Vector3d::Zero());
   double t = 0;
 
-  Watched() { follow.begin(pose); }
+  WatchTarget() { follow.begin(pose); }
   void step(double dt) {
     const hsp_pose before = pose;
     t += dt;
     follow.step(t, dt, pose);
     const double slack = 1e-9;
     const Vector3d v(pose.linear), v_before(before.linear), w(pose.angular), w_before(before.angular);
-    EXPECT_LE(v.norm(), Follow::kMostSpeed + slack);
-    EXPECT_LE(w.norm(), Follow::kMostTurn + slack);
-    EXPECT_LE((v - v_before).norm(), Follow::kMostAcceleration * dt + slack);
-    EXPECT_LE((w - w_before).norm(), Follow::kMostTurnAcceleration * dt + slack);
-    EXPECT_LE((position(pose) - position(before)).norm(), Follow::kMostSpeed * dt + 2e-9);
-    EXPECT_LE(orientation(pose).angularDistance(orientation(before)), Follow::kMostTurn * dt + 2e-8);
+    EXPECT_LE(v.norm(), PoseFollower::kMostSpeed + slack);
+    EXPECT_LE(w.norm(), PoseFollower::kMostTurn + slack);
+    EXPECT_LE((v - v_before).norm(), PoseFollower::kMostAcceleration * dt + slack);
+    EXPECT_LE((w - w_before).norm(), PoseFollower::kMostTurnAcceleration * dt + slack);
+    EXPECT_LE((position(pose) - position(before)).norm(), PoseFollower::kMostSpeed * dt + 2e-9);
+    EXPECT_LE(orientation(pose).angularDistance(orientation(before)), PoseFollower::kMostTurn * dt + 2e-8);
     EXPECT_NEAR(orientation(pose).norm(), 1, 1e-12);
   }
 };
 
-TEST(Follow, KeepsItsBoundsWhateverTheLeaderSays) {
+TEST(PoseFollower, KeepsItsBoundsWhateverTheLeaderSays) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> within(-1, 1);
   for (const double rate : {10.0, 500.0, 1000.0, 20000.0}) {
-    Watched led;
+    WatchTarget led;
     for (int i = 0; i < 20000; ++i) {
       hapticd_target target = targetAt(5 * Vector3d(within(random), within(random), within(random)));
       const double twist = std::pow(10, 3 * within(random)) * (i % 7 == 0 ? 1e300 : 1);
@@ -83,8 +83,8 @@ TEST(Follow, KeepsItsBoundsWhateverTheLeaderSays) {
   }
 }
 
-TEST(Follow, DoesNotLagBehindALeaderOfConstantVelocity) {
-  Watched led;
+TEST(PoseFollower, DoesNotLagBehindALeaderOfConstantVelocity) {
+  WatchTarget led;
   const Vector3d speed(0.3, -0.2, 0.1);
   for (int i = 0; i < 2000; ++i) {
     if (i % 16 == 0) led.follow.aim(targetAt(led.t * speed, speed), led.t);
@@ -95,9 +95,9 @@ TEST(Follow, DoesNotLagBehindALeaderOfConstantVelocity) {
   }
 }
 
-TEST(Follow, ComesToRestAtATargetAndStays) {
+TEST(PoseFollower, ComesToRestAtATargetAndStays) {
   for (const double dt : {1e-4, 1e-3, 0.1}) {
-    Watched led;
+    WatchTarget led;
     led.follow.aim(targetAt({0.1, 0, 0}), 0);
     for (int i = 0; i < 5 / dt; ++i) led.step(dt);
     EXPECT_EQ(position(led.pose), Vector3d(0.1, 0, 0));
@@ -106,8 +106,8 @@ TEST(Follow, ComesToRestAtATargetAndStays) {
   }
 }
 
-TEST(Follow, NeverGoesPastATargetAtRest) {
-  Watched led;
+TEST(PoseFollower, NeverGoesPastATargetAtRest) {
+  WatchTarget led;
   led.follow.aim(targetAt({0.5, 0, 0}), 0);
   for (int i = 0; i < 3000; ++i) {
     led.step(1e-3);
@@ -115,8 +115,8 @@ TEST(Follow, NeverGoesPastATargetAtRest) {
   }
 }
 
-TEST(Follow, TurnsTheShortWayAndStops) {
-  Watched led;
+TEST(PoseFollower, TurnsTheShortWayAndStops) {
+  WatchTarget led;
   hapticd_target target = targetAt(Vector3d::Zero());
   const Quaterniond goal(Eigen::AngleAxisd(3.0, Vector3d(1, 2, 3).normalized()));
   target.orientation[0] = -goal.w();  // the other sign of the same turn
@@ -133,9 +133,9 @@ TEST(Follow, TurnsTheShortWayAndStops) {
   EXPECT_TRUE(led.follow.rests());
 }
 
-TEST(Follow, RestsSoonAfterTheLeaderFallsSilent) {
+TEST(PoseFollower, RestsSoonAfterTheLeaderFallsSilent) {
   for (const double speed : {0.1, 0.5, 0.8, 0.9}) {  // at the bound itself the start is never made up for
-    Watched led;
+    WatchTarget led;
     const Vector3d along(speed, 0, 0);
     double silent_at = 0, silent_from = 0;
     for (int i = 0; i < 2000; ++i) {
@@ -153,8 +153,8 @@ TEST(Follow, RestsSoonAfterTheLeaderFallsSilent) {
   }
 }
 
-TEST(Follow, BrakesWithinItsStoppingDistanceWhenTheLeaderGoes) {
-  Watched led;
+TEST(PoseFollower, BrakesWithinItsStoppingDistanceWhenTheLeaderGoes) {
+  WatchTarget led;
   const Vector3d along(0.8, 0, 0);
   for (int i = 0; i < 1000; ++i) {
     led.follow.aim(targetAt(led.t * along, along), led.t);
@@ -164,44 +164,44 @@ TEST(Follow, BrakesWithinItsStoppingDistanceWhenTheLeaderGoes) {
   led.follow.release();
   for (int i = 0; i < 42; ++i) led.step(1e-3);
   EXPECT_TRUE(led.follow.rests());
-  EXPECT_LE(led.pose.position[0] - from, 0.8 * 0.8 / (2 * Follow::kMostAcceleration) + 1e-3);
+  EXPECT_LE(led.pose.position[0] - from, 0.8 * 0.8 / (2 * PoseFollower::kMostAcceleration) + 1e-3);
 }
 
-TEST(Follow, IgnoresWhatIsOlderThanWhatItFollows) {
-  Follow follow;
+TEST(PoseFollower, IgnoresWhatIsOlderThanWhatItFollows) {
+  PoseFollower follow;
   follow.begin(poseAt(Vector3d::Zero()));
   EXPECT_TRUE(follow.aim(targetAt({1, 0, 0}), 0.5));
   EXPECT_FALSE(follow.aim(targetAt({-1, 0, 0}), 0.4));
   EXPECT_TRUE(follow.aim(targetAt({1, 0, 0}), 0.5));
 }
 
-TEST(Follow, RefusesWhatIsNoTarget) {
+TEST(PoseFollower, RefusesWhatIsNoTarget) {
   const hapticd_target good = targetAt({1, 2, 3}, {1, 1, 1}, 100);
-  EXPECT_TRUE(Follow::sound(good, 100));
-  EXPECT_TRUE(Follow::sound(good, 99.95)) << "written after the deadline of a late tick";
-  EXPECT_FALSE(Follow::sound(good, 99.5)) << "ahead";
+  EXPECT_TRUE(PoseFollower::sound(good, 100));
+  EXPECT_TRUE(PoseFollower::sound(good, 99.95)) << "written after the deadline of a late tick";
+  EXPECT_FALSE(PoseFollower::sound(good, 99.5)) << "ahead";
   auto bad = good;
   bad.position[1] = 11;
-  EXPECT_FALSE(Follow::sound(bad, 100));
+  EXPECT_FALSE(PoseFollower::sound(bad, 100));
   bad = good, bad.position[0] = bad.position[1] = bad.position[2] = 9;
-  EXPECT_FALSE(Follow::sound(bad, 100));
+  EXPECT_FALSE(PoseFollower::sound(bad, 100));
   bad = good, bad.orientation[0] = 0.9;
-  EXPECT_FALSE(Follow::sound(bad, 100));
+  EXPECT_FALSE(PoseFollower::sound(bad, 100));
   bad = good, bad.time = -1;
-  EXPECT_FALSE(Follow::sound(bad, 100));
+  EXPECT_FALSE(PoseFollower::sound(bad, 100));
   constexpr double kBad[] = {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, -HUGE_VAL};
   for (size_t field = 0; field < sizeof good / sizeof(double); ++field)
     for (const double value : kBad) {
       bad = good;
       reinterpret_cast<double*>(&bad)[field] = value;
-      EXPECT_FALSE(Follow::sound(bad, 100)) << field << " " << value;
+      EXPECT_FALSE(PoseFollower::sound(bad, 100)) << field << " " << value;
     }
   bad = good, bad.orientation[2] = 1e300;
-  EXPECT_FALSE(Follow::sound(bad, 100));
+  EXPECT_FALSE(PoseFollower::sound(bad, 100));
 }
 
 /// A leader behind a bad network: 60 Hz, a fifth of its records lost, up to 50 ms late.
-TEST(Follow, AddsLittleForceToTheTrueMotionBehindABadNetwork) {
+TEST(PoseFollower, AddsLittleForceToTheTrueMotionBehindABadNetwork) {
   constexpr double kAmplitude = 0.05, kOmega = 2 * M_PI * 0.5, kDt = 1e-3, kStiffness = 800;
   for (uint64_t seed = 1; seed <= 5; ++seed) {
     std::mt19937_64 random(seed);
@@ -216,7 +216,7 @@ TEST(Follow, AddsLittleForceToTheTrueMotionBehindABadNetwork) {
       const Vector3d p(kAmplitude * std::sin(kOmega * t), 0, 0), v(kAmplitude * kOmega * std::cos(kOmega * t), 0, 0);
       if (unit(random) > 0.2) network.push_back({t + 0.05 * unit(random), targetAt(p, v, t)});
     }
-    Watched led;
+    WatchTarget led;
     double worst = 0;
     for (int i = 0; i < 10000; ++i) {
       for (const Packet& packet : network)

@@ -21,17 +21,17 @@ struct Led {
     world = testWorld(scene);
     core().startAt(kEpoch);
     tick();
-    EXPECT_TRUE(obey(Order::Kind::kLead));
+    EXPECT_TRUE(apply(Order::Kind::kLead));
   }
   Core& core() { return world->core(); }
   const ModelState& model() { return core().models()[0]; }
   double height() { return model().pose.position[1]; }
-  bool obey(Order::Kind kind, double y = 0) {
+  bool apply(Order::Kind kind, double y = 0) {
     Order order;
     order.kind = kind;
     order.slot = &slot;
     order.position[1] = y;
-    return core().obey(order, ticks * 1e-3);
+    return core().apply(order, ticks * 1e-3);
   }
   Vector3d tick(const Vector3d& probe = {0, 1, 0}) { return tickOnce(*world, ticks++, probeAt(probe)); }
   /// CLOCK_MONOTONIC of the next tick.
@@ -80,15 +80,15 @@ TEST(Lead, GoesBeforeAMoveUntilItEnds) {
   Led led;
   led.slot.put(to(0.01));
   for (int i = 0; i < 500; ++i) led.tick();
-  EXPECT_FALSE(led.obey(Order::Kind::kLead)) << "a second leader";
-  EXPECT_FALSE(led.obey(Order::Kind::kMove, 0.05));
-  EXPECT_TRUE(led.obey(Order::Kind::kUnlead));
+  EXPECT_FALSE(led.apply(Order::Kind::kLead)) << "a second leader";
+  EXPECT_FALSE(led.apply(Order::Kind::kMove, 0.05));
+  EXPECT_TRUE(led.apply(Order::Kind::kUnlead));
   for (int i = 0; i < 200; ++i) led.tick();
   EXPECT_EQ(led.height(), 0.01) << "it stays where its leader left it, not on its path";
-  EXPECT_TRUE(led.obey(Order::Kind::kMove, 0.05));
+  EXPECT_TRUE(led.apply(Order::Kind::kMove, 0.05));
   for (int i = 0; i < 1000; ++i) led.tick();
   EXPECT_NEAR(led.height(), 0.05, 1e-12);
-  EXPECT_TRUE(led.obey(Order::Kind::kLead));
+  EXPECT_TRUE(led.apply(Order::Kind::kLead));
   led.slot.put(to(0.02));
   for (int i = 0; i < 500; ++i) led.tick();
   EXPECT_NEAR(led.height(), 0.02, 1e-8);
@@ -151,8 +151,8 @@ TEST(Lead, KeepsItsBoundsUnderAMillionFuzzedRecords) {
     ASSERT_TRUE(Vector3d(pose.position).allFinite()) << i;
     last = pose;
   }
-  EXPECT_LE(fastest, Follow::kMostSpeed * 1.00001);
-  EXPECT_LE(hardest, Follow::kMostAcceleration * 1.00001);
+  EXPECT_LE(fastest, PoseFollower::kMostSpeed * 1.00001);
+  EXPECT_LE(hardest, PoseFollower::kMostAcceleration * 1.00001);
   EXPECT_GT(taken, 100'000u) << "the bounds were put to the test";
   EXPECT_GT(led.model().lead.refused(), 100'000u);
 }

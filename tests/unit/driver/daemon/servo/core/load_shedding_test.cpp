@@ -30,7 +30,7 @@ struct Tick {
   }
   void run(int ticks, uint64_t budget_ns) {
     for (int i = 0; i < ticks; ++i) {
-      for (const auto& change : balance.judge(loads, budget_ns)) {
+      for (const auto& change : balance.findChanges(loads, budget_ns)) {
         Load& load = loads[change.model];
         if (change.level > load.level) load.finer_ns = load.step_ns;
         load.level = change.level;

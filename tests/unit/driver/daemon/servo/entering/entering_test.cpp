@@ -18,11 +18,11 @@ struct Coming {
     const scene::Model model = testModel(plugin);
     auto shape = world->prepare(model, quiet);
     state = Core::stateOf(**shape, model);
-    world->keep(0, std::move(*shape), model);
+    world->store(0, std::move(*shape), model);
     Order order;
     order.kind = Order::Kind::kAdopt;
     order.model = &state;
-    EXPECT_TRUE(world->core().obey(order, 0));
+    EXPECT_TRUE(world->core().apply(order, 0));
   }
   double forceAt(double y) { return tickOnce(*world, tick++, probeAt({0, y, 0})).y(); }
   double largestAt(double y, int ticks) {
@@ -34,7 +34,7 @@ struct Coming {
     Order order;
     order.kind = kind;
     order.param = param;
-    EXPECT_TRUE(world->core().obey(order, tick * 1e-3));
+    EXPECT_TRUE(world->core().apply(order, tick * 1e-3));
   }
 
   static void quiet(int, const std::string&, const std::string&) {}

@@ -37,7 +37,7 @@ TEST(Door, TellsTheStateOfTheTickThatGoesOn) {
   });
   running = &rig;
   rig.loop->door().showState(memory.bytes, 1);
-  rig.loop->door().hangBell(&bell);
+  rig.loop->door().setBell(&bell);
   rig.loop->run();
   ASSERT_GT(states.size(), 100u);
   for (size_t i = 1; i < states.size(); ++i) {
@@ -69,7 +69,7 @@ bool waitFor(uint32_t& word, uint32_t& waiting, uint32_t seen) {
 TEST(Door, WakesWhoWaitsAndForgetsWhoDoesNot) {
   alignas(64) hapticd_bell bell{};
   Door door;
-  door.hangBell(&bell);
+  door.setBell(&bell);
   for (uint64_t tick = 0; tick < 200; ++tick) {
     bool woken = false;
     std::thread waiter([&] { woken = waitFor(bell.rows, bell.rows_waiting, static_cast<uint32_t>(tick)); });
@@ -89,7 +89,7 @@ TEST(Door, WakesWhoWaitsAndForgetsWhoDoesNot) {
 TEST(Door, WakesACrowdOverSeveralTicks) {
   alignas(64) hapticd_bell bell{};
   Door door;
-  door.hangBell(&bell);
+  door.setBell(&bell);
   std::atomic<int> asleep{0}, woken{0};
   std::vector<std::thread> crowd;
   for (int i = 0; i < 3 * Door::kMostWoken; ++i)
@@ -102,7 +102,7 @@ TEST(Door, WakesACrowdOverSeveralTicks) {
   const auto nothing = std::vector<std::unique_ptr<Arm>>();
   for (uint64_t tick = 0; woken < static_cast<int>(crowd.size()); ++tick) {
     ASSERT_LT(tick, 100'000u);
-    door.tell({tick, 0, 0, 0}, nothing);
+    door.publish({tick, 0, 0, 0}, nothing);
     std::this_thread::yield();
   }
   for (std::thread& one : crowd) one.join();

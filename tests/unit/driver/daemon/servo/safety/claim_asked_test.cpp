@@ -125,7 +125,7 @@ TEST(Claim, WhatWasAskedForIsOneChangeOfForceAndTorque) {
     ClaimStep step = at({0, 0, 0}, {0, i % 2 == 0 ? 8.0 : -8.0, 0});
     step.torque = {i % 2 == 0 ? 1.0 : -1.0, 0, 0};
     both.claim.expectChange();
-    both.claim.judgeTorque(step, both.bounds, kTick, twists);
+    both.claim.checkTorque(step, both.bounds, kTick, twists);
     both.next(step);
     EXPECT_EQ(both.held, i >= 3) << i;
     EXPECT_EQ(twists, i >= 3) << i;

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 class Reference {
  public:
-  Vector3d judge(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) {
+  Vector3d check(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) {
     const double asked = step.force.norm();
     const bool beyond = step.max_force > 0 && asked > step.max_force;
     Vector3d let = beyond ? Vector3d(step.force * (step.max_force / asked)) : step.force;
@@ -156,8 +156,8 @@ TEST(Claim, LetsTheSameBitsThroughAsTheLawWithoutShortcuts) {
       const ClaimStep& step = hand.next();
       const double dt = hand.dt();
       bool held = false, expected_held = false;
-      const Vector3d let = claim.judge(step, hand.bounds, dt, held);
-      const Vector3d expected = reference.judge(step, hand.bounds, dt, expected_held);
+      const Vector3d let = claim.check(step, hand.bounds, dt, held);
+      const Vector3d expected = reference.check(step, hand.bounds, dt, expected_held);
       ASSERT_EQ(held, expected_held) << "seed " << seed << ", step " << i;
       ASSERT_TRUE(sameBits(let, expected)) << "seed " << seed << ", step " << i;
       held_back += held ? 1 : 0;
@@ -175,13 +175,13 @@ TEST(Claim, TakesASecondLookAtWhatIsLittleMoreThanTheStiffnessExplains) {
     Claim claim;
     bool held = false;
     ClaimStep step;
-    claim.judge(step, bounds, 0, held);
+    claim.check(step, bounds, 0, held);
     step.p_world = step.p_model = {0, 1e-4, 0};
     step.force = {0, part * Claim::kMargin * 1000 * 1e-4, 0};
-    claim.judge(step, bounds, 1e-6, held);
+    claim.check(step, bounds, 1e-6, held);
     ASSERT_FALSE(held);
     step.force = {0, 100, 0};  // without a way: what was followed, and a click
-    const double followed = claim.judge(step, bounds, 1e-6, held).y() - Claim::kStep;
+    const double followed = claim.check(step, bounds, 1e-6, held).y() - Claim::kStep;
     EXPECT_NEAR(followed, std::min(part, 1.0), 3e-4) << part;
   }
 }

@@ -19,10 +19,10 @@ inline ClaimStep at(const Eigen::Vector3d& p, const Eigen::Vector3d& force) {
 /// The probe rests at the origin, with a force of its own.
 struct Rested {
   explicit Rested(const Eigen::Vector3d& force = Eigen::Vector3d::Zero(), ClaimBounds given = {}) : bounds(given) {
-    claim.judge(at(Eigen::Vector3d::Zero(), force), bounds, 0, held);
+    claim.check(at(Eigen::Vector3d::Zero(), force), bounds, 0, held);
     EXPECT_FALSE(held) << "the first is compared with nothing";
   }
-  Eigen::Vector3d next(const ClaimStep& step, double dt = kTick) { return claim.judge(step, bounds, dt, held); }
+  Eigen::Vector3d next(const ClaimStep& step, double dt = kTick) { return claim.check(step, bounds, dt, held); }
   ClaimBounds bounds;
   Claim claim;
   bool held = false;

@@ -344,10 +344,10 @@ TEST(Claim, OfAShapeThatMovesItselfAndRestsExplainsNothing) {
   bool held = false;
   ClaimStep step = at({0, 0, 0}, {0, 0, 0});
   step.origin = {1, 0, 0};
-  away.judge(step, bounds, 0, held);
+  away.check(step, bounds, 0, held);
   step.force = {0, 1000, 0};
   step.p_model = {1e-3, 0, 0};  // says its pose, though neither the probe nor the origin moved
-  EXPECT_NEAR(away.judge(step, bounds, kTick, held).y(), Claim::kStep, 1e-12);
+  EXPECT_NEAR(away.check(step, bounds, kTick, held).y(), Claim::kStep, 1e-12);
 }
 
 }  // namespace

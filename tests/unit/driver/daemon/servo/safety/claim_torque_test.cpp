@@ -27,8 +27,8 @@ struct Twisted {
     EXPECT_FALSE(held) << "the first is compared with nothing";
   }
   Vector3d next(const ClaimStep& step, double dt = kTick) {
-    const Vector3d let = claim.judgeTorque(step, bounds, dt, held);
-    claim.judge(step, bounds, dt, force_held);
+    const Vector3d let = claim.checkTorque(step, bounds, dt, held);
+    claim.check(step, bounds, dt, force_held);
     return let;
   }
   ClaimBounds bounds;

@@ -25,10 +25,10 @@ TEST(Claim, DampingOfAShapeThatMovesItselfCountsTheSpeedOfTheProbe) {
   step.velocity = {8, 0, 0};
   Claim claim;
   bool held = false;
-  claim.judge(step, bounds, 0, held);
+  claim.check(step, bounds, 0, held);
   step.p_world = {8e-3, 0, 0};
   step.force = {70, 0, 0};
-  EXPECT_EQ(claim.judge(step, bounds, kTick, held).x(), 70) << "10 times 1 N s/m at 8 m/s";
+  EXPECT_EQ(claim.check(step, bounds, kTick, held).x(), 70) << "10 times 1 N s/m at 8 m/s";
   EXPECT_FALSE(held);
 }
 

@@ -87,7 +87,7 @@ struct FaultyLoop {
     if (injected.order != Order::Kind::kClear) {
       Order order;
       order.kind = injected.order;
-      rig->loop->give(order);
+      rig->loop->post(order);
     }
     return injected.late;
   }
@@ -154,7 +154,7 @@ TEST_P(LoopFault, StaysUntilItIsClearedAndThenRampsIn) {
     Order order;
     order.kind = deadline == 50'000'000 ? injected.order : Order::Kind::kClear;
     const bool now = deadline == 500'000'000 || (deadline == 50'000'000 && order.kind != Order::Kind::kClear);
-    if (now) self->loop->give(order);
+    if (now) self->loop->post(order);
     return deadline == 50'000'000 ? injected.late : 0;
   };
   Rig rig(injected.failure, before, 700, "wall", {}, {},

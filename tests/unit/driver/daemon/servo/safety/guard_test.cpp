@@ -9,29 +9,29 @@ namespace hapticd::servo {
 namespace {
 
 TEST(Guard, JudgesWhatAStepAnswers) {
-  const auto judged = [](hsp_status status, bool finite) { return Guard().judge(status, finite); };
-  EXPECT_EQ(judged(HSP_OK, true), Trouble::kNone);
-  EXPECT_EQ(judged(HSP_DEGRADED, true), Trouble::kNone);
-  EXPECT_EQ(judged(HSP_DEGRADED + 1, true), Trouble::kBadStatus);
-  EXPECT_EQ(judged(HSP_E_NUMERIC, true), Trouble::kLost);
+  const auto judged = [](hsp_status status, bool finite) { return Guard().check(status, finite); };
+  EXPECT_EQ(judged(HSP_OK, true), ShapeFault::kNone);
+  EXPECT_EQ(judged(HSP_DEGRADED, true), ShapeFault::kNone);
+  EXPECT_EQ(judged(HSP_DEGRADED + 1, true), ShapeFault::kBadStatus);
+  EXPECT_EQ(judged(HSP_E_NUMERIC, true), ShapeFault::kLost);
   for (const hsp_status status : std::initializer_list<hsp_status>{HSP_E_ARG, HSP_E_STATE, HSP_E_NOMEM, HSP_E_IO, -77})
-    EXPECT_EQ(judged(status, true), Trouble::kBadStatus) << status;
-  EXPECT_EQ(judged(HSP_OK, false), Trouble::kNotFinite);
-  EXPECT_EQ(judged(HSP_E_NUMERIC, false), Trouble::kNotFinite) << "the graver";
+    EXPECT_EQ(judged(status, true), ShapeFault::kBadStatus) << status;
+  EXPECT_EQ(judged(HSP_OK, false), ShapeFault::kNotFinite);
+  EXPECT_EQ(judged(HSP_E_NUMERIC, false), ShapeFault::kNotFinite) << "the graver";
 }
 
 TEST(Guard, KeepsTheGravestAndForgivesALostSurface) {
   Guard guard;
-  EXPECT_EQ(guard.trouble(), Trouble::kNone);
+  EXPECT_EQ(guard.fault(), ShapeFault::kNone);
   EXPECT_FALSE(guard.quarantined());
-  guard.judge(HSP_E_NUMERIC, true);
-  EXPECT_EQ(guard.trouble(), Trouble::kLost);
+  guard.check(HSP_E_NUMERIC, true);
+  EXPECT_EQ(guard.fault(), ShapeFault::kLost);
   EXPECT_FALSE(guard.quarantined());
-  EXPECT_EQ(guard.enter(Trouble::kPulls), Trouble::kPulls);
+  EXPECT_EQ(guard.enter(ShapeFault::kPulls), ShapeFault::kPulls);
   EXPECT_TRUE(guard.quarantined());
-  guard.judge(HSP_OK, false);
-  guard.judge(HSP_E_NUMERIC, true);
-  EXPECT_EQ(guard.trouble(), Trouble::kPulls) << "the first that is never forgiven";
+  guard.check(HSP_OK, false);
+  guard.check(HSP_E_NUMERIC, true);
+  EXPECT_EQ(guard.fault(), ShapeFault::kPulls) << "the first that is never forgiven";
 }
 
 /// The tick in which the third of `strikes` spread evenly over `ticks` counts; -1: none.
@@ -41,7 +41,7 @@ int silencedIn(int between, int strikes) {
     guard.gain(true, true, 1e-3);
     if (tick % between != 0) continue;
     ++struck;
-    if (guard.strike(Trouble::kJump, 3) != Trouble::kNone) return struck;
+    if (guard.strike(ShapeFault::kJump, 3) != ShapeFault::kNone) return struck;
   }
   return -1;
 }
@@ -53,8 +53,8 @@ TEST(Guard, ForgivesTwoStrikesAndNotThreeWithinAHundredTicks) {
   EXPECT_EQ(silencedIn(51, 3), -1) << "the first is forgotten";
   EXPECT_EQ(silencedIn(98, 10), -1);
   Guard guard;
-  EXPECT_EQ(guard.strike(Trouble::kOverrun, 1), Trouble::kOverrun);
-  EXPECT_EQ(guard.trouble(), Trouble::kOverrun);
+  EXPECT_EQ(guard.strike(ShapeFault::kOverrun, 1), ShapeFault::kOverrun);
+  EXPECT_EQ(guard.fault(), ShapeFault::kOverrun);
 }
 
 TEST(Guard, TakesAFailedShapeAwayAtOnceAndAnUnwantedOneSlowly) {
@@ -89,25 +89,25 @@ TEST(Guard, AHundredTicksAreAHundredAfterAnyPeace) {
   for (const int over : {0, 1}) {
     Guard guard;
     for (int i = 0; i < 10; ++i) guard.gain(true, true, 1e-3);
-    guard.strike(Trouble::kJump, 3);
+    guard.strike(ShapeFault::kJump, 3);
     for (int i = 0; i < 50; ++i) guard.gain(true, true, 1e-3);
-    guard.strike(Trouble::kJump, 3);
+    guard.strike(ShapeFault::kJump, 3);
     for (int i = 0; i < 49 + over; ++i) guard.gain(true, true, 1e-3);
-    EXPECT_EQ(guard.strike(Trouble::kJump, 3), over == 0 ? Trouble::kJump : Trouble::kNone);
+    EXPECT_EQ(guard.strike(ShapeFault::kJump, 3), over == 0 ? ShapeFault::kJump : ShapeFault::kNone);
   }
 }
 
 TEST(Guard, ALongPeaceEarnsNothingAndOwesNothing) {
   Guard fresh;
-  EXPECT_EQ(fresh.strike(Trouble::kJump, 3), Trouble::kNone);
-  EXPECT_EQ(fresh.strike(Trouble::kJump, 3), Trouble::kNone) << "in the first tick";
-  EXPECT_EQ(fresh.strike(Trouble::kJump, 3), Trouble::kJump);
+  EXPECT_EQ(fresh.strike(ShapeFault::kJump, 3), ShapeFault::kNone);
+  EXPECT_EQ(fresh.strike(ShapeFault::kJump, 3), ShapeFault::kNone) << "in the first tick";
+  EXPECT_EQ(fresh.strike(ShapeFault::kJump, 3), ShapeFault::kJump);
   Guard old;
-  old.strike(Trouble::kJump, 3);
+  old.strike(ShapeFault::kJump, 3);
   for (int i = 0; i < 1000; ++i) old.gain(true, true, 1e-3);
-  EXPECT_EQ(old.strike(Trouble::kJump, 3), Trouble::kNone);
-  EXPECT_EQ(old.strike(Trouble::kJump, 3), Trouble::kNone);
-  EXPECT_EQ(old.strike(Trouble::kJump, 3), Trouble::kJump);
+  EXPECT_EQ(old.strike(ShapeFault::kJump, 3), ShapeFault::kNone);
+  EXPECT_EQ(old.strike(ShapeFault::kJump, 3), ShapeFault::kNone);
+  EXPECT_EQ(old.strike(ShapeFault::kJump, 3), ShapeFault::kJump);
 }
 
 }  // namespace

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+/// Finds out which daemons run, by their files. A daemon holds a lock on NAME.lock as long as it lives, and NAME.sock
+/// exists while it serves. A daemon that was killed leaves both files, but no lock.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace hapticd::control {
+
+/// [any] True if the daemon of this socket lives, which means that it holds the lock on its name.
+bool isAlive(const std::string& socket);
+
+/// [main] Waits until the daemon of this socket has ended and its name is free. @return false if it still lives after
+/// `seconds`
+bool waitForEnd(const std::string& socket, double seconds);
+
+/// [main] Called after the connection to a daemon has ended. True if the daemon ended without removing its files. If it
+/// is just ending normally, the call waits for that.
+bool wasKilled(const std::string& socket);
+
+/// [main] Returns the names of the living daemons whose files are in a folder, sorted.
+std::vector<std::string> runningDaemons(const std::string& folder);
+
+}  // namespace hapticd::control

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+/// Finds numbers of a device file that are allowed but were hardly meant: grams, newtons per millimetre, a sustained
+/// force above the largest force.
+#pragma once
+#include "description/scene.hpp"
+#include "document/node.hpp"
+#include "host/device_instance.hpp"
+
+namespace hapticd::diagnostics {
+
+/// [main] Warns of such numbers, each at its key. @param arm is opened if it is simulated, which touches no hardware;
+/// it is nullptr if the file has mistakes, so that only single values are judged
+void warnOfImplausibleArm(const document::Node& root, const scene::Device& device, host::DeviceInstance* arm,
+                          document::Problems& warnings);
+
+/// [main] Warns of a field of the wire format that differs from the same field of the other joints in byte order, in
+/// sign, or by powers of ten in scale; and of positions of which one count moves the tip so far that a hand feels the
+/// step.
+/// @param arm is nullptr if the file has mistakes, so that only single fields are judged
+void warnOfImplausibleFields(const document::Node& root, const scene::Device& device, size_t joints,
+                             const host::DeviceInstance* arm, document::Problems& warnings);
+
+/// [main] Warns of limits that leave nothing to feel or bound nothing, of what the wire format has no fields for, and
+/// of joints of simulated arms that rub, weigh or lag more than shapes push.
+/// @param arm is nullptr if the file has mistakes, so that only single values are judged
+void warnOfImplausibleLimits(const document::Node& root, const scene::Device& device, const host::DeviceInstance* arm,
+                             document::Problems& warnings);
+
+}  // namespace hapticd::diagnostics

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/unit_warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "diagnostics/node_path.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+using document::Node;
+
+/// Returns all numbers of a list, or of a list of lists.
+std::vector<double> numbersIn(const Node* list) {
+  std::vector<double> numbers;
+  if (list == nullptr) return numbers;
+  if (list->isScalar()) numbers.push_back(document::toNumber(list->scalar).value_or(0));
+  for (const Node& item : list->items)
+    for (const double number : numbersIn(&item)) numbers.push_back(number);
+  return numbers;
+}
+
+double largest(const std::vector<double>& numbers) {
+  double most = 0;
+  for (const double number : numbers) most = std::max(most, std::abs(number));
+  return most;
+}
+
+void beyondATurn(const Node* list, const char* key, const std::string& file, document::Problems& warnings) {
+  const double most = largest(numbersIn(list));
+  if (most <= 2 * M_PI) return;
+  document::report(
+      warnings, file, list->line, list->column, key,
+      fmt::format("{:g} rad is more than a whole turn; the value must be in rad: {:g} degrees is {:.4g} rad", most,
+                  most, most * M_PI / 180));
+}
+
+/// Warns of angles in degrees. Below 10, they are within the range of the parameter, which ends at 10 rad; but the
+/// table of a real arm has no whole numbers of radians, and no angles of more than half a turn.
+void twistInDegrees(const Node* rows, const std::string& file, document::Problems& warnings) {
+  if (rows == nullptr || !rows->isSequence()) return;
+  for (size_t row = 0; row < rows->items.size(); ++row) {
+    const Node& link = rows->items[row];
+    for (const size_t column : {size_t{1}, size_t{3}}) {
+      if (column >= link.items.size()) continue;
+      const double angle = document::toNumber(link.items[column].scalar).value_or(0);
+      const bool whole = angle != 0 && angle == std::round(angle);
+      if (!whole && std::abs(angle) <= M_PI + 0.01) continue;
+      document::report(
+          warnings, file, link.items[column].line, link.items[column].column,
+          fmt::format("parameters.arm.dh[{}][{}]", row, column),
+          fmt::format("{:g} rad is {:.4g} degrees, which is unusual for {} of joint {}; the value must be in rad: {:g} "
+                      "degrees is {:.4g} rad",
+                      angle, angle * 180 / M_PI, column == 1 ? "alpha" : "theta", row + 1, angle, angle * M_PI / 180));
+    }
+  }
+}
+
+/// Warns of a link that is too long, because its length is not in metres or its decimal point is wrong.
+void linkTooLong(const Node* lengths, const std::string& file, document::Problems& warnings) {
+  constexpr double kLong = 2;  // m: longer than a person's arm, and than any device for one
+  const double most = largest(numbersIn(lengths));
+  if (most <= kLong) return;
+  document::report(
+      warnings, file, lengths->line, lengths->column, "parameters.arm.lengths",
+      fmt::format("{:g} m is too long for an arm that a hand moves; the value must be in m: {:g} mm is {:g} m", most,
+                  most, most / 1000));
+}
+
+/// The same of a chain, whose lengths are in two columns.
+void chainTooLong(const Node* rows, const std::string& file, document::Problems& warnings) {
+  constexpr double kLong = 2;  // m, as above
+  if (rows == nullptr || !rows->isSequence()) return;
+  for (size_t row = 0; row < rows->items.size(); ++row)
+    for (const size_t column : {size_t{0}, size_t{2}}) {
+      if (column >= rows->items[row].items.size()) continue;
+      const Node& at = rows->items[row].items[column];
+      const double length = std::abs(document::toNumber(at.scalar).value_or(0));
+      if (length <= kLong) continue;
+      document::report(
+          warnings, file, at.line, at.column, fmt::format("parameters.arm.dh[{}][{}]", row, column),
+          fmt::format("{0:g} m as {1} of joint {2} is too long for an arm that a hand moves; the value must be "
+                      "in m: {0:g} mm is {3:g} m",
+                      length, column == 0 ? "a" : "d", row + 1, length / 1000));
+    }
+}
+
+/// A link that points the other way has a twist, not a negative length.
+void lengthBelowZero(const Node* lengths, const std::string& file, document::Problems& warnings) {
+  for (const double length : numbersIn(lengths))
+    if (length < 0)
+      return document::report(warnings, file, lengths->line, lengths->column, "parameters.arm.lengths",
+                              fmt::format("{:g} m is below 0; expected 0 or more; to reverse a direction, change the "
+                                          "signs of the positions and torques",
+                                          length));
+}
+
+/// Warns of an offset of more than a turn, which was meant in degrees or in counts.
+void offsetBeyondATurn(const Node* fields, const std::string& file, document::Problems& warnings) {
+  if (fields == nullptr || !fields->isSequence()) return;
+  for (size_t i = 0; i < fields->items.size(); ++i) {
+    const Node *is = fields->items[i].find("is"), *offset = fields->items[i].find("offset");
+    if (is == nullptr || is->scalar != "position" || offset == nullptr) continue;
+    const double value = document::toNumber(offset->scalar).value_or(0);
+    if (std::abs(value) <= 2 * M_PI) continue;
+    document::report(warnings, file, offset->line, offset->column,
+                     fmt::format("parameters.wire.input.fields[{}].offset", i),
+                     fmt::format("{:g} rad is more than a whole turn; the value must be in rad (or m); if it is in "
+                                 "degrees, write offset_degrees: {:g}",
+                                 value, value));
+  }
+}
+
+void mountFarAway(const Node* position, const std::string& file, document::Problems& warnings) {
+  constexpr double kFar = 5;  // m: farther than anybody reaches
+  const double most = largest(numbersIn(position));
+  if (most <= kFar) return;
+  document::report(warnings, file, position->line, position->column, "mount.position",
+                   fmt::format("{:g} m from the world's origin, where the scenes have their shapes; the value must be "
+                               "in m: {:g} mm is {:g} m",
+                               most, most, most / 1000));
+}
+
+void quaternionTurnedRound(const Node* orientation, const char* key, const std::string& file,
+                           document::Problems& warnings) {
+  const std::vector<double> q = numbersIn(orientation);
+  if (q.size() != 4 || q[0] != 0 || q[1] != 0 || q[2] != 0) return;
+  document::report(warnings, file, orientation->line, orientation->column, key,
+                   "is w, x, y, z, so this is a half turn about z; expected [1, 0, 0, 0] where no turn was meant");
+}
+
+/// Returns true for a number with a meaningless leading zero, such as "05" or "-0800".
+bool idleZero(const std::string& text) {
+  const size_t first = text.find_first_not_of("+-");
+  return first != std::string::npos && first + 1 < text.size() && text[first] == '0' &&
+         text.find_first_not_of("0123456789", first) == std::string::npos;
+}
+
+}  // namespace
+
+void warnOfZeros(const Node& root, const std::string& file, document::Problems& warnings) {
+  if (root.isScalar() && !root.quoted && idleZero(root.scalar))
+    document::report(warnings, file, root.line, root.column, "",
+                     "\"" + root.scalar +
+                         "\" begins with a zero: a comma separates numbers, and decimals have a point (0." +
+                         root.scalar + " is one number, 0," + root.scalar + " is two)");
+  for (const Node& item : root.items) warnOfZeros(item, file, warnings);
+  for (const document::Entry& entry : root.entries) warnOfZeros(entry.value, file, warnings);
+}
+
+void warnOfUnits(const Node& root, const std::string& file, document::Problems& warnings) {
+  warnOfZeros(root, file, warnings);
+  beyondATurn(find(root, {"parameters", "arm", "limits"}), "parameters.arm.limits", file, warnings);
+  beyondATurn(find(root, {"parameters", "calibration", "pose"}), "parameters.calibration.pose", file, warnings);
+  twistInDegrees(find(root, {"parameters", "arm", "dh"}), file, warnings);
+  chainTooLong(find(root, {"parameters", "arm", "dh"}), file, warnings);
+  linkTooLong(find(root, {"parameters", "arm", "lengths"}), file, warnings);
+  lengthBelowZero(find(root, {"parameters", "arm", "lengths"}), file, warnings);
+  offsetBeyondATurn(find(root, {"parameters", "wire", "input", "fields"}), file, warnings);
+  mountFarAway(find(root, {"mount", "position"}), file, warnings);
+  quaternionTurnedRound(find(root, {"mount", "orientation"}), "mount.orientation", file, warnings);
+  quaternionTurnedRound(find(root, {"parameters", "arm", "base_orientation"}), "parameters.arm.base_orientation", file,
+                        warnings);
+}
+
+}  // namespace hapticd::diagnostics

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+/// Finds values of models that their plugins accept but that were hardly meant: millimetres, degrees, grams, a wrong
+/// sign.
+#pragma once
+#include "description/scene.hpp"
+#include "diagnostics/model_trial.hpp"
+#include "diagnostics/unread_keys.hpp"
+#include "document/problem.hpp"
+#include "host/catalog.hpp"
+
+namespace hapticd::diagnostics {
+
+class GivenModel;
+
+/// [main] Warns of each parameter that is beyond what is usual for a quantity of its unit, of bodies that fall or hang
+/// far from their place, and of models that lie in the same place. @param boxes boxes that tryModels() found; if empty,
+/// nothing is compared with the sizes of the models
+/// @param unread keys with problems; nothing is judged that depends on one of them
+document::Problems implausibleValues(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog,
+                                     const UnreadKeys& unread = {});
+
+/// [main] Tells of each model whether implausibleValues() finds a value by which it moves as nobody meant, such as a
+/// mass in grams or a body that falls.
+std::vector<bool> strayModels(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog);
+
+/// Warns of each parameter by itself, by the unit that its plugin gives for it.
+void checkQuantities(const GivenModel& given);
+
+/// Warns of parameters of a body that moves by its weight and the forces on it.
+void checkBody(const GivenModel& given);
+
+/// [main] Returns the groups of models that have the same geometry in the same place, as a copy whose pose was not
+/// changed. Each group has the indices of its models, in scene order.
+std::vector<std::vector<size_t>> modelsInOnePlace(const scene::Scene& scene);
+
+}  // namespace hapticd::diagnostics

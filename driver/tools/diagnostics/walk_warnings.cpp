@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/walk_warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <string>
+
+#include "diagnostics/detent_warnings.hpp"
+#include "diagnostics/hand_inside.hpp"
+#include "diagnostics/hand_script.hpp"
+#include "diagnostics/hand_walk.hpp"
+#include "diagnostics/key_place.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+constexpr double kContactSeconds = 0.02;  ///< [s] a shorter contact is not judged
+
+void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen,
+                const servo::World& world, document::Problems& warnings) {
+  const scene::Device& device = scene.devices[index];
+  const scene::Model& nearest = scene.models[seen.nearest];
+  const std::string where = seen.away > 0
+                                ? fmt::format("comes no nearer than {:.3g} mm to any model ({} is the nearest)",
+                                              seen.away * 1e3, nearest.name)
+                                : fmt::format("moves where {} is, but touches no surface", nearest.name);
+  const std::string what = fmt::format("the hand of {} {}: it feels nothing; expected ", device.name, where);
+  if (hand.kind == HandScript::Kind::kPath) {
+    const HandKey key = keyOfHand(scene, device, {"hand.path"});
+    const Eigen::Vector3d mount = device.mount.position, pose = nearest.pose.position;
+    return document::report(
+        warnings, key.place, key.id,
+        what + fmt::format("a path through a model, in m of the device frame; mount.position of {} is [{:.3g}, {:.3g}, "
+                           "{:.3g}], and pose.position of {} is [{:.3g}, {:.3g}, {:.3g}]: is one of them wrong?",
+                           device.name, mount.x(), mount.y(), mount.z(), nearest.name, pose.x(), pose.y(), pose.z()));
+  }
+  if (circlesModel(device, hand, nearest, *world.shapes()[seen.nearest])) {
+    const HandKey key = keyOfHand(scene, device, {"hand.radius", "hand.rise", "hand.script"});
+    return document::report(
+        warnings, key.place, key.id,
+        what + (seen.away > 0
+                    ? fmt::format("a hand.radius that is smaller by more than this distance (it is {:.4g} m now; it is "
+                                  "a radius, not a diameter)",
+                                  hand.radius)
+                    : fmt::format("a hand.radius with which it meets the surface (it is {:.4g} m now)", hand.radius)));
+  }
+  const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
+  const std::string at = fmt::format(
+      "a hand that moves near a model: its centre (hand.center) is at [{:.3g}, {:.3g}, {:.3g}] in "
+      "the world, and {} at [{:.3g}, {:.3g}, {:.3g}]; move the arm (mount.position), "
+      "hand.center or the model (pose.position)",
+      center.x(), center.y(), center.z(), nearest.name, nearest.pose.position.x(), nearest.pose.position.y(),
+      nearest.pose.position.z());
+  const std::string in_list = fmt::format("devices[{}].mount.position", index);
+  for (const std::string& id : {std::string("device.mount.position"), in_list})
+    if (const auto place = placeOfKey(scene.file, id)) return document::report(warnings, *place, id, what + at);
+  document::report(warnings, nearest.place, fmt::format("models[{}].pose.position", seen.nearest), what + at);
+}
+
+/// Warns of a model that is touched, but pushes so little that nobody feels it.
+void reportUnfelt(const scene::Model& model, size_t index, const WalkedModel& seen, document::Problems& warnings) {
+  document::Place place = model.place;
+  std::string key = fmt::format("models[{}]", index), mend = "expected more stiffness";
+  for (const char* id : {"depth_scale", "exponent", "stiffness"})
+    if (const scene::Value* value = givenIn(model.parameters, id)) {
+      place = value->place;
+      key += std::string(".parameters.") + id;
+      if (id != std::string_view("stiffness"))
+        mend = "depth_scale must be in m (1 mm is 0.001), or give more stiffness";
+      break;
+    }
+  document::report(
+      warnings, place, key,
+      fmt::format("{} cannot be felt: the hand is up to {:.3g} mm deep in it, but its force is at most {:.2g} N; {}",
+                  model.name, seen.depth * 1e3, seen.force, mend));
+}
+
+/// Returns what to do about a limit that takes almost all of the force.
+std::string remedyOf(const std::string& limit) {
+  if (limit == "workspace")
+    return "expected the radius in m that the tip may be away from the arm's origin, such as 0.15";
+  if (limit == "slew") return "the value must be in N/s, such as 2000";
+  if (limit == "impulse")
+    return "the value must be in N s within 0.1 s; a lasting force is cut to five times this number, in N";
+  if (limit == "power") return "the value must be in W, such as 5";
+  if (limit == "motors")
+    return "torque_constant must be in N m/A, resistance in ohm, and ratio joint torque over motor torque";
+  return "expected a larger value";
+}
+
+/// Returns the limit that cuts most often.
+size_t strictest(const WalkedArm& seen) {
+  return static_cast<size_t>(std::max_element(seen.limits.begin(), seen.limits.end()) - seen.limits.begin());
+}
+
+/// Warns at a limit of the device file that is so strict that no scene helps. @return false if it is not
+bool reportOwnLimit(const scene::Device& device, const WalkedArm& seen, const std::string& limit,
+                    document::Problems& warnings) {
+  constexpr double kMostly = 0.5;  // share of the ticks with a force
+  const double share = static_cast<double>(seen.cut) / static_cast<double>(seen.contact);
+  if (limit == "force" || limit == "torque" || limit == "motors (torque)" || share < kMostly) return false;
+  const std::string name = limit.substr(0, limit.find(' '));  // "motors (heat)" is limits.motors
+  const auto place = placeOfKey(device.file, "limits." + name);
+  if (!place) return false;
+  document::report(warnings, *place, "limits." + name,
+                   fmt::format("this limit cuts the force of {} in {:.0f} % of the ticks with a force, although models "
+                               "ask for no more than {:.3g} N, so little is felt; {}",
+                               device.name, 100 * share, seen.asked, remedyOf(name)));
+  return true;
+}
+
+/// Warns of a limit of speed that the hand exceeds, because the forces end then for the rest of the run. @return false
+/// if it did not
+bool reportLimiterFault(const scene::Device& device, const servo::Limiter& limiter, document::Problems& warnings) {
+  if (limiter.fault() != servo::Fault::kTooFast) return false;
+  const auto place = placeOfKey(device.file, "limits.velocity");
+  document::report(
+      warnings, place.value_or(document::Place{device.file.string(), 1, 1}), "limits.velocity",
+      fmt::format("the tip of {} moves at {:.3g} m/s in this scene, which is a fault that ends its forces; expected "
+                  "more than the hand moves at, such as 2 m/s, or a slower hand (hand.rate, hand.lead_in)",
+                  device.name, limiter.measured()));
+  return true;
+}
+
+void reportCut(const scene::Scene& scene, const scene::Device& device, const HandScript& hand, const WalkedArm& seen,
+               const servo::Limiter& limiter, document::Problems& warnings) {
+  constexpr double kDeep = 5e-3;  // [m] for deeper presses, the hand is the cause, not the stiffness
+  const scene::Model& model = scene.models[seen.deepest];
+  const scene::Value* stiffness = givenIn(model.parameters, "stiffness");
+  HandKey key = hand.presses() ? keyOfHand(scene, device, {"hand.rise", "hand.radius", "hand.script"})
+                               : keyOfHand(scene, device, {"hand.radius", "hand.path", "hand.script"});
+  if (seen.depth < kDeep && stiffness != nullptr)
+    key = {stiffness->place, fmt::format("models[{}].parameters.stiffness", seen.deepest)};
+  const std::string limit = servo::nameOf(static_cast<servo::Limit>(strictest(seen)));
+  if (reportOwnLimit(device, seen, limit, warnings)) return;
+  const std::string most =
+      limiter.maxForce() > 0 ? fmt::format(", but only {:.3g} N are allowed", limiter.maxForce()) : "";
+  document::report(
+      warnings, key.place, key.id,
+      fmt::format(
+          "the hand of {} is up to {:.3g} mm deep in {} and asks for up to {:.3g} N{}: limits.{} cuts the force in "
+          "{:.0f} % of the ticks with a force; expected a hand that presses less (hand.radius, hand.rise in m) or "
+          "less stiffness",
+          device.name, seen.depth * 1e3, model.name, seen.asked, most, limit,
+          100 * static_cast<double>(seen.cut) / static_cast<double>(seen.contact)));
+}
+
+void checkWalkOfArm(const scene::Scene& scene, uint32_t index, const Walk& walk, const servo::World& world,
+                    const std::vector<bool>& strays, document::Problems& warnings) {
+  constexpr double kOften = 0.05;  // share of the ticks with a force
+  const auto strayed = [&strays](size_t model) { return model < strays.size() && strays[model]; };
+  const WalkedArm& seen = walk.arms[index];
+  const auto hand = handScriptOf(scene.devices[index]);
+  if (!hand || !hand->moves()) return;
+  if (reportLimiterFault(scene.devices[index], walk.limiters[index], warnings)) return;
+  if (!seen.touched) {
+    if (walk.whole && std::isfinite(seen.away) && !strayed(seen.nearest))
+      reportAway(scene, index, *hand, seen, world, warnings);
+    return;
+  }
+  if (strayed(seen.deepest)) return;
+  const auto ticks = [](uint64_t count) { return static_cast<double>(count); };
+  if (ticks(seen.cut) * walk.period > kContactSeconds && ticks(seen.cut) > kOften * ticks(seen.contact))
+    reportCut(scene, scene.devices[index], *hand, seen, walk.limiters[index], warnings);
+}
+
+void checkWalkOfModel(const scene::Scene& scene, size_t index, const Walk& walk, const servo::World& world,
+                      document::Problems& warnings) {
+  constexpr double kUnfelt = 0.03;  // [N] less than the friction of an arm
+  const WalkedModel& seen = walk.models[index];
+  if (static_cast<double>(seen.touched) * walk.period < kContactSeconds) return;
+  if (reportNoClick(scene.models[index], index, *world.shapes()[index], seen, walk.whole, warnings)) return;
+  if (walk.whole && seen.force > 0 && seen.force < kUnfelt) reportUnfelt(scene.models[index], index, seen, warnings);
+}
+
+}  // namespace
+
+document::Problems warnOfWalk(const scene::Scene& scene, servo::World& world, const std::vector<bool>& strays) {
+  document::Problems warnings;
+  const auto walk = walkHands(scene, world);
+  if (!walk) return warnings;
+  for (size_t i = 0; i < scene.models.size(); ++i) checkWalkOfModel(scene, i, *walk, world, warnings);
+  for (uint32_t i = 0; i < scene.devices.size(); ++i) checkWalkOfArm(scene, i, *walk, world, strays, warnings);
+  return warnings;
+}
+
+}  // namespace hapticd::diagnostics

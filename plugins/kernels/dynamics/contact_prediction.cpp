@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/dynamics/contact_prediction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapticd::dynamics {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+PredictedContact predict(const LastContact& last, const Vector3d& probe_now, double closing_speed,
+                         const Vector3d& point_velocity, double dt) noexcept {
+  PredictedContact press;
+  press.point = last.point;
+  press.outward = last.normal;
+  const Vector3d slide = probe_now - last.probe - dt * point_velocity;  // [m] motion of the probe relative to the body
+  const double depth = last.depth - last.normal.dot(slide);
+  // If the body moves away from the probe by itself, its change of velocity may bring it back. So the force is extended
+  // linearly to negative values.
+  const double deepest = std::max(depth, last.depth - last.normal.dot(probe_now - last.probe));
+  const contact::WallForce wall = contact::wallForce(last.law, deepest, closing_speed);
+  if (!(wall.force > 0)) return press;
+  // For n < 1 the slope of the chord to depth 0 is used. With the steeper slope of the law itself, a light body would
+  // be thrown out.
+  const double chord = wall.force / deepest * std::max(1.0, last.law.exponent);
+  const double force = wall.force - chord * (deepest - depth);
+  const Matrix3d across = last.normal * last.normal.transpose();
+  press.force = -force * last.normal;
+  press.give = (chord * dt + wall.damping) * across;
+  if (last.along_stiffness > 0 || last.along_damping > 0) {
+    Vector3d along = last.along - last.along_stiffness * (slide - across * slide);
+    const double length = along.norm();
+    if (length > last.along_limit) along *= last.along_limit / length;
+    press.force -= along;
+    press.give += (last.along_stiffness * dt + last.along_damping) * (Matrix3d::Identity() - across);
+  }
+  return press;
+}
+
+Vector3d forceAfter(const PredictedContact& press, const Vector3d& change) noexcept {
+  const Vector3d force = press.force - press.give * change;
+  return force - std::max(0.0, press.outward.dot(force)) * press.outward;
+}
+
+}  // namespace hapticd::dynamics

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/trace/warm_step.hpp"
+
+namespace hapticd::trace {
+
+using spline::kOutStride;
+using spline::Quad;
+
+#include "kernels/spline/kernel_common.inl"
+// warm_step.inl comes after kernel_common.inl, because it uses the functions there.
+#include "kernels/trace/warm_step.inl"
+
+const WarmStepKernels& portableWarmStep() noexcept {
+  return kWarmStepKernels;
+}
+
+}  // namespace hapticd::trace
