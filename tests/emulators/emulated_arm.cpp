@@ -18,7 +18,7 @@ using simulated::HandTarget;
 using simulated::JointSettings;
 using simulated::Plant;
 using simulated::PlantOf;
-using simulated::Pull;
+using simulated::HandCoupling;
 
 constexpr double kWatchdog = 0.02;  ///< [s] without a command: motors off
 constexpr double kStep = 5e-4;      ///< [s] of the integration
@@ -209,7 +209,7 @@ void EmulatedArm::advance(double seconds) {
     if (!in.still) in.hand_time += h;
     if (silence() > kWatchdog) in.drive.torque.setZero();
     const HandTarget target = in.hand->at(in.hand_time);
-    Pull pull;
+    HandCoupling pull;
     pull.target = target.position, pull.velocity = in.still ? Vector3d(0, 0, 0) : target.velocity;
     pull.force = target.force;
     pull.stiffness = in.parameters.hand_stiffness, pull.damping = in.parameters.hand_damping;

@@ -222,7 +222,7 @@ int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions
 /// True if a rival cannot become the nearest before the next search, or if it has reached a side beyond which the
 /// neighbouring patch follows this foot.
 bool Tracer::isHopeless(const Track& rival, double best) const noexcept {
-  return rival.foot.distance > best + Model::kSoon || model_.patch(rival.patch).isUnchanged(rival.foot.sides);
+  return rival.foot.distance > best + Model::kSoon || model_.patch(rival.patch).continuesBeyond(rival.foot.sides);
 }
 
 /// Replaces a foot by the foot found from (u, v) on the same patch, if the new foot is nearer. Returns true if it was

@@ -15,7 +15,7 @@ void splineDeform(const Case& c, Check& check) {
   const int span = spline::findSpan(knots, degree, t);
   spline::basisFunctions(knots, degree, span, t, basis);
   const medial::Influence moved = medial::influence(std::span(basis).first(static_cast<std::size_t>(degree) + 1), span,
-                                                    in["p_prime"].get<int>(), medial::Choice::kCentral);
+                                                    in["p_prime"].get<int>(), medial::PointSelection::kCentral);
   check.isTrue("first", moved.first == c.expect["first"].get<int>());
   check.isTrue("last", moved.first + moved.count - 1 == c.expect["last"].get<int>());
   double sum = 0;

@@ -23,7 +23,7 @@ double energyDrift(double h) {
   plant.reset(JointVector::Zero(3));
   Drive push{false, Eigen::Vector3d(0.3, 0.2, -0.1), JointVector::Zero(3), JointVector::Zero(3)}, none = push;
   none.torque.setZero();
-  const Pull away{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  const HandCoupling away{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   for (int i = 0; i < 100; ++i) plant.step(1e-3, push, away);
   const auto energy = [&] {
     mechanism.evaluate(plant.position(), plant.velocity());
@@ -53,7 +53,7 @@ TEST(Plant, SwingsOnAHandSpringAtTheRightFrequency) {
   mechanism.evaluate(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
   const Eigen::Matrix3d J_inverse = mechanism.J.inverse();
   const Eigen::Matrix3d mass = J_inverse.transpose() * mechanism.M * J_inverse;
-  Pull pull{Eigen::Vector3d(1e-4, 0, 0), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 800, 0};
+  HandCoupling pull{Eigen::Vector3d(1e-4, 0, 0), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 800, 0};
   const Drive none{false, JointVector::Zero(3), JointVector::Zero(3), JointVector::Zero(3)};
   const double period = 2 * M_PI * std::sqrt(mass(0, 0) / 800);
   constexpr int kSteps = 20000;
