@@ -16,6 +16,7 @@
 #include "cli/command.hpp"
 #include "cli/guarded_command.hpp"
 #include "cli/output_file.hpp"
+#include "cli/run_outcome.hpp"
 #include "cli/run_signals.hpp"
 #include "cli/scene_warnings.hpp"
 #include "cli/view_process.hpp"
@@ -23,10 +24,6 @@
 #include "document/node.hpp"
 #include "host/file_stamp.hpp"
 #include "log/log.hpp"
-#include "record/allocation_text.hpp"
-#include "record/pace_report.hpp"
-#include "record/picture.hpp"
-#include "record/report.hpp"
 #include "session/run_files.hpp"
 #include "session/runner.hpp"
 #include "tune/stability.hpp"
@@ -79,103 +76,6 @@ void showStatus(const servo::Runner& runner) {
   std::fprintf(stderr, "\r%8.1f s  late %6.1f us  tick %6.1f us  force %6.3f N  depth %7.3f mm ", row.t,
                static_cast<double>(row.lateness_us), static_cast<double>(row.compute_us), force,
                static_cast<double>(row.depth_m) * 1e3);
-}
-
-std::vector<record::Sample> samplesOf(const servo::Telemetry& telemetry) {
-  std::vector<record::Sample> samples;
-  for (const servo::BlackBoxRow& row : telemetry.blackBox()) {
-    record::Sample sample;
-    sample.t = row.t;
-    const bool traced = row.model != UINT32_MAX;
-    sample.depth_m = traced ? static_cast<double>(row.depth_m) : std::nan("");
-    sample.model = traced ? static_cast<int>(row.model) : -1;
-    sample.force_n = std::hypot(row.force[0], row.force[1], row.force[2]);
-    sample.asked_n = std::nan("");  // unknown: the black box has only the force that was sent
-    sample.fault = row.fault;
-    sample.lateness_us = static_cast<double>(row.lateness_us);
-    sample.compute_us = static_cast<double>(row.compute_us);
-    samples.push_back(sample);
-  }
-  return samples;
-}
-
-record::RunNotes notesOf(const servo::Runner& runner) {
-  constexpr size_t kMostEvents = 100'000;
-  record::RunNotes notes;
-  for (const scene::Model& model : runner.scene().models) notes.models.push_back(model.name);
-  if (!runner.scene().devices.empty()) notes.force_limit_n = runner.scene().devices[0].limits.force;
-  uint64_t next = 0;
-  for (const hapticd_event& event : runner.telemetry().flight()->events(next, kMostEvents))
-    if (event.kind == HAPTICD_SILENCED)
-      notes.moments.emplace_back(event.t, (static_cast<size_t>(event.model) < notes.models.size()
-                                               ? notes.models[static_cast<size_t>(event.model)]
-                                               : std::string("a model")) +
-                                              " is silenced");
-  return notes;
-}
-
-record::LimitReport limitsOf(const std::string& device, const servo::Limiter& limiter) {
-  record::LimitReport report{device, limiter.clips().any, {}};
-  for (size_t i = 0; i < servo::kLimitCount; ++i)
-    if (const uint64_t ticks = limiter.clips().ticks[i]; ticks > 0)
-      report.ticks.emplace_back(servo::nameOf(static_cast<servo::Limit>(i)), ticks);
-  return report;
-}
-
-/// Warns if the first arm gave more force over the last seconds than it sustains. The black box keeps the forces of the
-/// first arm.
-void warnOfHeat(const servo::Runner& runner, double rate) {
-  constexpr double kHeatSeconds = 5;  // a shorter time does not heat a winding
-  std::vector<double> forces;
-  for (const servo::BlackBoxRow& row : runner.telemetry().blackBox())
-    forces.push_back(std::hypot(row.force[0], row.force[1], row.force[2]));
-  if (runner.arms().empty() || static_cast<double>(forces.size()) < kHeatSeconds * rate) return;
-  const std::string text =
-      tune::overheating(runner.scene().devices[0].name, runner.arms()[0]->info().continuous_force, forces, rate);
-  if (!text.empty()) log::write(HSP_LOG_WARNING, "", text);
-}
-
-/// Writes the files that were asked for and prints the summary. @return the run's own exit code unless a file fails
-int conclude(const RunArguments& options, servo::Runner& runner, const std::vector<std::string>& left_out) {
-  std::vector<std::string> faults = runner.faults();
-  faults.insert(faults.end(), left_out.begin(), left_out.end());
-  std::vector<std::string> told = faults;
-  for (std::string& text : runner.recovered()) told.push_back(std::move(text));
-  record::RunReport report = runner.telemetry().report(told);
-  report.scene = options.scene;
-  report.virtual_time = options.virtual_time;
-  report.wall_seconds = static_cast<double>(runner.wallTime()) * kSecondsPerNanosecond;
-  report.start_ms = static_cast<double>(runner.loop().firstTick() - program_start) * 1e-6;
-  for (record::ModelReport& model : report.models)
-    for (const servo::ModelState& state : runner.world().core().models())
-      if (state.shape != nullptr && state.shape->name() == model.name) {
-        model.moves = state.moves;
-        model.degraded_ticks = state.degraded_ticks;
-        model.coarsest = state.coarsest;
-        model.residual_m = state.degraded_residual;
-      }
-  report.resident_bytes = runner.residentBytes();
-  report.answer_time = runner.scene().clients.answer_time;
-  for (size_t i = 0; i < runner.arms().size(); ++i)
-    report.limits.push_back(limitsOf(runner.scene().devices[i].name, runner.arms()[i]->limiter()));
-  std::fputs((record::summary(report) + record::allocationText(report, mostAllocations()) +
-              record::paceText(report, options.rate.value_or(runner.scene().servo.rate)))
-                 .c_str(),
-             stdout);
-  std::fflush(stdout);  // the summary is printed even if a plugin crashes while it is deactivated
-  warnOfHeat(runner, report.rate_hz);
-  if (const record::Recorder* recorder = runner.recorder())
-    std::printf("  recorded  %s: %llu ticks, %llu rows lost\n", options.record.c_str(),
-                static_cast<unsigned long long>(recorder->rows(servo::kTicks)),
-                static_cast<unsigned long long>(recorder->lost()));
-  if (!options.report.empty())
-    if (auto written = record::writeJson(report, options.report); !written) return fail(kFailed, written.error());
-  if (!options.picture.empty())
-    if (auto drawn = record::drawRun(report, samplesOf(runner.telemetry()), notesOf(runner), options.picture); !drawn)
-      return fail(kFailed, drawn.error());
-  for (const auto& [what, file] : {std::pair("report", &options.report), std::pair("picture", &options.picture)})
-    if (!file->empty()) std::printf("  %-8s  %s\n", what, file->c_str());
-  return faults.empty() ? kWorked : kFailed;
 }
 
 /// Warns that a plugin that ended an earlier run is tried again, because its file was rebuilt or replaced.
@@ -319,7 +219,9 @@ int runScene(const RunArguments& options, scene::Scene& scene) {
   };
   if (files) files->serve(**runner, options.device, catalog(), advise, logOfRun);
   if (auto done = tickToTheEnd(**runner, files.get()); !done) return fail(kFailed, done.error());
-  return conclude(options, **runner, left_out);
+  return conclude({options.scene, options.report, options.picture, options.record, how.rate, options.virtual_time,
+                   program_start, left_out},
+                  **runner);
 }
 
 /// Reports an enable button that no report of its arm contains, because forces could never be enabled then. Returns

@@ -95,24 +95,29 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
              [&](uint32_t index, const hsp_value* value) { return found->set(instance->device_, index, value); });
   if (!set) return Error{who + set.error()};
 
-  instance->services_.forgetError();
-  noteCall("extension");
-  instance->kinematics_ = extensionOf<hdv_ext_kinematics>(*found, instance->device_, HDV_EXT_KINEMATICS);
-  instance->calibration_ = extensionOf<hdv_ext_calibration>(*found, instance->device_, HDV_EXT_CALIBRATION);
-  instance->links_ = drawable(extensionOf<hdv_ext_links>(*found, instance->device_, HDV_EXT_LINKS));
-  instance->cut_ = extensionOf<hdv_ext_cut>(*found, instance->device_, HDV_EXT_CUT);
-  instance->hand_ = extensionOf<hdv_ext_hand>(*found, instance->device_, HDV_EXT_HAND);
-  instance->pace_ = extensionOf<hdv_ext_pace>(*found, instance->device_, HDV_EXT_PACE);
-  instance->trouble_ = extensionOf<hdv_ext_trouble>(*found, instance->device_, HDV_EXT_TROUBLE);
-  instance->silence_ = extensionOf<hdv_ext_silence>(*found, instance->device_, HDV_EXT_SILENCE);
-  if (instance->kinematics_ == nullptr) {
-    const std::string said = instance->services_.lastError();
-    return Error{who +
-                 (said.empty() ? "module '" + device.module + "' has no kinematics (" HDV_EXT_KINEMATICS ")" : said)};
-  }
-  if (const std::string wrong = wrongKinematics(*instance->kinematics_, instance->device_); !wrong.empty())
-    return Error{who + "module '" + device.module + "' " + wrong};
+  if (auto extended = instance->findExtensions(device.module); !extended) return Error{who + extended.error()};
   return instance;
+}
+
+/// Asks the module for its extensions. @return an error if it has no kinematics, or wrong ones
+Result<void> DeviceInstance::findExtensions(const std::string& module) {
+  services_.forgetError();
+  noteCall("extension");
+  kinematics_ = extensionOf<hdv_ext_kinematics>(*class_, device_, HDV_EXT_KINEMATICS);
+  calibration_ = extensionOf<hdv_ext_calibration>(*class_, device_, HDV_EXT_CALIBRATION);
+  links_ = drawable(extensionOf<hdv_ext_links>(*class_, device_, HDV_EXT_LINKS));
+  cut_ = extensionOf<hdv_ext_cut>(*class_, device_, HDV_EXT_CUT);
+  hand_ = extensionOf<hdv_ext_hand>(*class_, device_, HDV_EXT_HAND);
+  pace_ = extensionOf<hdv_ext_pace>(*class_, device_, HDV_EXT_PACE);
+  trouble_ = extensionOf<hdv_ext_trouble>(*class_, device_, HDV_EXT_TROUBLE);
+  silence_ = extensionOf<hdv_ext_silence>(*class_, device_, HDV_EXT_SILENCE);
+  if (kinematics_ == nullptr) {
+    const std::string said = services_.lastError();
+    return Error{said.empty() ? "module '" + module + "' has no kinematics (" HDV_EXT_KINEMATICS ")" : said};
+  }
+  if (const std::string wrong = wrongKinematics(*kinematics_, device_); !wrong.empty())
+    return Error{"module '" + module + "' " + wrong};
+  return {};
 }
 
 DeviceInstance::~DeviceInstance() {

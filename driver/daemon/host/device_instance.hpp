@@ -113,6 +113,7 @@ class DeviceInstance {
 
  private:
   DeviceInstance(std::shared_ptr<Library> library, const scene::Device& device, Services::Log log);
+  Result<void> findExtensions(const std::string& module);
   std::shared_ptr<Library> library_;
   std::string name_;
   Services services_;

@@ -2,15 +2,10 @@
 #include "session/runner.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <iterator>
 
 #include "base/os.hpp"
 #include "log/log.hpp"
-#include "servo/loop/paced_clock.hpp"
-#include "session/about.hpp"
-#include "session/recorded_clock.hpp"
 #include "session/silence_reason.hpp"
 #include "session/watched_servo.hpp"
 #include "sim/proximity_thread.hpp"
@@ -19,7 +14,6 @@
 #include "watch/idle_target.hpp"
 #include "watch/notify.hpp"
 #include "watch/watchdog.hpp"
-#include "world/arm_force.hpp"
 
 namespace hapticd::servo {
 
@@ -28,15 +22,7 @@ namespace {
 constexpr Nanoseconds kStatusPeriod = 200'000'000;
 constexpr Nanoseconds kReadyPoll = 1'000'000;
 constexpr uint64_t kReadyTicks = 2;    ///< after this many ticks the service manager is told that the daemon is ready
-constexpr uint64_t kDryCycles = 2000;  ///< cycles with motors off, to judge the machine before a hand relies on it
 constexpr uint64_t kLongestRunUs = 100'000;  ///< longest CPU time without sleep [us]; a tick takes a hundredth of it
-
-Nanoseconds spinFor(const scene::Servo& servo) {
-  // Spinning reduces lateness on bare metal. In a virtual machine it does not help: the pauses come from the host.
-  constexpr double kBareMetalSpinUs = 50;
-  const double us = servo.spin_us.value_or(os::inVirtualMachine() ? 0 : kBareMetalSpinUs);
-  return static_cast<Nanoseconds>(us * 1e3);
-}
 
 std::string readyMessage(const Loop& loop) {
   return "READY=1\nSTATUS=the servo ticks; " + std::to_string(loop.lateDryCycles()) + " of " +
@@ -104,93 +90,6 @@ Runner::~Runner() {
   world_.reset();
 }
 
-Result<std::unique_ptr<World>> Runner::buildWorld(const scene::Scene& scene, const RunOptions& options,
-                                                  const host::Services::Log& log) {
-  WorldOptions world_options;
-  world_options.rate = options.rate;
-  world_options.probe_count = static_cast<uint32_t>(scene.devices.size());
-  world_options.measure = true;
-  world_options.spare_models = options.spare_models;
-  world_options.max_force = maxForceOf(scene);
-  world_options.budgets = !options.virtual_time;  // a budget of real time would make two virtual runs differ
-  return World::build(scene, world_options, log);
-}
-
-Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const RunOptions& options,
-                                                std::unique_ptr<World> world, const host::Services::Log& log) {
-  std::unique_ptr<Runner> runner(new Runner(scene, options));
-  runner->world_ = std::move(world);
-  if (auto opened = runner->openArms(log); !opened) {
-    const bool real = std::any_of(scene.devices.begin(), scene.devices.end(),
-                                  [](const scene::Device& device) { return device.module != "simulated"; });
-    const bool absent = opened.error().find("cannot be opened") != std::string::npos;  // else its module is wrong
-    return Error{opened.error() + (options.virtual_time && real && absent
-                                       ? "\n  note: --virtual-time allows simulated devices only"
-                                       : "")};
-  }
-  if (options.virtual_time && !runner->onlySimulated())
-    return Error{
-        "--virtual-time runs faster than a real clock, but the scene names real hardware; expected simulated devices "
-        "only"};
-  runner->telemetry_ = std::make_unique<Telemetry>(runner->scene_, options.rate, runner->world_->places());
-  runner->openEventLog();
-
-  LoopSettings settings;
-  settings.period_ns = static_cast<Nanoseconds>(std::llround(1e9 / options.rate));
-  settings.ticks = options.duration ? static_cast<uint64_t>(std::llround(*options.duration * options.rate)) : 0;
-  settings.lockstep = options.virtual_time;
-  if (!options.virtual_time)  // programs' answers are only awaited for a time that does not make the tick late
-    settings.answer_time = std::min(static_cast<Nanoseconds>(scene.clients.answer_time * 1e9), settings.period_ns / 4);
-  // A simulation at a terminal starts without dry cycles: there is no hand, and no service manager waits for READY.
-  const bool watched = std::getenv("NOTIFY_SOCKET") != nullptr;
-  settings.dry_cycles = !options.virtual_time && (watched || !runner->onlySimulated()) ? kDryCycles : 0;
-  if (auto opened = runner->openBlackBox(settings); !opened) return Error{opened.error()};
-  if (options.virtual_time && runner->recorder_) {
-    runner->clock_ = std::make_unique<RecordedClock>(*runner->recorder_);
-  } else if (options.virtual_time) {
-    runner->clock_ = std::make_unique<VirtualClock>();
-  } else {
-    runner->clock_ = std::make_unique<RealClock>(spinFor(scene.servo));
-  }
-  if (Arm* pacing = pacingArm(runner->scene_.servo, runner->arms_)) {
-    settings.paced = true;
-    runner->clock_ = std::make_unique<PacedClock>(std::move(runner->clock_), pacing->device(), settings.period_ns);
-  }
-  runner->loop_ = std::make_unique<Loop>(runner->world_->core(), runner->world_->lockstep(), runner->arms_,
-                                         *runner->clock_, settings, *runner->telemetry_);
-  return runner;
-}
-
-Result<void> Runner::openBlackBox(const LoopSettings& settings) {
-  const auto models = world_->core().models();
-  const auto moving = std::count_if(models.begin(), models.end(), [](const ModelState& m) { return m.moves; });
-  const auto streams =
-      flightStreams(scene_, arms_, options_.rate, Telemetry::kBlackBoxSeconds, static_cast<size_t>(moving));
-  const RunFacts facts{options_.rate, settings.period_ns, settings.ticks, options_.virtual_time};
-  auto ring = record::FlightRing::create(streams, aboutRun(scene_, *world_, arms_, facts, streams), options_.black_box);
-  if (!ring) return Error{ring.error()};
-  telemetry_->attach(std::make_unique<Flight>(std::move(*ring), arms_, world_->places()));
-  if (!options_.status.empty()) {
-    auto page = status::PageFile::create(options_.status);
-    if (!page) return Error{page.error()};
-    telemetry_->attach(std::make_unique<StatusWriter>(std::move(*page), scene_, arms_, options_.rate));
-  }
-  if (options_.record.empty()) return {};
-  auto recorder = record::Recorder::create(telemetry_->flight()->ring(), options_.record);
-  if (!recorder) return Error{recorder.error()};
-  recorder_ = std::move(*recorder);
-  return {};
-}
-
-Result<void> Runner::openArms(const host::Services::Log& log) {
-  for (const scene::Device& device : scene_.devices) {
-    auto arm = Arm::open(device, scene_.servo, {options_.rate, world_->needsVelocity(), nullptr, scene_.clients}, log);
-    if (!arm) return Error{arm.error()};
-    arms_.push_back(std::move(*arm));
-  }
-  return {};
-}
-
 Result<void> Runner::run(const std::function<void(const Runner&)>& every, const std::function<void()>& ended) {
   if (needsGuard()) startGuard();
   const Nanoseconds now = clock_->now();
@@ -255,6 +154,35 @@ void Runner::serve(bool runs) {
   if (guard_ && loop_->silent()) guard_->arm(false);  // the last command was zero: no cut is needed
 }
 
+/// Starts the servo thread and waits until it has its rights, or knows that it gets none.
+/// @param anyhow true if the loop runs without rights as well
+Result<void> Runner::startServo(os::Thread& servo, bool anyhow) {
+  std::atomic<bool> ready{false};
+  std::vector<std::string> refused;  // written by the servo thread until `ready`, then read by this thread
+  const bool locked = warnings_.empty();
+  if (guard_) updateGuard();
+  const auto code = servo.start("hapticd-servo", [this, &ready, &refused, anyhow, locked] {
+    refused = enterRealTime();
+    const bool runs = anyhow || (locked && refused.empty());
+    ready = true;  // from here on `ready` and `refused` may be gone
+    serve(runs);
+  });
+  if (code) return Error{"cannot start the servo thread: " + code.message() + "\n  " + os::realTimeRights()};
+  RealClock clock(0);
+  while (!ready) clock.waitUntil(clock.now() + kReadyPoll);
+  std::move(refused.begin(), refused.end(), std::back_inserter(warnings_));
+  return {};
+}
+
+/// Stops the arms after the last tick. Ends the process if the module of an arm does not return.
+void Runner::stopArmsWatched(watch::WatchTarget& watched) {
+  const auto idle = [] {};
+  watch::EndWatch last(watched, idle, idle);
+  last.lastCalls(dieOfStop);
+  [[maybe_unused]] const auto unwatched = last.start();  // if it cannot start, the arms are stopped all the same
+  stopArms();
+}
+
 Result<void> Runner::runReal(watch::WatchTarget& watched, const std::function<void(const Runner&)>& every,
                              const std::function<void()>& ended) {
   const Nanoseconds begun = monotonicNow();
@@ -262,35 +190,17 @@ Result<void> Runner::runReal(watch::WatchTarget& watched, const std::function<vo
   if (const auto code = proximity.start()) return Error{"cannot start the proximity thread: " + code.message()};
   lockMemory();
   const os::DmaLatencyHold awake;
-  std::atomic<bool> ready{false};
   const auto watchdog = watchdogOf(watched, mayLag());
   if (const auto code = watchdog->start(options_.priority + 1))
     return Error{"cannot start the watchdog thread: " + code.message()};
-  std::vector<std::string> refused;  // written by the servo thread until `ready`, then read by this thread
-  const bool anyhow = onlySimulated() || options_.allow_non_rt, locked = warnings_.empty();
-  if (guard_) updateGuard();
+  const bool anyhow = onlySimulated() || options_.allow_non_rt;
   os::Thread servo;
-  const auto code = servo.start("hapticd-servo", [this, &ready, &refused, anyhow, locked] {
-    refused = enterRealTime();
-    const bool runs = anyhow || (locked && refused.empty());
-    ready = true;
-    serve(runs);
-  });
-  if (code) return Error{"cannot start the servo thread: " + code.message() + "\n  " + os::realTimeRights()};
-  RealClock clock(0);
-  while (!ready) clock.waitUntil(clock.now() + kReadyPoll);
-  std::move(refused.begin(), refused.end(), std::back_inserter(warnings_));
+  if (auto started = startServo(servo, anyhow); !started) return started;
   lookAfter(proximity, anyhow, every);
   watch::notify("STOPPING=1");
   servo.join();
   wall_time_ = monotonicNow() - begun;
-  {
-    const auto idle = [] {};
-    watch::EndWatch last(watched, idle, idle);
-    last.lastCalls(dieOfStop);
-    [[maybe_unused]] const auto unwatched = last.start();  // if it cannot start, the arms are stopped all the same
-    stopArms();
-  }
+  stopArmsWatched(watched);
   if (guard_) guard_->arm(false);
   proximity.stop();
   host::Services::passOn(log::write);
@@ -301,13 +211,6 @@ Result<void> Runner::runReal(watch::WatchTarget& watched, const std::function<vo
     return Error{warnings_.back() +
                  "\n  forces stay off\n  note: --allow-non-rt allows forces without real-time rights"};
   return {};
-}
-
-void Runner::openEventLog() {
-  std::vector<std::string> devices;
-  for (const scene::Device& device : scene_.devices) devices.push_back(device.name);
-  event_log_ = std::make_unique<EventLog>(world_->places(), std::move(devices), arms_);
-  for (uint32_t place = 0; place < scene_.models.size(); ++place) event_log_->name(place, scene_.models[place].name);
 }
 
 /// True if late ticks are normal: without real-time rights, or on a virtual machine whose processors are paused one by

@@ -40,6 +40,8 @@ struct RunOptions {
   bool allow_non_rt = false;  ///< true: real hardware may run without real-time rights
 };
 
+inline constexpr uint64_t kDryCycles = 2000;  ///< cycles with motors off, to judge the machine before a hand relies on it
+
 class Runner {
  public:
   /// [main] Sets up the models. If it fails, the error is in files or parameters that the scene names.
@@ -121,11 +123,14 @@ class Runner {
   Runner(const scene::Scene& scene, const RunOptions& options) : scene_(scene), options_(options) {}
   Result<void> openBlackBox(const LoopSettings& settings);
   Result<void> openArms(const host::Services::Log& log);
+  void openClock(LoopSettings& settings);
   Result<void> runReal(watch::WatchTarget& watched, const std::function<void(const Runner&)>& every,
                        const std::function<void()>& ended);
+  Result<void> startServo(os::Thread& servo, bool anyhow);
   void serve(bool runs);
   void lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::function<void(const Runner&)>& every);
   void stopArms();
+  void stopArmsWatched(watch::WatchTarget& watched);
   void stopProcess();
   bool mayLag() const;
   bool needsGuard() const;

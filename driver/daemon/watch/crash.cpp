@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "watch/crash.hpp"
 
-#include <dlfcn.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <iterator>
 
 #include "base/call_name.hpp"
 #include "base/fatal_signals_posix.hpp"
 #include "base/os.hpp"
 #include "base/owner_file.hpp"
 #include "watch/crash_steps.hpp"
+#include "watch/culprit.hpp"
 #include "watch/idle_target.hpp"
 #include "watch/process_end.hpp"
 #include "watch/signal_names.hpp"
@@ -30,40 +28,8 @@ struct Prepared {
   std::atomic<int> process{0};       ///< the watched process; in a fork of it the handler does nothing
   std::atomic<bool> leaving{false};  ///< the process ends normally, so a call of exit() is not a fault
   char dir[kLongestPath] = "";       // folder for the black box and the quarantine file; "": neither is written
-  /// The C library's last message before it aborted, if it keeps it: a length, and then the text.
-  const char* const* last_words = nullptr;
 };
 Prepared prepared;
-
-bool sentByOther(const siginfo_t& info) noexcept {
-  return info.si_code <= 0 && info.si_code != SI_TIMER && info.si_pid != 0 && info.si_pid != getpid();
-}
-
-/// Returns the owner of the code that raised a signal; nullptr if the owner is unknown. The owner counts as unknown if
-/// another process sent the signal, or if it was sent to the whole process: no name is better than a wrong one.
-const Owner* culpritOf(int signal, const siginfo_t& info, const void* context) noexcept {
-  const bool own_fault = crashName(signal) != nullptr && info.si_code > 0;
-  const bool raised = info.si_code == SI_TKILL && info.si_pid == getpid();
-  if (!own_fault && !raised) return nullptr;
-  if (const Owner* called = currentOwner()) return called;
-  return isWorker() ? nullptr : interruptedOwner(context);  // perhaps a thread that a plugin or module started
-}
-
-/// True if malloc() or free() aborted because its own data were overwritten. The code that overwrote them has returned
-/// long ago. Most likely it is code that does not ship with hapticd.
-bool allocatorAborted() noexcept {
-  constexpr const char* kItsWords[] = {"free", "alloc", "corrupt", "chunk"};
-  const char* said = prepared.last_words != nullptr ? *prepared.last_words : nullptr;
-  if (said == nullptr) return false;
-  return std::any_of(std::begin(kItsWords), std::end(kItsWords),
-                     [said](const char* word) { return std::strstr(said + sizeof(unsigned), word) != nullptr; });
-}
-
-bool isForeign(const Owner& owner) noexcept {
-  for (size_t i = 0; const Owner* foreign = foreignOwner(i); ++i)
-    if (foreign->module == owner.module) return true;
-  return false;
-}
 
 /// Returns the watched servo; nullptr if there is none, or if this process is a fork of the watched one.
 WatchTarget* watchedHere() noexcept {
@@ -90,15 +56,8 @@ void onFatal(int signal, siginfo_t* info, void* context) {
         .write(STDERR_FILENO);
     return;
   }
-  const Owner* culprit = culpritOf(signal, *info, context);
-  const bool own = info->si_code > 0 || (info->si_code == SI_TKILL && info->si_pid == getpid());
-  const bool torn = signal == SIGABRT && allocatorAborted();
-  // Shipped code may only free the memory that other code overwrote, so code that does not ship is the likelier cause.
-  if (torn && culprit != nullptr && foreignOwner(0) != nullptr && !isForeign(*culprit)) culprit = nullptr;
-  const Suspicion suspicion = culprit != nullptr || !own ? Suspicion::kNone
-                              : torn                     ? Suspicion::kTorn
-                                                         : Suspicion::kCrash;
-  endInSteps(servo, prepared.dir, {signalName(signal).text(), culprit, suspicion});
+  const Blame blame = blameFor(signal, *info, context);
+  endInSteps(servo, prepared.dir, {signalName(signal).text(), blame.culprit, blame.suspicion});
 }
 
 /// Handles Ctrl-C, SIGTERM and similar signals. If this process sent the signal itself, a module did it and no person
@@ -138,7 +97,7 @@ void guardAgainstCrash(WatchTarget& servo, const std::filesystem::path& dir) {
   const std::string text = dir.string();
   prepared.dir[0] = '\0';
   if (text.size() < kLongestPath) std::memcpy(prepared.dir, text.c_str(), text.size() + 1);
-  prepared.last_words = static_cast<const char* const*>(dlsym(RTLD_DEFAULT, "__abort_msg"));
+  prepareBlame();
   prepared.process.store(getpid());
   prepared.servo.store(&servo);
   onPlainExit([] { dieOfExit("a call of _exit()"); });

@@ -1,50 +1,18 @@
 // SPDX-License-Identifier: MIT
+#include "watch/watchdog.hpp"
+
 #include <gtest/gtest.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
-#include <thread>
 
-#include "watch/crash.hpp"
-#include "watch/end_watch.hpp"
-#include "watch/notify.hpp"
-#include "watch/quarantine.hpp"
-#include "watch/watchdog.hpp"
+#include "fake_servo.hpp"
 
 namespace hapticd::watch {
 namespace {
 
-struct Fake : WatchTarget {
-  uint64_t tick = 0;
-  Nanoseconds begun = 0, next = 0, cpu = 0, asked = 0;
-  bool harmless = false;
-  int cuts = 0;
-  const Owner* runs = nullptr;  ///< whose code the servo is in
-  uint64_t ticks() const noexcept override { return tick; }
-  Nanoseconds tickBegun() const noexcept override { return begun; }
-  Nanoseconds nextTick() const noexcept override { return next; }
-  Nanoseconds cpuTime() const noexcept override { return cpu; }
-  bool simulated() const noexcept override { return harmless; }
-  void cut(double) noexcept override { ++cuts; }
-  void stop() noexcept override {}
-  Nanoseconds stopAsked() const noexcept override { return asked; }
-  bool cutLeft() const noexcept override { return true; }
-  const Owner* inServo() const noexcept override { return runs; }
-  const void* blackBox() const noexcept override { return nullptr; }
-  size_t blackBoxBytes() const noexcept override { return 0; }
-};
-
-constexpr Nanoseconds kMs = 1'000'000;
-
 TEST(Watchdog, CutsATickThatDoesNotEndWithinFiveMillisecondsAndOnlyOnce) {
   for (Nanoseconds phase = 0; phase < kMs; phase += kMs / 10) {  // of the checks against the tick
-    Fake servo;
+    FakeServo servo;
     Watchdog watchdog(servo, [] {});
     servo.begun = 100 * kMs + phase;
     Nanoseconds cut_at = 0;
@@ -56,7 +24,7 @@ TEST(Watchdog, CutsATickThatDoesNotEndWithinFiveMillisecondsAndOnlyOnce) {
 }
 
 TEST(Watchdog, LeavesAServoAloneThatWaitsOrTicks) {
-  Fake servo;
+  FakeServo servo;
   Watchdog watchdog(servo, [] {});
   for (Nanoseconds now = kMs; now < 1000 * kMs; now += kMs) {
     servo.begun = now % (3 * kMs) == 0 ? 0 : now - kMs / 2;
@@ -69,7 +37,7 @@ TEST(Watchdog, LeavesAServoAloneThatWaitsOrTicks) {
 
 /// A virtual machine charges the servo with the time that it stood still: 28 ms were seen.
 TEST(Watchdog, ABusyMachineIsNoFaultOfASimulationButALoopIs) {
-  Fake servo;
+  FakeServo servo;
   servo.harmless = true;
   Watchdog watchdog(servo, [] {});
   servo.begun = kMs;
@@ -88,7 +56,7 @@ TEST(Watchdog, ABusyMachineIsNoFaultOfASimulationButALoopIs) {
 /// A servo that spins uses its processor, one that sleeps in a plugin does not: with hardware both are cut.
 TEST(Watchdog, CutsAPluginThatSpinsAndOneThatSleeps) {
   for (const bool spins : {true, false}) {
-    Fake servo;
+    FakeServo servo;
     Watchdog watchdog(servo, [] {});
     Nanoseconds cut_at = 0;
     for (Nanoseconds now = 100 * kMs; now < 130 * kMs; now += kMs) {
@@ -104,7 +72,7 @@ TEST(Watchdog, CutsAPluginThatSpinsAndOneThatSleeps) {
 /// The machine stands still for `stall` in the middle of a tick: watchdog and servo alike, and a virtual machine may
 /// charge the servo with the time. Gives how often the motors were cut when the tick then ends `rest` later.
 int cutsThroughAStall(bool simulated, Nanoseconds stall, Nanoseconds phase, Nanoseconds rest) {
-  Fake servo;
+  FakeServo servo;
   servo.harmless = simulated;
   Watchdog watchdog(servo, [] {});
   Nanoseconds now = 100 * kMs;
@@ -133,7 +101,7 @@ TEST(Watchdog, AMachineThatStoodStillIsNoServoThatIsStuck) {
 
 TEST(Watchdog, AfterAStallAServoThatIsStuckIsCutWithinFiveMillisecondsOfLooksOnTime) {
   for (const Nanoseconds jitter : {Nanoseconds{0}, kMs / 10, kMs / 2, kMs}) {
-    Fake servo;
+    FakeServo servo;
     Watchdog watchdog(servo, [] {});
     watchdog.check(100 * kMs);
     servo.begun = 100 * kMs + kMs / 5;
@@ -147,7 +115,7 @@ TEST(Watchdog, AfterAStallAServoThatIsStuckIsCutWithinFiveMillisecondsOfLooksOnT
 }
 
 TEST(Watchdog, ThatIsAlwaysLateStillCutsAtItsThirdLook) {
-  Fake servo;
+  FakeServo servo;
   Watchdog watchdog(servo, [] {});
   watchdog.check(100 * kMs);
   servo.begun = 101 * kMs;
@@ -157,7 +125,7 @@ TEST(Watchdog, ThatIsAlwaysLateStillCutsAtItsThirdLook) {
 }
 
 /// The servo waits for its next tick, which should have begun at `next`.
-Nanoseconds cutOfAWait(Fake& servo, Nanoseconds next, Nanoseconds missed_after, int& hung) {
+Nanoseconds cutOfAWait(FakeServo& servo, Nanoseconds next, Nanoseconds missed_after, int& hung) {
   Watchdog watchdog(servo, [&hung] { ++hung; }, missed_after);
   Nanoseconds cut_at = 0;
   servo.next = next;
@@ -168,7 +136,7 @@ Nanoseconds cutOfAWait(Fake& servo, Nanoseconds next, Nanoseconds missed_after, 
 
 TEST(Watchdog, CutsWhenTheNextTickDoesNotComeInTime) {
   for (Nanoseconds phase = 0; phase < kMs; phase += kMs / 10) {
-    Fake servo;
+    FakeServo servo;
     int hung = 0;
     const Nanoseconds next = 110 * kMs + phase, cut_at = cutOfAWait(servo, next, Watchdog::kMissedAfter, hung);
     EXPECT_EQ(servo.cuts, 1);
@@ -181,7 +149,7 @@ TEST(Watchdog, CutsWhenTheNextTickDoesNotComeInTime) {
 /// What a stuck tick holds, 8.5 N, gives a free tip of 75 g less than 5 mJ in that time.
 TEST(Watchdog, CutsWithinThreeMillisecondsOfLooksOnTime) {
   for (Nanoseconds phase = 0; phase < Watchdog::kCheckEvery; phase += Watchdog::kCheckEvery / 10) {
-    Fake servo;
+    FakeServo servo;
     Watchdog watchdog(servo, [] {});
     Nanoseconds cut_at = 0;
     for (Nanoseconds now = 100 * kMs; now < 130 * kMs; now += Watchdog::kCheckEvery) {
@@ -195,7 +163,7 @@ TEST(Watchdog, CutsWithinThreeMillisecondsOfLooksOnTime) {
 }
 
 TEST(Watchdog, EndsAProcessWhoseDeviceNeverComesBackFromItsWait) {
-  Fake servo;
+  FakeServo servo;
   servo.runs = ownerOf("arm", "arm", true);
   int hung = 0;
   EXPECT_LE(cutOfAWait(servo, 110 * kMs, Watchdog::kMissedAfter, hung), 115 * kMs);
@@ -203,12 +171,12 @@ TEST(Watchdog, EndsAProcessWhoseDeviceNeverComesBackFromItsWait) {
 }
 
 TEST(Watchdog, ALateTickIsNoFaultOfASimulationOrOfAMachineThatStoodStill) {
-  Fake simulation;
+  FakeServo simulation;
   simulation.harmless = true;
   int hung = 0;
   EXPECT_EQ(cutOfAWait(simulation, 110 * kMs, Watchdog::kMissedAfter, hung), 0u);
   for (const Nanoseconds stall : {4 * kMs, 10 * kMs, 150 * kMs, 5000 * kMs}) {
-    Fake servo;
+    FakeServo servo;
     Watchdog watchdog(servo, [] {});
     watchdog.check(100 * kMs);
     servo.next = 101 * kMs;
@@ -223,7 +191,7 @@ TEST(Watchdog, ALateTickIsNoFaultOfASimulationOrOfAMachineThatStoodStill) {
 }
 
 TEST(Watchdog, EndsARunThatWasToldToEndAndDoesNot) {
-  Fake servo;
+  FakeServo servo;
   Watchdog watchdog(servo, [] {});
   int late = 0;
   watchdog.onLateEnd([&late] { ++late; });
@@ -238,7 +206,7 @@ TEST(Watchdog, EndsARunThatWasToldToEndAndDoesNot) {
 
 TEST(Watchdog, AVirtualMachineMayTakeLongerForATick) {
   for (const Nanoseconds took : {4 * kMs, 8 * kMs, 15 * kMs}) {
-    Fake servo;
+    FakeServo servo;
     Watchdog watchdog(servo, [] {}, Watchdog::kMissedInVirtualMachine, Watchdog::kStuckInVirtualMachine);
     servo.begun = 100 * kMs;
     for (Nanoseconds now = 100 * kMs; now <= 100 * kMs + took; now += kMs) watchdog.check(now);
@@ -247,7 +215,7 @@ TEST(Watchdog, AVirtualMachineMayTakeLongerForATick) {
 }
 
 TEST(Watchdog, AVirtualMachineMayBeLateForLonger) {
-  Fake servo;
+  FakeServo servo;
   int hung = 0;
   const Nanoseconds cut_at = cutOfAWait(servo, 110 * kMs, Watchdog::kMissedInVirtualMachine, hung);
   EXPECT_GT(cut_at, 155 * kMs);
@@ -255,7 +223,7 @@ TEST(Watchdog, AVirtualMachineMayBeLateForLonger) {
 }
 
 TEST(Watchdog, EndsAServoThatNeverComesBack) {
-  Fake servo;
+  FakeServo servo;
   int hung = 0;
   Watchdog watchdog(servo, [&hung] { ++hung; });
   servo.begun = kMs;
@@ -266,7 +234,7 @@ TEST(Watchdog, EndsAServoThatNeverComesBack) {
 /// How many seconds of looks on time it takes until a thread is said to hang that never comes back.
 /// @param share of a processor that the servo gets meanwhile
 double namedAfter(bool simulated, double share) {
-  Fake servo;
+  FakeServo servo;
   servo.harmless = simulated;
   int hung = 0;
   Watchdog watchdog(servo, [&hung] { ++hung; });
@@ -290,118 +258,6 @@ TEST(Watchdog, NamesNobodyForASimulationThatGetsNoProcessor) {
   EXPECT_LT(namedAfter(true, 1), 0.6) << "it spins";
   EXPECT_LT(namedAfter(true, 0.5), 1.1) << "it spins on a busy machine";
   for (const double share : {0.0, 0.5, 1.0}) EXPECT_LT(namedAfter(false, share), 0.51) << "a real arm: " << share;
-}
-
-#ifndef HAPTICD_SANITIZED  // the sanitizers handle these signals themselves
-
-/// A device whose cut crashes, or never comes back.
-struct BadCut : Fake {
-  bool hangs = false;
-  void cut(double) noexcept override {
-    while (hangs) pause();
-    std::raise(SIGSEGV);
-  }
-};
-
-TEST(CrashDeathTest, OneInsideTheCutOfTheMotorsStillEndsInQuarantine) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
-  const std::filesystem::path dir = std::filesystem::temp_directory_path() / "hapticd-bad-cut";
-  std::filesystem::remove_all(dir);
-  std::filesystem::create_directories(dir);
-  const auto crash = [&] {
-    BadCut servo;
-    guardAgainstCrash(servo, dir);
-    const OwnerScope calling(ownerOf("bad", "model"));
-    std::raise(SIGFPE);
-  };
-  EXPECT_EXIT(crash(), testing::ExitedWithCode(1), "SIGFPE.*\n.*switching the motors off crashed too");
-  ASSERT_EQ(quarantined(dir).size(), 1u);
-  EXPECT_EQ(quarantined(dir)[0].plugin, "bad");
-  std::filesystem::remove_all(dir);
-}
-
-TEST(CrashDeathTest, ACutThatNeverComesBackIsEndedByTheNextThreadThatMissesTheServo) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
-  const auto crash = [] {
-    BadCut servo;
-    servo.hangs = true;
-    guardAgainstCrash(servo, "");
-    std::thread servo_thread([] { std::raise(SIGFPE); });
-    usleep(100'000);
-    endByFault("a step that did not come back", nullptr);
-  };
-  EXPECT_EXIT(crash(), testing::ExitedWithCode(1), "");
-}
-
-#endif
-
-TEST(Notify, FeedsTheServiceManagerOnlyWhileTicksMove) {
-  const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0);
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  const std::string path = (std::filesystem::temp_directory_path() / ("notify" + std::to_string(getpid()))).string();
-  std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
-  unlink(path.c_str());
-  ASSERT_EQ(bind(fd, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
-  setenv("NOTIFY_SOCKET", path.c_str(), 1);
-  setenv("WATCHDOG_USEC", "2000000", 1);
-  Feeder feeder;
-  EXPECT_TRUE(feeder.feed(10'000 * kMs, 5));
-  char got[64] = "";
-  EXPECT_EQ(recv(fd, got, sizeof got, 0), 10);
-  EXPECT_STREQ(got, "WATCHDOG=1");
-  EXPECT_FALSE(feeder.feed(20'000 * kMs, 5)) << "the servo stands still";
-  EXPECT_TRUE(feeder.feed(20'000 * kMs, 6));
-  unsetenv("NOTIFY_SOCKET");
-  unsetenv("WATCHDOG_USEC");
-  EXPECT_FALSE(notify("READY=1"));
-  close(fd);
-  unlink(path.c_str());
-}
-
-/// Looks at one tick that takes `looks` looks, in each of which the servo computes for `cpu`.
-int hungIn(Fake& servo, Nanoseconds looks, Nanoseconds cpu) {
-  int hung = 0;
-  EndWatch watch(servo, [] {}, [&hung] { ++hung; });
-  servo.begun = 0;
-  watch.check(1);
-  servo.begun = 1;
-  servo.cpu += 20 * EndWatch::kHungAfter;  // in the set-up, before the thread had told its clock
-  for (Nanoseconds i = 0; i < looks; ++i) watch.check(1), servo.cpu += cpu;
-  return hung;
-}
-
-TEST(EndWatch, EndsATickThatComputesOnAndOnAndOneThatWaits) {
-  constexpr Nanoseconds kLook = EndWatch::kLookEvery, kHung = EndWatch::kHungAfter / kLook;
-  Fake servo;
-  EXPECT_EQ(hungIn(servo, kHung, kLook), 0);
-  EXPECT_GT(hungIn(servo, kHung + 2, kLook), 0);
-  EXPECT_EQ(hungIn(servo, EndWatch::kWaitsAfter / kLook - 1, 0), 0);
-  EXPECT_GT(hungIn(servo, EndWatch::kWaitsAfter / kLook + 2, 0), 0);
-}
-
-TEST(EndWatch, EndsWhatDoesNotComeBackAfterTheLastTick) {
-  Fake servo;
-  int stuck = 0;
-  EndWatch watch(servo, [] {}, [] { FAIL() << "no tick is to come"; });
-  watch.lastCalls([&stuck] { ++stuck; });
-  for (Nanoseconds looks = 1; looks < EndWatch::kWaitsForLast / EndWatch::kLookEvery; ++looks) watch.check(looks);
-  EXPECT_EQ(stuck, 0);
-  watch.check(1), watch.check(2);
-  EXPECT_EQ(stuck, 2) << "asked again, as long as nobody is to blame";
-}
-
-TEST(EndWatch, LeavesSlowTicksAloneHoweverManyThereAre) {
-  Fake servo;
-  int hung = 0;
-  EndWatch watch(servo, [] {}, [&hung] { ++hung; });
-  for (servo.tick = 0; servo.tick < 20; ++servo.tick)
-    for (Nanoseconds looks = 0; looks < 50; ++looks) {
-      servo.begun = static_cast<Nanoseconds>(servo.tick) + 1;
-      servo.cpu += EndWatch::kLookEvery;
-      watch.check(1);
-    }
-  EXPECT_EQ(hung, 0);
 }
 
 }  // namespace
