@@ -49,7 +49,7 @@ std::string reasonOf(int error) {
     return "the bridge does not know this space, cycle or width, or the base is not a multiple of 64 KiB";
   if (error == EFAULT) return "the window ends beyond the address space";
   if (error == EBUSY || error == ENOMEM)
-    return "the bridge has no room for the window: another window may use this place";
+    return "the bridge has no room for the window: another window may already use these addresses";
   return std::strerror(error);
 }
 

@@ -107,7 +107,7 @@ void printLimits(const scene::Limits& limits, double most) {
                                     : ((limits.enable.mode == scene::EnableMode::kHold ? "while " : "on and off by ") +
                                        diagnostics::enableButtonText(*limits.enable.button))
                                           .c_str());
-  std::printf("  ramps      %g s in, %g s out\n  passivity  %s\n", limits.ramp_in, limits.ramp_out,
+  std::printf("  ramps      %g s to full force, %g s to zero\n  passivity  %s\n", limits.ramp_in, limits.ramp_out,
               !limits.passivity   ? "guarded, unless its description was tried on hardware"
               : *limits.passivity ? "guarded"
                                   : "not guarded");

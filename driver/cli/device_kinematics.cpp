@@ -187,8 +187,8 @@ int kinematics(const KinematicsArguments& options) {
       return fail(kFailed, options.joints + ": row " + std::to_string(i + 1) + ": " + done.error());
   if (table.outside() > 0)
     std::fprintf(stderr,
-                 "warning: %s: in %zu of %zu rows the tip is beyond the arm's joint limits\n  the numbers ignore these "
-                 "limits\n  fix: correct the joints, or arm.limits in %s\n",
+                 "warning: %s: in %zu of %zu rows the arm cannot reach the tip position within its joint limits\n  the "
+                 "table was computed without these limits\n  fix: correct the joint positions, or arm.limits in %s\n",
                  options.joints.c_str(), table.outside(), rows->rows(), options.file.c_str());
   return std::fflush(out) == 0 ? kWorked : fail(kFailed, options.out + ": cannot be written");
 }

@@ -93,7 +93,7 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
                                      : "is traced by its plugin in every tick";
     printLine("  surfaces", surfaces);
     printLine("  motion", (report.flags & HSP_R_MOVES) != 0       ? "moved by its plugin: integrated in every tick"
-                          : model.kinematic && model.path.empty() ? std::string("rests until a program leads it")
+                          : model.kinematic && model.path.empty() ? std::string("rests until a program moves it")
                           : model.kinematic ? "follows " + std::to_string(model.path.size()) + " points of a path"
                                             : "none: no integrator, its pose is fixed");
     if ((shape.description().flags & HSP_C_DEFORMS) != 0)

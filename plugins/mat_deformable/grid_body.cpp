@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using medial::SkeletonFoot;
 
-/// If a probe has moved by more than this share of a cell in a tick, its foot is searched on the whole body.
+/// If a probe has moved by more than this share of a cell in a tick, its foot point is searched for on the whole body.
 constexpr double kNewPlace = 0.25;
 /// [m] If the body is farther from the probe than this, the servo thread does not search the whole body. It waits for
 /// the foot that the proximity search offers.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Base class of the arms behind a vendor's library. The joints of such an arm are the coordinates of its tip, and the
-/// library compensates its weight.
+/// Base class of the arms that are driven through a vendor's library. The joints of such an arm are the coordinates of
+/// its tip, and the library compensates the weight of the arm.
 #pragma once
 #include <algorithm>
 #include <cmath>

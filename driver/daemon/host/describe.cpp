@@ -15,7 +15,9 @@
 namespace hapticd::host {
 namespace {
 
-constexpr int kLimitMs = 5000;         ///< longest time to load a file: slow constructors would delay the daemon too
+/// [ms] longest time to load a plugin or module for its description. The daemon loads it later in its own process, and
+/// slow constructors would delay it there.
+constexpr int kLimitMs = 5000;
 constexpr uint32_t kMaxParams = 4096;  ///< a table that claims more is damaged
 constexpr uint32_t kMaxChoices = 4096;
 

@@ -55,7 +55,8 @@ class DeviceInstance {
     return class_->write(device_, now_ns, &command);
   }
 
-  /// [any] Frees the motors at once by the module's cut(). Returns false if the module has no cut(). Async-signal-safe.
+  /// [any] Switches the motors off at once by the module's cut(). Returns false if the module has no cut().
+  /// Async-signal-safe.
   bool cut() noexcept {
     if (cut_ == nullptr || playback_ != nullptr) return playback_ != nullptr;
     const OwnerScope calling(owner_);

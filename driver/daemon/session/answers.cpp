@@ -280,7 +280,7 @@ std::string noForceWhy(const Session& session, uint32_t index) {
   const Arm& arm = *session.runner.arms()[index];
   const std::string& device = session.runner.scene().devices[index].name;
   const Fault fault = arm.limiter().fault();
-  const std::string clear = "\n  fix: hapticd ctl clear, once whoever holds the arm agrees";
+  const std::string clear = "\n  fix: hapticd ctl clear, once the person who holds the arm agrees";
   if (fault == Fault::kStopped)
     return "device " + device + ": it is held; its forces ended and stay off until it is cleared" + clear;
   if (fault != Fault::kNone)

@@ -43,7 +43,7 @@ std::string silencedWhy(const Session& session, uint32_t place);
 /// felt until then.
 bool waitsForTip(const Session& session, uint32_t place);
 
-/// [main] Returns why an arm gets no force now, and what to do; "" if forces flow.
+/// [main] Returns why an arm gets no force now, and what to do; "" if nothing keeps its force off.
 std::string noForceWhy(const Session& session, uint32_t arm);
 
 /// [main] Lists the models: names, numbers, poses, leaders, and live parameters with their values.

@@ -151,8 +151,8 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
       return {HSP_LOG_WARNING, "",
               fmt::format(
                   "no tick for {:.2f} s, until {:.2f} s: the process was stopped (SIGSTOP, a debugger), the "
-                  "machine had no time for it, or a call of an arm's module took that long (\"in arms\" of the report; "
-                  "hapticd device check FILE)",
+                  "machine was too busy, or a call of an arm's module took that long (see \"in arms\" in the report of "
+                  "the run, or try: hapticd device check FILE)",
                   event.value, event.t)};
     default:
       return {HSP_LOG_DEBUG, "", ""};

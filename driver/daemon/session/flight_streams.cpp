@@ -131,8 +131,8 @@ RowLayout orderColumns() {
              "kinds 12, 13 of a force: place of the program on the arm; otherwise 0");
   layout.add(
       "value", ColumnType::kReal, "",
-      "kind 4: new value; 9: accuracy level; 12, 13: process id of the leader; 11: 1 if the cut was found before "
-      "the tick, 0 if in it");
+      "kind 4: new value; 9: accuracy level; 12, 13: process id of the leader; 11: 1 if the servo found the cut when "
+      "it read the arm, 0 when it wrote the force");
   layout.add("seconds", ColumnType::kReal, "s", "kind 3: duration of the move; 11: how long the servo was stuck");
   vector(layout, "", "m", "kind 3: position after the move, world frame");
   quaternion(layout, "", "kind 3: orientation after the move, world frame");

@@ -67,15 +67,15 @@ Result<std::unique_ptr<PageFile>> PageFile::create(const std::string& file) {
   } else {
     unlink(file.c_str());
     const int fd = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0640);
-    if (fd < 0) return cannot("cannot keep the status page", file, errno);
+    if (fd < 0) return cannot("cannot create the status page", file, errno);
     owner->file_ = file;
     const int full = posix_fallocate(fd, 0, sizeof(Page));
     if (full == 0) memory = mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
     const int code = full != 0 ? full : errno;
     close(fd);
-    if (memory == MAP_FAILED) return cannot("cannot keep the status page", file, code);
+    if (memory == MAP_FAILED) return cannot("cannot create the status page", file, code);
   }
-  if (memory == MAP_FAILED) return Error{"cannot keep the status page: out of memory"};
+  if (memory == MAP_FAILED) return Error{"cannot create the status page: out of memory"};
   owner->page_ = new (memory) Page;
   owner->page_->bytes = sizeof(Page);
   owner->page_->pid = static_cast<uint32_t>(getpid());

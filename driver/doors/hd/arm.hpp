@@ -89,7 +89,7 @@ class Arm {
   double held_force_[3] = {}, held_torque_[3] = {};
   uint32_t capabilities_ = 0, told_fault_ = 0;
   double stopped_since_ = -1;  ///< [s] time of the daemon since which the arm is held; < 0 if it is not held
-  bool told_limit_ = false;    ///< true after it was reported that the program asks for more than the largest force
+  bool told_limit_ = false;    ///< true while the program asks for more than the largest force of the arm; told once
   Bounds bounds_;
 };
 

@@ -34,8 +34,8 @@ std::string idIsMissing(int id) {
 /// Returns the hint for reports that begin with the id, if the size in the file counts the id by mistake.
 std::string sizeCountsTheId(const codec::Wire& wire) {
   return "each begins with " + hexByte(wire.input.id) +
-         ", the report id, and has one byte too few: size does not count "
-         "the id; give wire.input size: " +
+         ", the report id, and has one byte too few: wire.input size must not "
+         "include the id; give wire.input size: " +
          std::to_string(wire.input.size - 1) + " (it is " + std::to_string(wire.input.size) + ")\n";
 }
 

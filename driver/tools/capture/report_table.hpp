@@ -59,7 +59,8 @@ std::string summaryOf(const Decoded& decoded);
 Result<std::vector<uint8_t>> encodeRow(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns,
                                        const double* values, uint32_t sequence);
 
-/// [main] Returns the columns that encodeRow() understands for an arm with `joints` joints, in this order.
+/// [main] Returns the names of all columns that encodeRow() accepts for an arm with `joints` joints: first those of
+/// the joints.
 std::vector<std::string> columnsOf(const codec::Wire& wire, size_t joints, bool to_arm);
 
 }  // namespace hapticd::capture

@@ -121,7 +121,7 @@ class LengthsInMetres {
       ++outside_;
       if (c.depth_m == 0) ++flat_;
     }
-    constexpr double kLeast = 1e-7, kFar = 1e-5;  // [m] least step that is judged; [m] tolerance of a foot
+    constexpr double kLeast = 1e-7, kFar = 1e-5;  // [m] least step and least depth that are judged
     const double out = Vector3d(c.normal).dot(p - before);
     if (std::abs(out) > std::max(kLeast, 0.5 * (p - before).norm())) rates_.push_back((depth_before - c.depth_m) / out);
     if (std::abs(c.depth_m) > kFar) feet_.push_back((p - Vector3d(c.point)).norm() / std::abs(c.depth_m));

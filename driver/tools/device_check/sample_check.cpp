@@ -58,8 +58,8 @@ Finding SampleCheck::sum() const {
   if (fresh_ <= 1)
     return Finding::failed(
         "hdv_sample.sequence does not grow: " + std::to_string(reads_) +
-        " reads gave the same number, and a run takes the force away after 50 ms; expected one more for each new "
-        "sample");
+        " reads gave the same sequence number; a run takes the force away after 50 ms without a new one; expected a "
+        "larger number with each new sample");
   if (timeless_ == reads_)
     return Finding::warned(
         "hdv_sample.time_ns is never set; expected the time of the measurement, on the clock of now_ns");

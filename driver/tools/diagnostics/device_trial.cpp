@@ -79,7 +79,7 @@ void placeAtModule(const std::string& error, const Node& root, const std::string
   for (const std::string& line : linesOf(error)) document::report(problems, file, at.line, at.column, "module", line);
 }
 
-/// Reports what a module says about its parameters, each message at the place of its key in the file.
+/// Reports the messages of a module about its parameters, each with the line and column of its parameter in the file.
 void placeComplaints(const std::string& error, const Node& parameters, const Node& root, const std::string& file,
                      const document::Problems& known, document::Problems& problems) {
   for (const std::string& message : linesOf(error)) {

@@ -147,7 +147,7 @@ void Nodes::yield(const NodeContact& contact, std::span<const NodeWeight> felt,
     v += part.weight * nodes_[part.node].v;
   }
   const double push = contact.depth + bulge_ - inward.dot(x);
-  if (!(push > -kAsleep)) return;  // the probe moves away, and the contour follows it later
+  if (!(push > -kAsleep)) return;  // the contour lies deeper than the probe; its springs bring it back
   const double kick = options_.dynamics ? std::max(0.0, contact.speed - inward.dot(v)) : 0;
   if (!(std::max(push, 0.0) + kick > 0) || !std::isfinite(push + kick)) return;
   const Vector4d dx = std::max(push, 0.0) * share, dv = kick * share;

@@ -113,7 +113,8 @@ TEST_F(DeviceCommands, KinematicsWarnsOfJointsBeyondTheArmsLimits) {
   const Outcome outside =
       run("device kinematics " + arm + " --joints " + put("out.csv", "q1,q2,q3\n0,1,1.5\n1.6,1,1.5\n"), kShipped);
   EXPECT_EQ(outside.exit_code, 0) << outside.text;
-  EXPECT_TRUE(has(outside.text, "in 1 of 2 rows the tip is beyond the arm's joint limits")) << outside.text;
+  EXPECT_TRUE(has(outside.text, "in 1 of 2 rows the arm cannot reach the tip position within its joint limits"))
+      << outside.text;
 }
 
 /// The number in a column of the one row of a CSV text.

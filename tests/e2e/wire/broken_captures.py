@@ -98,7 +98,7 @@ check("a scale of time that is 1000 times too large", "scale of the field time t
 lines = "\n".join(raw[i : i + 17].hex(" ") for i in range(0, len(raw), 17)) + "\n"
 short = "\n".join(line[: 3 * 16 - 1] for line in lines.splitlines()) + "\n"
 code, rows, err = decode(short)
-check("a size that counts the id is told", "size does not count the id; give wire.input size: 15" in err, err)
+check("a size that counts the id is told", "size must not include the id; give wire.input size: 15" in err, err)
 
 
 def warned(words, file):

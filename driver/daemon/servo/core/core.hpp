@@ -58,7 +58,7 @@ struct ModelState {
   bool moves = false;   ///< true if its pose may change
   hsp_status status = HSP_OK;
   hsp_status failed_status = HSP_OK;  ///< the first status that step() returned and that the ABI does not allow
-  Pull pull;                          ///< the pull for which it was silenced, or the largest jump of its force
+  Pull pull;                          ///< the pull that silenced it; without one, the largest jump of its force
   Guard guard;
   ClaimBounds claims;         ///< how fast its force may change
   bool overran = false;       ///< its last step took too long, and was counted against it (Guard::strike())

@@ -21,7 +21,7 @@ enum class Fault : uint8_t {
   kStopped,        ///< a user holds the arm, or the run ends
   kStuck,          ///< a tick did not end and the watchdog cut the motors [s]
   kOverheated,     ///< a motor is hotter than allowed, by the model of its heat [degC]
-  kJumped,         ///< two positions are farther apart than a hand can move [m/s]
+  kJumped,         ///< the tip moved farther between two samples than a hand can move it [m/s]
   kNotUnit         ///< the device's orientation is not a unit quaternion [its length]
 };
 constexpr int kFaultCount = 13;

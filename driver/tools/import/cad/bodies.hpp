@@ -19,7 +19,7 @@ class BodyBuilder {
   /// @param name name of the body, for the list of losses
   BodyBuilder(const Colours& colours, std::string name, brep::Part& part);
 
-  /// [main] Appends the body and returns its index. Faces that cannot be kept become losses.
+  /// [main] Appends the body and returns its index. Faces that cannot be converted are listed in Part::losses.
   std::uint32_t add(const TopoDS_Shape& shape, std::uint32_t name, std::uint32_t colour);
   /// Returns how many spline faces of the body were found to be planes, cylinders, cones or spheres.
   std::size_t recognisedFaces() const { return recognised_; }
