@@ -217,6 +217,9 @@ std::string belongsTo(const Table& table, const std::string& name) {
       return std::string("; ") + name + " belongs under the key " + key.name;
   if (table.other != nullptr && table.other->find(name) != nullptr)
     return "; " + name + " belongs in " + table.other_file;
+  for (const Key& key : table.other != nullptr ? std::span<const Key>(table.other->keys) : std::span<const Key>())
+    if (key.type == Type::kObject && key.table->find(name) != nullptr)
+      return "; " + name + " belongs in " + table.other_file + ", under the key " + key.name;
   return table.find("parameters") != nullptr ? "; a parameter of the plugin or module belongs under parameters" : "";
 }
 
