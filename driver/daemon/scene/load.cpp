@@ -47,7 +47,7 @@ const Format* detail::formatOf(const Node& root) {
 bool detail::isMeantAsDevice(const Node& root) {
   if (!root.isMap() || root.find("models") != nullptr || root.find("format") != nullptr) return false;
   const Format* format = formatOf(root);
-  if (format != nullptr) return format->table == &kSceneTable && root.find("module") != nullptr;
+  if (format != nullptr && format->table != &kSceneTable) return false;
   return root.find("module") != nullptr || root.find("parameters") != nullptr;
 }
 
@@ -56,8 +56,8 @@ static void reportNoDeviceVersion(const Node& root, Reader& in) {
   for (const Entry& entry : root.entries) {
     if (entry.key.scalar == "hapticd")
       return in.problem(entry.key, "hapticd",
-                        "this is the key of a scene, but the file has a module and no models, so it describes a "
-                        "device; expected hapticd-device: 1");
+                        "this is the key of a scene, but the file has no models, and a module or parameters, so it "
+                        "describes a device; expected hapticd-device: 1");
     if (!nearest(entry.key.scalar, {"hapticd-device"}).empty())
       return in.problem(entry.key, entry.key.scalar, "unknown key, expected hapticd-device: 1");
   }

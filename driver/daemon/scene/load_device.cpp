@@ -118,14 +118,6 @@ std::string suggestModule(const std::string& name, const Node* parameters, host:
   return best;
 }
 
-/// Returns the module that a file without a usable module means: if the key is misspelt, the value of the misspelt key.
-std::string meantModule(const Node& root, const DeviceText& text, host::Catalog& catalog) {
-  std::string name = text.module;
-  for (const Entry& entry : root.entries)
-    if (name.empty() && !nearest(entry.key.scalar, {"module"}).empty()) name = entry.value.scalar;
-  return catalog.device(name) ? name : suggestModule(name, text.parameters, catalog);
-}
-
 /// Adds the modules that there are to the problem that the key `module` is missing.
 void nameModules(const std::string& as, host::Catalog& catalog, Reader& in) {
   for (Problem& one : in.problems())
@@ -152,12 +144,13 @@ std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceRefer
   auto found = text.module.empty() ? Result<const host::ClassInfo*>(Error{}) : catalog.device(text.module);
   if (!found) {
     // The parameters of a module that is not built here cannot be judged, and as those of another all would be wrong.
-    const std::string meant = host::shipsName(text.module) ? "" : meantModule(root, text, catalog);
+    const std::string meant = host::shipsName(text.module) ? "" : suggestModule(text.module, text.parameters, catalog);
     const std::string as = meant.empty() ? "" : "\n  the parameters are judged as those of " + meant;
+    const Node* at = root.find("module");  // missing if the key is misspelt
     if (text.module.empty())
       nameModules(as, catalog, in);
     else
-      in.problem(*root.find("module"), "module", found.error() + as);
+      in.problem(at != nullptr ? *at : root, "module", found.error() + as);
     if (!meant.empty()) found = catalog.device(meant);  // to find the other problems, too
     if (!found) return std::nullopt;
     device.module = meant;

@@ -99,7 +99,7 @@ void ParameterReader::read(const Node& node, const std::string& key, const std::
     else if (isGroup(info_, id))
       read(entry.value, path, id);
     else
-      unknown(entry, path, id);
+      unknown(node, entry, path, id);
   }
 }
 
@@ -118,7 +118,7 @@ void ParameterReader::nothing(const Entry& entry, const std::string& key, uint32
   in_->problem(entry.key, key, "no value given, expected " + expected);
 }
 
-void ParameterReader::unknown(const Entry& entry, const std::string& key, const std::string& id) {
+void ParameterReader::unknown(const Node& around, const Entry& entry, const std::string& key, const std::string& id) {
   std::vector<std::string> ids = info_.paramIds();
   if (ids.empty()) return in_->problem(entry.key, key, "unknown key: " + info_.name + " has no parameters");
   constexpr const char* kOfTheFile[] = {"name", "mount", "limits", "admittance", "hand", "hd", "module"};
@@ -138,6 +138,16 @@ void ParameterReader::unknown(const Entry& entry, const std::string& key, const 
   in_->problem(entry.key, key,
                "unknown parameter of " + info_.name + ", expected one of " + document::listed(names, 24) +
                    (inside.empty() ? document::suggestion(id, ids) : " (did you mean \"" + inside + "\"?)"));
+  const std::string meant = inside.empty() ? document::nearest(id, ids) : inside;
+  if (around.find(meant.substr(meant.rfind('.') + 1)) == nullptr) judgeAs(meant, entry, key);
+}
+
+void ParameterReader::judgeAs(const std::string& meant, const Entry& entry, const std::string& key) {
+  const int index = info_.indexOf(meant);
+  if (index >= 0 && given_[static_cast<size_t>(index)] == 0 && !entry.value.isNull())
+    readOne(entry.value, key, static_cast<uint32_t>(index));
+  else if (index < 0 && isGroup(info_, meant) && entry.value.isMap())
+    read(entry.value, key, meant);
 }
 
 void ParameterReader::readOne(const Node& node, const std::string& key, uint32_t index) {
