@@ -64,7 +64,9 @@ static std::string inOtherUnits(double value, const Range& range) {
     const char *unit, *meant;
     double factor;
   };
-  static constexpr UnitSlip kSlips[] = {{"m", "mm", 1e-3}, {"rad", "degrees", M_PI / 180}, {"s", "ms", 1e-3}};
+  static constexpr UnitSlip kSlips[] = {{"m", "mm", 1e-3}, {"rad", "degrees", M_PI / 180},
+                                        {"s", "ms", 1e-3}, {"kg", "g", 1e-3},
+                                        {"N", "mN", 1e-3}, {"N m", "N mm", 1e-3}};
   for (const UnitSlip& slip : kSlips)
     if (const double meant = value * slip.factor;
         std::string_view(range.unit) == slip.unit && meant >= range.min && meant <= range.max)

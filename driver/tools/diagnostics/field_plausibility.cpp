@@ -185,6 +185,19 @@ void coarseAngles(const Side& side) {
   }
 }
 
+/// Warns if one count of a velocity is faster than any joint, because counts or degrees were meant.
+void coarseVelocities(const Side& side) {
+  constexpr double kFast = 10;  // [rad/s]
+  for (const size_t i : side.of({Role::kVelocity})) {
+    const Field& field = side.report.fields[i];
+    if (field.type == codec::Type::kFloat || !(std::abs(field.scale) >= kFast)) continue;
+    side.warn(i, "scale",
+              fmt::format("one count of the velocity of joint {} is {:g} rad/s, faster than a hand turns a joint; the "
+                          "value must be in rad/s per count",
+                          field.index + 1, field.scale));
+  }
+}
+
 /// Warns if the joints have another order in the output than in the input, because most boards use one order, and
 /// forces at the wrong joints may pull the hand in.
 void crossedJoints(const Side& in, const Side& out) {
@@ -298,6 +311,7 @@ void warnOfImplausibleFields(const Node& root, const scene::Device& device, size
     coarseAngles(input);
   for (const Side* side : {&input, &output}) polynomialBackwards(*side);
   idleOffset(input);
+  coarseVelocities(input);
   if (!wireOf(device, joints)) return;  // fields are compared with each other only if all of them are right
   for (const Side* side : {&input, &output}) {
     mixedOrder(*side);
