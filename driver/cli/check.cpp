@@ -82,7 +82,7 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
   if (!options.files_only || !options.device.empty())  // what the check of the device file itself says
     for (const scene::Device& device : full.devices)
       for (const document::Problem& one : warnOfDevice(device.file, catalog()))
-        if (!tells(more, one)) more.push_back(one);
+        if (!tells(more, one) && one.key != "mount") more.push_back(one);  // scenes have their own check of the place
   result.warnings.insert(result.warnings.end(), more.begin(), more.end());
 }
 

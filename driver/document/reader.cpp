@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "document/reader.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -63,7 +64,9 @@ static std::string inOtherUnits(double value, const Range& range) {
     const char *unit, *meant;
     double factor;
   };
-  static constexpr UnitSlip kSlips[] = {{"m", "mm", 1e-3}, {"rad", "degrees", M_PI / 180}, {"s", "ms", 1e-3}};
+  static constexpr UnitSlip kSlips[] = {{"m", "mm", 1e-3}, {"rad", "degrees", M_PI / 180},
+                                        {"s", "ms", 1e-3}, {"kg", "g", 1e-3},
+                                        {"N", "mN", 1e-3}, {"N m", "N mm", 1e-3}};
   for (const UnitSlip& slip : kSlips)
     if (const double meant = value * slip.factor;
         std::string_view(range.unit) == slip.unit && meant >= range.min && meant <= range.max)
@@ -217,7 +220,33 @@ std::string belongsTo(const Table& table, const std::string& name) {
       return std::string("; ") + name + " belongs under the key " + key.name;
   if (table.other != nullptr && table.other->find(name) != nullptr)
     return "; " + name + " belongs in " + table.other_file;
-  return table.find("parameters") != nullptr ? "; a parameter of the plugin or module belongs under parameters" : "";
+  return "";
+}
+
+/// The same for a key below a key of another file.
+std::string belongsBelow(const Table& table, const std::string& name) {
+  if (table.other == nullptr) return "";
+  for (const Key& key : table.other->keys)
+    if (key.type == Type::kObject && key.table->find(name) != nullptr)
+      return "; " + name + " belongs in " + table.other_file + ", under the key " + key.name;
+  return "";
+}
+
+/// Returns the key that a misspelt one means, if it is not given as well; else nullptr.
+const Key* meantKey(const Node& node, const Entry& entry, const Table& table) {
+  const std::string meant = nearest(entry.key.scalar, table.names());
+  return meant.empty() || node.find(meant) != nullptr ? nullptr : table.find(meant);
+}
+
+/// Returns a hint about an unknown key: where it belongs, or what was meant.
+std::string hintAbout(const std::string& name, const Table& table, const std::string* empty) {
+  const std::string meant = suggestion(name, table.names());
+  if (empty != nullptr) return meant + "; indent it further than " + *empty + ", if it belongs there";
+  if (const std::string elsewhere = belongsTo(table, name); !elsewhere.empty()) return elsewhere;
+  if (!meant.empty()) return meant;
+  if (const std::string below = belongsBelow(table, name); !below.empty()) return below;
+  if (table.find("parameters") == nullptr) return "";
+  return "; a parameter of the plugin or module belongs under parameters";
 }
 
 }  // namespace
@@ -227,6 +256,7 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
     problem(node, key, describe(node) + ", expected a mapping with " + listed(table.names()) + suggestMapping(node));
     return;
   }
+  std::vector<const Key*> misspelt;
   const std::string* empty = nullptr;  // a key without a value: unknown keys after it probably belong under it
   for (const Entry& entry : node.entries) {
     const std::string path = joined(key, entry.key.scalar);
@@ -238,14 +268,17 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
         known->store(*this, entry.value, path, *known, object);
     } else {
       problem(entry.key, path,
-              "unknown key, expected one of " + listed(table.names(), 20) +
-                  suggestion(entry.key.scalar, table.names()) +
-                  (empty != nullptr ? "; indent it further than " + *empty + ", if it belongs there"
-                                    : belongsTo(table, entry.key.scalar)));
+              "unknown key, expected one of " + listed(table.names(), 20) + hintAbout(entry.key.scalar, table, empty));
+      if (empty != nullptr || !belongsTo(table, entry.key.scalar).empty() || entry.value.isNull()) continue;
+      const Key* meant = meantKey(node, entry, table);
+      if (meant == nullptr || meant->store == nullptr) continue;
+      meant->store(*this, entry.value, path, *meant, object);  // to find the problems in its value, too
+      misspelt.push_back(meant);
     }
   }
   for (const Key& wanted : table.keys)
-    if (wanted.required && node.find(wanted.name) == nullptr)
+    if (wanted.required && node.find(wanted.name) == nullptr &&
+        std::find(misspelt.begin(), misspelt.end(), &wanted) == misspelt.end())
       problem(node, joined(key, wanted.name), std::string("missing, expected ") + wanted.expected());
 }
 

@@ -31,8 +31,24 @@ bool has(const Report& report, Role role) {
   return std::any_of(report.fields.begin(), report.fields.end(), [&](const Field& f) { return f.role == role; });
 }
 
+/// Reads the address of an endpoint. @param direction 0x80 for what the arm sends, 0 for what it gets
+uint8_t endpointAt(const Tree& tree, unsigned direction) {
+  const size_t before = tree.problems();
+  const auto address = static_cast<unsigned>(tree.whole(0, 0xff));
+  const bool good = (address & 0xf0U) == direction && (address & 0x0fU) != 0;
+  if (tree.problems() == before && !good)
+    tree.fail(std::to_string(address) + (direction != 0
+                                             ? ", expected a number from 129 to 143 (0x81 to 0x8f): endpoints of what "
+                                               "the arm sends have the bit 0x80"
+                                             : ", expected a number from 1 to 15 (0x01 to 0x0f): endpoints of what "
+                                               "the arm gets lack the bit 0x80"));
+  return static_cast<uint8_t>(address);
+}
+
 /// Notes a problem unless each joint has exactly one field of this role.
 void requireEach(const Tree& fields, const Report& report, size_t joints, Role role, const char* what) {
+  std::string missing;
+  size_t lacks = 0;
   for (size_t joint = 0; joint < joints; ++joint) {
     const std::string number = std::to_string(joint + 1), which = std::string(what) + " of joint " + number;
     std::optional<size_t> first;
@@ -44,8 +60,14 @@ void requireEach(const Tree& fields, const Report& report, size_t joints, Role r
       else
         first = i;
     }
-    if (!first) fields.fail("no " + which + ", expected one field {is: " + what + ", joint: " + number + "}");
+    if (!first) missing += (missing.empty() ? "" : ", ") + number, ++lacks;
   }
+  if (lacks == 1)
+    fields.fail("no " + std::string(what) + " of joint " + missing + ", expected one field {is: " + what +
+                ", joint: " + missing + "}");
+  else if (lacks > 1)
+    fields.fail("no " + std::string(what) + " of joints " + missing + ", expected one field {is: " + what +
+                ", joint: N} for each");
 }
 
 /// Returns the number of joints that the fields of this role name.
@@ -220,8 +242,8 @@ Wire readAll(const Document& document, size_t joints) {
   if (tree.has("endpoints")) {
     const Tree endpoints = tree.at("endpoints");
     endpoints.only(kEndpointKeys);
-    wire.endpoint_in = static_cast<uint8_t>(endpoints.at("in").whole(0x81, 0x8f));
-    wire.endpoint_out = static_cast<uint8_t>(endpoints.at("out").whole(0x01, 0x0f));
+    wire.endpoint_in = endpointAt(endpoints.at("in"), 0x80);
+    wire.endpoint_out = endpointAt(endpoints.at("out"), 0);
   }
   const size_t before_reports = tree.problems();
   wire.input = readReport(tree.at("input"), joints, true);

@@ -31,7 +31,9 @@ Delta::Delta(const DeltaGeometry& geometry)
   middle_ = Eigen::Vector3d(0, 0, geometry.a * std::sin(neutral_[0]) + geometry.b);
   if (!solve(neutral_, middle_))
     throw std::invalid_argument(
-        "delta: with these lengths the three arms do not meet in the middle of their range; correct arm.lengths");
+        "arm.lengths: with these the three arms of the delta do not meet in the middle of their range; expected a, b, "
+        "c, "
+        "d, e, f, r, s in m, in this order");
 }
 
 Delta::Closure Delta::closure(size_t arm, const Eigen::Vector3d& p, double theta) const noexcept {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kinematics/assign_list.hpp"
+#include "kinematics/error_collector.hpp"
 
 namespace hapticd::kinematics {
 namespace {
@@ -38,8 +39,10 @@ double nearest(double angle, double reference) noexcept {
 PhantomGeometry phantomGeometry(const std::vector<double>& lengths, const std::vector<double>& masses,
                                 const Eigen::Vector3d& origin) {
   PhantomGeometry g;
-  assignList(lengths, "arm.lengths", g.l1, g.l2, g.l3, g.l5, g.l6);
-  assignList(masses, "arm.masses", g.ma, g.mc, g.mbe, g.mdf);
+  ErrorCollector wrong;
+  wrong.attempt([&] { assignList(lengths, "arm.lengths", g.l1, g.l2, g.l3, g.l5, g.l6); });
+  wrong.attempt([&] { assignList(masses, "arm.masses", g.ma, g.mc, g.mbe, g.mdf); });
+  wrong.check();
   g.origin = origin;
   return g;
 }

@@ -47,16 +47,14 @@ std::string textOf(const std::vector<fs::path>& dirs) {
   return text;
 }
 
-/// True for the plugins and modules that ship with hapticd, even if this build lacks them (`driver/demo` builds only
-/// two).
-bool ships(const std::string& name) {
+}  // namespace
+
+bool shipsName(const std::string& name) {
   constexpr const char* kShipped[] = {"mat_deformable", "nurbs_rigid", "pendulum", "push_button", "template",
                                       "simulated",      "usb_hid",     "usb_bulk", "vme",         "template_arm",
                                       "vendor_dhd",     "vendor_hd"};
   return std::any_of(std::begin(kShipped), std::end(kShipped), [&](const char* one) { return name == one; });
 }
-
-}  // namespace
 
 fs::path executableDir() {
   std::error_code error;
@@ -188,7 +186,7 @@ std::string Catalog::notFound(Kind kind, const std::string& name, const std::str
     for (const CatalogFile* file : files(kind))
       if (!file->error.empty()) text += "\n  not usable: " + file->error;
   text += "\n  searched:" + textOf(dirs(kind)) + "\n  fix: ";
-  if (reason.empty() && ships(name))  // happens only in a source checkout, since the packages contain all of them
+  if (reason.empty() && shipsName(name))  // happens only in a source checkout, since the packages contain all of them
     return text + "it is part of hapticd but is not built here: run cmake --build build/release --target modules";
   text += "write an existing name, or add the folder of the missing file to HAPTICD_PLUGIN_PATH";
   if (name.find('/') == name.npos && !name.ends_with(".so")) return text;

@@ -88,33 +88,50 @@ bool turnsWithoutRows(const KinematicsCalls& calls, const Joints& q, const Tip& 
   return false;
 }
 
-/// Returns the force [N] against gravity that the torques of gravity() exert at the tip.
-double liftAt(const KinematicsCalls& calls, const Joints& q, const Eigen::Vector3d& down) {
+/// Returns the force [N] that the torques of gravity() exert at the tip.
+Eigen::Vector3d weightForceAt(const KinematicsCalls& calls, const Joints& q, const Eigen::Vector3d& down) {
   constexpr double kRoom = 1e-6;  // [m^2] regularises directions in which no joint moves the tip
   const Eigen::Index n = calls.joints();
   KinematicsCalls::JacobianRoom room(static_cast<size_t>(6 * n));
   KinematicsCalls::JointRoom torque(static_cast<size_t>(n));
-  if (calls.jacobian(q, room) < 0 || calls.gravity(q, down, torque) < 0 || !torque.finite()) return 0;
+  if (calls.jacobian(q, room) < 0 || calls.gravity(q, down, torque) < 0 || !torque.finite())
+    return Eigen::Vector3d::Zero();
   const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>> J(room.data(), 3, n);
   const Eigen::Map<const Eigen::VectorXd> tau(torque.data(), n);
   Eigen::MatrixXd square = J.transpose() * J;
   square.diagonal().array() += kRoom;
-  const Eigen::Vector3d force = J * square.ldlt().solve(tau);
-  return -force.dot(down.normalized());
+  return J * square.ldlt().solve(tau);
 }
+
+constexpr double kFelt = 0.05;  ///< [N] a hand does not feel a smaller weight
 
 /// True if the torques of gravity() pull the arm down at nearly all places, so that they have the wrong sign.
 /// Counterweights may cause that only at some places.
 bool pullsDown(const KinematicsCalls& calls) {
-  constexpr double kFelt = 0.05;  // [N]
   int felt = 0, down = 0;
   for (int i = 0; i < kPlaces; ++i)
     for (int axis = 0; axis < 3; ++axis) {
-      const double lift = liftAt(calls, anyPlace(i), 9.81 * Eigen::Vector3d::Unit(axis));
+      const double lift = -weightForceAt(calls, anyPlace(i), 9.81 * Eigen::Vector3d::Unit(axis))[axis];
       felt += std::abs(lift) > kFelt ? 1 : 0;
       down += lift < -kFelt ? 1 : 0;
     }
   return felt >= kPlaces && 10 * down >= 9 * felt;
+}
+
+/// Returns the name of an axis of gravity whose weight the torques of gravity() push aside at all places, and never
+/// lift, because components of gravity are exchanged; 0 if there is none.
+char pushesAside(const KinematicsCalls& calls) {
+  constexpr double kShare = 0.05;  // of the force: less is an error of rounding near a singular place
+  for (int axis = 0; axis < 3; ++axis) {
+    int felt = 0, lifts = 0;
+    for (int i = 0; i < kPlaces; ++i) {
+      const Eigen::Vector3d force = weightForceAt(calls, anyPlace(i), 9.81 * Eigen::Vector3d::Unit(axis));
+      felt += force.norm() > kFelt ? 1 : 0;
+      lifts += std::abs(force[axis]) > kShare * force.norm() ? 1 : 0;
+    }
+    if (felt == kPlaces && lifts == 0) return "xyz"[axis];
+  }
+  return 0;
 }
 
 /// Finds places at which forward() says HSP_OK and gives numbers that are not finite. The stops are unknown before the
@@ -175,6 +192,9 @@ std::vector<std::string> doubtsAboutKinematics(const hdv_ext_kinematics& kinemat
         "the torques of its gravity() pull the tip down, so the arm would weigh twice as much on the hand; expected "
         "those "
         "that hold it up: tau = - sum of m J^T g");
+  if (const char axis = any ? pushesAside(calls) : '\0'; axis != 0)
+    doubts.push_back(std::string("the torques of its gravity() push the tip aside and never up, if gravity is along ") +
+                     axis + ": are two of its components exchanged? Expected tau = - sum of m J^T g");
   if (any && turns)
     doubts.push_back(
         "its forward() turns the tip, but rows 3 to 5 of its Jacobian are 0 everywhere: no torque of a shape reaches "

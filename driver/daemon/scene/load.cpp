@@ -12,7 +12,10 @@ namespace {
 
 void checkRoot(const Node& root, Reader& in, host::Catalog& catalog, std::optional<Scene>* scene) {
   const Format* format = detail::formatOf(root);
-  if (format == nullptr) {
+  if (detail::isMeantAsDevice(root)) {
+    detail::hasFormat(root, "hapticd-device", in);
+    detail::loadMeantDevice(root, in, {in.file(), "", {}, nullptr}, catalog);
+  } else if (format == nullptr) {
     detail::hasFormat(root, nullptr, in);
     const Node* models = root.isMap() ? root.find("models") : nullptr;
     if (models == nullptr || !models->isSequence()) return;
@@ -41,6 +44,28 @@ const Format* detail::formatOf(const Node& root) {
   return nullptr;
 }
 
+bool detail::isMeantAsDevice(const Node& root) {
+  if (!root.isMap() || root.find("models") != nullptr || root.find("format") != nullptr) return false;
+  const Format* format = formatOf(root);
+  if (format != nullptr && format->table != &kSceneTable) return false;
+  return root.find("module") != nullptr || root.find("parameters") != nullptr;
+}
+
+/// Reports the missing version of a file that only a device file can be, at the key that stands in its place.
+static void reportNoDeviceVersion(const Node& root, Reader& in) {
+  for (const Entry& entry : root.entries) {
+    if (entry.key.scalar == "hapticd")
+      return in.problem(entry.key, "hapticd",
+                        "this is the key of a scene, but the file has no models, and a module or parameters, so it "
+                        "describes a device; expected hapticd-device: 1");
+    if (!nearest(entry.key.scalar, {"hapticd-device"}).empty())
+      return in.problem(entry.key, entry.key.scalar, "unknown key, expected hapticd-device: 1");
+  }
+  in.problem(root, "hapticd-device",
+             "missing: this file describes a device, as it has a module or parameters; expected the first line "
+             "hapticd-device: 1");
+}
+
 bool detail::hasFormat(const Node& root, const char* wanted, Reader& in) {
   if (!root.isMap()) {
     in.problem(root, "",
@@ -49,6 +74,10 @@ bool detail::hasFormat(const Node& root, const char* wanted, Reader& in) {
   }
   const Format* format = formatOf(root);
   if (format != nullptr && (wanted == nullptr || std::string_view(format->key) == wanted)) return true;
+  if (wanted != nullptr && std::string_view(wanted) == "hapticd-device" && isMeantAsDevice(root)) {
+    reportNoDeviceVersion(root, in);
+    return false;
+  }
   std::string expected, name = "scene";
   for (const Format& known : kFormats) {
     if (wanted != nullptr && std::string_view(known.key) == wanted) name = known.name;

@@ -3,6 +3,7 @@
 
 #include "document/suggestion.hpp"
 #include "hapticd/device.h"
+#include "host/shipped.hpp"
 #include "scene/loader.hpp"
 #include "scene/parameters.hpp"
 
@@ -117,6 +118,13 @@ std::string suggestModule(const std::string& name, const Node* parameters, host:
   return best;
 }
 
+/// Adds the modules that there are to the problem that the key `module` is missing.
+void nameModules(const std::string& as, host::Catalog& catalog, Reader& in) {
+  for (Problem& one : in.problems())
+    if (one.key == "module" && one.place.file == in.file().string())
+      one.what += ": one of " + document::listed(catalog.names(host::Kind::kDevice)) + as;
+}
+
 }  // namespace
 
 std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceReference& reference, host::Catalog& catalog,
@@ -133,13 +141,16 @@ std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceRefer
   refuseNoForce(root, in);
   device.admittance = reference.admittance ? reference.admittance : text.admittance;
   if (text.hd) device.hd = readHd(*text.hd, in);
-  if (text.module.empty()) return std::nullopt;
-
-  auto found = catalog.device(text.module);
+  auto found = text.module.empty() ? Result<const host::ClassInfo*>(Error{}) : catalog.device(text.module);
   if (!found) {
-    const std::string meant = suggestModule(text.module, text.parameters, catalog);
-    in.problem(*root.find("module"), "module",
-               found.error() + (meant.empty() ? "" : "\n  the parameters are judged as those of " + meant));
+    // The parameters of a module that is not built here cannot be judged, and as those of another all would be wrong.
+    const std::string meant = host::shipsName(text.module) ? "" : suggestModule(text.module, text.parameters, catalog);
+    const std::string as = meant.empty() ? "" : "\n  the parameters are judged as those of " + meant;
+    const Node* at = root.find("module");  // missing if the key is misspelt
+    if (text.module.empty())
+      nameModules(as, catalog, in);
+    else
+      in.problem(at != nullptr ? *at : root, "module", found.error() + as);
     if (!meant.empty()) found = catalog.device(meant);  // to find the other problems, too
     if (!found) return std::nullopt;
     device.module = meant;
@@ -163,11 +174,23 @@ std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceRefer
   return device;
 }
 
+std::optional<Device> loadMeantDevice(const Node& root, Reader& in, const DeviceReference& reference,
+                                      host::Catalog& catalog) {
+  Problems others;
+  Reader rest(in.file(), others);
+  std::optional<Device> device = loadDevice(root, rest, reference, catalog, nullptr, nullptr, nullptr);
+  for (Problem& one : others)  // the version itself is reported already
+    if (nearest(one.key, {"hapticd-device"}).empty() && one.key != "hapticd") in.problems().push_back(std::move(one));
+  return device;
+}
+
 std::optional<Device> loadDeviceFile(const DeviceReference& reference, host::Catalog& catalog, Problems& problems,
                                      Reader* scene_in, const Node* hand, bool* has_hand) {
   Reader in(reference.file, problems);
   const auto root = parseFile(reference.file, problems);
-  if (!root || !hasFormat(*root, "hapticd-device", in)) return std::nullopt;
+  if (!root) return std::nullopt;
+  if (!hasFormat(*root, "hapticd-device", in))
+    return isMeantAsDevice(*root) ? loadMeantDevice(*root, in, reference, catalog) : std::nullopt;
   return loadDevice(*root, in, reference, catalog, scene_in, hand, has_hand);
 }
 

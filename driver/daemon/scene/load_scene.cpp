@@ -49,9 +49,15 @@ class SceneLoader {
     scene_.models.push_back(std::move(model));
   }
 
+  /// Returns the value of a key; the whole model if the key is misspelt.
+  static const Node* valueOf(const ModelText& text, const char* key) {
+    const Node* at = text.node->find(key);
+    return at != nullptr ? at : text.node;
+  }
+
   void checkName(const ModelText& text, const std::string& key) {
     if (text.name.empty()) return;
-    const Node* at = text.node->find("name");
+    const Node* at = valueOf(text, "name");
     const auto [first, is_new] = names_.emplace(text.name, at->line);
     if (!is_new)
       in_.problem(*at, key + ".name",
@@ -63,7 +69,7 @@ class SceneLoader {
   /// give only one long message.
   const host::ClassInfo* pluginOf(const ModelText& text, const std::string& key) {
     if (text.plugin.empty()) return nullptr;
-    const Node* at = text.node->find("plugin");
+    const Node* at = valueOf(text, "plugin");
     const auto [known, is_new] = plugins_.try_emplace(text.plugin);
     if (is_new) {
       known->second.line = at->line;

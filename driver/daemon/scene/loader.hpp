@@ -15,6 +15,9 @@ using document::Reader;
 /// Returns the format whose version key the document has, or nullptr.
 const Format* formatOf(const Node& root);
 
+/// Returns true for a file without a version, or with that of a scene, that only a device file can be.
+bool isMeantAsDevice(const Node& root);
+
 /// Returns true if the document has the wanted format; otherwise reports what it is and what was expected.
 bool hasFormat(const Node& root, const char* wanted, Reader& in);
 
@@ -31,6 +34,10 @@ std::optional<Device> loadDeviceFile(const DeviceReference& reference, host::Cat
 /// Reads the tree of a device file.
 std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceReference& reference, host::Catalog& catalog,
                                  Reader* scene_in, const Node* hand, bool* has_hand);
+
+/// Reads the tree of a device file whose version is wrong or missing, so that its other problems are found, too.
+std::optional<Device> loadMeantDevice(const Node& root, Reader& in, const DeviceReference& reference,
+                                      host::Catalog& catalog);
 
 std::optional<Daemon> loadDaemon(const Node& root, Reader& in);
 

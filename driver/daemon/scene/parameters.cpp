@@ -34,6 +34,23 @@ std::vector<std::string> idsIn(const host::ClassInfo& info, const std::string& g
   return ids;
 }
 
+/// Returns the ids with each group as one name, such as "arm" for "arm.kind" and "arm.dh": a list of all ids of a
+/// module with groups is too long to be read.
+std::vector<std::string> withGroupsAsOne(const std::vector<std::string>& ids) {
+  std::vector<std::string> names;
+  for (const std::string& id : ids)
+    if (const std::string name = id.substr(0, id.find('.')); std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
+  return names;
+}
+
+/// Returns the id whose last name is this word, if a parameter of a group was given outside of its group.
+std::string idEndingWith(const std::string& word, const std::vector<std::string>& ids) {
+  for (const std::string& id : ids)
+    if (id.ends_with("." + word)) return id;
+  return "";
+}
+
 std::string countText(const host::ParamInfo& p) {
   std::string text = p.min_count == p.max_count ? std::to_string(p.min_count) + " numbers"
                      : p.max_count == UINT32_MAX
@@ -82,7 +99,7 @@ void ParameterReader::read(const Node& node, const std::string& key, const std::
     else if (isGroup(info_, id))
       read(entry.value, path, id);
     else
-      unknown(entry, path, id);
+      unknown(node, entry, path, id);
   }
 }
 
@@ -101,7 +118,7 @@ void ParameterReader::nothing(const Entry& entry, const std::string& key, uint32
   in_->problem(entry.key, key, "no value given, expected " + expected);
 }
 
-void ParameterReader::unknown(const Entry& entry, const std::string& key, const std::string& id) {
+void ParameterReader::unknown(const Node& around, const Entry& entry, const std::string& key, const std::string& id) {
   std::vector<std::string> ids = info_.paramIds();
   if (ids.empty()) return in_->problem(entry.key, key, "unknown key: " + info_.name + " has no parameters");
   constexpr const char* kOfTheFile[] = {"name", "mount", "limits", "admittance", "hand", "hd", "module"};
@@ -115,9 +132,22 @@ void ParameterReader::unknown(const Entry& entry, const std::string& key, const 
   // Within a group only names of this group are suggested, because names of other groups are not valid here.
   const std::string group = id.substr(0, id.find('.') == id.npos ? 0 : id.rfind('.'));
   if (!group.empty()) std::erase_if(ids, [&](const std::string& one) { return one.rfind(group + ".", 0) != 0; });
+  const std::vector<std::string> names = withGroupsAsOne(idsIn(info_, group));
+  if (group.empty()) ids.insert(ids.begin(), names.begin(), names.end());
+  const std::string inside = group.empty() ? idEndingWith(id, ids) : "";
   in_->problem(entry.key, key,
-               "unknown parameter of " + info_.name + ", expected one of " + document::listed(idsIn(info_, group), 24) +
-                   document::suggestion(id, ids));
+               "unknown parameter of " + info_.name + ", expected one of " + document::listed(names, 24) +
+                   (inside.empty() ? document::suggestion(id, ids) : " (did you mean \"" + inside + "\"?)"));
+  const std::string meant = inside.empty() ? document::nearest(id, ids) : inside;
+  if (around.find(meant.substr(meant.rfind('.') + 1)) == nullptr) judgeAs(meant, entry, key);
+}
+
+void ParameterReader::judgeAs(const std::string& meant, const Entry& entry, const std::string& key) {
+  const int index = info_.indexOf(meant);
+  if (index >= 0 && given_[static_cast<size_t>(index)] == 0 && !entry.value.isNull())
+    readOne(entry.value, key, static_cast<uint32_t>(index));
+  else if (index < 0 && isGroup(info_, meant) && entry.value.isMap())
+    read(entry.value, key, meant);
 }
 
 void ParameterReader::readOne(const Node& node, const std::string& key, uint32_t index) {

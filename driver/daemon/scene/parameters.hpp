@@ -37,7 +37,9 @@ class ParameterReader {
 
  private:
   void nothing(const Entry& entry, const std::string& key, uint32_t index);
-  void unknown(const Entry& entry, const std::string& key, const std::string& id);
+  void unknown(const Node& around, const Entry& entry, const std::string& key, const std::string& id);
+  /// Reads the value of an unknown key as that of the parameter or group that is meant, to find problems in it, too.
+  void judgeAs(const std::string& meant, const Entry& entry, const std::string& key);
   bool readValue(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value);
   bool readArray(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value);
   bool readPath(const Node& node, const std::string& key, Value& value);

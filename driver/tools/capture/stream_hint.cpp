@@ -2,6 +2,7 @@
 #include "capture/stream_hint.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <vector>
@@ -68,44 +69,73 @@ bool tells(const codec::Report& report) {
   });
 }
 
-/// Returns how many bytes to leave out before the first whole report, so that nearly all reports are good. Returns 0 if
-/// no byte needs to be left out, or if the number is not clear.
-size_t bytesBefore(const codec::Wire& wire, const Bytes& bytes) {
-  constexpr size_t kMostBytes = 8 * 1024, kFewReports = 3;
-  constexpr double kNearly = 0.8, kDoubt = 0.5;  // share of the good reports at the best place, and at the second best
-  const size_t size = wire.input.size;
-  size_t best = 0;
-  double most = 0, second = 0;
-  for (size_t before = 0; before < size && before < bytes.size(); ++before) {
+/// Returns the number of bits of a report that are right by chance at a wrong place: of its checksum, and of its
+/// constants.
+double tellingBits(const codec::Report& report) {
+  double bits = 0;
+  for (const codec::Field& field : report.fields)
+    if (field.role == codec::Role::kChecksum || field.role == codec::Role::kConstant ||
+        field.role == codec::Role::kFirmware)
+      bits += field.bits;
+  return bits;
+}
+
+/// A byte of the capture from which on reports are good.
+struct Beginning {
+  size_t before = 0, good = 0, all = 0;  ///< bytes before it; reports from it on
+};
+
+/// Returns the places from which on more reports are good than by chance, the best one first.
+std::vector<Beginning> beginnings(const codec::Wire& wire, const Bytes& bytes) {
+  constexpr size_t kMostBytes = 8 * 1024;
+  constexpr double kSure = 8;  // [bits] one capture in 256 has as many good reports by chance
+  const size_t size = wire.input.size, end = std::min(bytes.size(), kMostBytes);
+  const double bits = tellingBits(wire.input), places = std::log2(static_cast<double>(end));
+  std::vector<Beginning> found;
+  for (size_t before = 0; before < size && before + size <= end; ++before) {
     Capture later;
-    const size_t end = std::min(bytes.size(), before + kMostBytes);
     later.transfers.push_back({-1, Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(before),
                                          bytes.begin() + static_cast<std::ptrdiff_t>(end - (end - before) % size))});
     const Decoded decoded = decodeCapture(wire, later);
-    const size_t good = decoded.good(), all = decoded.reports.size();
-    const double part = good < kFewReports ? 0 : static_cast<double>(good) / static_cast<double>(all);
-    if (part > most)
-      second = most, most = part, best = before;
-    else
-      second = std::max(second, part);
+    const size_t good = decoded.good();
+    if (static_cast<double>(good) * bits >= places + kSure) found.push_back({before, good, decoded.reports.size()});
   }
-  return most >= kNearly && second < kDoubt ? best : 0;
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.good > b.good; });
+  return found;
+}
+
+std::string howMany(const Beginning& one) {
+  if (5 * one.good >= 4 * one.all) return one.all < 3 ? "all reports" : "nearly all reports";
+  return std::to_string(one.good) + " of " + std::to_string(one.all) + " reports";
+}
+
+/// Says that reports are good from two places on, which are not a whole number of reports apart.
+std::string missingBytes(const Beginning& most, const Beginning& next) {
+  return "bytes are missing or too many in the middle of the capture: " + std::to_string(most.good) +
+         " reports are good if the first one begins at byte " + std::to_string(most.before) + ", and " +
+         std::to_string(next.good) + " others if it begins at byte " + std::to_string(next.before) +
+         "; record it again, or decode its parts\n";
 }
 
 /// Finds where reports begin from the constants and checksum in the file, even if some reports are damaged.
 std::string beginHint(const codec::Wire& wire, const Bytes& bytes, const Decoded& decoded) {
-  if (!tells(wire.input) || 2 * decoded.good() > decoded.reports.size()) return "";
-  const size_t before = bytesBefore(wire, bytes);
+  const size_t bad = decoded.reports.size() - decoded.good();
+  if (!tells(wire.input) || bad == 0) return "";
+  const std::vector<Beginning> found = beginnings(wire, bytes);
+  constexpr size_t kMostPlaces = 3;  // reports without contents, such as zeros, are good at most places
+  if (found.empty() || found.size() > kMostPlaces) return "";
+  if (found.size() > 1 && 3 * found[1].good >= bad) return missingBytes(found[0], found[1]);
+  const size_t before = found[0].before;
   if (before == 0) return "";
   const auto& fields = wire.input.fields;
   const auto mark = std::find_if(fields.begin(), fields.end(), [](const codec::Field& field) {
     return field.role == codec::Role::kConstant && field.at == 0 && field.bits == 8 && field.bit_skip == 0;
   });
-  const std::string found = "the capture begins in the middle of a report: from byte " + std::to_string(before) +
-                            " on, nearly all reports are good; ";
+  const std::string told = "the capture begins in the middle of a report: from byte " + std::to_string(before) +
+                           " on, " + howMany(found[0]) + " are good; ";
   if (mark != fields.end())
-    return found + "give " + framingOf({static_cast<uint8_t>(mark->code), before}) + ", and the reports are found\n";
-  return found + "leave out the first " + std::to_string(before) + (before == 1 ? " byte" : " bytes") + " (tail -c +" +
+    return told + "give " + framingOf({static_cast<uint8_t>(mark->code), before}) + ", and the reports are found\n";
+  return told + "leave out the first " + std::to_string(before) + (before == 1 ? " byte" : " bytes") + " (tail -c +" +
          std::to_string(before + 1) + " FILE)\n";
 }
 

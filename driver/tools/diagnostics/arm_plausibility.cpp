@@ -134,6 +134,11 @@ void checkWeight(const ArmUnderCheck& arm_file, const host::DeviceInstance& arm)
     return;
   const double share = servo::shareWithin(most, tau, all.topRows<3>());
   if (!(share < kMostly)) return;
+  if (!(share > 0))
+    return arm_file.warn(*masses, "parameters.arm.masses",
+                         "no force at the tip holds the weight of these masses at rest, because no joint carries it "
+                         "there; expected the columns of arm.dh, the pose of the calibration and the masses [kg] of "
+                         "this arm");
   arm_file.warn(
       *masses, "parameters.arm.masses",
       fmt::format("these masses weigh {:.3g} N at the tip at rest, but the motors may carry only {:g} N of it "

@@ -18,6 +18,7 @@
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/limit_warnings.hpp"
 #include "diagnostics/motor_warnings.hpp"
+#include "diagnostics/mount_warnings.hpp"
 #include "diagnostics/node_path.hpp"
 #include "diagnostics/safety_warnings.hpp"
 #include "diagnostics/travel_warnings.hpp"
@@ -150,6 +151,7 @@ void checkWholeArm(const Node& root, const scene::Device& device, host::DeviceIn
   warnOfWire(root, device, joints, warnings);
   warnOfTravel(root, device, joints, &arm, warnings);
   warnOfMotors(root, device, joints, warnings);
+  warnOfNoMount(root, device, arm, warnings);
   warnOfImplausibleFields(root, device, joints, &arm, warnings);
   warnOfImplausibleLimits(root, device, &arm, warnings);
   warnOfImplausibleArm(root, device, &arm, warnings);

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "codec/wire_overlap.hpp"
 #include "diagnostics/arm_plausibility.hpp"
 #include "diagnostics/limit_warnings.hpp"
 #include "diagnostics/node_path.hpp"
@@ -117,10 +118,10 @@ void mixedSigns(const Side& side, Role role) {
   }
 }
 
-/// Warns of a scale that is far larger than the others, because the joints of these arms are alike and the decimal
-/// point may be wrong.
-void muchCoarser(const Side& side, Role role, const std::vector<double>& motors) {
-  constexpr double kTimes = 8;
+/// Warns of a scale that is far larger or smaller than the others, because the joints of these arms are alike and the
+/// decimal point may be wrong.
+void unlikeOthers(const Side& side, Role role, const std::vector<double>& motors) {
+  constexpr double kTimes = 8, kFiner = 50;  // a slow joint may have a far larger gear ratio
   const auto coarseness = [&](size_t i) {
     const Field& field = side.report.fields[i];
     const double part = role == Role::kTorque && field.index < motors.size() ? motors[field.index] : 1;
@@ -129,15 +130,17 @@ void muchCoarser(const Side& side, Role role, const std::vector<double>& motors)
   const std::vector<size_t> all = side.of({role});
   if (all.size() < 3 || (role == Role::kTorque && motors.empty())) return;
   for (const size_t i : all) {
-    double next = 0;
+    double next = 0, least = 1e300;
     for (const size_t other : all) {
       if (side.report.fields[other].bits != side.report.fields[i].bits) return;
-      if (other != i) next = std::max(next, coarseness(other));
+      if (other != i) next = std::max(next, coarseness(other)), least = std::min(least, coarseness(other));
     }
-    if (coarseness(i) < kTimes * next) continue;
+    const bool finer = coarseness(i) > 0 && coarseness(i) * kFiner <= least;
+    if (coarseness(i) < kTimes * next && !finer) continue;
     side.warn(i, "scale",
-              fmt::format("{:.3g} times as coarse as that of any other joint{}: is the decimal point wrong?",
-                          coarseness(i) / next, role == Role::kTorque ? ", measured by arm.max_torque" : ""));
+              fmt::format("{:.3g} times as {} as that of any other joint{}: is the decimal point wrong?",
+                          finer ? least / coarseness(i) : coarseness(i) / next, finer ? "fine" : "coarse",
+                          role == Role::kTorque ? ", measured by arm.max_torque" : ""));
   }
 }
 
@@ -182,6 +185,19 @@ void coarseAngles(const Side& side) {
   }
 }
 
+/// Warns if one count of a velocity is faster than any joint, because counts or degrees were meant.
+void coarseVelocities(const Side& side) {
+  constexpr double kFast = 10;  // [rad/s]
+  for (const size_t i : side.of({Role::kVelocity})) {
+    const Field& field = side.report.fields[i];
+    if (field.type == codec::Type::kFloat || !(std::abs(field.scale) >= kFast)) continue;
+    side.warn(i, "scale",
+              fmt::format("one count of the velocity of joint {} is {:g} rad/s, faster than a hand turns a joint; the "
+                          "value must be in rad/s per count",
+                          field.index + 1, field.scale));
+  }
+}
+
 /// Warns if the joints have another order in the output than in the input, because most boards use one order, and
 /// forces at the wrong joints may pull the hand in.
 void crossedJoints(const Side& in, const Side& out) {
@@ -216,6 +232,28 @@ void twice(const Side& side) {
                 fmt::format("these bytes are already the counter of fields[{}], so this counter adds nothing; give it "
                             "another place, or remove it",
                             first));
+    }
+}
+
+/// Warns of two flags that are the same bits with the same meaning of 0: a board that is enabled would always be
+/// calibrated as well.
+void sameFlags(const Side& side) {
+  constexpr Role kFlags[] = {Role::kButton, Role::kFault,     Role::kCalibrated,
+                             Role::kEnable, Role::kCalibrate, Role::kFollow};
+  const auto is_flag = [&](const Field& field) {
+    return std::find(std::begin(kFlags), std::end(kFlags), field.role) != std::end(kFlags);
+  };
+  for (size_t i = 0; i < side.count(); ++i)
+    for (size_t first = 0; first < i; ++first) {
+      const Field &a = side.report.fields[first], &b = side.report.fields[i];
+      if (!is_flag(a) || !is_flag(b) || a.inverted != b.inverted) continue;
+      if (codec::isText(a.type) && a.bit != b.bit) continue;
+      if (codec::bitsTaken(a, side.report.size) != codec::bitsTaken(b, side.report.size)) continue;
+      const Node* is = side.fields.items[first].find("is");
+      side.warn(i, "at",
+                fmt::format("these bits are already fields[{}] ({}), so the two are always the same; give one of them "
+                            "another place, or remove it",
+                            first, is != nullptr ? is->scalar : ""));
     }
 }
 
@@ -273,12 +311,14 @@ void warnOfImplausibleFields(const Node& root, const scene::Device& device, size
     coarseAngles(input);
   for (const Side* side : {&input, &output}) polynomialBackwards(*side);
   idleOffset(input);
+  coarseVelocities(input);
   if (!wireOf(device, joints)) return;  // fields are compared with each other only if all of them are right
   for (const Side* side : {&input, &output}) {
     mixedOrder(*side);
     mixedSigns(*side, side == &input ? Role::kPosition : Role::kTorque);
-    if (alike) muchCoarser(*side, side == &input ? Role::kPosition : Role::kTorque, motorsOf(device, joints));
+    if (alike) unlikeOthers(*side, side == &input ? Role::kPosition : Role::kTorque, motorsOf(device, joints));
     twice(*side);
+    sameFlags(*side);
   }
   otherOrderOut(input, output);
   crossedJoints(input, output);

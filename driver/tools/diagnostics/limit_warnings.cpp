@@ -116,8 +116,8 @@ std::optional<double> forceOfMotors(const Node& root, const scene::Device& devic
   return motors.empty() || !linear ? std::nullopt : farthestReach(*linear, motors);
 }
 
-/// What motors give, and where: at rest, or, of an arm that rests stretched out, the most of some poses. Stretched out
-/// it bears any force along itself.
+/// What motors give, and where: at rest, or, of an arm that rests stretched out, in the middle of some poses. Stretched
+/// out it bears any force along itself, and folded nearly so.
 struct MotorForce {
   double most = 0;
   const char* where = "at rest";
@@ -130,15 +130,18 @@ static std::optional<MotorForce> motorForce(const Node& root, const scene::Devic
   const std::vector<double> motors = motorsOf(device, joints);
   if (motors.empty()) return std::nullopt;
   constexpr int kPoses = 12;
-  MotorForce found{0, "in twelve poses, as it rests stretched out"};
+  std::vector<double> reaches;
   for (int pose = 0; pose < kPoses; ++pose) {
     Joints q = restJoints(root, joints);
     for (uint32_t i = 0; i < joints; ++i) q[i] += 0.9 * std::sin(1.7 * (pose + 1) + 2.3 * i);  // spread over a radian
     keepWithinStops(root, q, joints);
-    if (const auto linear = jacobianAt(q, arm, 0))
-      found.most = std::max(found.most, farthestReach(*linear, motors).value_or(0));
+    const auto linear = jacobianAt(q, arm, 0);
+    if (const auto reach = linear ? farthestReach(*linear, motors) : std::nullopt) reaches.push_back(*reach);
   }
-  return found.most > 0 ? std::optional(found) : std::nullopt;
+  if (reaches.empty()) return std::nullopt;
+  const auto middle = reaches.begin() + static_cast<std::ptrdiff_t>(reaches.size() / 2);
+  std::nth_element(reaches.begin(), middle, reaches.end());
+  return MotorForce{*middle, "in half of twelve poses, as it rests stretched out"};
 }
 
 void warnOfLimits(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,

@@ -35,6 +35,19 @@ std::optional<PositionRange> sayable(const Field& field) {
   return PositionRange{std::min(a, b), std::max(a, b)};
 }
 
+/// Returns a text if a position that wraps does so within the travel of its joint, in steps finer than an encoder has;
+/// else "".
+std::string wrapsTooOften(const Field& field, const PositionRange& stops) {
+  constexpr double kFinest = 2.5e-7;  // [rad] 25 million counts of a joint turn
+  if (field.role != Role::kPosition || !field.wraps || field.scale == 0 || std::abs(field.scale) >= kFinest) return "";
+  const double around = std::ldexp(std::abs(field.scale), static_cast<int>(field.bits));
+  if (around >= stops.length()) return "";
+  return fmt::format(
+      "one count of joint {} is {:.3g} rad, {:.3g} counts a turn of the joint, and its {} bits would wrap within "
+      "arm.limits; expected 2 pi / (counts a motor turn * motor turns of one joint turn)",
+      field.index + 1, std::abs(field.scale), 2 * M_PI / std::abs(field.scale), field.bits);
+}
+
 std::vector<double> limitsOf(const scene::Device& device) {
   for (const scene::Value& value : device.parameters)
     if (value.id == "arm.limits") return value.numbers;
@@ -149,9 +162,9 @@ void warnOfTravel(const Node& root, const scene::Device& device, size_t joints, 
   for (size_t i = 0; i < wire->input.fields.size() && i < fields->items.size(); ++i) {
     const Field& field = wire->input.fields[i];
     const auto said = sayable(field);
-    if (!said || field.index >= joints) continue;
+    if (field.role != Role::kPosition || field.index >= joints) continue;
     const PositionRange stops{limits[2u * field.index], limits[2u * field.index + 1]};
-    const std::string wrong = tooShort(field, *said, stops, !zeroedByPose(device));
+    const std::string wrong = said ? tooShort(field, *said, stops, !zeroedByPose(device)) : wrapsTooOften(field, stops);
     if (wrong.empty()) continue;
     const Node* scale = fields->items[i].find("scale");
     const Node& at = scale != nullptr ? *scale : fields->items[i];

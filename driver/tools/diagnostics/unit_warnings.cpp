@@ -68,8 +68,10 @@ void linkTooLong(const Node* lengths, const std::string& file, document::Problem
   if (most <= kLong) return;
   document::report(
       warnings, file, lengths->line, lengths->column, "parameters.arm.lengths",
-      fmt::format("{:g} m is too long for an arm that a hand moves; the value must be in m: {:g} mm is {:g} m", most,
-                  most, most / 1000));
+      fmt::format(
+          "{:g} m is too long for an arm that a hand moves; the value must be in m: is the decimal point wrong, "
+          "or was {:g} m meant?",
+          most, most / 10));
 }
 
 /// The same of a chain, whose lengths are in two columns.
@@ -84,9 +86,9 @@ void chainTooLong(const Node* rows, const std::string& file, document::Problems&
       if (length <= kLong) continue;
       document::report(
           warnings, file, at.line, at.column, fmt::format("parameters.arm.dh[{}][{}]", row, column),
-          fmt::format("{0:g} m as {1} of joint {2} is too long for an arm that a hand moves; the value must be "
-                      "in m: {0:g} mm is {3:g} m",
-                      length, column == 0 ? "a" : "d", row + 1, length / 1000));
+          fmt::format("{:g} m as {} of joint {} is too long for an arm that a hand moves; the value must be in m: is "
+                      "the decimal point wrong, or was {:g} m meant?",
+                      length, column == 0 ? "a" : "d", row + 1, length / 10));
     }
 }
 

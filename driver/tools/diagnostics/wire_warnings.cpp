@@ -117,20 +117,22 @@ void warnOfTorques(const Node& fields, const codec::Report& report, const scene:
   }
 }
 
-/// Fields that no checksum covers: numbers of joints, and what switches motors or tells of trouble. A counter may
-/// stand around all of it.
-std::vector<size_t> uncovered(const codec::Report& report) {
+/// Fields that no checksum covers: numbers of joints, what switches motors or tells of trouble, and the only counter.
+/// Of two counters, both may stand around all of it.
+std::vector<size_t> uncovered(const codec::Report& report, bool counts_too) {
   std::vector<bool> covered(report.size);
   bool any = false;
   for (const Field& field : report.fields)
     if (field.role == Role::kChecksum && field.from < field.to && field.to <= report.size)
       any = true, std::fill(covered.begin() + field.from, covered.begin() + field.to, true);
-  constexpr Role kIdle[] = {Role::kChecksum, Role::kConstant, Role::kFirmware,
-                            Role::kSequence, Role::kStarts,   Role::kTime};
+  constexpr Role kIdle[] = {Role::kChecksum, Role::kConstant, Role::kFirmware, Role::kStarts, Role::kTime};
+  const auto counters = std::count_if(report.fields.begin(), report.fields.end(),
+                                      [](const Field& field) { return field.role == Role::kSequence; });
   std::vector<size_t> outside;
   for (size_t i = 0; i < report.fields.size() && any; ++i) {
     const Field& field = report.fields[i];
     if (std::find(std::begin(kIdle), std::end(kIdle), field.role) != std::end(kIdle)) continue;
+    if (field.role == Role::kSequence && (counters > 1 || !counts_too)) continue;
     for (size_t byte = field.at; byte < std::min(field.at + field.bytes(), report.size); ++byte)
       if (!covered[byte]) {
         outside.push_back(i);
@@ -144,7 +146,8 @@ std::vector<size_t> uncovered(const codec::Report& report) {
 void warnOfChecksum(const Node& fields, const codec::Report& report, const char* side, const scene::Device& device,
                     document::Problems& warnings) {
   std::string outside;
-  for (const size_t i : uncovered(report)) {
+  const scene::Value* verified = valueOf(device, "device.verified");
+  for (const size_t i : uncovered(report, verified == nullptr || verified->number <= 0)) {
     const Node* is = i < fields.items.size() ? fields.items[i].find("is") : nullptr;
     if (is == nullptr) continue;
     const bool numbered = fields.items[i].find("joint") != nullptr || fields.items[i].find("button") != nullptr;

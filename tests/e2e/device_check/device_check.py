@@ -110,6 +110,7 @@ for slip, test, words, *more in (
     result, what = tests.get(test, ("", tests))
     check(f"{slip} fails by {test}", code == 1 and result == "fail" and words in what, (code, tests))
 for slip, test, words in (("fast", "claims", "rate_hz"), ("no_angular_rows", "kinematics", "rows 3 to 5"), ("weight_pulls", "kinematics", "pull the tip down"),
+                          ("weight_aside", "kinematics", "push the tip aside and never up, if gravity is along x"),
                           ("weight_in_grams", "claims", "the torques of gravity() are more than the motors give")):
     code, tests = examined(slip)
     check(f"{slip} is warned of", code == 0 and tests[test][0] == "warn" and words in tests[test][1], (code, tests))

@@ -113,10 +113,13 @@ struct SlipsArm : hapticd::Device {
   }
   static hsp_status gravity(const hdv_device* device, const double* q, const double* g, double* tau) noexcept HSP_RT {
     const SlipsArm& me = self(device);
-    const double kg = me.is("weight_pulls") ? -0.3 : me.is("weight_in_grams") ? 300 : me.is("weight_right") ? 0.3 : 0;
+    const bool right = me.is("weight_right") || me.is("weight_aside");
+    const double kg = me.is("weight_pulls") ? -0.3 : me.is("weight_in_grams") ? 300 : right ? 0.3 : 0;
     double J[12];
     jacobian(device, q, J);
-    for (int i = 0; i < 2; ++i) tau[i] = -kg * (J[i] * g[0] + J[2 + i] * g[1] + J[4 + i] * g[2]);
+    const bool aside = me.is("weight_aside");
+    for (int i = 0; i < 2; ++i)
+      tau[i] = -kg * (J[i] * g[aside ? 1 : 0] + J[2 + i] * g[aside ? 0 : 1] + J[4 + i] * g[2]);
     if (me.is("weight") || me.is("weight_nan")) tau[0] = tau[1] = me.is("weight") ? 50 : std::nan("");
     return HSP_OK;
   }

@@ -97,6 +97,18 @@ with tempfile.TemporaryDirectory() as folder:
         rows = list(csv.DictReader(io.StringIO(out)))
         check("the arm's own time is in its table", len(rows) == 600 and all(abs(float(row["clock"]) - i * 1e-3 % 0.65536) < 1e-9 for i, row in enumerate(rows)), rows[-1:])
 
+    # Bytes without ids that begin within a report: few reports, broken ones, and lost bytes.
+    bare = [report(i, False)[1:] for i in range(40)]
+    broken = [bytes([one[0] ^ i % 2]) + one[1:] for i, one in enumerate(bare)]
+    lost = b"".join(bare[:20]) + b"".join(bare[20:])[7:]
+    named("a capture of two reports that begins in the first", b"".join(bare[:2])[7:], no_id, "from byte 13 on, all reports are good; leave out the first 13 bytes")
+    named("a begun capture whose reports are broken by halves", b"".join(broken[:6])[7:], no_id, "from byte 13 on, 2 of 5 reports are good")
+    named("lost bytes in a begun capture", lost[7:], no_id, "19 reports are good if the first one begins at byte 6, and 19 others if it begins at byte 13")
+    named("lost bytes in a good capture", b"".join(bare[:30]) + b"".join(bare[30:])[7:], no_id, "bytes are missing or too many in the middle of the capture")
+    for what, capture in (("only broken reports", b"".join(bytes([one[0] ^ 1]) + one[1:] for one in bare)[7:]), ("zeros", bytes(800)), ("one report broken in good ones", b"".join(broken[:2] + bare[2:]))):
+        code, out, err = decode(capture, no_id)
+        check(f"{what}: no beginning is made up", code in (0, 1) and "begins in the middle" not in err and "bytes are missing" not in err, err)
+
     # The checksum: what it covers, where it is, and in which order.
     named("a checksum that covers the report id", OVER, plain, "the checksum of each of them is right with method: crc16, endian: little, over_id: true\n")
     named("one that does not", PLAIN, {}, "is right with method: crc16, endian: little, over_id: false\n")

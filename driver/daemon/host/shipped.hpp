@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+/// Names of the plugins and modules that belong to hapticd.
+#pragma once
+#include <string>
+
+namespace hapticd::host {
+
+/// [any] True for a plugin or module that ships with hapticd, even if this build lacks it (`driver/demo` builds only
+/// two).
+bool shipsName(const std::string& name);
+
+}  // namespace hapticd::host
