@@ -56,17 +56,20 @@ static std::string shortText(double value) {
   return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 10).ptr};
 }
 
-/// Guesses that a number that is too large is in millimetres, degrees or milliseconds. Returns advice if the converted
-/// number is in the range, else "".
+/// Guesses that a number that is too large is in millimetres, degrees, milliseconds or microseconds. Returns advice if
+/// the converted number is in the range, and was a likely number to write, else "".
 static std::string inOtherUnits(double value, const Range& range) {
   struct UnitSlip {
     const char *unit, *meant;
     double factor;
+    double least;  ///< smallest number that people write in this unit
   };
-  static constexpr UnitSlip kSlips[] = {{"m", "mm", 1e-3}, {"rad", "degrees", M_PI / 180}, {"s", "ms", 1e-3}};
+  static constexpr UnitSlip kSlips[] = {
+      {"m", "mm", 1e-3, 0.1}, {"rad", "degrees", M_PI / 180, 0.1}, {"s", "ms", 1e-3, 0.02}, {"s", "us", 1e-6, 1}};
   for (const UnitSlip& slip : kSlips)
-    if (const double meant = value * slip.factor;
-        std::string_view(range.unit) == slip.unit && meant >= range.min && meant <= range.max)
+    if (const double meant = value * slip.factor; std::string_view(range.unit) == slip.unit &&
+                                                  std::abs(value) >= slip.least && meant >= range.min &&
+                                                  meant <= range.max)
       return "; " + numberText(value) + " " + slip.meant + " is " + shortText(meant) + " " + slip.unit;
   return "";
 }
@@ -210,14 +213,40 @@ std::optional<Eigen::Quaterniond> Reader::quaternion(const Node& node, const std
 
 namespace {
 
-/// Returns a hint where an unknown key belongs: under another key, in another file, or under `parameters`; else "".
-std::string belongsTo(const Table& table, const std::string& name) {
+/// Returns the path of a key in a table and the tables within, such as "limits.force"; "" if it is not there.
+std::string pathIn(const Table& table, const std::string& name) {
+  if (table.find(name) != nullptr) return name;
   for (const Key& key : table.keys)
-    if (key.type == Type::kObject && key.table->find(name) != nullptr)
-      return std::string("; ") + name + " belongs under the key " + key.name;
-  if (table.other != nullptr && table.other->find(name) != nullptr)
-    return "; " + name + " belongs in " + table.other_file;
-  return table.find("parameters") != nullptr ? "; a parameter of the plugin or module belongs under parameters" : "";
+    if (const std::string path = key.type == Type::kObject ? pathIn(*key.table, name) : ""; !path.empty())
+      return key.name + ("." + path);
+  return "";
+}
+
+/// Returns the path without its last key; "" if it has only one.
+std::string parentOf(const std::string& path) {
+  return path.substr(0, path.find('.') == path.npos ? 0 : path.rfind('.'));
+}
+
+/// Returns a hint where an unknown key belongs: under another key, in another file, or under `parameters`; else "".
+/// @param near the key is probably a misspelt one of this table, and not one from deep within another
+std::string belongsTo(const Table& table, const std::string& name, bool near) {
+  if (const std::string path = pathIn(table, name); !path.empty())
+    return "; " + name + " belongs under the key " + parentOf(path);
+  const bool may_be_parameter = table.find("parameters") != nullptr;
+  const std::string parameter = "; a parameter of the plugin or module belongs under parameters";
+  for (const Elsewhere& other : table.elsewhere) {
+    const std::string path = pathIn(*other.table, name), parent = parentOf(path);
+    if (path.empty() || (near && !parent.empty())) continue;
+    const std::string there = name + " belongs in " + other.where + (parent.empty() ? "" : ", under " + parent);
+    return may_be_parameter && !parent.empty() ? parameter + "; " + there : "; " + there;
+  }
+  return may_be_parameter ? parameter : "";
+}
+
+/// Returns what an unknown key probably means: how it is spelt, or where it belongs.
+std::string hintFor(const Table& table, const std::string& name) {
+  const std::string meant = suggestion(name, table.names()), place = belongsTo(table, name, !meant.empty());
+  return (place.find(" " + name + " belongs ") == place.npos ? meant : "") + place;
 }
 
 }  // namespace
@@ -239,9 +268,9 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
     } else {
       problem(entry.key, path,
               "unknown key, expected one of " + listed(table.names(), 20) +
-                  suggestion(entry.key.scalar, table.names()) +
-                  (empty != nullptr ? "; indent it further than " + *empty + ", if it belongs there"
-                                    : belongsTo(table, entry.key.scalar)));
+                  (empty != nullptr ? suggestion(entry.key.scalar, table.names()) + "; indent it further than " +
+                                          *empty + ", if it belongs there"
+                                    : hintFor(table, entry.key.scalar)));
     }
   }
   for (const Key& wanted : table.keys)

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/descriptors.hpp"
-#include "document/suggestion.hpp"
+#include "base/nearest_word.hpp"
 
 namespace hapticd::control {
 
@@ -71,6 +71,17 @@ std::vector<std::string> words() {
   std::vector<std::string> all;
   for (const RequestForm& form : forms()) all.emplace_back(form.word);
   return all;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+std::string meant(const std::string& word, const std::vector<std::string>& known) {
+  const std::string nearest = nearestWord(word, known);
+  return nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)";
 }
 
 /// Returns a value as JSON for a message; what is long is cut off.
@@ -210,7 +221,7 @@ std::string wrongKeys(const Json& json, const RequestForm& form) {
   for (const auto& [key, value] : json.items())
     if (key != "do" && key != "id" && form.needs.count(key) == 0 && form.may.count(key) == 0)
       add(shown(key) + " is not part of \"" + form.word + "\", expected " +
-          (known.empty() ? "no other key" : document::listed(known)) + document::suggestion(key, known));
+          (known.empty() ? "no other key" : listed(known)) + meant(key, known));
   return wrong;
 }
 
@@ -300,9 +311,9 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
       word != json.end() && word->is_string() ? formOf(word->get_ref<const std::string&>()) : nullptr;
   if (form == nullptr) {
     const bool text = word != json.end() && word->is_string();
-    return Error{"\"do\": expected one of " + document::listed(words(), forms().size()) +
+    return Error{"\"do\": expected one of " + listed(words()) +
                  (word != json.end() ? ", got " + shown(*word) : ", but it is missing") +
-                 (text ? document::suggestion(word->get_ref<const std::string&>(), words()) : "")};
+                 (text ? meant(word->get_ref<const std::string&>(), words()) : "")};
   }
   if (const std::string wrong = wrongKeys(json, *form); !wrong.empty()) return Error{wrong};
   Request request;
