@@ -74,10 +74,14 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
   for (const auto& found_by : {&farModels, &softModels, &idleBounds, &quarantinedModels, &slowArms, &wideScales})
     for (const document::Problem& one : found_by(full)) more.push_back(one);
   document::Problems unread;
-  if (const auto root = document::parseFile(result.file, unread)) warnOfZeros(*root, result.file, more);
-  if (!options.files_only && result.problems.empty())  // these run the scene
+  if (const auto root = document::parseFile(result.file, unread)) {
+    warnOfZeros(*root, result.file, more);
+    warnOfTurns(*root, result.file, more);
+  }
+  if (!options.files_only)  // a scene without problems runs, which says more of its hands
     for (const document::Problems& found :
-         {unreachableRows(full), warnOfHands(full, strayModels(full, trial.boxes, catalog()))})
+         {result.problems.empty() ? unreachableRows(full) : document::Problems(),
+          result.problems.empty() ? warnOfHands(full, strayModels(full, trial.boxes, catalog())) : fastHands(full)})
       more.insert(more.end(), found.begin(), found.end());
   if (!options.files_only || !options.device.empty())  // what the check of the device file itself says
     for (const scene::Device& device : full.devices)

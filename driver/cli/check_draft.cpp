@@ -169,7 +169,10 @@ void checkDraft(scene::Scene draft, document::Problems& problems, document::Prob
     for (const document::Problem& one : found_by(draft))
       if (models.isRead(one) && !unread.has(one.key)) warnings.push_back(one);
   document::Problems unparsed;
-  if (const auto root = document::parseFile(draft.file, unparsed)) warnOfZeros(*root, draft.file.string(), warnings);
+  if (const auto root = document::parseFile(draft.file, unparsed)) {
+    warnOfZeros(*root, draft.file.string(), warnings);
+    warnOfTurns(*root, draft.file.string(), warnings);
+  }
   if (arms) checkDraftArms(draft, unread, trial, problems, warnings);
   addImplausible(draft, trial.boxes, unread, warnings);
   if (!arms) std::erase_if(warnings, [](const document::Problem& one) { return one.key == "clients.origin"; });

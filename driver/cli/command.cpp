@@ -113,7 +113,7 @@ const scene::Daemon& daemonSettings() {
     if (file.empty()) return scene::Daemon{};
     const scene::LoadedDaemon loaded = scene::loadDaemon(file);
     printProblems(loaded.problems, stderr);
-    if (!loaded.daemon) std::exit(fail(kBadInput, "the daemon file has problems; see above"));
+    if (!loaded.daemon) throw BadDaemonFile();
     return *loaded.daemon;
   }();
   return daemon;

@@ -6,6 +6,7 @@
 #pragma once
 #include <cstdio>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "command_line/command_line.hpp"
@@ -47,7 +48,14 @@ class SetupErrors {
 /// Adds the options --config and --plugin-path, which stand before the subcommand.
 void addGlobalOptions(const Command& app);
 
-/// Returns the daemon file of this machine. If the file has problems, the program ends with exit code 2.
+/// The daemon file of this machine has problems, which are printed. It ends the program with exit code 2. It is thrown,
+/// because a call of exit() would be taken for one of a plugin while a command is guarded.
+class BadDaemonFile : public std::runtime_error {
+ public:
+  BadDaemonFile() : std::runtime_error("the daemon file has problems; see above") {}
+};
+
+/// Returns the daemon file of this machine. It throws BadDaemonFile if the file has problems.
 const scene::Daemon& daemonSettings();
 
 /// Returns the plugins and modules in the search path, which comes from the options, the daemon file and the

@@ -46,9 +46,22 @@ std::string firstColumns(const record::RecordedStream& stream) {
   return header;
 }
 
+/// Returns what is wrong if the folder for all streams has the name of a file; "" if it has not.
+std::string fileForFolder(const record::Recording& recording, const std::filesystem::path& folder) {
+  std::error_code none;
+  if (folder.extension() != ".csv" || std::filesystem::is_directory(folder, none)) return "";
+  const std::string name = folder.string();
+  return "--csv " + name +
+         " names a file, but each stream has a table of its own; expected a folder for all of them (--csv " +
+         folder.stem().string() + "), or one of them: --csv " + name + " --stream STREAM, with one of " +
+         document::listed(namesOf(recording), 10);
+}
+
 /// Writes one file of one stream, or a folder with a file for each stream.
 int toCsv(const record::Recording& recording, const ExportArguments& options) {
   const bool one = !options.stream.empty();
+  if (const std::string wrong = one ? "" : fileForFolder(recording, options.csv); !wrong.empty())
+    return fail(kBadInput, wrong);
   if (one && recording.stream(options.stream) == nullptr)
     return fail(kBadInput, "--stream " + options.stream + ": the recording has no such stream, expected one of " +
                                document::listed(namesOf(recording), 10) +

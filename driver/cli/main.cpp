@@ -71,6 +71,7 @@ int main(int argc, char** argv) {
   const hapticd::command_line::Program app(
       "hapticd: a real-time haptic servo daemon. It traces NURBS and medial-axis shapes and pushes back.");
   int exit_code = kWorked;
+  hapticd::command_line::suggestBy(hapticd::document::suggestion);
   app.requireSubcommand();
   app.version(std::string("hapticd ") + HAPTICD_VERSION);
   app.footer(
@@ -83,6 +84,8 @@ int main(int argc, char** argv) {
   if (const std::string wrong = unknownOption(app, argc, argv); !wrong.empty()) return fail(kBadInput, wrong);
   try {
     if (const auto ended = app.parse(argc, argv)) return *ended;
+  } catch (const BadDaemonFile& error) {
+    return fail(kBadInput, error.what());
   } catch (const std::exception& error) {
     return fail(kFailed, error.what());
   }

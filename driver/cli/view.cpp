@@ -66,10 +66,11 @@ void addView(const Command& app, int& exit_code) {
   command.addOption("--port", options->port, "port on 127.0.0.1; 0: a free one").wholeWithin(0, 65535);
   command.addFlag("--control", options->control, "allow the page to change the run and to lead a simulated hand");
   command.addFlag("--open", options->open, "open the page in your browser");
-  command.addOption("--file", options->file, "show this recording or dump instead of a daemon");
+  command.addOption("--file,recording", options->file, "show this recording or dump instead of a daemon");
   command.footer(
       "The command prints the address of the page with a token. Everybody who has the token may look.\nFrom another "
-      "computer: ssh -L PORT:127.0.0.1:PORT.\n\nExample:\n  hapticd view --control --open");
+      "computer: ssh -L PORT:127.0.0.1:PORT.\n\nExample:\n  hapticd view --control --open\n  hapticd view run.h5 "
+      "--open");
   command.callback([options, &exit_code] { exit_code = view(*options); });
 }
 

@@ -2,13 +2,32 @@
 #include "command_line/command_line.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 
 namespace hapticd::command_line {
+namespace {
+
+Suggest& suggest() {
+  static Suggest function;
+  return function;
+}
+
+/// Returns a text such as " (did you mean \"run\"?)", or "".
+std::string meant(const std::string& word, const std::vector<std::string>& known) {
+  return suggest() ? suggest()(word, known) : "";
+}
+
+}  // namespace
+
+void suggestBy(const Suggest& function) {
+  suggest() = function;
+}
 
 Option Option::required() const {
   return Option(option_->required());
@@ -36,22 +55,37 @@ Option Option::within(double low, double high) const {
     double value = 0;
     if (!CLI::detail::lexical_cast(text, value))
       return fmt::format("\"{}\" is not a number, expected one from {:g} to {:g}", text, low, high);
-    const bool good = value >= low && value <= high;
-    return good ? std::string() : fmt::format("Value {} not in range {:g} to {:g}", text, low, high);
+    if (value >= low && value <= high) return std::string();
+    return fmt::format("{} is out of range, expected a number from {:g} to {:g}", text, low, high);
   };
   return Option(option_->check(CLI::Validator(refuse, fmt::format("FLOAT in [{} - {}]", low, high))));
 }
 
 Option Option::wholeWithin(int low, int high) const {
-  return Option(option_->check(CLI::Range(low, high)));
+  const auto refuse = [=](const std::string& text) {
+    int value = 0;
+    if (!CLI::detail::lexical_cast(text, value))
+      return fmt::format("\"{}\" is not a whole number, expected one from {} to {}", text, low, high);
+    if (value >= low && value <= high) return std::string();
+    return fmt::format("{} is out of range, expected a whole number from {} to {}", text, low, high);
+  };
+  return Option(option_->check(CLI::Validator(refuse, fmt::format("INT in [{} - {}]", low, high))));
 }
 
 Option Option::oneOf(const std::vector<std::string>& words) const {
-  return Option(option_->check(CLI::IsMember(words)));
+  const auto refuse = [words](const std::string& text) {
+    if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
+    return fmt::format("\"{}\" is not known, expected one of {}{}", text, fmt::join(words, ", "), meant(text, words));
+  };
+  return Option(option_->check(CLI::Validator(refuse, fmt::format("{{{}}}", fmt::join(words, ",")))));
 }
 
 Option Option::existingFile() const {
-  return Option(option_->check(CLI::ExistingFile));
+  const auto refuse = [](const std::string& text) {
+    if (CLI::detail::check_path(text.c_str()) == CLI::detail::path_type::file) return std::string();
+    return fmt::format("there is no file \"{}\", expected the path of a file", text);
+  };
+  return Option(option_->check(CLI::Validator(refuse, "FILE")));
 }
 
 Option Option::check(const std::function<std::string(const std::string&)>& wrong) const {
@@ -205,13 +239,107 @@ void Program::version(const std::string& text) const {
 
 namespace {
 
+/// Returns the command that the line names so far: the program, or the innermost subcommand.
+const CLI::App& innermost(const CLI::App& app) {
+  const CLI::App* at = &app;
+  while (!at->get_subcommands().empty()) at = at->get_subcommands().back();
+  return *at;
+}
+
+/// Returns the words that name a command, such as "hapticd ctl set".
+std::string wordsOf(const CLI::App& app) {
+  if (app.get_parent() != nullptr) return wordsOf(*app.get_parent()) + " " + app.get_name();
+  return std::filesystem::path(app.get_name()).filename().string();
+}
+
+/// Returns the words that a command takes without an option, such as "SCENE [MODEL]".
+std::vector<std::string> argumentsOf(const CLI::App& app) {
+  std::vector<std::string> words;
+  for (const CLI::Option* option : app.get_options([](const CLI::Option* one) { return one->get_positional(); })) {
+    std::string word = option->get_name(true);
+    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::toupper(c); });
+    words.push_back(option->get_required() ? word : "[" + word + "]");
+  }
+  return words;
+}
+
+std::vector<std::string> subcommandNames(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* below : app.get_subcommands(nullptr)) names.push_back(below->get_name());
+  return names;
+}
+
+/// Returns the long names of a command's options and of those above it, with their dashes.
+std::vector<std::string> optionNames(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* at = &app; at != nullptr; at = at->get_parent())
+    for (const CLI::Option* option : at->get_options(nullptr))
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+/// Describes the first word that no command takes.
+std::string unexpected(const CLI::App& app, const std::vector<std::string>& words) {
+  const std::string word = words.empty() ? "" : words.front();
+  if (word.size() > 1 && word[0] == '-') {
+    const std::string name = word.substr(0, word.find('='));
+    return "there is no option " + name + meant(name, optionNames(app));
+  }
+  if (const auto names = subcommandNames(app); !names.empty())
+    return fmt::format("there is no subcommand \"{}\", expected one of {}{}", word, fmt::join(names, ", "),
+                       meant(word, names));
+  const std::string more = fmt::format("unexpected word \"{}\": `{}` takes ", word, wordsOf(app));
+  if (argumentsOf(app).empty()) return more + "only options";
+  return more + fmt::format("only {} and options", fmt::join(argumentsOf(app), " "));
+}
+
+/// Describes what is missing: a subcommand, an argument or an option.
+std::string missing(const CLI::App& app, std::string told) {
+  constexpr std::string_view kEnd = " is required";
+  if (told.ends_with(kEnd)) told.resize(told.size() - kEnd.size());
+  if (told == "A subcommand" && !app.remaining().empty()) return unexpected(app, app.remaining());
+  if (told == "A subcommand")
+    return fmt::format("no subcommand given, expected one of {}", fmt::join(subcommandNames(app), ", "));
+  const auto arguments = argumentsOf(app);
+  const std::string space = arguments.empty() ? "" : " ";
+  return fmt::format("{} is missing, expected `{}{}{}`", told, wordsOf(app), space, fmt::join(arguments, " "));
+}
+
 /// Gives CLI11's "Could not convert: value = abc" the form of the other messages. Such a message is always about a
 /// number, because only numbers are converted.
 std::string unreadable(const std::string& told) {
   const size_t colon = told.find(": "), equals = told.find(" = ");
-  if (colon == std::string::npos || equals == std::string::npos || equals < colon) return "error: " + told;
+  if (colon == std::string::npos || equals == std::string::npos || equals < colon) return told;
   const std::string name = told.substr(colon + 2, equals - colon - 2);
-  return "error: " + name + ": \"" + told.substr(equals + 3) + "\" cannot be read, expected a number; see --help";
+  return name + ": \"" + told.substr(equals + 3) + "\" cannot be read, expected a number";
+}
+
+/// Gives CLI11's "--for: 1 required FLOAT:FLOAT in [0 - 1] missing" the form of the other messages.
+std::string tooFew(const std::string& told) {
+  const size_t colon = told.find(": "), type = told.find(" required "), end = told.rfind(" missing");
+  if (colon == std::string::npos || type == std::string::npos || end == std::string::npos || end < type) return told;
+  const size_t from = type + std::string_view(" required ").size();
+  const std::string count = told.substr(colon + 2, type - colon - 2), kind = told.substr(from, end - from);
+  return fmt::format("{}: {} more value{} expected ({})", told.substr(0, colon), count, count == "1" ? "" : "s", kind);
+}
+
+std::string replaced(const std::string& text, std::string_view what, std::string_view with) {
+  const size_t at = text.find(what);
+  return at == std::string::npos ? text : text.substr(0, at) + std::string(with) + text.substr(at + what.size());
+}
+
+/// Returns what is wrong with the command line, in the form of all other messages.
+std::string describe(const CLI::App& app, const CLI::ParseError& error) {
+  const std::string told = error.what();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return unexpected(innermost(app), app.remaining(true));
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) return missing(innermost(app), told);
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return unreadable(told);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) return tooFew(told);
+  if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr)
+    return replaced(told, " requires ", " has no effect alone, expected also ");
+  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)
+    return replaced(told, " excludes ", " is given together with ") + ", expected one of them";
+  return told;
 }
 
 }  // namespace
@@ -220,11 +348,12 @@ std::optional<int> Program::parse(int argc, const char* const* argv) const {
   try {
     app_->parse(argc, argv);
     return std::nullopt;
-  } catch (const CLI::ConversionError& error) {
-    std::fprintf(stderr, "%s\n", unreadable(error.what()).c_str());
-    return kBadUsage;
+  } catch (const CLI::Success& help) {
+    return app_->exit(help);
   } catch (const CLI::ParseError& error) {
-    return app_->exit(error) == 0 ? 0 : kBadUsage;
+    std::fprintf(stderr, "error: %s; see %s --help\n", describe(*app_, error).c_str(),
+                 wordsOf(innermost(*app_)).c_str());
+    return kBadUsage;
   }
 }
 

@@ -21,6 +21,12 @@ namespace hapticd::command_line {
 
 constexpr int kBadUsage = 2;  ///< exit code of every program for a wrong command line
 
+/// Returns a text such as " (did you mean \"run\"?)" for a word that is none of the known ones, or "".
+using Suggest = std::function<std::string(const std::string& word, const std::vector<std::string>& known)>;
+
+/// Sets the function with which the messages of this process suggest names; without it they suggest none.
+void suggestBy(const Suggest& function);
+
 /// An option, a flag or a positional argument.
 class Option {
  public:

@@ -57,19 +57,21 @@ static std::string shortText(double value) {
   return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 10).ptr};
 }
 
-/// Guesses that a number that is too large is in millimetres, degrees or milliseconds. Returns advice if the converted
-/// number is in the range, else "".
+/// Guesses that a number that is too large is in millimetres, degrees, milliseconds or microseconds. Returns advice if
+/// the converted number is in the range, and was a likely number to write, else "".
 static std::string inOtherUnits(double value, const Range& range) {
   struct UnitSlip {
     const char *unit, *meant;
     double factor;
+    double least;  ///< smallest number that people write in this unit
   };
-  static constexpr UnitSlip kSlips[] = {{"m", "mm", 1e-3}, {"rad", "degrees", M_PI / 180},
-                                        {"s", "ms", 1e-3}, {"kg", "g", 1e-3},
-                                        {"N", "mN", 1e-3}, {"N m", "N mm", 1e-3}};
+  static constexpr UnitSlip kSlips[] = {
+      {"m", "mm", 1e-3, 0.1}, {"rad", "degrees", M_PI / 180, 0.1}, {"s", "ms", 1e-3, 0.02}, {"s", "us", 1e-6, 1},
+      {"kg", "g", 1e-3, 0.1}, {"N", "mN", 1e-3, 1},                {"N m", "N mm", 1e-3, 0.1}};
   for (const UnitSlip& slip : kSlips)
-    if (const double meant = value * slip.factor;
-        std::string_view(range.unit) == slip.unit && meant >= range.min && meant <= range.max)
+    if (const double meant = value * slip.factor; std::string_view(range.unit) == slip.unit &&
+                                                  std::abs(value) >= slip.least && meant >= range.min &&
+                                                  meant <= range.max)
       return "; " + numberText(value) + " " + slip.meant + " is " + shortText(meant) + " " + slip.unit;
   return "";
 }
@@ -213,40 +215,55 @@ std::optional<Eigen::Quaterniond> Reader::quaternion(const Node& node, const std
 
 namespace {
 
-/// Returns a hint where an unknown key belongs: under another key, in another file, or under `parameters`; else "".
-std::string belongsTo(const Table& table, const std::string& name) {
+/// Returns the path of a key in a table and the tables within, such as "limits.force"; "" if it is not there.
+std::string pathIn(const Table& table, const std::string& name) {
+  if (table.find(name) != nullptr) return name;
   for (const Key& key : table.keys)
-    if (key.type == Type::kObject && key.table->find(name) != nullptr)
-      return std::string("; ") + name + " belongs under the key " + key.name;
-  if (table.other != nullptr && table.other->find(name) != nullptr)
-    return "; " + name + " belongs in " + table.other_file;
+    if (const std::string path = key.type == Type::kObject ? pathIn(*key.table, name) : ""; !path.empty())
+      return key.name + ("." + path);
   return "";
 }
 
-/// The same for a key below a key of another file.
-std::string belongsBelow(const Table& table, const std::string& name) {
-  if (table.other == nullptr) return "";
-  for (const Key& key : table.other->keys)
-    if (key.type == Type::kObject && key.table->find(name) != nullptr)
-      return "; " + name + " belongs in " + table.other_file + ", under the key " + key.name;
-  return "";
+/// Returns the path without its last key; "" if it has only one.
+std::string parentOf(const std::string& path) {
+  return path.substr(0, path.find('.') == path.npos ? 0 : path.rfind('.'));
 }
 
-/// Returns the key that a misspelt one means, if it is not given as well; else nullptr.
-const Key* meantKey(const Node& node, const Entry& entry, const Table& table) {
-  const std::string meant = nearest(entry.key.scalar, table.names());
-  return meant.empty() || node.find(meant) != nullptr ? nullptr : table.find(meant);
+/// Returns a hint where an unknown key belongs: under another key, in another file, or under `parameters`; else "".
+/// @param near the key is probably a misspelt one of this table, and not one from deep within another
+std::string belongsTo(const Table& table, const std::string& name, bool near) {
+  if (const std::string path = pathIn(table, name); !path.empty())
+    return "; " + name + " belongs under the key " + parentOf(path);
+  const bool may_be_parameter = table.find("parameters") != nullptr;
+  const std::string parameter = "; a parameter of the plugin or module belongs under parameters";
+  for (const Elsewhere& other : table.elsewhere) {
+    const std::string path = pathIn(*other.table, name), parent = parentOf(path);
+    if (path.empty() || (near && !parent.empty())) continue;
+    const std::string there = name + " belongs in " + other.where + (parent.empty() ? "" : ", under " + parent);
+    return may_be_parameter && !parent.empty() ? parameter + "; " + there : "; " + there;
+  }
+  return may_be_parameter ? parameter : "";
 }
 
-/// Returns a hint about an unknown key: where it belongs, or what was meant.
+/// Returns true if the key itself, as it is spelt, has another place.
+bool hasAnotherPlace(const std::string& place, const std::string& name) {
+  return place.find(" " + name + " belongs ") != place.npos;
+}
+
+/// Returns the key that a misspelt one means, if it is not given as well and the word has no other place; else nullptr.
+const Key* meantKey(const Node& node, const std::string& name, const Table& table) {
+  const std::string meant = nearest(name, table.names());
+  if (meant.empty() || node.find(meant) != nullptr || hasAnotherPlace(belongsTo(table, name, true), name)) return nullptr;
+  return table.find(meant);
+}
+
+/// Returns a hint about an unknown key: how it is spelt, or where it belongs.
+/// @param empty a key without a value before it, under which it may belong; nullptr if there is none
 std::string hintAbout(const std::string& name, const Table& table, const std::string* empty) {
   const std::string meant = suggestion(name, table.names());
   if (empty != nullptr) return meant + "; indent it further than " + *empty + ", if it belongs there";
-  if (const std::string elsewhere = belongsTo(table, name); !elsewhere.empty()) return elsewhere;
-  if (!meant.empty()) return meant;
-  if (const std::string below = belongsBelow(table, name); !below.empty()) return below;
-  if (table.find("parameters") == nullptr) return "";
-  return "; a parameter of the plugin or module belongs under parameters";
+  const std::string place = belongsTo(table, name, !meant.empty());
+  return (hasAnotherPlace(place, name) ? "" : meant) + place;
 }
 
 }  // namespace
@@ -269,8 +286,8 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
     } else {
       problem(entry.key, path,
               "unknown key, expected one of " + listed(table.names(), 20) + hintAbout(entry.key.scalar, table, empty));
-      if (empty != nullptr || !belongsTo(table, entry.key.scalar).empty() || entry.value.isNull()) continue;
-      const Key* meant = meantKey(node, entry, table);
+      if (empty != nullptr || entry.value.isNull()) continue;
+      const Key* meant = meantKey(node, entry.key.scalar, table);
       if (meant == nullptr || meant->store == nullptr) continue;
       meant->store(*this, entry.value, path, *meant, object);  // to find the problems in its value, too
       misspelt.push_back(meant);

@@ -42,10 +42,15 @@ struct Key {
   std::string expected() const;  ///< such as "a number, 10 to 20000 Hz"
 };
 
+/// Another table to which an unknown key may belong.
+struct Elsewhere {
+  const Table* table;
+  const char* where;  ///< such as "the device file"
+};
+
 struct Table {
   std::span<const Key> keys;
-  const Table* other = nullptr;  ///< table of another file to which an unknown key may belong
-  const char* other_file = "";   ///< name of that file, such as "the device file"
+  std::span<const Elsewhere> elsewhere{};
 
   const Key* find(std::string_view name) const;
   std::vector<std::string> names() const;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/descriptors.hpp"
+#include "base/nearest_word.hpp"
 
 namespace hapticd::control {
 
@@ -66,10 +67,28 @@ const RequestForm* formOf(const std::string& word) {
   return nullptr;
 }
 
-std::string words() {
+std::vector<std::string> words() {
+  std::vector<std::string> all;
+  for (const RequestForm& form : forms()) all.emplace_back(form.word);
+  return all;
+}
+
+std::string listed(const std::vector<std::string>& names) {
   std::string list;
-  for (const RequestForm& form : forms()) list += std::string(list.empty() ? "" : ", ") + form.word;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   return list;
+}
+
+std::string meant(const std::string& word, const std::vector<std::string>& known) {
+  const std::string nearest = nearestWord(word, known);
+  return nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)";
+}
+
+/// Returns a value as JSON for a message; what is long is cut off.
+std::string shown(const Json& value) {
+  constexpr size_t kLongest = 60;
+  const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
 }
 
 /// Returns a hint if the line contains what many programs write for a number that is not finite: JSON has no such
@@ -80,7 +99,19 @@ std::string noJsonNumber(std::string_view line) {
   return "";
 }
 
-/// Takes values out of a request and keeps the first complaint.
+/// Returns why a line is no JSON object, with the place.
+std::string placeOfError(std::string_view line) {
+  try {
+    const Json parsed = Json::parse(line.begin(), line.end());
+    return "this is " + std::string(parsed.type_name()) + ": ";
+  } catch (const Json::parse_error& error) {
+    return "column " + std::to_string(error.byte) + " is not valid JSON: ";
+  } catch (const Json::exception&) {
+    return "a number is too large for JSON: ";
+  }
+}
+
+/// Takes values out of a request and keeps every complaint.
 class FieldReader {
  public:
   explicit FieldReader(const Json& json) : json_(json) {}
@@ -94,24 +125,31 @@ class FieldReader {
     to = value->get<std::string>();
     if (to.find('\0') != std::string::npos) complain(key, "a text without zero bytes");
   }
-  void number(const char* key, double low, double high, double& to) {
+  void number(const char* key, double low, double high, const char* unit, double& to) {
     const Json* value = find(key);
     if (value == nullptr) return;
     const double given = value->is_number() ? value->get<double>() : NAN;
-    if (!(given >= low && given <= high))
-      return complain(key, "a number from " + Json(low).dump() + " to " + Json(high).dump());
+    if (!(given >= low && given <= high)) return complain(key, "a number " + range(low, high) + unit);
+    to = given;
+  }
+  void whole(const char* key, double high, double& to) {
+    const Json* value = find(key);
+    if (value == nullptr) return;
+    const double given = value->is_number() ? value->get<double>() : NAN;
+    if (!(given >= 0 && given <= high && given == std::floor(given)))
+      return complain(key, "a whole number " + range(0, high));
     to = given;
   }
   void numberOrWord(const char* key, double low, double high, double& to, std::string& word) {
     const Json* value = find(key);
-    if (value == nullptr || !value->is_string()) return number(key, low, high, to);
+    if (value == nullptr || !value->is_string()) return number(key, low, high, "", to);
     text(key, word);
     char* end = nullptr;
     std::strtod(word.c_str(), &end);
     if (end != word.c_str() && *end == '\0') complain(key, "a number without quotes, or a word");
   }
   template <size_t N>
-  void numbers(const char* key, double bound, std::array<double, N>& to) {
+  void numbers(const char* key, double bound, const char* unit, std::array<double, N>& to) {
     const Json* value = find(key);
     if (value == nullptr) return;
     bool good = value->is_array() && value->size() == N;
@@ -119,7 +157,7 @@ class FieldReader {
       to[i] = (*value)[i].is_number() ? (*value)[i].template get<double>() : NAN;
       good = std::abs(to[i]) <= bound;
     }
-    if (!good) complain(key, "a list of " + std::to_string(N) + " numbers within " + Json(bound).dump() + " of 0");
+    if (!good) complain(key, "a list of " + std::to_string(N) + " numbers within " + shortest(bound) + unit + " of 0");
   }
   /// Reads a list of absolute paths without repetitions.
   void paths(const char* key, size_t most, std::vector<std::string>& to) {
@@ -150,27 +188,41 @@ class FieldReader {
   }
   bool has(const char* key) const { return json_.contains(key); }
   void complain(const std::string& key, const std::string& expected) {
-    if (complaint_.empty()) complaint_ = "\"" + key + "\": expected " + expected;
+    if (!complaints_.empty()) complaints_ += "; ";
+    complaints_ += "\"" + key + "\": expected " + expected;
+    if (const Json* given = find(key.c_str())) complaints_ += ", got " + shown(*given);
   }
-  const std::string& complaint() const { return complaint_; }
+  const std::string& complaints() const { return complaints_; }
 
  private:
   const Json* find(const char* key) const {
     const auto it = json_.find(key);
     return it == json_.end() ? nullptr : &*it;
   }
+  /// Returns the number without ".0", such as "600".
+  static std::string shortest(double value) {
+    const bool whole = std::abs(value) < 1e15 && value == std::floor(value);
+    return whole ? std::to_string(static_cast<long long>(value)) : Json(value).dump();
+  }
+  static std::string range(double low, double high) { return "from " + shortest(low) + " to " + shortest(high); }
+
   const Json& json_;
-  std::string complaint_;
+  std::string complaints_;
 };
 
+/// Returns which keys of a request are missing, and which are not part of it; "" if there are none.
 std::string wrongKeys(const Json& json, const RequestForm& form) {
+  std::string wrong;
+  const auto add = [&wrong](const std::string& what) { wrong += (wrong.empty() ? "" : "; ") + what; };
+  std::vector<std::string> known(form.needs.begin(), form.needs.end());
+  known.insert(known.end(), form.may.begin(), form.may.end());
   for (const std::string& key : form.needs)
-    if (!json.contains(key)) return "\"" + key + "\" is missing in \"" + form.word + "\"";
+    if (!json.contains(key)) add("\"" + key + "\" is missing in \"" + form.word + "\"");
   for (const auto& [key, value] : json.items())
     if (key != "do" && key != "id" && form.needs.count(key) == 0 && form.may.count(key) == 0)
-      return Json(key.substr(0, 64)).dump(-1, ' ', true, Json::error_handler_t::replace) + " is not part of \"" +
-             form.word + "\"";
-  return "";
+      add(shown(key) + " is not part of \"" + form.word + "\", expected " +
+          (known.empty() ? "no other key" : listed(known)) + meant(key, known));
+  return wrong;
 }
 
 /// Reads the "id" of a request. @return what is wrong with it, or ""
@@ -187,12 +239,16 @@ std::string readId(const Json& json, std::string* id) {
 
 void readOrientation(FieldReader& take, Request& request) {
   request.turns = take.has("orientation");
-  take.numbers("orientation", 2, request.orientation);
+  if (!request.turns) return;
+  const size_t before = take.complaints().size();
+  take.numbers("orientation", 2, "", request.orientation);
+  if (take.complaints().size() > before) return;
   double square = 0;
   for (const double part : request.orientation) square += part * part;
   const double length = std::sqrt(square);
   constexpr double kRounding = 1e-3;
-  if (!(std::abs(length - 1) <= kRounding)) return take.complain("orientation", "a unit quaternion w,x,y,z");
+  if (!(std::abs(length - 1) <= kRounding))
+    return take.complain("orientation", "a unit quaternion [w, x, y, z], of length 1");
   for (double& part : request.orientation) part /= length;
 }
 
@@ -224,16 +280,16 @@ void readValues(FieldReader& take, Request& request) {
   take.text("file", request.file);
   take.paths("files", kMostDescriptors, request.files);
   take.numberOrWord("value", -1e300, 1e300, request.value, request.word);
-  take.number("tolerance", kFinestDrawing, 1, request.tolerance);
+  take.number("tolerance", kFinestDrawing, 1, " m", request.tolerance);
   take.word("as", "memory", request.as_memory);
-  take.number("after", 0, kMostFrames, request.after);
+  take.whole("after", kMostFrames, request.after);
   double number = 0;
-  take.number("number", 0, 4294967295.0, number);
+  take.whole("number", 4294967295.0, number);
   request.number = static_cast<uint32_t>(number);
   take.flag("consent", request.consent);
-  take.numbers("position", kMaxPlace, request.position);
+  take.numbers("position", kMaxPlace, " m", request.position);
   readOrientation(take, request);
-  if (take.has("seconds")) take.number("seconds", 0.05, 600, request.seconds.emplace(0));
+  if (take.has("seconds")) take.number("seconds", 0.05, 600, " s", request.seconds.emplace(0));
 }
 
 }  // namespace
@@ -244,7 +300,8 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
   Watch watch;
   const Json json = Json::parse(line.begin(), line.end(), std::ref(watch), false);
   if (watch.deep || !json.is_object())
-    return Error{"expected a JSON object in one line, such as {\"do\": \"status\"}" + noJsonNumber(line)};
+    return Error{(watch.deep ? "it is nested too deeply: " : placeOfError(line)) +
+                 "expected a JSON object in one line, such as {\"do\": \"status\"}" + noJsonNumber(line)};
   if (!watch.twice.empty())
     return Error{Json(watch.twice.substr(0, 64)).dump(-1, ' ', true, Json::error_handler_t::replace) +
                  " is given twice, expected each key once"};
@@ -252,7 +309,12 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
   const auto word = json.find("do");
   const RequestForm* form =
       word != json.end() && word->is_string() ? formOf(word->get_ref<const std::string&>()) : nullptr;
-  if (form == nullptr) return Error{"\"do\": expected one of " + words()};
+  if (form == nullptr) {
+    const bool text = word != json.end() && word->is_string();
+    return Error{"\"do\": expected one of " + listed(words()) +
+                 (word != json.end() ? ", got " + shown(*word) : ", but it is missing") +
+                 (text ? meant(word->get_ref<const std::string&>(), words()) : "")};
+  }
   if (const std::string wrong = wrongKeys(json, *form); !wrong.empty()) return Error{wrong};
   Request request;
   request.kind = form->kind;
@@ -262,7 +324,7 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
   const bool leads = form->kind == Kind::kLead || form->kind == Kind::kUnlead;
   if (leads && take.has("model") + take.has("hand") + take.has("force") != 1)
     take.complain(form->word, "either a \"model\", a \"hand\" or a \"force\"");
-  if (!take.complaint().empty()) return Error{take.complaint()};
+  if (!take.complaints().empty()) return Error{take.complaints()};
   return request;
 }
 

@@ -53,7 +53,10 @@ constexpr Key kServoKeys[] = {
     real<&Servo::budget_us>("budget_us", {0, 1e6, "us"}, "0",
                             "CPU time per tick for all shapes together; 0: four fifths of the period."),
 };
-constexpr Table kServo{kServoKeys};
+constexpr Elsewhere kBesideServo[] = {{&kDeviceTable, "the device file"},
+                                      {&kDaemonTable, "the daemon file"},
+                                      {&kSceneTable, "the scene itself, outside of servo"}};
+constexpr Table kServo{kServoKeys, kBesideServo};
 
 constexpr Key kModelKeys[] = {
     required(name<&ModelText::name>("name", "Name of the model; unique in a scene.")),
@@ -173,7 +176,8 @@ constexpr Key kLimitKeys[] = {
     object<&Limits::enable>("enable", kEnable, "A button of the device that enables the forces."),
     list<&Limits::motors>("motors", kMotor, {0, 16}, "Motors in the order of the joints, for the model of their heat."),
 };
-constexpr Table kLimits{kLimitKeys};
+constexpr Elsewhere kBesideLimits[] = {{&kSceneTable, "the scene file"}, {&kDaemonTable, "the daemon file"}};
+constexpr Table kLimits{kLimitKeys, kBesideLimits};
 
 constexpr Key kHdKeys[] = {
     name<&HdText::model>("model", "Answer to HD_DEVICE_MODEL_TYPE; some programs accept only certain names."),
@@ -206,13 +210,15 @@ constexpr Key kDaemonServoKeys[] = {
     integer<&Daemon::priority>("priority", {1, 98}, "80", "SCHED_FIFO priority of the servo thread."),
     real<&Daemon::rate>("rate", {10, 20000, "Hz"}, nullptr, "Servo rate instead of the scene's."),
 };
-constexpr Table kDaemonServo{kDaemonServoKeys};
+constexpr Elsewhere kBesideDaemonServo[] = {{&kSceneTable, "the scene file"}, {&kDeviceTable, "the device file"}};
+constexpr Table kDaemonServo{kDaemonServoKeys, kBesideDaemonServo};
 
 constexpr Key kDaemonLimitKeys[] = {
     real<&Daemon::force>("force", {0.01, 1000, "N"}, nullptr,
                          "Largest force of any device of this machine, whatever its device file allows."),
 };
-constexpr Table kDaemonLimits{kDaemonLimitKeys};
+constexpr Elsewhere kBesideDaemonLimits[] = {{&kDeviceTable, "the device file"}, {&kSceneTable, "the scene file"}};
+constexpr Table kDaemonLimits{kDaemonLimitKeys, kBesideDaemonLimits};
 
 constexpr Key kDaemonKeys[] = {
     required(integer<&DaemonText::version>("hapticd-daemon", kVersion, nullptr, "Version of the format.")),
@@ -228,14 +234,26 @@ constexpr Format kAllFormats[] = {
     {"hapticd-daemon", "daemon", "Settings of hapticd for one machine.", &kDaemonTable},
 };
 
+constexpr Elsewhere kBesideModels[] = {{&kSceneTable, "the scene itself, outside of models"}};
+constexpr Elsewhere kBesideClients[] = {{&kDeviceTable, "the device file"},
+                                        {&kSceneTable, "the scene itself, outside of clients"}};
+constexpr Elsewhere kBesideReference[] = {{&kDeviceTable, "the device file"},
+                                          {&kSceneTable, "the scene itself, outside of device"}};
+constexpr Elsewhere kBesideScene[] = {{&kClientsTable, "the mapping clients"},
+                                      {&kDeviceTable, "the device file"},
+                                      {&kDaemonTable, "the daemon file"},
+                                      {&kModelTable, "a model: an element of the list models"}};
+constexpr Elsewhere kBesideDevice[] = {{&kSceneTable, "the scene file"}, {&kDaemonTable, "the daemon file"}};
+constexpr Elsewhere kBesideDaemon[] = {{&kSceneTable, "the scene file"}, {&kDeviceTable, "the device file"}};
+
 }  // namespace
 
-constexpr Table kModelTable{kModelKeys};
-constexpr Table kClientsTable{kClientsKeys};
-constexpr Table kDeviceReferenceTable{kDeviceReferenceKeys, &kDeviceTable, "the device file"};
-constexpr Table kSceneTable{kSceneKeys, &kDeviceTable, "the device file"};
-constexpr Table kDeviceTable{kDeviceKeys, &kSceneTable, "the scene file"};
-constexpr Table kDaemonTable{kDaemonKeys};
+constexpr Table kModelTable{kModelKeys, kBesideModels};
+constexpr Table kClientsTable{kClientsKeys, kBesideClients};
+constexpr Table kDeviceReferenceTable{kDeviceReferenceKeys, kBesideReference};
+constexpr Table kSceneTable{kSceneKeys, kBesideScene};
+constexpr Table kDeviceTable{kDeviceKeys, kBesideDevice};
+constexpr Table kDaemonTable{kDaemonKeys, kBesideDaemon};
 constexpr std::span<const Format> kFormats{kAllFormats};
 
 }  // namespace hapticd::scene

@@ -43,6 +43,7 @@ class SceneLoader {
     if (!text.node->isMap()) return scene_.models.push_back(std::move(model));  // reported; the others keep their index
     checkName(text, key);
     if (const host::ClassInfo* info = pluginOf(text, key)) {
+      model.plugin = info->name;  // of a misspelt plugin the nearest, so that its parameters are judged at once
       model.library = info->file;
       addParameters(text, key, *info, model);
     }
@@ -74,14 +75,26 @@ class SceneLoader {
     if (is_new) {
       known->second.line = at->line;
       auto found = catalog_.shape(text.plugin);
-      if (found) known->second.info = *found;
+      known->second.info = found ? *found : nearestPlugin(text.plugin);
+      known->second.is_misspelt = !found;
       if (!found) in_.problem(*at, key + ".plugin", found.error());
-    } else if (known->second.info == nullptr) {
+    } else if (known->second.is_misspelt) {
       in_.problem(*at, key + ".plugin",
                   "there is no usable shape plugin \"" + text.plugin + "\" (see line " +
                       std::to_string(known->second.line) + ")");
     }
     return known->second.info;
+  }
+
+  /// Returns the plugin that a misspelt name probably means; nullptr if there is none.
+  const host::ClassInfo* nearestPlugin(const std::string& name) {
+    std::vector<std::string> names;
+    for (const host::CatalogFile* file : catalog_.files(host::Kind::kShape))
+      for (const host::ClassInfo& info : file->classes)
+        if (info.kind == host::Kind::kShape) names.push_back(info.name);
+    const std::string meant = nearest(name, names);
+    const auto found = meant.empty() ? Result<const host::ClassInfo*>(nullptr) : catalog_.shape(meant);
+    return found ? *found : nullptr;
   }
 
   void addParameters(const ModelText& text, const std::string& key, const host::ClassInfo& info, Model& model) {
@@ -208,6 +221,7 @@ class SceneLoader {
 
   struct Known {
     const host::ClassInfo* info = nullptr;
+    bool is_misspelt = false;  ///< info is that of the nearest name, or nullptr
     int line = 0;
   };
   Reader& in_;

@@ -93,8 +93,19 @@ void checkDrag(const GivenModel& given) {
                                              drag, given.model().name, drag * kSlowTurn, kSlowTurn));
 }
 
+/// Warns of a drag against which the spring of a body brings it back so slowly that nobody waits for it.
+void checkTetherCreep(const GivenModel& given) {
+  constexpr double kLong = 3;  // [s]
+  const double tether = given.number("tether"), drag = given.number("drag"), mass = given.number("mass");
+  if (!(tether > 0) || drag * drag < 4 * mass * tether || drag < kLong * tether) return;
+  given.warn({"drag"},
+             fmt::format("{:g} N s/m against a tether of {:g} N/m: {} takes {:.3g} s to come back by two thirds; it "
+                         "swings below {:.2g} N s/m",
+                         drag, tether, given.model().name, drag / tether, 2 * std::sqrt(mass * tether)));
+}
+
 void checkDynamic(const GivenModel& given) {
-  for (const auto& judge : {&checkJoint, &checkContactHold, &checkCenter, &checkDrag}) {
+  for (const auto& judge : {&checkJoint, &checkContactHold, &checkCenter, &checkDrag, &checkTetherCreep}) {
     given.begin();
     judge(given);
   }
@@ -156,6 +167,20 @@ void checkHanging(const GivenModel& given) {
                     given.box()->center().z()));
 }
 
+/// Warns of a damping with which a pendulum creeps back to its place so slowly that nobody waits for it.
+void checkCreep(const GivenModel& given) {
+  constexpr double kLong = 3;  // [s] to come back by two thirds
+  const double length = given.number("length"), damping = given.number("damping");
+  const double restoring = given.number("mass") * given.gravity().norm() * length;
+  const double given_inertia = given.number("inertia");
+  const double inertia = given_inertia > 0 ? given_inertia : given.number("mass") * length * length;
+  if (!(restoring > 0) || damping * damping < 4 * inertia * restoring || damping < kLong * restoring) return;
+  given.warn({"damping"},
+             fmt::format("{:g} N m s/rad hold {} so that it creeps: it takes {:.3g} s to come back by two thirds; it "
+                         "swings below {:.2g} N m s/rad; the value must be in N m s/rad (1 mN m s/rad is 0.001)",
+                         damping, given.model().name, damping / restoring, 2 * std::sqrt(inertia * restoring)));
+}
+
 /// Warns of an exponent below 1 that makes contact begin with a jump, because the wall is then steepest at its surface.
 void checkFirstTouch(const GivenModel& given) {
   constexpr double kFirst = 1e-5, kJump = 1;  // [m] less than a hand moves in a tick; [N]
@@ -177,7 +202,7 @@ void checkBody(const GivenModel& given) {
   given.begin();
   if (given.choice("motion") == "dynamic" && given.plugin().indexOf("tether") >= 0) checkDynamic(given);
   if (given.plugin().id != "org.hapticd.shape.pendulum") return;
-  for (const auto& judge : {&checkPendulumInertia, &checkHanging}) {
+  for (const auto& judge : {&checkPendulumInertia, &checkHanging, &checkCreep}) {
     given.begin();
     judge(given);
   }

@@ -183,10 +183,11 @@ document::Problems fastHands(const scene::Scene& scene, const UnreadKeys& unread
       checkSpeed(scene, device, *hand, warnings);
       checkSlowMotion(scene, device, *hand, warnings);
     }
+    const bool fast = warnings.size() > before;
     document::Problems of_values;
     checkHandValues(scene, device, *hand, unread, of_values);
     for (document::Problem& one : of_values)  // a hand that is too fast has a warning already
-      if (warnings.size() == before || one.key != "hand.rate") warnings.push_back(std::move(one));
+      if (!fast || one.key != "hand.rate") warnings.push_back(std::move(one));
   }
   return warnings;
 }

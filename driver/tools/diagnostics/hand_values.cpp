@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <vector>
 
 namespace hapticd::diagnostics {
 namespace {
@@ -69,6 +70,52 @@ void checkSpring(const HandValues& values, const HandScript& hand) {
                           spring->number, kAway / kThousandth, spring->number * kAway));
 }
 
+const char* wordOf(HandScript::Kind script) {
+  constexpr const char* kWords[] = {"hold", "stroke", "press", "tap", "circle", "path", "none", "guided"};
+  return kWords[static_cast<size_t>(script)];
+}
+
+/// Returns the keys of the hand that its script does not use.
+std::vector<const char*> idleKeys(HandScript::Kind script) {
+  using Script = HandScript::Kind;
+  switch (script) {
+    case Script::kHold:
+      return {"hand.axis", "hand.sweep", "hand.rise", "hand.rate"};
+    case Script::kPress:
+    case Script::kTap:
+      return {"hand.axis", "hand.sweep"};
+    case Script::kCircle:
+      return {"hand.sweep", "hand.rise"};
+    case Script::kPath:
+      return {"hand.center", "hand.normal", "hand.axis",     "hand.radius", "hand.sweep",
+              "hand.rise",   "hand.rate",   "hand.approach", "hand.lead_in"};
+    case Script::kGuided:
+      return {"hand.axis", "hand.sweep", "hand.rise", "hand.rate", "hand.approach", "hand.lead_in"};
+    case Script::kNone:
+      return {"hand.mass",     "hand.stiffness", "hand.damping", "hand.center", "hand.normal",
+              "hand.axis",     "hand.radius",    "hand.sweep",   "hand.rise",   "hand.rate",
+              "hand.approach", "hand.lead_in",   "hand.tremor",  "hand.wander"};
+    default:
+      return {};
+  }
+}
+
+/// Warns of keys that the script of the hand does not use. A scene may replace the script of its device file, so keys
+/// of the device file are judged only by a script of the same file.
+void checkIdleKeys(const scene::Device& device, const HandScript& hand, const UnreadKeys& unread,
+                   document::Problems& warnings) {
+  const scene::Value* script = givenIn(device.parameters, "hand.script");
+  if (script == nullptr || unread.has("hand.script")) return;
+  for (const char* id : idleKeys(hand.kind)) {
+    const scene::Value* value = givenIn(device.parameters, id);
+    const bool in_device = value != nullptr && value->place.file == device.file.string();
+    if (value == nullptr || unread.has(id) || (in_device && script->place.file != value->place.file)) continue;
+    document::report(warnings, value->place, id,
+                     fmt::format("has no effect with hand.script: {}; remove this key, or choose another script",
+                                 wordOf(hand.kind)));
+  }
+}
+
 }  // namespace
 
 void checkHandValues(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
@@ -76,6 +123,7 @@ void checkHandValues(const scene::Scene& scene, const scene::Device& device, con
   constexpr double kHeavy = 5, kLong = 10;                   // [kg] heavier than a forearm; [s] that check watches
   constexpr double kTremor = 1, kWander = 2;                 // [N]
   constexpr double kUsualTremor = 0.05, kUsualWander = 0.1;  // [N] the module's defaults
+  checkIdleKeys(device, hand, unread, warnings);
   if (!hand.moves()) return;
   const HandValues values(scene, device, unread, warnings);
   if (values.isAbove("hand.mass", kHeavy))

@@ -61,6 +61,20 @@ void checkAnswerTime(const scene::Scene& scene, document::Problems& warnings) {
                                  scene.clients.answer_time, scene.servo.rate, period, most));
 }
 
+/// Warns of settings of programs that push, where no program may.
+void checkIdleClients(const scene::Scene& scene, document::Problems& warnings) {
+  const bool off = scene.clients.mode == scene::ClientMode::kOff;
+  if (!off && scene.clients.push) return;
+  for (const char* id : {"max_force", "exclusive", "answer_time", "push"}) {
+    const std::string key = std::string("clients.") + id;
+    const auto place = placeOfKey(scene.file, key);
+    if (!place || (!off && id == std::string_view("push"))) continue;
+    document::report(warnings, *place, key,
+                     fmt::format("has no effect, because no program may push ({}); remove this key, or set {}",
+                                 off ? "mode: off" : "push: false", off ? "mode: add" : "push: true"));
+  }
+}
+
 /// Warns of an origin of HDAPI programs that is far away from all arms.
 void checkOrigin(const scene::Scene& scene, document::Problems& warnings) {
   constexpr double kFar = 2;  // [m] beyond the reach of arms
@@ -141,6 +155,7 @@ document::Problems implausibleSettings(const scene::Scene& scene, const ModelBox
   document::Problems warnings;
   checkGravity(scene, warnings);
   checkServo(scene, warnings);
+  checkIdleClients(scene, warnings);
   checkAnswerTime(scene, warnings);
   checkOrigin(scene, warnings);
   checkTwoArms(scene, warnings);

@@ -128,12 +128,24 @@ void mountFarAway(const Node* position, const std::string& file, document::Probl
                                most, most, most / 1000));
 }
 
-void quaternionTurnedRound(const Node* orientation, const char* key, const std::string& file,
+void quaternionTurnedRound(const Node* orientation, const std::string& key, const std::string& file,
                            document::Problems& warnings) {
+  constexpr double kMost = 0.7;  // part of z: the other order then is a turn of at most 91 degrees
   const std::vector<double> q = numbersIn(orientation);
-  if (q.size() != 4 || q[0] != 0 || q[1] != 0 || q[2] != 0) return;
-  document::report(warnings, file, orientation->line, orientation->column, key,
-                   "is w, x, y, z, so this is a half turn about z; expected [1, 0, 0, 0] where no turn was meant");
+  const bool read =
+      orientation != nullptr && std::all_of(orientation->items.begin(), orientation->items.end(),
+                                            [](const Node& item) { return document::toNumber(item.scalar); });
+  if (!read || q.size() != 4 || q[0] != 0 || q[3] < kMost || (q[1] != 0 && q[2] != 0)) return;
+  if (q[1] == 0 && q[2] == 0)
+    return document::report(
+        warnings, file, orientation->line, orientation->column, key,
+        "is w, x, y, z, so this is a half turn about z; expected [1, 0, 0, 0] where no turn was meant; "
+        "[0, 0, 0, -1] is the same half turn without this warning");
+  document::report(
+      warnings, file, orientation->line, orientation->column, key,
+      fmt::format("is w, x, y, z, so this is a half turn about [{0:g}, {1:g}, {2:g}]; if it was written as "
+                  "x, y, z, w, write [{2:g}, 0, {0:g}, {1:g}]; if not, reverse all signs",
+                  q[1], q[2], q[3]));
 }
 
 /// Returns true for a number with a meaningless leading zero, such as "05" or "-0800".
@@ -153,6 +165,16 @@ void warnOfZeros(const Node& root, const std::string& file, document::Problems& 
                          root.scalar + " is one number, 0," + root.scalar + " is two)");
   for (const Node& item : root.items) warnOfZeros(item, file, warnings);
   for (const document::Entry& entry : root.entries) warnOfZeros(entry.value, file, warnings);
+}
+
+void warnOfTurns(const Node& root, const std::string& file, document::Problems& warnings, const std::string& key) {
+  for (const document::Entry& entry : root.entries) {
+    const std::string path = key.empty() ? entry.key.scalar : key + "." + entry.key.scalar;
+    if (entry.key.scalar == "orientation") quaternionTurnedRound(&entry.value, path, file, warnings);
+    warnOfTurns(entry.value, file, warnings, path);
+  }
+  for (size_t i = 0; i < root.items.size(); ++i)
+    if (root.items[i].isMap()) warnOfTurns(root.items[i], file, warnings, fmt::format("{}[{}]", key, i));
 }
 
 void warnOfUnits(const Node& root, const std::string& file, document::Problems& warnings) {

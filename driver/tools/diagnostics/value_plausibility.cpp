@@ -111,6 +111,7 @@ document::Problems implausibleValues(const scene::Scene& scene, const ModelBoxes
     const GivenModel given(scene, i, i < boxes.size() ? boxes[i] : unknown, **plugin, of_values, std::move(of_model));
     checkQuantities(given);
     checkBody(given);
+    checkIdleParameters(given);
   }
   reportModelsInOnePlace(scene, placed, warnings);
   reportIdlePoses(scene, placed, warnings);

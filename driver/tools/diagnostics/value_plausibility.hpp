@@ -29,6 +29,9 @@ void checkQuantities(const GivenModel& given);
 /// Warns of parameters of a body that moves by its weight and the forces on it.
 void checkBody(const GivenModel& given);
 
+/// Warns of parameters that have no effect, because another parameter of the model switches them off.
+void checkIdleParameters(const GivenModel& given);
+
 /// [main] Returns the groups of models that have the same geometry in the same place, as a copy whose pose was not
 /// changed. Each group has the indices of its models, in scene order.
 std::vector<std::vector<size_t>> modelsInOnePlace(const scene::Scene& scene);

@@ -35,6 +35,15 @@ TEST_F(Commands, BadUsageEndsWithTwo) {
         "device kinematics x.yaml", "import x.bpt", "check --schema opera"})
     EXPECT_EQ(run(command).exit_code, 2) << command;
   EXPECT_TRUE(has(run("chekc x.yaml").text, "did you mean \"check\"?"));
+  EXPECT_TRUE(has(run("run").text, "error: scene is missing, expected `hapticd run SCENE`; see hapticd run --help"));
+  EXPECT_TRUE(has(run("check x.yaml --schema sceen").text, "(did you mean \"scene\"?)"));
+}
+
+TEST_F(Commands, ADaemonFileThatIsMissingIsTheOnlyProblem) {
+  const Outcome outcome = run("--config nosuch.yaml run " + put("scene.yaml", kScene) + " --for 0.1");
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "nosuch.yaml:1:1: there is no such file")) << outcome.text;
+  EXPECT_FALSE(has(outcome.text, "exit()")) << outcome.text;
 }
 
 TEST_F(Commands, ANumberThatIsNoneIsOutOfEveryRange) {
@@ -45,7 +54,7 @@ TEST_F(Commands, ANumberThatIsNoneIsOutOfEveryRange) {
         "ctl geometry x --tolerance nan", "doctor --seconds nan"}) {
     const Outcome outcome = run(command);
     EXPECT_EQ(outcome.exit_code, 2) << command;
-    EXPECT_TRUE(has(outcome.text, "nan not in range")) << command << outcome.text;
+    EXPECT_TRUE(has(outcome.text, "nan is out of range")) << command << outcome.text;
   }
 }
 

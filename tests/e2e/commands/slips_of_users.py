@@ -103,6 +103,9 @@ def outputs(folder, ask):
         before = open(kept, "rb").read()
         code, out, err = ask(*words)
         check(f"{words[0]} does not write over {what}", code == 2 and what in err and open(kept, "rb").read() == before, (code, out, err))
+    code, out, err = ask("export", recording, "--csv", os.path.join(folder, "t.csv"))
+    check("a folder that is named as a file is not made", code == 2 and "--stream STREAM, with one of ticks" in err
+          and not os.path.exists(os.path.join(folder, "t.csv")), (code, out, err))
     others(folder, ask, recording, path, file)
     code, out, err = ask("trace", file, "--probe", path, "--out", os.path.join(folder, "feet.csv"))
     check("a path in mm is warned of", code == 0 and "row 2 is 30 m from the world's origin" in err, err)

@@ -16,5 +16,5 @@ for path in sys.argv[1:]:
     check(f"{name} --help ends with 0 and shows its options", code == 0 and "--help" in out and not err, f"{code} {out} {err}")
     code, out, err = run("--no-such-option")
     check(f"{name} ends a wrong option with 2", code == 2 and not out, f"{code} {out}")
-    check(f"{name} says how to go on", "--help" in err, err)
+    check(f"{name} says how to go on", err.startswith("error: ") and "--no-such-option" in err and f"{name}" in err and "--help" in err, err)
 finish()

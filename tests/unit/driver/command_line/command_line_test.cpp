@@ -68,19 +68,23 @@ TEST(CommandLine, ReadsEveryKindOfValueAndRunsTheCommandOnce) {
 
 TEST(CommandLine, RefusesWhatBreaksARuleWithTheExitCodeOfBadUsage) {
   const std::vector<std::pair<std::vector<const char*>, std::string>> wrong = {
-      {{}, "A subcommand is required"},
-      {{"draw"}, "file is required"},
-      {{"draw", "a", "--colour", "green"}, "--colour: green not in {red,blue}"},
-      {{"draw", "a", "--scale", "3"}, "--scale: Value 3 not in range 0.5 to 2"},
-      {{"draw", "a", "--scale", "nan"}, "--scale: Value nan not in range 0.5 to 2"},
+      {{}, "error: no subcommand given, expected one of draw; see example --help"},
+      {{"draw"}, "error: file is missing, expected `example draw FILE`; see example draw --help"},
+      {{"draw", "a", "--colour", "green"}, "error: --colour: \"green\" is not known, expected one of red, blue"},
+      {{"draw", "a", "--scale", "3"}, "error: --scale: 3 is out of range, expected a number from 0.5 to 2"},
+      {{"draw", "a", "--scale", "nan"}, "--scale: nan is out of range, expected a number from 0.5 to 2"},
       {{"draw", "a", "--scale", "much"}, "--scale: \"much\" is not a number, expected one from 0.5 to 2"},
-      {{"draw", "a", "--copies", "0"}, "--copies: Value 0 not in range 1 to 9"},
-      {{"draw", "a", "--angle", "x"}, "--angle"},
-      {{"draw", "a", "--corner", "1", "2"}, "--corner requires --angle"},
+      {{"draw", "a", "--copies", "0"}, "--copies: 0 is out of range, expected a whole number from 1 to 9"},
+      {{"draw", "a", "--copies", "1.5"}, "--copies: \"1.5\" is not a whole number, expected one from 1 to 9"},
+      {{"draw", "a", "--angle", "x"}, "error: --angle: \"x\" cannot be read, expected a number"},
+      {{"draw", "a", "--angle"}, "error: --angle: 1 more value expected (FLOAT); see example draw --help"},
+      {{"draw", "a", "b"}, "error: unexpected word \"b\": `example draw` takes only FILE and options"},
+      {{"drwa"}, "error: there is no subcommand \"drwa\", expected one of draw"},
+      {{"draw", "a", "--corner", "1", "2"}, "--corner has no effect alone, expected also --angle"},
       {{"draw", "a", "--corner", "1", "--angle", "2"}, "--corner"},
-      {{"draw", "a", "-q", "--copies", "2"}, "excludes"},
+      {{"draw", "a", "-q", "--copies", "2"}, "is given together with"},
       {{"draw", "a", "--weights", "1", "2"}, "2"},
-      {{"draw", "a", "--other"}, "--other"},
+      {{"draw", "a", "--other"}, "error: there is no option --other; see example draw --help"},
   };
   for (const auto& [words, text] : wrong) {
     Example e;
@@ -88,6 +92,18 @@ TEST(CommandLine, RefusesWhatBreaksARuleWithTheExitCodeOfBadUsage) {
     EXPECT_NE(e.said.find(text), std::string::npos) << "expected \"" << text << "\" in: " << e.said;
     EXPECT_EQ(e.calls, 0) << text;
   }
+}
+
+TEST(CommandLine, SuggestsNamesIfItIsToldHow) {
+  suggestBy([](const std::string& word, const std::vector<std::string>& known) {
+    return " (of " + std::to_string(known.size()) + " not " + word + ")";
+  });
+  Example e;
+  e.parse({"draw", "a", "--colour", "green"});
+  EXPECT_NE(e.said.find("one of red, blue (of 2 not green)"), std::string::npos) << e.said;
+  e.parse({"draw", "a", "--coluor=red"});
+  EXPECT_NE(e.said.find("there is no option --coluor (of "), std::string::npos) << e.said;
+  suggestBy(nullptr);
 }
 
 TEST(CommandLine, HelpAndVersionEndTheProgramWell) {

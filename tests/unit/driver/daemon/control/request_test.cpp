@@ -51,9 +51,17 @@ TEST(Request, SaysWhatIsWrongAndWhatWasExpected) {
       {R"({"do":"geometry","model":"a","tolerance":0})", "\"tolerance\": expected a number"},
       {R"({"do":"vertices"})", "\"model\" is missing"},
       {R"({"do":"feature","model":"a"})", "\"number\" is missing"},
-      {R"({"do":"feature","model":"a","number":-1})", "\"number\": expected a number"},
-      {R"({"do":"feature","model":"a","number":5e9})", "\"number\": expected a number"},
-      {R"({"do":"vertices","model":"a","after":-1})", "\"after\": expected a number"},
+      {R"({"do":"feature","model":"a","number":-1})",
+       "\"number\": expected a whole number from 0 to 4294967295, got -1"},
+      {R"({"do":"feature","model":"a","number":5e9})", "\"number\": expected a whole number"},
+      {R"({"do":"feature","model":"a","number":1.5})", "\"number\": expected a whole number"},
+      {R"({"do":"vertices","model":"a","after":-1})", "\"after\": expected a whole number"},
+      {R"({"do":"vertices","model":"a","after":0.5})", "\"after\": expected a whole number"},
+      {R"({"do": status})", "column 8 is not valid JSON"},
+      {R"({"do":"dsable","model":"a"})", "got \"dsable\" (did you mean \"disable\"?)"},
+      {R"({"do":"enable","modle":"a"})", "expected model (did you mean \"model\"?)"},
+      {R"({"do":"move","model":"a","position":[1,2,11],"seconds":1000})",
+       "within 10 m of 0, got [1,2,11]; \"seconds\": expected a number from 0.05 to 600 s, got 1000"},
       {R"({"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":1}}}}}}}}}})", "JSON object"}};
   for (const auto& [line, part] : wrong) {
     const auto request = parseRequest(line);
