@@ -26,14 +26,18 @@ std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
                                          {"closed", r.closed},
                                          {"volume_m3", r.volume},
                                          {"size_m", {r.size.x(), r.size.y(), r.size.z()}},
+                                         {"joined_points", r.joined},
+                                         {"slivers", r.slivers},
+                                         {"solids_inside", r.solids_inside},
                                          {"degenerate", r.degenerate},
                                          {"duplicates", r.duplicates},
                                          {"flipped", r.flipped},
                                          {"non_manifold_edges", r.non_manifold},
                                          {"unorientable_edges", r.unorientable},
                                          {"holes", r.holes},
-                                         {"free_edges", r.free_edges}};
-  return report.dump(2);
+                                         {"free_edges", r.free_edges},
+                                         {"remarks", r.remarks}};
+  return report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 /// Returns the unit of the file, as it is noted in the part.

@@ -17,6 +17,11 @@ bool spans(double a, double b, double at) noexcept {
   return (a <= at) != (b <= at);
 }
 
+/// True if v grows with u along a piece.
+bool rises(const TrimPiece& piece) noexcept {
+  return (piece.b[0] > piece.a[0]) == (piece.b[1] > piece.a[1]);
+}
+
 }  // namespace
 
 /// Returns the other coordinate of the point where a piece crosses the line `axis` = at, by Newton's method on the
@@ -83,24 +88,37 @@ bool Trim::crossesBeyond(const TrimPiece& piece, int axis, double at, double tha
   return 0.5 * (beside[0] + beside[1]) > than;
 }
 
+/// True if a piece passes to the right of a point in its box. Both directions of crossing are decided by this one
+/// answer. If each were computed along its own axis, then for a piece that is nearly parallel to an axis rounding could
+/// give two answers that contradict each other, and a whole row of a cell would change sides.
+bool Trim::passesRight(const TrimPiece& piece, double u, double v) const noexcept {
+  const Eigen::Vector2d way = piece.b - piece.a;
+  if (piece.kind == TrimPiece::Kind::kLine) {
+    const double side = way[0] * (v - piece.a[1]) - way[1] * (u - piece.a[0]);
+    return way[1] > 0 ? side > 0 : side < 0;
+  }
+  if (std::abs(way[1]) * per_cell_[1] >= std::abs(way[0]) * per_cell_[0]) {  // steep
+    const double chord = piece.a[0] + (v - piece.a[1]) / way[1] * way[0];
+    return std::abs(chord - u) > static_cast<double>(piece.off_u) ? chord > u : crossesBeyond(piece, 1, v, u);
+  }
+  const double chord = piece.a[1] + (u - piece.a[0]) / way[0] * way[1];
+  const bool above =
+      std::abs(chord - v) > static_cast<double>(piece.off_v) ? chord > v : crossesBeyond(piece, 0, u, v);
+  return above != rises(piece);
+}
+
 /// True if a piece that crosses the line v = const crosses it to the right of u.
 bool Trim::crossesRight(const TrimPiece& piece, double v, double u) const noexcept {
   if (u < std::min(piece.a[0], piece.b[0])) return true;
   if (u >= std::max(piece.a[0], piece.b[0])) return false;
-  const double chord = piece.a[0] + (v - piece.a[1]) / (piece.b[1] - piece.a[1]) * (piece.b[0] - piece.a[0]);
-  const bool clear = std::abs(chord - u) > static_cast<double>(piece.off_u);
-  if (piece.kind == TrimPiece::Kind::kLine || clear) return chord > u;
-  return crossesBeyond(piece, 1, v, u);
+  return passesRight(piece, u, v);
 }
 
 /// True if a piece that crosses the line u = const crosses it above v.
 bool Trim::crossesAbove(const TrimPiece& piece, double u, double v) const noexcept {
   if (v < std::min(piece.a[1], piece.b[1])) return true;
   if (v >= std::max(piece.a[1], piece.b[1])) return false;
-  const double chord = piece.a[1] + (u - piece.a[0]) / (piece.b[0] - piece.a[0]) * (piece.b[1] - piece.a[1]);
-  const bool clear = std::abs(chord - v) > static_cast<double>(piece.off_v);
-  if (piece.kind == TrimPiece::Kind::kLine || clear) return chord > v;
-  return crossesBeyond(piece, 0, u, v);
+  return passesRight(piece, u, v) != rises(piece);
 }
 
 /// Counts the crossings of the loops with a path from the point to the right border of its cell, and along the border

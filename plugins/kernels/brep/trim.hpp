@@ -51,6 +51,7 @@ class Trim {
  private:
   friend class TrimBuilder;
   bool insideGrid(double u, double v) const noexcept;
+  bool passesRight(const TrimPiece& piece, double u, double v) const noexcept;
   bool crossesRight(const TrimPiece& piece, double v, double u) const noexcept;
   bool crossesAbove(const TrimPiece& piece, double u, double v) const noexcept;
   double crossing(const TrimPiece& piece, int axis, double at) const noexcept;

@@ -17,11 +17,13 @@ inline constexpr std::size_t kMostTriangles = 20'000'000;
 /// Triangles as a file states them, in its unit. Points that are equal bit for bit are stored once.
 struct MeshFile {
   std::vector<Eigen::Vector3d> points;
-  std::vector<std::array<std::uint32_t, 3>> corners;  ///< polygons are cut into fans
+  std::vector<std::array<std::uint32_t, 3>> corners;  ///< polygons are cut into triangles
+  std::vector<std::string> remarks;                   ///< what is odd about the file and did not stop the reader
 };
 
 /// [main] Reads a mesh. Messages begin with `name`, whose ending gives the format (.obj, .stl, .ply in any case).
-/// Errors give the line if there are lines.
+/// Errors give the line if there are lines. A mark of UTF-8
+/// at the start is passed over.
 Result<MeshFile> parseMesh(std::string_view bytes, const std::string& name);
 
 /// [main] Each of these reads a mesh of one format.

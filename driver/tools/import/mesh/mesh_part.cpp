@@ -8,6 +8,8 @@
 #include <stdexcept>
 
 #include "mesh_import/mesh_edges.hpp"
+#include "mesh_import/mesh_nesting.hpp"
+#include "mesh_import/mesh_slivers.hpp"
 
 namespace hapticd::importing {
 namespace {
@@ -41,12 +43,12 @@ class Repair {
 
  private:
   void dropEmpty() {
-    const auto empty = [this](const Corners& c) {
-      if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return true;
-      const Vector3d ab = points_[c[1]] - points_[c[0]], ac = points_[c[2]] - points_[c[0]];
-      return !(ab.cross(ac).norm() > 1e-14 * ab.norm() * ac.norm());
-    };
-    report_.degenerate = std::erase_if(corners_, empty);
+    report_.degenerate = std::erase_if(corners_, [](const Corners& c) {
+      return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
+    });
+    report_.joined = joinFreePoints(points_, corners_);
+    report_.slivers = takeInSlivers(points_, corners_);
+    report_.degenerate += std::erase_if(corners_, [this](const Corners& c) { return isEmptyTriangle(points_, c); });
   }
 
   void dropDuplicates() {
@@ -126,26 +128,27 @@ class Repair {
     }
   }
 
-  /// Reverses closed shells that are inside out. A shell inside another one is left as it is, because it may be a
-  /// cavity.
+  /// Returns which shells have no free edge, and none where more than two triangles meet.
+  std::vector<char> closedShells() const {
+    std::vector<char> closed(report_.shells, 1);
+    for (std::size_t i = 0, end = 0; i < edges_.size(); i = end) {
+      end = endOfEdge(edges_, i);
+      for (std::size_t k = i; end - i != 2 && k < end; ++k) closed[shell_[edges_[k].code / 4]] = 0;
+    }
+    return closed;
+  }
+
+  /// Reverses closed shells that are inside out.
   void turnOutward() {
-    std::vector<Eigen::AlignedBox3d> boxes(report_.shells);
-    std::vector<double> volumes(report_.shells, 0);
-    if (!report_.closed) return;
-    for (std::size_t t = 0; t < corners_.size(); ++t) {
-      const Corners& c = corners_[t];
-      volumes[shell_[t]] += points_[c[0]].dot(points_[c[1]].cross(points_[c[2]])) / 6;
-      for (const std::uint32_t corner : c) boxes[shell_[t]].extend(points_[corner]);
-    }
-    std::vector<char> inside_out(report_.shells, 0);
-    for (std::size_t s = 0; s < boxes.size(); ++s) {
-      const auto around = [&](const Eigen::AlignedBox3d& box) { return &box != &boxes[s] && box.contains(boxes[s]); };
-      inside_out[s] = volumes[s] < 0 && std::none_of(boxes.begin(), boxes.end(), around);
-      report_.volume += inside_out[s] != 0 ? -volumes[s] : volumes[s];
-    }
+    const std::vector<char> closed = closedShells();
+    const Nesting nesting = nestingOf({points_, corners_, shell_, closed});
+    report_.solids_inside = nesting.solids_inside;
+    for (std::size_t s = 0; report_.closed && s < closed.size(); ++s)
+      report_.volume += nesting.inside_out[s] != 0 ? -nesting.volume[s] : nesting.volume[s];
     for (std::size_t t = 0; t < corners_.size(); ++t)
-      if (inside_out[shell_[t]] != 0) turn(t);
-    if (std::any_of(inside_out.begin(), inside_out.end(), [](char c) { return c != 0; })) edges_ = meshEdges(corners_);
+      if (nesting.inside_out[shell_[t]] != 0) turn(t);
+    const auto turned = std::count(nesting.inside_out.begin(), nesting.inside_out.end(), 1);
+    if (turned > 0) edges_ = meshEdges(corners_);
   }
 
   void dropUnusedPoints() {
@@ -185,6 +188,7 @@ std::string where(const Vector3d& p) {
 
 brep::Part meshPart(const MeshFile& mesh, const MeshOptions& options, const std::string& file_name,
                     MeshReport& report) {
+  report.remarks = mesh.remarks;
   Repair repair(mesh, options.scale, report);
   repair.run();
   if (repair.corners_.empty()) throw std::invalid_argument("all triangles have zero area");
@@ -224,10 +228,14 @@ brep::Part meshPart(const MeshFile& mesh, const MeshOptions& options, const std:
 }
 
 std::vector<std::string> linesOf(const MeshReport& r) {
-  std::vector<std::string> lines;
+  std::vector<std::string> lines = r.remarks;
   const auto say = [&](std::size_t count, const char* one, const char* many) {
     if (count > 0) lines.push_back(counted(count, one, many));
   };
+  say(r.joined, "point was joined with one that differs by rounding only",
+      "points were joined with others that differ by rounding only");
+  say(r.slivers, "triangle of zero area was taken into its neighbour",
+      "triangles of zero area were taken into their neighbours");
   say(r.degenerate, "triangle of zero area was left out", "triangles of zero area were left out");
   say(r.duplicates, "duplicate triangle was left out", "duplicate triangles were left out");
   say(r.flipped, "triangle was reversed", "triangles were reversed");
@@ -241,6 +249,8 @@ std::vector<std::string> linesOf(const MeshReport& r) {
         "; the faces inside are felt as well: unite the bodies in the program that wrote the file (boolean union)");
   if (!r.crossings.all_tried)
     lines.emplace_back("not all pairs of triangles were tried, so its shells may pass through each other");
+  say(r.solids_inside, "shell lies inside another one and faces outward as well: a body in a body, no cavity",
+      "shells lie inside others and face outward as well: bodies in a body, no cavities");
   if (r.holes > 0)
     lines.push_back(counted(r.holes, "hole", "holes") + " with " + counted(r.free_edges, "free edge", "free edges"));
   return lines;

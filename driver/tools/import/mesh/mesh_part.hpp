@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// Makes a part from a triangle mesh: repairs what can be repaired, and reports the repairs.
 #pragma once
+#include <string>
+#include <vector>
+
 #include "kernels/brep/part.hpp"
 #include "mesh_import/mesh_crossings.hpp"
 #include "mesh_import/mesh_file.hpp"
@@ -16,6 +19,9 @@ struct MeshOptions {
 /// What was found in a mesh, and what was done about it.
 struct MeshReport {
   std::size_t triangles = 0, points = 0;  ///< numbers of triangles and points that were kept
+  std::size_t joined = 0;                 ///< points that were joined with one that differs by rounding only
+  std::size_t slivers = 0;                ///< triangles of zero area that were taken into a neighbour
+  std::size_t solids_inside = 0;          ///< closed shells inside another one that face outward like it
   std::size_t degenerate = 0;             ///< triangles that were left out because they have no area
   std::size_t duplicates = 0;    ///< triangles that were left out because they have the same three corners as another
   std::size_t flipped = 0;       ///< triangles that were reversed to agree with others, or to make the volume positive
@@ -27,6 +33,7 @@ struct MeshReport {
   double volume = 0;                      ///< [m^3] enclosed volume if closed
   Eigen::Vector3d size{0, 0, 0};          ///< [m] size of the bounding box
   Crossings crossings;                    ///< shells that pass through each other
+  std::vector<std::string> remarks;       ///< what the reader of the file found odd
 };
 
 /// [main] Makes a part with one body of triangles, and writes `file_name` into it as its source. @throws

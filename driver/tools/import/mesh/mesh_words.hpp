@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,11 +18,12 @@ class Words {
  public:
   explicit Words(std::string_view text) : rest_(text) {}
 
-  /// Goes to the next line; false at the end.
+  /// Goes to the next line; false at the end. A carriage return ends a line as well, as on old Macs.
   bool nextLine() {
     if (rest_.empty()) return false;
-    const std::size_t end = rest_.find('\n');
+    std::size_t end = rest_.find_first_of("\r\n");
     line_ = rest_.substr(0, end);
+    if (end != std::string_view::npos && rest_.substr(end, 2) == "\r\n") ++end;
     rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
     ++number_;
     return true;
@@ -35,22 +37,38 @@ class Words {
     line_.remove_prefix(end);
     return word;
   }
+  void skipLine() { line_ = {}; }
   std::size_t lineNumber() const { return number_; }
   std::string_view rest() const { return rest_; }  ///< the text after this line
 
  private:
-  static constexpr std::string_view kSpace = " \t\r\v\f";
+  static constexpr std::string_view kSpace = " \t\v\f";
   std::string_view rest_, line_;
   std::size_t number_ = 0;
 };
 
-/// Returns the number if the whole word is a finite number.
-inline std::optional<double> finiteNumber(std::string_view word) {
+/// Returns a word of a file for a message: no more than 40 bytes, and ? for each byte that is no printable ASCII.
+inline std::string plainWord(std::string_view word) {
+  constexpr std::size_t kMost = 40;
+  std::string text(word.substr(0, kMost));
+  for (char& c : text)
+    if (c < ' ' || c > '~') c = '?';
+  return word.size() > kMost ? text + "..." : text;
+}
+
+/// Returns the number if the whole word is a number; nan and inf are numbers too.
+inline std::optional<double> anyNumber(std::string_view word) {
   if (!word.empty() && word[0] == '+') word.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return {};
+  if (error != std::errc() || end != word.data() + word.size()) return {};
   return value;
+}
+
+/// Returns the number if the whole word is a finite number.
+inline std::optional<double> finiteNumber(std::string_view word) {
+  const auto value = anyNumber(word);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 /// Returns the next three words as a point, if they are finite numbers.

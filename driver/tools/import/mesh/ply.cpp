@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// Reads PLY, the format of Greg Turk and of most scanners: a text header, then text or binary of either byte order.
+#include <algorithm>
 #include <bit>
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 
 #include "mesh_import/mesh_file.hpp"
 #include "mesh_import/mesh_words.hpp"
+#include "mesh_import/polygons.hpp"
 
 namespace hapticd::importing {
 namespace {
@@ -48,15 +52,27 @@ class Body {
     if (form_ == Form::kText) {
       std::string_view word = words_.next();
       while (word.empty() && words_.nextLine()) word = words_.next();
-      return finiteNumber(word);
+      ended_ = word.empty();
+      return anyNumber(word);
     }
     const std::size_t size = sizeOf(type);
-    if (bytes_.size() - place_ < size) return {};
+    ended_ = bytes_.size() - place_ < size;
+    if (ended_) return {};
     std::array<char, 8> raw{};
     for (std::size_t i = 0; i < size; ++i) raw[form_ == Form::kBig ? size - 1 - i : i] = bytes_[place_ + i];
     place_ += size;
     return decode(type, raw);
   }
+
+  /// Passes over the rest of a line of text, since each item has its own line. @return true if it held a value
+  bool passRest() {
+    if (form_ != Form::kText) return false;
+    const bool more = !words_.next().empty();
+    words_.skipLine();
+    return more;
+  }
+  bool ended() const { return ended_; }  ///< true if the last value was missing
+  std::size_t lineNumber() const { return form_ == Form::kText ? words_.lineNumber() : 0; }
 
  private:
   template <class T>
@@ -92,6 +108,7 @@ class Body {
   std::size_t place_ = 0;
   Words words_;
   Form form_;
+  bool ended_ = false;
 };
 
 class Reader {
@@ -99,20 +116,44 @@ class Reader {
   Reader(std::string_view bytes, const std::string& name) : words_(bytes), name_(name) {}
 
   Result<MeshFile> run() {
-    if (!readHeader()) return Error{name_ + ":" + std::to_string(words_.lineNumber()) + ": " + wrong_};
+    if (!readHeader() || !judgeHeader()) return Error{name_ + ":" + std::to_string(words_.lineNumber()) + ": " + wrong_};
     Body body(words_.rest(), form_);
+    std::size_t longer = 0;
     for (const Element& element : elements_)
-      for (std::size_t i = 0; i < element.count && !element.properties.empty(); ++i)
-        if (!readItem(element, body))
-          return Error{name_ + ": " + std::string(element.name) + " " + std::to_string(i) + ": " + wrong_};
-    if (mesh_.corners.empty()) return Error{name_ + ": has no triangles, expected an element face with vertex_indices"};
+      for (std::size_t i = 0; i < element.count && !element.properties.empty(); ++i) {
+        if (!readItem(element, body)) return Error{where(element, i, body) + wrong_};
+        longer += body.passRest() ? 1 : 0;
+      }
+    if (longer > 0)
+      mesh_.remarks.push_back(std::to_string(longer) +
+                              " lines hold more values than the header states; the rest of these lines was passed over");
+    if (mesh_.corners.empty()) return Error{name_ + ": " + whatIsMissing()};
     return std::move(mesh_);
   }
 
  private:
-  bool fail(const char* wrong) {
-    wrong_ = wrong;
+  bool fail(std::string wrong) {
+    wrong_ = std::move(wrong);
     return false;
+  }
+
+  std::string where(const Element& element, std::size_t item, const Body& body) const {
+    const std::size_t line = body.lineNumber();
+    return name_ + (line > 0 ? ":" + std::to_string(words_.lineNumber() + line) : "") + ": " +
+           std::string(element.name) + " " + std::to_string(item) + " of " + std::to_string(element.count) + ": ";
+  }
+
+  /// A value was missing: says why.
+  bool failAt(const Body& body, const char* expected) {
+    return fail(body.ended() ? "the file ends here: it is cut off, or the header states too many"
+                             : std::string("this is not a number; expected ") + expected);
+  }
+
+  /// Says what is there if there are no triangles.
+  std::string whatIsMissing() const {
+    std::string text = "has no triangles, expected an element face with vertex_indices";
+    if (!points_.empty()) text += "; it holds points, but no faces";
+    return text;
   }
 
   bool readHeader() {
@@ -127,6 +168,22 @@ class Reader {
     return fail("the header has no end_header");
   }
 
+  /// Refuses vertices without a place, and faces that stand before their vertices.
+  bool judgeHeader() {
+    bool vertices = false;
+    for (const Element& element : elements_) {
+      if (element.name == "face" && element.count > 0 && !vertices)
+        return fail("the faces stand before the vertices; expected element vertex first");
+      if (element.name != "vertex") continue;
+      vertices = true;
+      for (const char* axis : {"x", "y", "z"})
+        if (std::none_of(element.properties.begin(), element.properties.end(),
+                         [&](const Property& p) { return p.name == axis && p.count == Type::kUnknown; }))
+          return fail(std::string("the element vertex has no property ") + axis + "; expected x, y and z");
+    }
+    return true;
+  }
+
   bool readForm(std::string_view word) {
     if (word == "binary_little_endian") form_ = Body::Form::kLittle;
     if (word == "binary_big_endian") form_ = Body::Form::kBig;
@@ -138,7 +195,7 @@ class Reader {
     Element element;
     element.name = words_.next();
     const auto count = finiteNumber(words_.next());
-    if (!count || *count < 0 || *count > 4e9)
+    if (!count || *count < 0 || *count > 4e9 || *count != std::floor(*count))
       return fail(
           "this line has no name or no valid count; expected \"element NAME COUNT\", such as \"element vertex 8\"");
     element.count = static_cast<std::size_t>(*count);
@@ -152,12 +209,13 @@ class Reader {
     std::string_view word = words_.next();
     if (word == "list") {
       property.count = typeOf(words_.next());
-      if (property.count == Type::kUnknown) return fail("unknown type of a list's length");
+      if (property.count == Type::kUnknown) return fail("unknown type of a list's length, expected uchar or the like");
       word = words_.next();
     }
     property.type = typeOf(word);
     property.name = words_.next();
-    if (property.type == Type::kUnknown) return fail("unknown type, expected int, float, double, uchar or the like");
+    if (property.type == Type::kUnknown)
+      return fail("unknown type '" + plainWord(word) + "', expected int, float, double, uchar or the like");
     elements_.back().properties.push_back(property);
     return true;
   }
@@ -166,13 +224,14 @@ class Reader {
     Vector3d p = Vector3d::Zero();
     for (const Property& property : element.properties) {
       if (property.count != Type::kUnknown) {
-        const bool corners =
-            element.name == "face" && (property.name == "vertex_indices" || property.name == "vertex_index");
-        if (!readList(property, corners, body)) return false;
+        const bool corners = property.name == "vertex_indices" || property.name == "vertex_index";
+        if (!readList(property, corners && (element.name == "face" || element.name == "tristrips"), body)) return false;
+        if (corners && element.name == "face" && !addPolygon()) return false;
+        if (corners && element.name == "tristrips" && !addStrip()) return false;
         continue;
       }
       const auto value = body.next(property.type);
-      if (!value) return fail("the file ends, or holds something other than a number");
+      if (!value) return failAt(body, "the value of a property");
       if (property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z')
         p[property.name[0] - 'x'] = *value;
     }
@@ -182,21 +241,57 @@ class Reader {
     return true;
   }
 
-  bool readList(const Property& property, bool corners, Body& body) {
+  /// Reads a list into `list_`, or passes over it.
+  bool readList(const Property& property, bool kept, Body& body) {
+    constexpr double kLongest = 1e8;
     const auto count = body.next(property.count);
-    if (!count || !(*count >= 0) || *count > 1e6)
-      return fail("a list's length is missing, negative or above 1,000,000");
-    polygon_.clear();
-    for (int k = 0; k < static_cast<int>(*count); ++k) {
-      const auto index = body.next(property.type);
-      if (!index) return fail("the file ends inside a list, or holds something other than a number");
-      if (!corners) continue;
-      if (!(*index >= 0) || *index >= static_cast<double>(points_.size())) return fail("its vertex is out of range");
-      polygon_.push_back(points_[static_cast<std::size_t>(*index)]);
+    if (!count) return failAt(body, "the length of a list");
+    if (!(*count >= 0) || *count > kLongest || *count != std::floor(*count))
+      return fail("the length of a list is negative, not whole or above 100,000,000");
+    list_.clear();
+    for (auto left = static_cast<std::size_t>(*count); left > 0; --left) {
+      const auto value = body.next(property.type);
+      if (!value) return failAt(body, "an entry of a list");
+      if (kept) list_.push_back(*value);
     }
-    for (std::size_t k = 2; k < polygon_.size(); ++k)
-      mesh_.corners.push_back({polygon_[0], polygon_[k - 1], polygon_[k]});
+    return true;
+  }
+
+  bool isPoint(double index) {
+    if (index >= 0 && index < static_cast<double>(points_.size()) && index == std::floor(index)) return true;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g", index);
+    return fail("its vertex " + std::string(text) + " is out of range, expected 0 to " +
+                std::to_string(points_.size() - 1));
+  }
+
+  bool addPolygon() {
+    std::vector<std::uint32_t> polygon;
+    for (const double index : list_) {
+      if (!isPoint(index)) return false;
+      polygon.push_back(points_[static_cast<std::size_t>(index)]);
+    }
+    if (!cutPolygon(mesh_.points, std::move(polygon), mesh_.corners)) return fail(kPolygonTooLarge);
     return mesh_.corners.size() <= kMostTriangles || fail("more than 20,000,000 triangles");
+  }
+
+  /// Adds the triangles of strips, each of which uses the last two points again, in turns with one and the other sense.
+  /// A -1 begins a new strip.
+  bool addStrip() {
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      if (list_[i] == -1) {
+        begin = i + 1;
+        continue;
+      }
+      if (!isPoint(list_[i])) return false;
+      if (i < begin + 2) continue;
+      const auto at = [&](std::size_t k) { return points_[static_cast<std::size_t>(list_[k])]; };
+      const std::size_t odd = (i - begin) % 2;
+      mesh_.corners.push_back({at(i - 2 + odd), at(i - 1 - odd), at(i)});
+      if (mesh_.corners.size() > kMostTriangles) return fail("more than 20,000,000 triangles");
+    }
+    return true;
   }
 
   Words words_;
@@ -205,7 +300,8 @@ class Reader {
   std::vector<Element> elements_;
   MeshFile mesh_;
   Weld weld_{mesh_.points};
-  std::vector<std::uint32_t> points_, polygon_;
+  std::vector<std::uint32_t> points_;  ///< index of each vertex after equal points were joined
+  std::vector<double> list_;
   std::string wrong_;
 };
 

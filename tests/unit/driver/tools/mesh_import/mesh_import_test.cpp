@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <bit>
+#include <cctype>
 #include <cstring>
 #include <random>
 
@@ -85,6 +87,23 @@ TEST(MeshImport, SaysWhereAFileIsWrong) {
   EXPECT_EQ(errorOf(parseObjMesh("v 0 0\n", "x.obj")), "x.obj:1: expected v x y z, finite numbers");
   EXPECT_EQ(errorOf(parseObjMesh("v 0 0 0\nf 1 2 3\n", "x.obj")), "x.obj:2: point '2', expected 1 to 1");
   EXPECT_EQ(errorOf(parseObjMesh("v 0 0 nan\n", "x.obj")), "x.obj:1: expected v x y z, finite numbers");
+  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 0\nf 1 2\33[2J 3\n", "x.obj")),
+            "x.obj:2: point '2?[2J', expected 1 to 1");
+  EXPECT_EQ(errorOf(parseMesh("\xfe\xff\0#", "x.obj")),
+            "x.obj: is text in UTF-16, expected UTF-8 or ASCII: save it again with that encoding");
+  EXPECT_EQ(errorOf(parseMesh("", "x.stl")), "x.stl: is empty");
+  EXPECT_EQ(errorOf(parseStlMesh("solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\n", "x.stl")),
+            "x.stl:2: the file ends inside this facet: it is cut off; expected endfacet");
+  EXPECT_EQ(errorOf(parseStlMesh("solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nendfacet\nendsolid", "x.stl")),
+            "x.stl:5: the facet before this line has less than three corners");
+  EXPECT_EQ(errorOf(parsePlyMesh("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+                                 "property float z\nend_header\n0 0 0\n",
+                                 "x.ply")),
+            "x.ply:8: vertex 1 of 2: the file ends here: it is cut off, or the header states too many");
+  EXPECT_EQ(errorOf(parsePlyMesh("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                                 "end_header\n0 0\n",
+                                 "x.ply")),
+            "x.ply:6: the element vertex has no property z; expected x, y and z");
   EXPECT_EQ(errorOf(parseStlMesh("solid\nvertex 0 0 zero\n", "x.stl")),
             "x.stl:2: expected vertex x y z, finite numbers");
   EXPECT_EQ(errorOf(parsePlyMesh("ply\nformat odd 1.0\n", "x.ply")),
@@ -132,6 +151,167 @@ TEST(MeshImport, ReadsPlyInAllThreeForms) {
     EXPECT_NEAR(report.volume, 1.0 / 6, 1e-15);
   }
   EXPECT_NE(errorOf(parsePlyMesh(binary(false).substr(0, 250), "x.ply")), "");
+}
+
+/// Returns the area of all triangles.
+double areaOf(const brep::Part& part) {
+  double area = 0;
+  for (const brep::Triangle& t : part.triangles) {
+    const auto at = [&](std::size_t k) { return Eigen::Vector3d(part.points[t.corner[k]].data()); };
+    area += 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
+  }
+  return area;
+}
+
+TEST(MeshImport, CutsConcavePolygonsWithinThem) {
+  const struct {
+    const char* what;
+    std::string text;
+    double area;
+  } cases[] = {
+      {"an L", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 3 4 5 6 1 2\n", 3},
+      {"an arrow of four corners", "v 0 0 0\nv 2 -1 0\nv 1 0 0\nv 2 1 0\nf 2 3 4 1\n", 1},
+      {"a frame with a slit to its hole",
+       "v 0 0 1\nv 3 0 1\nv 3 3 1\nv 0 3 1\nv 1 1 1\nv 2 1 1\nv 2 2 1\nv 1 2 1\nf 1 2 3 4 1 5 8 7 6 5\n", 8},
+      {"a corner on a side", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4 5\n", 4},
+      {"twice round", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4 1 2 3 4\n", 1},
+  };
+  for (const auto& one : cases) {
+    MeshReport report;
+    EXPECT_NEAR(areaOf(partOf(one.text, report)), one.area, 1e-14) << one.what;
+    EXPECT_EQ(report.non_manifold + report.degenerate + report.duplicates, 0u) << one.what;
+  }
+}
+
+TEST(MeshImport, ReadsObjAsOtherProgramsWriteIt) {
+  std::string mac = kCube, windows = kCube, first, goes_on = kCube;
+  for (char& c : mac)
+    if (c == '\n') c = '\r';
+  for (std::size_t at = 0; (at = windows.find('\n', at)) != std::string::npos; at += 2) windows.insert(at, 1, '\r');
+  first = std::string(kCube).substr(std::string(kCube).find("f ")) + std::string(kCube).substr(0, std::string(kCube).find("f "));
+  goes_on.replace(goes_on.find("f 4 3 2 1"), 9, "f 4 3 \\\n2 1 # the bottom");
+  for (const std::string& text : {mac, windows, first, goes_on, "\xef\xbb\xbf" + std::string(kCube)}) {
+    const auto mesh = parseMesh(text, "x.obj");
+    ASSERT_TRUE(mesh) << mesh.error();
+    MeshReport report;
+    meshPart(*mesh, {}, "x.obj", report);
+    EXPECT_TRUE(report.closed);
+    EXPECT_NEAR(report.volume, 1, 1e-15);
+  }
+}
+
+TEST(MeshImport, ReadsStlAsOtherProgramsWriteIt) {
+  const std::string facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+  std::string large = "SOLID x\n" + facet + "ENDSOLID\n", one_line = " solid vertex facet\n" + facet + "endsolid\n";
+  for (char& c : large) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  for (std::size_t at = one_line.find('\n') + 1; (at = one_line.find('\n', at)) != std::string::npos; ++at)
+    if (one_line.compare(at + 1, 8, "endsolid") != 0) one_line[at] = ' ';
+  for (const std::string& text : {large, one_line, " solid FLIRIS  \n" + facet + facet + "endsolid"}) {
+    const auto mesh = parseStlMesh(text, "x.stl");
+    ASSERT_TRUE(mesh) << mesh.error();
+    EXPECT_EQ(mesh->points.size(), 3u);
+    EXPECT_TRUE(mesh->remarks.empty());
+  }
+  EXPECT_EQ(parseStlMesh("solid\n" + facet, "x.stl")->remarks.size(), 1u);  // endsolid is missing
+  std::string binary(84 + 50, '\0');
+  binary.replace(0, 5, "solid");
+  binary[80] = 1;
+  EXPECT_TRUE(parseStlMesh(binary, "x.stl"));
+  EXPECT_EQ(parseStlMesh(binary + "more", "x.stl")->remarks[0], "4 bytes after the last triangle were passed over");
+  EXPECT_NE(errorOf(parseStlMesh(binary.substr(0, 130), "x.stl")).find("1 triangles has 134 bytes"), std::string::npos);
+}
+
+TEST(MeshImport, ReadsPlyAsOtherProgramsWriteIt) {
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                           "property float quality\n";
+  const std::string points = "0 0 0 nan\n1 0 0 1\n0 1 0 1\n0 0 1 1\n";
+  const auto longer = parsePlyMesh(head + "element face 4\nproperty list uchar int vertex_indices\nend_header\n" + points +
+                                       "3 0 2 1 9 9\n3 0 1 3 9 9\n3 1 2 3 9 9\n3 2 0 3 9 9\n",
+                                   "x.ply");
+  ASSERT_TRUE(longer) << longer.error();
+  EXPECT_EQ(longer->remarks.size(), 1u);
+  const auto strips = parsePlyMesh(head + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" +
+                                       points + "10 0 2 1 3 0 -1 0 3 2 -1\n",
+                                   "x.ply");
+  ASSERT_TRUE(strips) << strips.error();
+  for (const auto& mesh : {longer, strips}) {
+    MeshReport report;
+    meshPart(*mesh, {}, "x.ply", report);
+    EXPECT_TRUE(report.closed);
+    EXPECT_EQ(report.flipped, 0u);
+    EXPECT_NEAR(report.volume, 1.0 / 6, 1e-15);
+  }
+}
+
+/// A cube whose edge from point 1 to 2 has a point in its middle, which only a triangle without area uses.
+TEST(MeshImport, StaysClosedWithoutTrianglesOfNoArea) {
+  std::string text = std::string(kCube) + "v 0.5 0 0\n";
+  text.replace(text.find("f 1 2 6 5"), 9, "f 1 9 2\nf 1 2 6\nf 1 6 5");
+  text.replace(text.find("f 4 3 2 1"), 9, "f 9 1 4\nf 2 9 4\nf 3 2 4");
+  MeshReport report;
+  partOf(text, report);
+  EXPECT_TRUE(report.closed);
+  EXPECT_EQ(report.slivers, 1u);
+  EXPECT_EQ(report.degenerate, 0u);
+  EXPECT_NEAR(report.volume, 1, 1e-15);
+}
+
+TEST(MeshImport, JoinsPointsThatDifferByRounding) {
+  std::string text = kCube;
+  text.replace(text.find("f 1 2 6 5"), 9, "v 1.0000001 0.0000001 0\nf 1 9 6 5");
+  MeshReport report;
+  partOf(text, report);
+  EXPECT_TRUE(report.closed);
+  EXPECT_EQ(report.joined, 1u);
+  text.replace(text.find("v 1.0000001 0.0000001"), 21, "v 1.0001000 0.0000000");
+  MeshReport wide;
+  partOf(text, wide);
+  EXPECT_FALSE(wide.closed);
+}
+
+/// Returns a cube of a size at a place on the diagonal, facing inward if `inward`.
+std::string cubeAt(double at, double size, int first, bool inward) {
+  std::string text;
+  for (int i = 0; i < 8; ++i)
+    text += "v " + std::to_string(at + (i & 1) * size) + " " + std::to_string(at + (i >> 1 & 1) * size) + " " +
+            std::to_string(at + (i >> 2) * size) + "\n";
+  const int quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& q : quads) {
+    text += "f";
+    for (int k = 0; k < 4; ++k) text += " " + std::to_string(first + q[inward ? 3 - k : k]);
+    text += "\n";
+  }
+  return text;
+}
+
+TEST(MeshImport, TurnsACavityWithTheShellAroundIt) {
+  const struct {
+    bool outer, inner;
+    double volume;
+    std::size_t flipped, bodies;
+  } cases[] = {{false, true, 26, 0, 0}, {true, false, 26, 24, 0}, {false, false, 28, 0, 1}, {true, true, 28, 24, 1}};
+  for (const auto& one : cases) {
+    MeshReport report;
+    partOf(cubeAt(0, 3, 1, one.outer) + cubeAt(1, 1, 9, one.inner), report);
+    EXPECT_TRUE(report.closed);
+    EXPECT_NEAR(report.volume, one.volume, 1e-12);
+    EXPECT_EQ(report.flipped, one.flipped);
+    EXPECT_EQ(report.solids_inside, one.bodies);
+  }
+}
+
+/// A cube in the notch of an L is in its box, not in it.
+TEST(MeshImport, TurnsAShellThatIsOnlyInTheBoxOfAnother) {
+  std::string text = "v 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nv 0 0 4\nv 3 0 4\nv 3 1 4\nv 1 1 4\nv 1 3 4\n"
+                     "v 0 3 4\nf 6 5 4 3 2 1\nf 7 8 9 10 11 12\n";
+  for (int k = 1; k <= 6; ++k)
+    text += "f " + std::to_string(k) + " " + std::to_string(k % 6 + 1) + " " + std::to_string(k % 6 + 7) + " " +
+            std::to_string(k + 6) + "\n";
+  MeshReport report;
+  partOf(text + cubeAt(1.5, 1, 13, true), report);
+  EXPECT_TRUE(report.closed);
+  EXPECT_NEAR(report.volume, 21, 1e-12);
+  EXPECT_EQ(report.flipped, 12u);
 }
 
 /// Any bytes: an answer, never a crash. (tests/fuzz goes on with this for longer.)

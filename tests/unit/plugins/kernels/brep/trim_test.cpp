@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <random>
 
@@ -82,6 +83,35 @@ TEST(TrimPieces, AreFewAlongASideThatIsStraightButForRounding) {
     const double u = share(random), v = share(random);
     ASSERT_EQ(trim.inside(u, v), u > 0 && u < 1 && v > 0 && v < 1) << u << ' ' << v;
   }
+}
+
+/// Sides that are upright but for the last bit, with a border of the grid between their ends: a point beside the border
+/// crosses the side either to the right or above, and never both or neither.
+TEST(Trim, DecidesHolesWithNearlyUprightSides) {
+  for (int column = 1; column < 5; ++column)
+    for (const bool leans_right : {true, false}) {
+      const double left = 0.2 * column, end = std::nextafter(left, leans_right ? 1.0 : 0.0), right = left + 0.1;
+      const Vector2 corners[] = {{left, 0.13}, {right, 0.13}, {right, 0.77}, {end, 0.77}};
+      const std::vector<Curve2> sides{samples::line2({0, 0}, {1, 0}), samples::line2({1, 0}, {0, 1}),
+                                      samples::line2({1, 1}, {-1, 0}), samples::line2({0, 1}, {0, -1})};
+      Part part = faceOf({}, sides, {1, 1});
+      samples::addLoop(part);
+      for (std::size_t k = 4; k > 0; --k) {
+        const Vector2 &from = corners[k % 4], &to = corners[k - 1];
+        const std::uint32_t vertex = samples::addVertex(part, {});
+        samples::addCoedge(part, samples::addEdge(part, {}, 0, 1, vertex, vertex),
+                           samples::line2(from, {to[0] - from[0], to[1] - from[1]}), 0);
+      }
+      const Geometry geometry(part, spline::Form::kTable);
+      const Trim trim(geometry, part.faces[0]);
+      std::mt19937 random(3);
+      std::uniform_real_distribution<double> share(0.01, 0.99);
+      for (int i = 0; i < 20000; ++i) {
+        const double u = i % 2 == 0 ? share(random) : left + 0.05 * (share(random) - 0.5), v = share(random);
+        const bool in_hole = u > left && u < right && v > 0.13 && v < 0.77;
+        ASSERT_EQ(trim.inside(u, v), !in_hole) << u << ' ' << v << ", a side at " << left;
+      }
+    }
 }
 
 }  // namespace

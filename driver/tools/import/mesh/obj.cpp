@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+/// Reads OBJ, the format of Wavefront: the lines `v` and `f`. Lines of other kinds are passed over.
+#include "mesh_import/mesh_file.hpp"
+#include "mesh_import/mesh_words.hpp"
+#include "mesh_import/polygons.hpp"
+
+namespace hapticd::importing {
+namespace {
+
+class ObjReader {
+ public:
+  ObjReader(std::string_view bytes, const std::string& name) : words_(bytes), name_(name) {}
+
+  Result<MeshFile> run() {
+    while (words_.nextLine()) {
+      const std::string_view kind = words_.next();
+      if (kind == "v" && !readPoint()) return Error{at(words_.lineNumber()) + wrong_};
+      if ((kind == "f" || kind == "fo") && !readFace()) return Error{at(line_) + wrong_};
+      free_form_ = free_form_ || kind == "surf" || kind == "curv";
+      lines_ += kind == "l" ? 1 : 0;
+    }
+    for (const Late& late : late_)
+      if (!addFace(late.indices, late.line)) return Error{at(late.line) + wrong_};
+    if (mesh_.corners.empty()) return Error{name_ + ": " + whatIsMissing()};
+    return std::move(mesh_);
+  }
+
+ private:
+  /// A face that stands before one of its points.
+  struct Late {
+    std::vector<std::int64_t> indices;
+    std::size_t line;
+  };
+
+  std::string at(std::size_t line) const { return name_ + ":" + std::to_string(line) + ": "; }
+  bool fail(std::string wrong) {
+    wrong_ = std::move(wrong);
+    return false;
+  }
+
+  bool readPoint() {
+    const auto p = nextPoint(words_);
+    if (!p) return fail("expected v x y z, finite numbers");
+    points_.push_back(weld_.at(*p));
+    return true;
+  }
+
+  /// Reads the indices of a face. They count from 1, or backward from the last point if they are negative. A line that
+  /// ends in \ goes on in the next one.
+  bool readFace() {
+    indices_.clear();
+    line_ = words_.lineNumber();
+    const auto last = static_cast<std::int64_t>(points_.size());
+    bool late = false;
+    for (std::string_view word = words_.next(); !word.empty() && word[0] != '#'; word = words_.next()) {
+      if (word == "\\") {
+        if (!words_.nextLine()) break;
+        continue;
+      }
+      const bool goes_on = word.back() == '\\';
+      if (goes_on) word.remove_suffix(1);
+      std::int64_t index = 0;
+      const std::string_view digits = word.substr(0, word.find('/'));
+      const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+      if (error != std::errc() || end != digits.data() + digits.size() || index == 0 || index < -last)
+        return fail(outOfRange(word));
+      late = late || index > last;
+      indices_.push_back(index < 0 ? index + last + 1 : index);
+      if (goes_on && !words_.nextLine()) break;
+    }
+    if (late) return late_.push_back({indices_, line_}), true;
+    return addFace(indices_, line_);
+  }
+
+  std::string outOfRange(std::string_view word) const {
+    return "point '" + plainWord(word) + "', expected 1 to " + std::to_string(points_.size());
+  }
+
+  bool addFace(const std::vector<std::int64_t>& indices, std::size_t line) {
+    line_ = line;
+    std::vector<std::uint32_t> polygon;
+    for (const std::int64_t index : indices) {
+      if (index > static_cast<std::int64_t>(points_.size())) return fail(outOfRange(std::to_string(index)));
+      polygon.push_back(points_[static_cast<std::size_t>(index - 1)]);
+    }
+    if (polygon.size() < 3) return fail("expected f and at least three points");
+    if (!cutPolygon(mesh_.points, std::move(polygon), mesh_.corners)) return fail(kPolygonTooLarge);
+    return mesh_.corners.size() <= kMostTriangles || fail("more than 20,000,000 triangles");
+  }
+
+  std::string whatIsMissing() const {
+    std::string text = "has no triangles, expected lines f i j k";
+    if (free_form_) return text + "; it holds free-form surfaces: convert them to triangles in the program that wrote it";
+    if (points_.empty()) return text;
+    return text + "; it holds points" + (lines_ > 0 ? " and lines" : "") + ", but no faces";
+  }
+
+  Words words_;
+  const std::string& name_;
+  MeshFile mesh_;
+  Weld weld_{mesh_.points};
+  std::vector<std::uint32_t> points_;  ///< index of each point of the file after equal points were joined
+  std::vector<std::int64_t> indices_;
+  std::vector<Late> late_;
+  std::size_t line_ = 0, lines_ = 0;
+  bool free_form_ = false;
+  std::string wrong_;
+};
+
+}  // namespace
+
+Result<MeshFile> parseObjMesh(std::string_view bytes, const std::string& name) {
+  return ObjReader(bytes, name).run();
+}
+
+}  // namespace hapticd::importing
