@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Counts the allocations of each thread, so that a run can say how many its servo thread made (the answer must be 0).
-/// It replaces malloc and the related functions by wrappers of glibc's own, so only the daemon is linked with it.
+/// Counts the allocations of each thread, so that a run can report the allocations of its servo thread, which should
+/// make none. malloc and the related functions are replaced by wrappers that call those of glibc. So only the daemon is
+/// linked with this file.
 #pragma once
 #include <cstddef>
 #include <cstdint>

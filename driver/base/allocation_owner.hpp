@@ -14,8 +14,8 @@ struct AllocationShare {
   uint64_t count = 0;
 };
 
-/// [any] If `on` is true, the owners of this thread's allocations are noted from now on; false ends that. It costs no
-/// time as long as the thread allocates nothing.
+/// [any] If `on` is true, the owner of each allocation of this thread is noted from now on; false ends that. This costs
+/// no time while the thread allocates nothing.
 void noteAllocations(bool on) noexcept;
 
 /// [any] Returns the owner with the most allocations noted in this process, and their number.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What messages say about a call besides its owner: the name of the function, and the line of the file that names this
-/// owner.
+/// Keeps, for messages about a call, the name of the called function, and the line of the file that names the owner of
+/// the function.
 #pragma once
 #include <atomic>
 #include <string>
@@ -13,8 +13,8 @@ namespace detail {
 inline thread_local std::atomic<const char*> t_call_name{nullptr};
 }
 
-/// Says that the calling thread runs this function of a module, as long as the object lives. Such objects may nest. A
-/// step of a shape names no function: if a module runs and no function is named, the call is a step.
+/// Notes the function of a module that the calling thread runs, as long as the object lives. Such objects may nest. The
+/// step of a shape is not noted: if a module runs and no function is noted, the call is a step.
 class CallName {
  public:
   /// @param name name of the function, such as "activate"; it must have static storage
@@ -34,9 +34,9 @@ inline const char* callNameHere() noexcept {
   return detail::t_call_name.load(std::memory_order_relaxed);
 }
 
-/// [main] Notes which line of a file asks for that owner. @param place such as "scene.yaml:4"; a later call replaces it
+/// [main] Notes which line of a file names that owner. @param place such as "scene.yaml:4"; a later call replaces it
 void setPlaceOfOwner(const Owner* owner, const std::string& place);
-/// [any] Returns the line of the file that asks for that owner, such as "scene.yaml:4"; "" if it is unknown.
+/// [any] Returns the line of the file that names that owner, such as "scene.yaml:4"; "" if it is unknown.
 /// Async-signal-safe.
 const char* placeOf(const Owner* owner) noexcept;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Time in nanoseconds since an arbitrary start, and the clocks that give it. Only these classes read or wait for time:
-/// everything else gets time as an argument, so that timing policies run in virtual time and in tests without sleeping.
+/// Time in nanoseconds since an arbitrary start, and the clocks that give it. Only the code here reads the time or
+/// waits for a time. All other code gets the time as an argument, so that it can also run in virtual time, and in tests
+/// without sleeping.
 #pragma once
 #include <cstdint>
 
@@ -25,9 +26,9 @@ class Clock {
   virtual Nanoseconds waitUntil(Nanoseconds deadline) noexcept HSP_RT = 0;
 };
 
-/// Uses CLOCK_MONOTONIC: sleeps until `spin` before the deadline, then waits busily. Busy waiting reduces the lateness
-/// (its median from 22 us to 0.1 us on a virtual machine) and uses spin * rate of one CPU. The busy wait must not last
-/// a whole period, or the kernel throttles the thread.
+/// Uses CLOCK_MONOTONIC: sleeps until `spin` before the deadline, then waits busily. Busy waiting reduces the lateness:
+/// on a virtual machine, its median fell from 22 us to 0.1 us. The wait uses the share spin * rate of one CPU. The busy
+/// wait must not last a whole period, or the kernel throttles the thread.
 class RealClock final : public Clock {
  public:
   explicit RealClock(Nanoseconds spin) : spin_(spin) {}
@@ -38,7 +39,7 @@ class RealClock final : public Clock {
   Nanoseconds spin_;
 };
 
-/// Runs as fast as the processor allows: waiting jumps to the deadline.
+/// Gives virtual time: a wait ends at once, and the time is then that of the deadline.
 class VirtualClock final : public Clock {
  public:
   explicit VirtualClock(Nanoseconds start = 0) : now_(start) {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Says which plugin or module is to blame if the process crashes. Each thread keeps the owner of the code that it has
-/// called, and the owner of each loaded library is known. Every call into a shape plugin or a device module is marked
-/// with an `OwnerScope`.
+/// Finds out which plugin or module is to blame if the process crashes. Each thread keeps the owner of the plugin code
+/// that it runs, and a table contains the owner of each loaded library. Every call of a shape plugin or a device module
+/// is marked with an `OwnerScope`.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -46,7 +46,7 @@ inline const Owner* currentOwner() noexcept {
   return detail::t_called.load(std::memory_order_relaxed);
 }
 
-/// The daemon's own threads that call plugins. Other threads can ask whose code these threads run.
+/// The daemon's own threads that call plugins. Other threads can find out whose code they run.
 enum class Worker : int { kMain, kServo, kSearch, kControl };
 constexpr int kWorkerCount = 4;
 

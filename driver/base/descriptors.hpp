@@ -36,7 +36,7 @@ constexpr size_t kMostDescriptors = 250;  ///< largest number in one message; th
 
 /// [any] Sends bytes and, with the first byte, descriptors, which stay open in this process. It blocks if the socket is
 /// a blocking one.
-/// @return how many bytes were sent; on a stream they may be fewer than given; -1 on failure, with errno
+/// @return how many bytes were sent; on a stream socket, they may be fewer than given; -1 on failure, with errno
 std::ptrdiff_t sendWith(int socket, std::string_view bytes, std::span<const int> descriptors) noexcept;
 
 /// [any] Receives bytes and appends the descriptors that came with them, closed on exec.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Signals that end the process.
+/// Installs handlers for the signals that end the process.
 #pragma once
 #include <signal.h>
 

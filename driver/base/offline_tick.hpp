@@ -27,7 +27,7 @@ class OfflineTick {
   }
 
  private:
-  /// Adds 1 without an atomic addition, because only one thread at a time may run ticks of this kind.
+  /// Adds 1. An atomic addition is not needed, because only one thread at a time runs such ticks.
   static void count(std::atomic<uint64_t>& number) noexcept {
     number.store(number.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   }

@@ -50,8 +50,8 @@ std::error_code pinTo(int cpu);
 /// Locks present and future memory, so that no tick has a page fault. calmAllocator() must be called too.
 std::error_code lockMemory();
 
-/// Keeps malloc from returning memory to the system, because that memory would have to be locked again: one arena, no
-/// trimming, no mmap. Locks nothing itself.
+/// Keeps malloc from returning memory to the system, because such memory would have to be locked again when it is used
+/// next: one arena, no trimming, no mmap. This call itself locks no memory.
 void calmAllocator();
 
 /// Writes to the unused part of the calling thread's stack, so that its pages are present before the first tick.
@@ -76,8 +76,8 @@ size_t residentBytes();
 /// Returns one line for messages with what affects the right to run in real time: limits, capabilities, cgroup.
 std::string realTimeRights();
 
-/// Tells whether the program runs in a virtual machine. There, busy waiting does not prevent the pauses that the host
-/// machine causes.
+/// Tells whether the program runs in a virtual machine. In a virtual machine, the host may pause the processors, and
+/// busy waiting does not prevent this.
 bool inVirtualMachine();
 
 /// [any] Returns the operating system's id of the calling thread. Async-signal-safe.

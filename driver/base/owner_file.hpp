@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The file that contains an owner's code, for the report of a crash. The file's identity tells a repaired plugin from
-/// the one that crashed. If memory was overwritten, plugins that do not ship with hapticd are suspected first.
+/// Keeps which file contains an owner's code, for the report of a crash. By the identity of the file, the next start
+/// distinguishes a repaired plugin from the one that crashed. If memory was overwritten, plugins that do not ship with
+/// hapticd are suspected first.
 #pragma once
 #include <cstddef>
 #include <string>

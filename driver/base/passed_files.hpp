@@ -29,7 +29,7 @@ class PassedFiles {
   /// Returns the text with each path of pathOf() replaced by the name that the client gave.
   std::string named(std::string text) const;
 
-  /// [main] Makes this thread use the files as long as this object lives. The files must outlive it.
+  /// [main] Makes this thread use the files as long as this object lives. The files must outlive the Scope object.
   class Scope {
    public:
     explicit Scope(const PassedFiles& files) noexcept;

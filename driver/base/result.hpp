@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Result<T>: a value, or a message made for the user. For set-up code; the servo path uses status codes instead.
+/// Result<T>: a value, or an error message for the user. The code of the set-up returns it. The servo path uses status
+/// codes instead.
 #pragma once
 #include <string>
 #include <utility>

@@ -8,7 +8,7 @@ namespace hapticd::os {
 
 /// Names the CPU clock of a thread, so that other threads can read it.
 using CpuClock = int;
-constexpr CpuClock kNoCpuClock = 1;  ///< CLOCK_MONOTONIC, used until the thread has named its own clock
+constexpr CpuClock kNoCpuClock = 1;  ///< CLOCK_MONOTONIC, used while the CPU clock of the thread is unknown
 
 /// [rt] Returns the number of page faults (minor and major) of the calling thread so far.
 long pageFaultsOfThread() noexcept;

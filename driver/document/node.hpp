@@ -40,8 +40,8 @@ struct Entry {
 constexpr size_t kMaxFileBytes = 32u << 20;  ///< for comparison: a scene of 10,000 models has 2 MB
 constexpr int kMaxDepth = 48;
 constexpr size_t kMaxNodes = 4'000'000;
-/// Largest number of values in a text, with aliases expanded. It stops "a billion laughs", a short text whose aliases
-/// expand to billions of values. Without aliases there are at most two values for each byte.
+/// Largest number of values in a text, with aliases expanded. It stops the attack "billion laughs": a short text whose
+/// aliases expand to billions of values. Without aliases, a text has at most two values for each byte.
 constexpr size_t maxNodes(size_t bytes) {
   return bytes < kMaxNodes / 4 - 5'000 ? 20'000 + 4 * bytes : kMaxNodes;
 }

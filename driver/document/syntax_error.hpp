@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Finds out why a text is not YAML, and describes the mistake in plain words, with its place. A parser notices a
-/// mistake only later in the text, and describes it in its own terms.
+/// Finds out why a text is not YAML, and describes the mistake in plain words, with its place. The message of a parser
+/// does not serve this purpose: a parser notices a mistake only later in the text, and describes it in the terms of its
+/// grammar.
 #pragma once
 #include <optional>
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Tables of the keys of a file. One line of a table describes one key: the parser, the type, unit, range and default,
-/// the documentation and the JSON Schema all come from this line.
+/// Tables of the keys of a file. One line of a table describes one key: its type, unit, range, default and
+/// documentation. The parser and the JSON Schema use the same line.
 #pragma once
 #include <optional>
 #include <span>
@@ -37,7 +37,7 @@ struct Key {
   std::span<const std::string_view> choices{};
   const Table* table = nullptr;  ///< for kObject and kList: the keys of the mapping
   void (*store)(Reader&, const Node&, const std::string& path, const Key&, void* object) = nullptr;
-  const char* shape = "";  ///< for kAny: what the messages say is expected
+  const char* shape = "";  ///< for kAny: words for messages that say what is expected
 
   std::string expected() const;  ///< such as "a number, 10 to 20000 Hz"
 };
@@ -50,7 +50,7 @@ struct Elsewhere {
 
 struct Table {
   std::span<const Key> keys;
-  std::span<const Elsewhere> elsewhere{};
+  std::span<const Elsewhere> elsewhere{};  ///< tables in which an unknown key is looked for, to say where it belongs
 
   const Key* find(std::string_view name) const;
   std::vector<std::string> names() const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Finds quotes and brackets of a YAML text that are not closed or do not match. It does not parse the text: it
-/// explains why the parser failed.
+/// Finds quotes and brackets of a YAML text that are not closed or do not match. It does not parse the text. Its
+/// results explain why the parser failed.
 #pragma once
 #include <optional>
 #include <string>
@@ -19,7 +19,7 @@ struct Scan {
   std::optional<Mark> long_quote;   ///< the first quote that is closed in another line
   int long_quote_ends = 0;          ///< line in which that quote is closed
   std::optional<Mark> wrong_close;  ///< the first closing bracket that does not match the open one
-  std::optional<Mark> wrong_open;   ///< the bracket that is open at `wrong_close`, if there is one
+  std::optional<Mark> wrong_open;   ///< the innermost bracket that is open at `wrong_close`, if there is one
 };
 
 /// [any] Scans a whole text.

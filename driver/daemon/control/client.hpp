@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The client's end of the control socket, for `hapticd ctl` and tests.
+/// The client's side of the control socket, for `hapticd ctl` and tests.
 #pragma once
 #include <sys/un.h>
 
@@ -22,8 +22,8 @@ bool socketAddress(const std::string& file, sockaddr_un& address);
 /// [main] True if a process accepts connections at the socket.
 bool connectTo(const std::string& file);
 
-/// A connection for many requests. It never takes a late answer to a request that timed out, or a line that the daemon
-/// sends by itself (news), for the answer to another request.
+/// A connection for many requests. If a request timed out and its answer comes late, this answer is not taken for the
+/// answer to a later request. Nor are news, which are lines that the daemon sends without a request.
 class Client {
  public:
   static constexpr size_t kMostNews =

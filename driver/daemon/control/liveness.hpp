@@ -14,8 +14,8 @@ bool isAlive(const std::string& socket);
 /// `seconds`
 bool waitForEnd(const std::string& socket, double seconds);
 
-/// [main] Called after the connection to a daemon has ended. True if the daemon ended without removing its files. If it
-/// is just ending normally, the call waits for that.
+/// [main] Called after the connection to a daemon has ended. True if the daemon ended without removing its files. If
+/// the daemon is just ending normally, the call waits for its end.
 bool wasKilled(const std::string& socket);
 
 /// [main] Returns the names of the living daemons whose files are in a folder, sorted.

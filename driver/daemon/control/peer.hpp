@@ -11,7 +11,7 @@
 
 namespace hapticd::control {
 
-/// The client that sends a request. Each connection has another `id`; ids are not used again.
+/// The client that sends a request. Each connection has its own `id`, which is never used again.
 struct Peer {
   uint64_t id = 0;
   pid_t pid = 0;  ///< process that connected
@@ -28,7 +28,7 @@ struct Reply {
   Descriptor descriptor;
 };
 
-/// Why a connection is kept even if it sends no requests.
+/// Why the daemon keeps a connection open even if it receives no requests on it.
 struct KeepAlive {
   bool stays = false;    ///< something depends on the connection, so it may be silent for any time
   bool listens = false;  ///< the client subscribed to news

@@ -41,16 +41,17 @@ struct Request {
     kStop
   };
   Kind kind = Kind::kStatus;
-  std::string model, device, parameter, file;     ///< "" if the request has none
-  std::vector<std::string> files;                 ///< kAdd, kReload: names of the files passed with the request
-  std::string hand;                               ///< kLead, kUnlead: the device whose simulated hand is led
-  std::string force;                              ///< kLead, kUnlead: the device that gets a force
-  double value = 0;                               ///< kSet: the new value, if it is a number
-  double tolerance = 0;                           ///< [m] kGeometry: chord error; 0: the daemon chooses
-  bool as_memory = false;                         ///< kGeometry: true to get the lists in shared memory
-  double after = 0;                               ///< kVertices: the last known frame; kEvents: the first event wanted
-  uint32_t number = 0;                            ///< kFeature: number of the feature, as in a contact
-  bool consent = false;                           ///< kSet: the operator agrees to a change that is felt
+  std::string model, device, parameter, file;  ///< "" if the request has none
+  std::vector<std::string> files;              ///< kAdd, kReload: names of the files passed with the request
+  std::string hand;                            ///< kLead, kUnlead: the device whose simulated hand is led
+  std::string force;                           ///< kLead, kUnlead: the device that gets a force
+  double value = 0;                            ///< kSet: the new value, if it is a number
+  double tolerance = 0;                        ///< [m] kGeometry: chord error; 0: the daemon chooses
+  bool as_memory = false;                      ///< kGeometry: true to get the lists in shared memory
+  /// kVertices: number of the last frame that the client has; kEvents: number of the first event that it wants
+  double after = 0;
+  uint32_t number = 0;   ///< kFeature: number of the feature, as in a contact
+  bool consent = false;  ///< kSet: the person who holds the arm agrees to a change that may be felt suddenly
   std::array<double, 3> position{};               ///< [m] kMove, world frame
   std::array<double, 4> orientation{1, 0, 0, 0};  ///< kMove: unit quaternion w,x,y,z
   bool turns = false;                             ///< kMove: an orientation was given

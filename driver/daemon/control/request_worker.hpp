@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The thread that carries out requests. It is not the thread of the sockets, so that other lines are read even while a
-/// request takes long or never ends.
+/// The request worker: the thread that carries out requests. Another thread reads the sockets, so that lines are read
+/// even while a request takes long or never ends.
 #pragma once
 #include <condition_variable>
 #include <functional>
@@ -36,7 +36,7 @@ class RequestWorker {
   /// [main] Starts the worker's thread. @param work does a job, and returns false if the job has no result
   /// @param ring called after each job with a result. Both are called from the worker's thread
   std::error_code start(std::function<bool(Job&, JobResult&)> work, std::function<void()> ring);
-  void stop();  ///< [main] ends the thread after the present job; other jobs are dropped
+  void stop();  ///< [main] ends the thread after the present job; jobs that have not begun are dropped
 
   void post(Job job);             ///< [any]
   std::vector<JobResult> take();  ///< [any] returns the results since the last call

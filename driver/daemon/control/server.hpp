@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// Serves the control socket: each line of JSON from a client is answered by one line of JSON. One ordinary thread
 /// reads and writes the sockets; another (request_worker.hpp) works on one request after the other. The first thread
-/// itself answers urgent requests, such as a hold, also of clients for which there is no place yet. There are limits
-/// for the number of clients, the length of a request, the bytes that wait for a client that does not read, and the
-/// time to send a line. An answer may carry a descriptor. A client that subscribed also gets news, which are lines that
-/// it did not ask for.
+/// itself answers urgent requests, such as a hold. It does so even for clients that still wait for a place. There are
+/// limits for the number of clients, the length of a request, the bytes that wait for a client that does not read, and
+/// the time to send a line. An answer may carry a descriptor. A client that subscribed also gets news, which are lines
+/// that it did not ask for.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -36,15 +36,16 @@ class Server {
     std::function<std::string(const Peer&)> news;
     std::function<void(const Peer&)> left;  ///< called after the connection has ended
     /// Called from the thread of the sockets. If the line is an urgent request, it does the request at once and returns
-    /// the answer; otherwise it returns nothing. If an earlier line of the client is still worked on, the function is
-    /// called a second time, when the line's turn has come.
+    /// the answer; otherwise it returns nothing. If an earlier request of the client is still being carried out, the
+    /// function is called again for the same line when the turn of this line has come.
     std::function<std::optional<Reply>(const Peer&, const std::string& line)> urgent;
   };
 
   static constexpr size_t kMaxClients = 32;
   /// most clients that wait for a place; meanwhile only their urgent requests are answered
   static constexpr size_t kMaxStanding = 16;
-  static constexpr size_t kMaxStaying = 24;  ///< most clients with KeepAlive::stays, so that others find places
+  /// most clients with KeepAlive::stays, so that places are left for other clients
+  static constexpr size_t kMaxStaying = 24;
   static constexpr Nanoseconds kNewsPeriod = 20'000'000;
   static constexpr size_t kMaxWaiting = 1 << 20;       ///< [bytes] most that is kept for a client that does not read
   static constexpr Nanoseconds kIdle = 2'000'000'000;  ///< [ns] a client idle for longer is dropped if another waits
@@ -70,12 +71,14 @@ class Server {
     std::vector<Descriptor> given;  ///< descriptors that came with the lines in `in`, in their order
     std::list<Reply> out;           ///< lines to send, with their ends; a descriptor goes with its line's first byte
     size_t waiting = 0;             ///< [bytes] number of bytes in `out`
-    Nanoseconds since = 0;   ///< time since which half a line, or an answer, waits for the client; 0: nothing waits
-    Nanoseconds heard = 0;   ///< the last time that bytes were received or sent
+    /// time since which the server waits for the rest of a line, or for the client to read an answer; 0: it waits for
+    /// neither
+    Nanoseconds since = 0;
+    Nanoseconds heard = 0;   ///< time when bytes were last received or sent
     bool closing = false;    ///< the connection ends when `out` has been sent
     bool hung = false;       ///< the client has closed its end; its requests are still carried out
     bool seated = true;      ///< it has a place; if false, it waits for one
-    bool asked = false;      ///< one of its requests is worked on
+    bool asked = false;      ///< one of its requests is being carried out
     bool listening = false;  ///< its news are being collected
     bool known = false;      ///< the worker's thread has had a request of this client
     size_t scanned = 0;      ///< [bytes] part of `in` that was already searched for urgent requests

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The description that a plugin or module file gives of itself. It is a copy, so it is valid even if the file is not
-/// loaded.
+/// The classes that a plugin or module file describes. The description is a copy, so it is valid even if the file is
+/// not loaded.
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -49,7 +49,8 @@ struct Model {
   Place place;
 };
 
-/// How a button enables the forces: while it is held (dead-man switch), or by switching them on and off.
+/// How a button enables the forces. kHold: while the button is held (dead-man switch). kToggle: each press of the
+/// button switches the forces on or off.
 enum class EnableMode { kHold, kToggle };
 struct Enable {
   std::optional<int> button;  ///< if there is none, forces are always enabled
@@ -80,7 +81,7 @@ struct Limits {
   double ramp_out = 0.02;        ///< [s] time from full force to zero at a planned end; after a fault at most 2 ms
   std::optional<bool> passivity;  ///< passivity control; default: on for arms never tried on hardware
   Enable enable;
-  std::vector<Motor> motors;  ///< in the order of the joints; if empty, their heat is not modelled
+  std::vector<Motor> motors;  ///< in the order of the joints; if empty, the heat of the motors is not modelled
 };
 
 /// Compliance control: the measured joint torques move a virtual mass with a damper, and the arm's position loop
@@ -96,7 +97,7 @@ struct HdJoint {
   double offset = 0;   ///< [rad]
 };
 
-/// How HDAPI programs see an arm. What is empty here comes from the device's own description.
+/// How HDAPI programs see an arm. A value that is empty here is taken from the device's own description.
 struct HdArm {
   std::string model, vendor, serial;
   std::vector<HdJoint> joints;    ///< turret, thigh, shin, and the three joints of the gimbal
@@ -131,7 +132,8 @@ struct Velocity {
 struct Servo {
   double rate = 1000;               ///< [Hz]
   double activation_radius = 0.10;  ///< [m] surfaces nearer than this are traced
-  double hysteresis = 0.05;         ///< [m] a traced surface is dropped when it is farther than the radius plus this
+  /// [m] tracing of a surface stops when it is farther away than activation_radius plus this distance
+  double hysteresis = 0.05;
   Eigen::Vector3d gravity{0, -9.81, 0};  ///< [m/s^2] world frame
   Pace pace = Pace::kClock;
   Velocity velocity;

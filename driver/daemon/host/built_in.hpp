@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// Plugins and device modules that are linked into this program instead of being loaded, for platforms without
-/// dlopen(). Each has an entry with its own name: hsp_entry_NAME or hdv_entry_NAME. hapticd_link_modules() of
-/// HapticdPlugin.cmake compiles them in this way and makes the program's list.
+/// dlopen(). Each has an entry with its own name: hsp_entry_NAME or hdv_entry_NAME. The CMake function
+/// hapticd_link_modules() of HapticdPlugin.cmake compiles them in this way, and makes the list of those that a program
+/// contains.
 #pragma once
 #include <filesystem>
 #include <span>
@@ -23,8 +24,8 @@ struct BuiltIn {
 
 constexpr const char* kBuiltInFolder = "(built in)";
 
-/// [main] Sets the list of what this program contains. Call it before the first scene is read. The list must outlive
-/// every instance.
+/// [main] Sets the list of the plugins and modules that this program contains. Call it before the first scene is read.
+/// The list must outlive every instance.
 void setBuiltIns(std::span<const BuiltIn> list);
 
 /// [main] Sets the list that hapticd_link_modules() made for this program. Only programs with such a list can call it.

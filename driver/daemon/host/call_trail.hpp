@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-/// Tells a parent process which function of a device module its child is calling. After a crash of the child, nothing
-/// else shows it.
+/// Tells a parent process which function of a device module its child is calling. After a crash of the child, this is
+/// the only way to find out which function crashed.
 #pragma once
 #include "host/child.hpp"
 
 namespace hapticd::host {
 
-/// [main] From now on the calls of device modules at set-up are noted in `trail`; nullptr ends that. Only for a child.
+/// [main] From now on, the calls of device modules during the set-up are noted in `trail`; nullptr ends that. Only a
+/// child process may call it.
 void followCalls(ChildProgress* trail) noexcept;
 
 /// [main] Notes that a module's function is about to be called. @param name name of the function, in static storage

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Finds shape plugins and device modules, and knows their descriptions. Built-in ones come first. A file is described
-/// in a child process, and only if it is asked for. So a scene that names one plugin makes this process load only that
-/// plugin.
+/// Finds shape plugins and device modules, and keeps their descriptions. Built-in ones are found first. A file is
+/// described in a child process, and only when its description is needed. So for a scene that names one plugin, this
+/// process loads only that plugin.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -52,9 +52,9 @@ class Catalog {
   /// [main] Sets the function by which files are described from now on.
   void describeBy(Describe describe) { describe_ = std::move(describe); }
 
-  /// [main] Forgets files that have changed, that failed, or that were loaded when they were described, and forgets
-  /// where names were found. A process that runs for days calls it before it searches again. Earlier pointers become
-  /// invalid.
+  /// [main] Forgets the descriptions of files that have changed, that could not be described, or that were loaded when
+  /// they were described. Forgets also in which file each name was found. A process that runs for days calls it before
+  /// it searches again. Pointers that were returned earlier become invalid.
   void refresh();
 
   /// [main] Returns the plugin with that name or id. NAME.so is tried first; only if that fails, all files are

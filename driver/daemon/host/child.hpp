@@ -12,11 +12,11 @@ namespace hapticd::host {
 
 /// [main] Runs `work` in a fork of this process and returns the bytes that `work` returns. This process must have only
 /// one thread. The error says how the child ended, such as "crashed: Segmentation fault" or "took longer than 5 s", and
-/// is meant to follow the word "it" in a message.
+/// is worded so that it can follow the word "it" in a message.
 Result<std::string> runInChild(const std::function<std::string()>& work, int limit_ms);
 
-/// Shows how far a child has come with its work. The parent can read it even if the child crashes. It must be made
-/// before the child.
+/// Shows how far a child process has come with its work. The parent can read this even after a crash of the child. The
+/// object must be made before the child is started.
 class ChildProgress {
  public:
   ChildProgress();

@@ -17,13 +17,15 @@ std::string statusText(hsp_status status);
 /// [any] Returns the name of a status in the ABI, such as "HSP_E_NUMERIC".
 std::string statusName(hsp_status status);
 
-/// [main] Returns the reason of a failed call, for the end of a message: what the module logged, or else its status.
+/// [main] Returns why a call failed, for the end of a message: the error that the module logged, or, if it logged none,
+/// the status in words.
 std::string reasonOf(hsp_status status, const Services& services);
 
 /// [main] Returns the value in the form of the ABI; the result points into `value`.
 hsp_value toAbi(const scene::Value& value);
 
-/// [main] True if the class has every function of version 1.0, so that calling it is safe.
+/// [main] True if the class has every function of version 1.0 of the ABI, so that they can be called without a further
+/// check.
 bool complete(const hsp_class& shape);
 bool complete(const hdv_class& device);
 

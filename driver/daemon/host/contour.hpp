@@ -21,7 +21,7 @@ class Contour {
 
   /// [main] Allocates the memory of all frames.
   explicit Contour(uint32_t vertices) : vertices_(vertices) {
-    for (int slot = 0; slot < 3; ++slot) {  // each of the three becomes the back buffer once
+    for (int slot = 0; slot < 3; ++slot) {  // so each of the three buffers is the back buffer once
       frames_.back().xyz.resize(3 * std::size_t{vertices});
       frames_.update();
       frames_.publish();
@@ -44,8 +44,8 @@ class Contour {
     wanted_.fetch_sub(1, std::memory_order_relaxed);
   }
 
-  /// [any] Called from one thread only. Returns the newest frame, which is valid until the next call. Frames are made
-  /// only as long as this is called.
+  /// [any] Called from one thread only. Returns the newest frame, which is valid until the next call. The shape makes
+  /// frames only as long as this function is called.
   const Frame& newest() noexcept {
     wanted_.store(kPatience, std::memory_order_relaxed);
     frames_.update();

@@ -18,9 +18,9 @@
 
 namespace hapticd::host {
 
-/// Samples of a recording that is replayed, in place of those of the hardware, which is not opened then.
+/// The samples of a recording that is replayed. They replace the samples of the hardware, which is not opened.
 struct Playback {
-  hdv_info info{};      ///< description that the device gave of itself
+  hdv_info info{};      ///< description that the device gave when it was opened
   hdv_sample sample{};  ///< sample that the next read returns
   hsp_status read_status = HSP_OK, write_status = HSP_OK;
 };
@@ -55,8 +55,8 @@ class DeviceInstance {
     return class_->write(device_, now_ns, &command);
   }
 
-  /// [any] Switches the motors off at once by the module's cut(). Returns false if the module has no cut().
-  /// Async-signal-safe.
+  /// [any] Switches the motors off at once by the extension hdv.cut of the module. Returns false if the module does not
+  /// have it. Async-signal-safe.
   bool cut() noexcept {
     if (cut_ == nullptr || playback_ != nullptr) return playback_ != nullptr;
     const OwnerScope calling(owner_);
@@ -70,8 +70,8 @@ class DeviceInstance {
   }
   /// [any] True if another process may be able to switch the motors off.
   bool silenceable() const noexcept { return silence_ != nullptr && silence_->how != nullptr && playback_ == nullptr; }
-  /// [any] Fills in how another process, which outlives this one, can switch the motors off. Returns false if no
-  /// process can, or not now.
+  /// [any] Fills in how another process, which outlives this one, can switch the motors off. Returns false if that is
+  /// impossible, or impossible now.
   bool silence(hdv_silence& how) noexcept {
     how = {};
     how.struct_size = sizeof how;

@@ -17,8 +17,8 @@ namespace hapticd::host {
 
 using Joints = Eigen::Matrix<double, HDV_MAX_JOINTS, 1>;
 
-/// Memory for `Most` numbers, of which a module may write the first `used`. All others hold a mark, and overrun() tells
-/// whether the module overwrote one of them.
+/// Memory for `Most` numbers, of which a module may write the first `used`. All others contain kMark, and overrun()
+/// tells whether the module overwrote one of them.
 template <size_t Most>
 class GuardedArray {
  public:

@@ -15,7 +15,7 @@ namespace hapticd::host {
 /// @return what is wrong, for one message; "" if nothing was found
 std::string wrongJacobian(const hdv_ext_kinematics& kinematics, const hdv_device* device);
 
-/// [main] Finds problems that forbid forces, as far as they can be known before the arm is open: an impossible joint
+/// [main] Finds problems that make forces dangerous, and that can be found before the arm is open: an impossible joint
 /// count, a missing function, a function that refuses all positions or gives numbers that are not finite, an
 /// orientation that is not a unit quaternion, a tip farther away than any arm reaches, a function that writes more
 /// numbers than it may, and a wrong Jacobian. @return as wrongJacobian()
@@ -26,8 +26,8 @@ std::string wrongKinematics(const hdv_ext_kinematics& kinematics, const hdv_devi
 /// wrongJacobian()
 std::string wrongBetweenStops(const hdv_ext_kinematics& kinematics, const hdv_device* device, const hdv_info& info);
 
-/// [main] Finds an inverse() whose joints do not give the same tip again, or that accepts a tip which no arm reaches.
-/// It causes no fault in a run, but simulated hands and `device encode` need a correct inverse(). @return as
+/// [main] Finds an inverse() whose joints do not give the same tip again, or that accepts a tip which no arm reaches. A
+/// wrong inverse() causes no fault in a run, but simulated hands and `device encode` need a correct one. @return as
 /// wrongJacobian()
 std::string wrongInverse(const hdv_ext_kinematics& kinematics, const hdv_device* device);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A loaded shared object. A process loads each file only once. The code stays in memory to the end of the process,
-/// because a plugin may have started a thread, and the daemon would crash if such a thread returned to unloaded code.
+/// A loaded shared object. A process loads each file only once. The code stays in memory until the process ends. A
+/// plugin may have started a thread, and the process would crash if such a thread returned to code that was unloaded.
 #pragma once
 #include <filesystem>
 #include <memory>

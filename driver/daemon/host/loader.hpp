@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Loads code into this process. loader_posix.cpp uses dlopen(). platform_none.cpp refuses to load: it is for programs
-/// that contain all their plugins.
+/// Loads code into this process. loader_posix.cpp uses dlopen(). platform_none.cpp refuses to load anything: it is for
+/// programs that contain all their plugins.
 #pragma once
 #include <filesystem>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Recognises a library whose file has been replaced, so that the code in memory is older than the file.
+/// Recognises a library whose file was replaced after it was loaded. The code in memory is then older than the file.
 #pragma once
 #include <filesystem>
 

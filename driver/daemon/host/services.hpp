@@ -33,13 +33,13 @@ class Services {
   Services& operator=(const Services&) = delete;
 
   const hsp_host* abi() const { return &abi_; }
-  /// [main] Returns the newest message of level error, for failures of the set-up.
+  /// [main] Returns the newest message of level error. It explains why a call of the set-up failed.
   std::string lastError() const;
-  /// [main] Forgets that message, so that a failure of the next call does not show an older message.
+  /// [main] Forgets the newest error, so that it is not taken for the reason if the next call fails.
   void forgetError();
   /// [main] Logs a warning of the host itself about the instance.
   void warn(const std::string& text) { write(HSP_LOG_WARNING, text.c_str()); }
-  /// [main] bytes that alloc has given out and release has not taken back
+  /// [main] bytes that the instance has allocated with alloc() and not released yet
   size_t lockedBytes() const { return locked_bytes_; }
 
   /// [any] Takes the next event of the servo thread. Returns false if there is none. There must be only one reader.
@@ -68,7 +68,7 @@ class Services {
   hsp_host abi_{};
   std::string who_;
   Log log_;
-  mutable std::mutex mutex_;  // because log() is called from the main and the simulation thread
+  mutable std::mutex mutex_;  // because instances call log() in the main thread and in the proximity thread
   std::string last_error_;
   std::unordered_map<void*, Block> blocks_;
   size_t locked_bytes_ = 0;

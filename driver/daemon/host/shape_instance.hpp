@@ -41,7 +41,8 @@ class ShapeInstance {
     const OwnerScope calling(owner_);
     class_->reset(shape_);
   }
-  /// [rt] Starts tracing a surface, or offers a second foot point on it. Only for a shape with surfaces.
+  /// [rt] Starts to trace a surface, or offers the shape a second foot point on a traced surface. Only for a shape with
+  /// surfaces.
   void activate(const hsp_near& near) noexcept HSP_RT {
     const OwnerScope calling(owner_);
     surfaces_->activate(shape_, &near);
@@ -50,22 +51,22 @@ class ShapeInstance {
     const OwnerScope calling(owner_);
     surfaces_->deactivate(shape_, probe, surface);
   }
-  /// [sim] Finds the surfaces near a point in the model frame; invalid answers are left out. @return how many are in
-  /// `near`
+  /// [sim] Finds the surfaces within radius_m [m] of a point [m] in the model frame; invalid answers are left out.
+  /// @return how many were written to `near`
   size_t nearby(const double p_model[3], double radius_m, std::span<hsp_near> near) const noexcept;
-  /// [rt] Returns the energy [J] that the shape stores, as the shape says; 0 if it does not say, or if its answer is
-  /// invalid.
+  /// [rt] Returns the energy [J] that the shape stores, as the shape reports it; 0 if it reports none, or if its answer
+  /// is invalid.
   double storedEnergy() const noexcept HSP_RT {
     if (energy_ == nullptr) return 0;
     const OwnerScope calling(owner_);
     const double stored = energy_->stored(shape_);
     return stored >= 0 ? stored : 0;
   }
-  /// [main] Makes triangles of the shape in its current form. They are checked: every number is finite, and every
-  /// corner is the index of a vertex.
+  /// [main] Makes triangles of the shape in its current form. It checks them: every number must be finite, and every
+  /// corner must be the index of a vertex.
   hsp_status tessellate(double chord_error_m, hsp_mesh& mesh) const;
-  /// [main] Returns a box around the shape in the model frame. False if the shape does not say, or if its answer is not
-  /// a box.
+  /// [main] Gives a box [m] around the shape in the model frame. Returns false if the shape gives no box, or if its
+  /// answer is not a box.
   bool bounds(double min[3], double max[3]) const;
 
   const std::string& name() const { return name_; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Packs numbers and texts into bytes for a process and its child. Both run on the same machine with the same build, so
-/// the bytes have no portable format.
+/// Packs numbers and texts into bytes, which a process and its child exchange. Both run on the same machine with the
+/// same build, so the bytes have no portable format.
 #pragma once
 #include <cstdint>
 #include <cstring>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The servo's end of a lead, which is memory that another program writes at any time. The servo does not trust what it
-/// reads there, and whatever the program writes, the servo never waits for it.
+/// The servo's side of a lead. A lead is memory that another program may write at any time. The servo does not trust
+/// what it reads there, and whatever the program writes, the servo never waits for it.
 #pragma once
 #include <array>
 #include <atomic>
@@ -14,7 +14,7 @@
 
 namespace hapticd::link {
 
-constexpr double kLargestPush = 1e6;  ///< [N] or [N m] records with larger numbers are refused
+constexpr double kLargestPush = 1e6;  ///< [N] or [N m] a record with a larger number is refused
 
 /// A record in shared memory with a count before it (a seqlock): the count is odd while the record is being written.
 /// The memory is zeroed at first.
@@ -26,8 +26,7 @@ class LeadSlot {
 
  public:
   /// [rt] Reads the record if its count differs from `seen`, and sets `seen` to its count. It tries only once: if the
-  /// writer was killed while it wrote, or never stops writing, it returns false, and the previous record stays in
-  /// force.
+  /// writer was killed while it wrote, or never stops writing, it returns false, and the previous record stays in use.
   bool take(uint64_t& seen, Record& record) const noexcept HSP_RT {
     const uint64_t before = count_.load(std::memory_order_acquire);
     if (before == seen || before % 2 != 0) return false;

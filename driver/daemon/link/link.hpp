@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// The only interface between the servo and the simulation side (the proximity search). The servo sends the state of
 /// the arms, of which only the newest value matters, and the transforms of moving models. It receives activation
-/// records. Transforms and records keep their order. All of it is plain data, so that the two sides could run in
-/// different processes without a change.
+/// records. Transforms and records keep their order. All messages are plain data, so that the two sides could also run
+/// in different processes.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -44,7 +44,7 @@ struct ModelTransform {
   std::array<double, 4> orientation{1, 0, 0, 0};  ///< unit quaternion w,x,y,z
 };
 
-/// The queues of both directions. Each member has one writing thread and one reading thread.
+/// The queues of both directions. Each queue has one writing thread and one reading thread.
 struct Link {
   static constexpr size_t kRecords = 1 << 14;     ///< enough for several searches of a model with thousands of patches
   static constexpr size_t kTransforms = 1 << 12;  ///< enough for dozens of moving models in 5 ms at 10 kHz

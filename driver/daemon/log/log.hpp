@@ -20,8 +20,8 @@ struct Settings {
 /// above go to stderr.
 ///
 /// If stderr is a terminal, messages have the time of day and colours (unless NO_COLOR is set). For journald they have
-/// its priorities, and no time, because journald adds it. Otherwise they have date and time. It fails if the file
-/// cannot be written.
+/// the priorities of journald, and no time, because journald adds the time. Otherwise they have date and time. The call
+/// fails if the file cannot be written.
 Result<void> open(const Settings& settings);
 
 /// [any ordinary thread] Writes a message. If that fails, the message is lost: a full disk must not end a run.

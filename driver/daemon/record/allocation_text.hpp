@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Reports whether the servo thread allocated memory in its ticks, since an allocation may have to wait.
+/// Reports whether the servo thread allocated memory in its ticks. It should not, because an allocation may have to
+/// wait.
 #pragma once
 #include <string>
 
@@ -10,7 +11,7 @@ namespace hapticd::record {
 
 /// [any] Returns a warning for people; "" if there were only few allocations, because each order to the servo causes
 /// some.
-/// @param most owner of the code that made most of the allocations
+/// @param most the owner whose code made the most allocations
 std::string allocationText(const RunReport& report, const AllocationShare& most);
 
 }  // namespace hapticd::record

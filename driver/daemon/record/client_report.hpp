@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Statistics of a program that pushed on an arm: how many of its answers came in time, and advice if too few did.
+/// Statistics of a program that pushed on an arm: how many of its answers came in time, and advice if too few came in
+/// time.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,7 +10,7 @@ namespace hapticd::record {
 
 struct ClientReport {
   std::string device, program;
-  int pid = 0;             ///< number of the program's last process
+  int pid = 0;             ///< process id of the program, the last one if it was started several times
   uint64_t times = 1;      ///< how often the program was started
   uint64_t answers = 0;    ///< answers that were used
   uint64_t in_time = 0;    ///< number of these answers that came in the same tick
@@ -18,7 +19,7 @@ struct ClientReport {
   double largest_n = 0;    ///< [N] its largest force
   double asked_n = 0;      ///< [N] largest force that it asked for
   uint64_t bounded = 0;    ///< answers whose force was reduced to the bound
-  uint64_t refused = 0;    ///< answers that were not used at all
+  uint64_t refused = 0;    ///< answers that were refused because of an error in them
   std::string why;         ///< why the last answer was refused; "" if none was
 
   double sameTick() const { return share(in_time); }
@@ -31,11 +32,11 @@ struct ClientReport {
   }
 };
 
-/// If a smaller share of the answers comes in the same tick, it is reported, because one tick of delay reduces the
-/// stiffest stable wall to a third.
+/// If a smaller share of the answers comes in the same tick, advice is given. With one tick of delay, a wall that a
+/// program renders can have only a third of the stiffness before it becomes unstable.
 constexpr double kEnoughInTime = 0.95;
 
-/// True if the program answered often enough to be judged, and too late.
+/// True if the program answered too late, and often enough to judge this.
 bool late(const ClientReport& client);
 
 /// Returns advice for a late program. @param answer_time [s] the scene's clients.answer_time

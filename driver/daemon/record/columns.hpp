@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The columns of a recorded row: named numbers at fixed offsets, so that a row can be written by simple stores, and
-/// read by any program that reads HDF5.
+/// The columns of a recorded row: named numbers at fixed offsets. So the servo can write a row by simple stores, and
+/// every program that reads HDF5 can read it.
 #pragma once
 #include <cstddef>
 #include <cstdint>

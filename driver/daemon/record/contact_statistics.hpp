@@ -44,16 +44,16 @@ class ContactStatistics {
 
   /// [rt] Adds a tick in which the model pushed although it traced no surface, so that no contact can be reported.
   void addUntraced(double force_n) noexcept HSP_RT { untraced_.add(force_n); }
-  /// [rt] Adds a tick in which it pushed with a depth_m of 0, probably because the shape never fills depth_m in.
+  /// [rt] Adds a tick in which the model pushed with a depth_m of 0. Probably its shape never sets depth_m.
   void addDepthless(double force_n) noexcept HSP_RT { depthless_.add(force_n); }
-  /// [rt] Adds a tick in which it pushed with a depth_m below 0: from outside, as a magnet does, or because depth_m has
-  /// the wrong sign.
+  /// [rt] Adds a tick in which the model pushed with a depth_m below 0. Either it pushes from outside, as a magnet
+  /// does, or its depth_m has the wrong sign.
   void addOutside(double force_n) noexcept HSP_RT { outside_.add(force_n); }
 
   /// [rt] Adds a tick of contact in which the force pulled the probe deeper in.
   void addPull(double force_n) noexcept HSP_RT { pulls_.add(force_n); }
 
-  /// [rt] Adds a tick that has a foot point. @param held true if a contact is held at this point, although another
+  /// [rt] Adds a tick that has a foot point. @param held true if a held contact keeps this point, although another
   /// point is nearer @param degraded true if the answer was degraded, so that the point is not proved to be the
   /// nearest; `held` is then ignored
   void addFoot(bool held, bool degraded) noexcept HSP_RT {
@@ -65,9 +65,10 @@ class ContactStatistics {
   const Pushes& depthless() const noexcept { return depthless_; }  ///< pushes at a depth of exactly 0
   const Pushes& outside() const noexcept { return outside_; }      ///< pushes at a depth below 0
   const Pushes& pulls() const noexcept { return pulls_; }          ///< pulls into the surface, in contact
-  uint64_t nearestFeet() const noexcept { return nearest_feet_; }  ///< ticks with a foot proved to be the nearest
-  uint64_t heldFeet() const noexcept { return held_feet_; }        ///< ticks of a held contact; another point is nearer
-  /// ticks with a degraded answer, so that the foot is not proved to be the nearest
+  /// ticks with a foot point that is proved to be the nearest
+  uint64_t nearestFeet() const noexcept { return nearest_feet_; }
+  uint64_t heldFeet() const noexcept { return held_feet_; }  ///< ticks of a held contact; another point is nearer
+  /// ticks with a degraded answer, so that the foot point is not proved to be the nearest
   uint64_t degradedFeet() const noexcept { return degraded_feet_; }
   double meanDepth() const noexcept { return mean_; }  ///< [m]
   double stdDepth() const noexcept { return ticks_ > 1 ? std::sqrt(spread_ / static_cast<double>(ticks_ - 1)) : 0; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The work that a model does on a hand, summed up in the servo thread without allocation. A wall gives back only the
-/// work that the hand did on it. A model that gives back more pushes the hand, and makes it buzz or drift.
+/// The work that a model does on a hand, summed up in the servo thread without allocation. A wall gives back at most
+/// the work that the hand did on it. A model that gives back more drives the hand, which then buzzes or drifts.
 #pragma once
 #include <Eigen/Core>
 #include <cmath>

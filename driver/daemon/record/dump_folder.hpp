@@ -7,7 +7,8 @@
 
 namespace hapticd::record {
 
-inline constexpr size_t kKeptDumps = 50;  ///< limit, so that repeated faults do not fill a disk: 0.3 GB at 1 kHz
+/// number of dumps that are kept, so that repeated faults do not fill a disk: 0.3 GB at 1 kHz
+inline constexpr size_t kKeptDumps = 50;
 
 /// [main] Creates the folder if it is missing, and removes all but the newest `kKeptDumps` - 1 dumps. Files with other
 /// names, such as black boxes of crashes, are not removed. @return an unused file name for a dump of that time

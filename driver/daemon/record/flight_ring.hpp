@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The black box: the newest rows of every stream in memory. The servo thread writes it without a lock, and any other
-/// thread or process may read it. It is in a mapped file, so it outlives the process: after a crash, the file is a
-/// valid recording.
+/// thread or process may read it. Its memory can be a mapped file, which outlives the process: after a crash, this file
+/// is a valid recording.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -28,7 +28,8 @@ class FlightRing {
   std::byte* next(size_t stream) noexcept HSP_RT {
     return reinterpret_cast<std::byte*>(streams_[stream].filled.data());
   }
-  /// [rt] Returns where commit() will copy that row to, so that this memory can be fetched into the cache before.
+  /// [rt] Returns the address to which commit() will copy the row of next(), so that the caller can prefetch this
+  /// memory into the cache.
   const std::byte* place(size_t stream) const noexcept HSP_RT {
     return streams_[stream].rows + streams_[stream].position * streams_[stream].row_bytes;
   }

@@ -33,8 +33,8 @@ std::string group(const std::vector<Link>& links, const std::vector<std::pair<st
 /// [main] Returns the object header of a dataset that is one text of fixed length at `address`.
 std::string textDataset(uint64_t address, uint64_t length);
 
-/// The object header of a table of rows in chunks. It changes as the table grows, so it must fit into one page and one
-/// write. So the description of the columns is in a separate block.
+/// The object header of a table of rows in chunks. It changes as the table grows, and each change must be one write
+/// within one page. So the description of the columns, which may be long, is in a separate block.
 struct TableHeader {
   uint64_t rows = 0, index_address = kNowhere;
   uint32_t chunk_rows = 1, row_bytes = 8;
@@ -45,8 +45,8 @@ struct TableHeader {
 };
 std::string tableDescription(const RowLayout& layout);  ///< [main] block for TableHeader::description_address
 
-/// The index of the chunks of one table: a B-tree that grows at its right edge. Nodes keep their size and place. Only
-/// the last node of each level is rewritten, and a node is written before anything points to it.
+/// The index of the chunks of one table: a B-tree that grows at its right edge. A node never changes its size or its
+/// address. Only the last node of each level is rewritten, and a node is written before anything points to it.
 class ChunkIndex {
  public:
   static constexpr uint32_t kFanOut = 64;  ///< entries per node, HDF5's default

@@ -6,8 +6,8 @@
 
 namespace hapticd::record {
 
-/// [main] Returns the number of the process that writes the file of a descriptor; 0 if there is such a process but it
-/// cannot be seen from here; nothing if there is none.
+/// [main] Returns the id of the process that writes the file of a descriptor. Returns 0 if there is such a process but
+/// its id cannot be found out, and nothing if there is none.
 std::optional<int> writerOf(int fd);
 
 }  // namespace hapticd::record

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Reports whether the shapes of a run need more time than the period of the servo. In virtual time nothing else would
-/// show it.
+/// Reports whether the shapes of a run need more time than the period of the servo. In virtual time nothing else shows
+/// this, because no deadline is missed.
 #pragma once
 #include <string>
 
@@ -8,9 +8,10 @@
 
 namespace hapticd::record {
 
-/// [any] Returns lines for people; "" if nothing is slow. The lines name models whose steps take longer than a whole
-/// period, and say if a run in virtual time could not keep up with a real clock. A few slow ticks do not count, because
-/// a busy machine causes them. @param asked_hz rate that the scene asks for
+/// [any] Returns lines for people; "" if nothing is slow. The lines name models with many steps that take longer than a
+/// whole period, and say if a run in virtual time could not keep up with a real clock. A few slow ticks do not count,
+/// because a busy machine causes them. Only if nothing else is slow, the lines name the model whose longest step alone
+/// made the loop miss ticks. @param asked_hz rate that the scene asks for
 std::string paceText(const RunReport& report, double asked_hz);
 
 }  // namespace hapticd::record

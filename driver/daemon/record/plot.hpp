@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Plots: panels with axes, curves, bars, named points and marks. All pictures of the project use them. Names are
-/// around a panel, and never cover its curves.
+/// Plots: panels with axes, curves, bars, named points and marks. All pictures of the project use them. Names are drawn
+/// outside of a panel, so that they never cover its curves.
 #pragma once
 #include <string>
 #include <utility>
@@ -56,7 +56,7 @@ struct Panel {
   std::vector<Curve> curves{};
   std::vector<Bars> bars{};
   std::vector<NamedPoint> points{};
-  std::vector<Mark> moments{}, bounds{};  ///< marks at values of x; marks at values of y
+  std::vector<Mark> moments{}, bounds{};  ///< moments: marks at values of x; bounds: marks at values of y
   std::vector<Span> spans{};              ///< spans with the same name are in the legend once
   double height = 200;                    ///< [px] height of the area between the axes
 };

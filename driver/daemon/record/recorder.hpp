@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Copies every row of a running servo's black box to a file, in an ordinary thread. The servo never waits for it. The
-/// black box keeps a row for seconds; rows that are overwritten before they are copied are lost, and counted.
+/// black box keeps each row for some seconds. A row that is overwritten before it is copied is lost. Lost rows are
+/// counted.
 #pragma once
 #include <atomic>
 #include <memory>

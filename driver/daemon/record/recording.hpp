@@ -54,8 +54,8 @@ class Recording {
   const std::vector<RecordedStream>& streams() const { return streams_; }
   const RecordedStream* stream(const std::string& name) const;
   bool closed() const { return closed_; }  ///< true if its writer ended normally
-  /// Returns the process that was still writing the file when it was opened; 0 if this process cannot be seen from
-  /// here, nothing if there was none.
+  /// Returns the id of the process that was still writing the file when it was opened. Returns 0 if there was such a
+  /// process but its id could not be found out, and nothing if there was none.
   std::optional<int> writer() const { return writer_; }
   /// Returns how rows were lost after they were written, because the file was cut or changed; "" if none were.
   const std::string& damage() const { return damage_; }

@@ -26,8 +26,8 @@ struct ModelReport {
   uint32_t coarsest = 0;            ///< coarsest level of accuracy; 0 is full accuracy
   double residual_m = 0;            ///< [m] largest error that a coarser answer reported
   double given_j = 0, taken_j = 0;  ///< [J] work of its forces on the hands; work of the hands against them
-  bool moves = false;               ///< true if its plugin moves it, so that it has energy of its own
-  std::vector<ArmContact> arms{};   ///< contact of each arm, if there are several arms
+  bool moves = false;  ///< true if its plugin moves it, so that it can give energy to the hand without a fault
+  std::vector<ArmContact> arms{};  ///< contact of each arm, if there are several arms
 };
 
 /// Counts the ticks in which limits reduced the force of one device.

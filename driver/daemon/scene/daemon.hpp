@@ -12,8 +12,8 @@ struct Daemon {
   std::vector<std::filesystem::path> plugin_path;  ///< searched before all other folders
   std::optional<int> cpu;                          ///< processor on which the servo thread runs
   std::optional<int> priority;                     ///< SCHED_FIFO priority of the servo thread
-  std::optional<double> force;                     ///< [N] largest force of any device, whatever its file says
-  std::optional<double> rate;                      ///< [Hz] servo rate, instead of the scene's
+  std::optional<double> force;  ///< [N] largest force of every device, even if its device file allows more
+  std::optional<double> rate;   ///< [Hz] servo rate, instead of the scene's
 };
 
 }  // namespace hapticd::scene

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Reads files with problems as far as possible, so that further checks can find more problems in them.
+/// Reads files that have problems, as far as they can be understood, so that further checks can find more problems in
+/// them.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -9,13 +10,13 @@
 
 namespace hapticd::scene {
 
-/// [main] Returns the device with those parameters that are right, and with numbers that are out of range at the
-/// nearest one in it; nothing if the file is not a device file, or if its module is unknown. A misspelt name of a
-/// module stands for the nearest one.
+/// [main] Returns the device without the parameters that are wrong. A number that is out of range is replaced by the
+/// nearest number in the range, and a misspelt name of a module by the nearest name. Returns nothing if the file is not
+/// a device file, or if its module is unknown.
 std::optional<Device> deviceDraft(const std::filesystem::path& file, host::Catalog& catalog);
 
-/// [main] Returns the scene with everything that is right, also in models with a problem; nothing if the file is not a
-/// scene.
+/// [main] Returns the scene without the values that are wrong. A model with a problem is kept, with its other values.
+/// Returns nothing if the file is not a scene.
 std::optional<Scene> sceneDraft(const std::filesystem::path& file, host::Catalog& catalog);
 
 }  // namespace hapticd::scene

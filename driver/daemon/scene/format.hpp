@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The tables of the three file formats, and the plain structs that the reader fills. load.cpp checks the contents.
+/// The tables of the keys of the three file formats, and the plain structs into which the reader writes the values.
+/// load.cpp checks what the values mean.
 #pragma once
 #include <optional>
 #include <vector>
@@ -42,7 +43,7 @@ struct SceneText {
 /// The modes of `clients`, in the order of ClientMode.
 inline constexpr std::string_view kClientModes[] = {"off", "add", "instead"};
 
-/// The key `hd` of a device file: how HDAPI programs see the arm. Its lists are read later.
+/// The key `hd` of a device file: how HDAPI programs see the arm. The lists in it are read later.
 struct HdText {
   std::string model, vendor, serial;
   const Node *joints = nullptr, *buttons = nullptr;

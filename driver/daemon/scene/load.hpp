@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Reads scene, device and daemon files into checked descriptions. It collects all problems, not only the first.
+/// Reads scene, device and daemon files into checked descriptions. All problems of a file are reported, not only the
+/// first.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -16,7 +17,8 @@ using document::Problems;
 
 /// Options for the devices of a scene.
 struct LoadOptions {
-  /// True: a scene that names no device gets the default device. False: it gets none (`hapticd trace` needs no arm).
+  /// True: a scene that names no device gets the default device. False: such a scene gets no device (`hapticd trace`
+  /// needs no arm).
   bool default_device = true;
   /// A device file that replaces the scene's devices. If it is empty, the scene's own devices are used.
   std::filesystem::path device_file;
@@ -49,8 +51,8 @@ LoadedDaemon loadDaemon(const std::filesystem::path& file);
 /// @param scene receives the scene if the file is a scene without problems; may be nullptr
 Problems checkFile(const std::filesystem::path& file, host::Catalog& catalog, std::optional<Scene>* scene = nullptr);
 
-/// [main] Like checkFile(), but reads a text; fuzzing calls it. `file` is the name in messages, and its folder is where
-/// relative paths begin.
+/// [main] Like checkFile(), but reads a text; fuzzing calls it. `file` is the name that messages give, and relative
+/// paths begin at its folder.
 Problems checkText(const std::string& text, const std::filesystem::path& file, host::Catalog& catalog,
                    std::optional<Scene>* scene = nullptr);
 

@@ -18,7 +18,7 @@ const Format* formatOf(const Node& root);
 /// Returns true for a file without a version, or with that of a scene, that only a device file can be.
 bool isMeantAsDevice(const Node& root);
 
-/// Returns true if the document has the wanted format; otherwise reports what it is and what was expected.
+/// Returns true if the document has the wanted format; otherwise reports what the document is and what was expected.
 bool hasFormat(const Node& root, const char* wanted, Reader& in);
 
 /// Reads the tree of a scene file. Problems go to `in`.
@@ -26,7 +26,7 @@ std::optional<Scene> loadScene(const Node& root, Reader& in, host::Catalog& cata
 
 /// Reads a device file. Settings that the scene gives replace those of the file.
 /// @param scene_in reader of the scene; nullptr if no scene names the device
-/// @param hand the scene's `hand:` for all its devices, or nullptr
+/// @param hand the value of `hand:` in the scene, which is for all its devices; nullptr if there is none
 /// @param has_hand receives whether the module has a simulated hand; may be nullptr
 std::optional<Device> loadDeviceFile(const DeviceReference& reference, host::Catalog& catalog, Problems& problems,
                                      Reader* scene_in, const Node* hand, bool* has_hand);

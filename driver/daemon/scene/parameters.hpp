@@ -18,12 +18,12 @@ class ParameterReader {
   ParameterReader(Reader& in, const host::ClassInfo& info)
       : in_(&in), info_(info), given_(info.params.size()), seen_(info.params.size()) {}
 
-  /// Continues with nodes of another file. Their values replace earlier values.
+  /// From now on, the nodes that are read belong to another file. Their values replace earlier values.
   void overrideFrom(Reader& in);
 
-  /// Reads a mapping; names in nested mappings become ids with dots. @param key key of the mapping, such as
-  /// "models[2].parameters"
-  /// @param prefix put before each id, "hand" for a mapping that holds the hand.* parameters
+  /// Reads a mapping. The names of nested mappings become ids with dots, such as "hand.mass". @param key key of the
+  /// mapping, such as "models[2].parameters"
+  /// @param prefix text before each id, such as "hand" for a mapping with the parameters hand.*
   /// @param skip name of an entry of the mapping that is not a parameter
   void read(const Node& node, const std::string& key, const std::string& prefix = "", const std::string& skip = "");
 

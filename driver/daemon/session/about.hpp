@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The description of a run in its recording, besides the rows: versions, the whole scene, what each device reported of
-/// itself, and fingerprints of every file on which forces depend.
+/// The part of a recording that describes the run and is stored beside the rows: versions, the whole scene, what each
+/// device reported about itself, and a fingerprint of every file on which forces depend.
 #pragma once
 #include <memory>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace hapticd::servo {
 
-/// Settings of the loop in the recorded run. A replay uses the same.
+/// Settings of the loop in the recorded run. A replay uses the same settings.
 struct RunFacts {
   double rate = 1000;  ///< [Hz] rate of the servo
   uint64_t period_ns = 1'000'000, ticks = 0;
@@ -24,7 +24,7 @@ struct RunFacts {
   bool former_passivity = false;  ///< old version: a program's steady push counted as created energy
 };
 
-/// [main] Describes the run. @param streams as flightStreams() gave them
+/// [main] Describes the run. @param streams the result of flightStreams()
 record::About aboutRun(const scene::Scene& scene, const World& world, const std::vector<std::unique_ptr<Arm>>& arms,
                        const RunFacts& facts, const std::vector<record::StreamSpec>& streams);
 
@@ -40,7 +40,8 @@ struct RecordedRun {
   std::vector<hdv_info> devices;
   std::vector<Fingerprint> files;
   std::string version, started;
-  std::string instructions;  ///< processor instructions that the shapes used; "" in recordings that are too old to say
+  /// processor instructions that the shapes used; "" in old recordings, which do not contain them
+  std::string instructions;
 };
 
 /// [main] Reads the description from a recording. An error says what is wrong with the text.

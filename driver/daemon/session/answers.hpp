@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The answers of a running daemon about itself, one line of JSON each. Control thread only. The servo runs meanwhile,
-/// so all values come from pages and ring buffers that may be read while the servo writes them.
+/// The answers of a running daemon about itself, one line of JSON each. Only the request worker may call these
+/// functions. The servo runs meanwhile, so all values come from pages and ring buffers that may be read while the servo
+/// writes them.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -13,7 +14,7 @@
 
 namespace hapticd::servo {
 
-/// A place for a model, on the side of the control thread. Its number is the model's number in every row.
+/// A place for a model, as the request worker sees it. The number of the place is the number of the model in every row.
 struct ModelPlace {
   scene::Model model;  ///< the model, with the present values of its parameters
   bool taken = false, enabled = true;
@@ -49,8 +50,8 @@ std::string noForceWhy(const Session& session, uint32_t arm);
 /// [main] Lists the models: names, numbers, poses, leaders, and live parameters with their values.
 std::string listAnswer(const Session& session);
 
-/// [main] Answers a program that begins to read rows now: the number of the next row of each stream, every model with
-/// its pose, also if it rests, and every device.
+/// [main] Answers a program that begins to read rows now. The answer contains the number of the next row of each
+/// stream, every device, and every model with its pose, even if the model rests.
 std::string snapshotAnswer(const Session& session);
 
 /// [main] Returns the error for a parameter that the plugin does not have, with a list of its parameters.

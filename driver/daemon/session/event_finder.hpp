@@ -19,7 +19,7 @@ namespace hapticd::servo {
 
 class EventFinder {
  public:
-  /// [s] the probe must be outside this long before another touch is reported
+  /// [s] the probe must have been outside for this time before another touch is reported
   static constexpr double kFreeFor = 0.05;
   /// [s] least time between two reports about refused records of a leader
   static constexpr double kRefusedPeriod = 1.0;

@@ -24,7 +24,8 @@ class EventLog {
   EventLog(size_t places, std::vector<std::string> devices, const Arms& arms)
       : models_(places), devices_(std::move(devices)), arms_(arms) {}
 
-  /// [any] Called when a model takes a place, or with "" when it has left. Earlier events keep the old name.
+  /// [any] Called when a model takes a place, or with "" when the model has left. Events before this call are reported
+  /// with the old name.
   void name(uint32_t place, const std::string& model);
 
   /// [main] Writes the events since the last call.
@@ -38,14 +39,14 @@ class EventLog {
   void pushes(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
   void pushesNoMore(uint32_t arm, uint32_t place, PusherLog::End how);
 
-  /// A message for the log; its text is empty if none is due.
+  /// A message for the log. Its text is empty if nothing is to be reported.
   struct Message {
     int32_t level;  ///< HSP_LOG_DEBUG, ...
     std::string who, text;
   };
   /// [main] Returns the message for an event.
   Message messageOf(const hapticd_event& event) const;
-  /// [main] Notes what the messages of later events depend on: whether an arm is held.
+  /// [main] Notes whether an arm is held, because the messages of later events depend on it.
   void note(const hapticd_event& event);
   /// [main] Returns the message for an arm whose enable switch is down since the start.
   Message messageOfSwitch(size_t arm) const;
@@ -61,7 +62,7 @@ class EventLog {
   Message messageOfArm(const hapticd_event& event) const;
   Message messageOfLeader(const hapticd_event& event) const;
 
-  mutable std::mutex mutex_;  // models are added on the thread of the control socket
+  mutable std::mutex mutex_;  // because the request worker adds models
   std::vector<std::string> models_, devices_;
   const Arms& arms_;
   std::vector<bool> told_of_switch_, held_;

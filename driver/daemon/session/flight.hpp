@@ -117,7 +117,7 @@ class Flight {
   /// @param places most models that the run can have
   Flight(std::unique_ptr<record::FlightRing> ring, const std::vector<std::unique_ptr<Arm>>& arms, size_t places);
 
-  /// [rt] Called before a tick: notes its time, and the faults that are latched already.
+  /// [rt] Called before a tick: notes the time of the tick, and the faults that are latched already.
   void begin(Nanoseconds now, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
 
   /// [rt] Called for each order that this tick obeys.
@@ -133,7 +133,8 @@ class Flight {
 
   /// [main] Returns the number of the oldest tick that is kept.
   uint64_t oldest() const noexcept;
-  /// [main] Reads one tick and its first arm. Returns false if the tick is no longer kept, or has not been yet.
+  /// [main] Reads the row of one tick, and the columns of the first arm in this row. Returns false if the tick is no
+  /// longer kept, or if it is still to come.
   bool read(uint64_t tick, TickRow& row, ArmRow& arm) const;
   /// [any] Reads the newest pose of a model that moves. Returns false if no pose is kept.
   bool newestPose(uint32_t model, PoseRow& row) const;

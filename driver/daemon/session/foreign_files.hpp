@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Files of programs of another user. The daemon may have rights to read files which that user has not, so such
-/// programs open their files and send the descriptors.
+/// Files of programs of another user. The daemon may have the right to read files that this user must not read. So such
+/// programs open their files themselves and send the descriptors.
 #pragma once
 #include "base/passed_files.hpp"
 #include "control/peer.hpp"

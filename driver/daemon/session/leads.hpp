@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Keeps the leads: gives a leader the shared memory of its lead, allows one leader per target, and ends a lead when
-/// the leader's connection ends. Control thread only.
+/// the leader's connection ends. Only the request worker may use it.
 #pragma once
 #include <functional>
 #include <map>
@@ -37,7 +37,8 @@ class Leads {
     uint32_t place;
     std::string program;
   };
-  /// What a program did: kBegins: it begins to push; kEnds: it asked to end; kLeft: its connection is gone.
+  /// What a pushing program did. kBegins: it begins to push. kEnds: a request ended the push. kLeft: its connection has
+  /// ended.
   enum class PushEvent { kBegins, kEnds, kLeft };
   /// Called when a program begins or stops pushing on an arm.
   using OnPushEvent = std::function<void(uint32_t arm, const Pusher& pusher, PushEvent news)>;
@@ -55,7 +56,8 @@ class Leads {
   Result<void> end(const Target& target, const control::Peer& peer) { return end(target, peer, PushEvent::kEnds); }
   /// [main] Ends the lead of a model, if there is one, because the model is moved in another way or is removed.
   Result<void> endOfModel(uint32_t model);
-  /// [main] Ends all pushes, because programs may no longer push. Later answers of a program are not read.
+  /// [main] Ends all leads of a force, because programs may no longer push. Later answers of these programs are not
+  /// read.
   void endPushes();
   /// [main] Ends all leads of a peer whose connection is gone.
   void left(const control::Peer& peer);
@@ -67,7 +69,7 @@ class Leads {
   std::string program(pid_t pid) const;
   /// [main] Returns the programs that push on an arm.
   std::vector<Pusher> pushers(uint32_t arm) const;
-  /// [main] True if programs may push. A request can change this; the scene sets only the first value.
+  /// [main] True if programs may push. The scene sets the first value, and a request can change it.
   bool mayPush() const { return may_push_; }
   void setMayPush(bool may) { may_push_ = may; }  ///< [main] sets mayPush()
   /// [main] True if this peer has a lead, which ends with its connection.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Touches one model with the recorded tips again, so that a soft body gets the shape that it had in the recorded run.
-/// The shape is only for drawings: unlike a replay, this computes no arms, other models or orders.
+/// The result is only for drawings: unlike a replay, this class leaves out arms, other models and orders.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -21,8 +21,9 @@ class ModelRerun {
   /// the result; it has one model, and a probe for each arm of the recording
   static Result<std::unique_ptr<ModelRerun>> prepare(const record::Recording& recording, World& world);
 
-  /// [main] Steps the model to the time t [s] of the recording: from the last call if t is less than kMemory after it,
-  /// otherwise from rest at t - kMemory. The call takes as long as all these steps of the model.
+  /// [main] Steps the model to the time t [s] of the recording. It goes on from the time of the last call if t is less
+  /// than kMemory later; otherwise it begins with a body at rest at t - kMemory. The call takes as long as all these
+  /// steps of the model.
   void goTo(double t);
 
  private:

@@ -8,7 +8,7 @@
 
 namespace hapticd::servo {
 
-/// most names that are kept; if there are more, all are forgotten
+/// largest number of names that are kept; when it is exceeded, all names are forgotten
 inline constexpr size_t kMostPrograms = 256;
 
 /// [any] Returns the name of a process: the name of its file, followed by the script if it is an interpreter. The name

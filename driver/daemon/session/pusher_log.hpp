@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Messages for the daemon's log about programs that push on an arm: which process it is, what it does, and why its
-/// force is less than it asks for.
+/// Messages for the daemon's log about programs that push on an arm: which process pushes, when it begins, ends or
+/// falls silent, and why its force is less than it asks for.
 #pragma once
 #include <sys/types.h>
 
@@ -16,7 +16,7 @@ namespace hapticd::servo {
 
 class PusherLog {
  public:
-  /// [s] a longer silence is reported in the log; shorter ones are only counted
+  /// [s] a silence longer than this is reported in the log; a shorter one is only counted
   static constexpr double kSilent = 0.2;
   /// [s] least time between two reports about refused answers of a program
   static constexpr double kRefusedPeriod = 1.0;
@@ -54,7 +54,7 @@ class PusherLog {
   static void checkBound(Reported& told, const ClientForces::Client& client, double bound,
                          std::vector<Message>& messages);
 
-  std::mutex mutex_;  // programs come and go on the thread of the control socket
+  std::mutex mutex_;  // because the request worker adds and removes programs
   std::vector<std::array<Reported, ClientForces::kMost>> told_;
 };
 

@@ -5,8 +5,8 @@
 
 namespace hapticd::servo {
 
-/// Virtual time that waits for the recorder, because a virtual run can be hundreds of times faster than a real one, and
-/// too fast for the disk.
+/// A clock of virtual time that waits for the recorder. Otherwise a virtual run, which can be hundreds of times faster
+/// than a real one, could lose rows because the disk is too slow.
 class RecordedClock final : public Clock {
  public:
   explicit RecordedClock(const record::Recorder& recorder) : recorder_(recorder) {}

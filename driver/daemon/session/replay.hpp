@@ -29,13 +29,13 @@ struct ReplayOutcome {
   uint64_t ticks = 0, recorded_ticks = 0;
   std::optional<Difference> first;
   double largest_force_error = 0;  ///< [N] largest difference of a force sent to a device, over all ticks
-  std::string note;                ///< why the replay ended before the recording; "" if it did not
+  std::string note;                ///< why the replay ended before the end of the recording; "" if it reached the end
 };
 
 class Replay {
  public:
-  /// [main] Builds the world of the recording. @param run as readAbout() gave it, perhaps with changes that are to be
-  /// tried
+  /// [main] Builds the world of the recording. @param run the result of readAbout(), which the caller may have changed
+  /// to see the effect
   static Result<std::unique_ptr<Replay>> prepare(const record::Recording& recording, RecordedRun run,
                                                  const host::Services::Log& log);
   ~Replay();

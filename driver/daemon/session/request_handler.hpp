@@ -22,7 +22,7 @@ namespace hapticd::servo {
 
 class RequestHandler {
  public:
-  /// Loads a scene file with everything it names.
+  /// Loads a scene file with all files that it names.
   using LoadScene = std::function<Result<scene::Scene>(const std::string& file)>;
   /// Returns warnings about the models in a scene. @param stiffness [N/m] stiffness that each model claims
   using Advise =
@@ -42,12 +42,13 @@ class RequestHandler {
   /// [any] Any thread may call this at any time. Carries out a request to hold arms or to end the run at once, without
   /// waiting for other requests. @return the answer, or nothing if the line is not such a request
   std::optional<control::Reply> urgent(const control::Peer& peer, const std::string& line);
-  /// [any] Called from the thread of answer(). Returns what depends on the peer's connection.
+  /// [any] Called from the thread of answer(). Returns why the peer's connection stays open even if the peer is silent.
   control::KeepAlive keepAlive(const control::Peer& peer) const { return {stays(peer), listeners_.count(peer.id) > 0}; }
   /// [any] Called from the thread of answer(). Returns new events for a subscriber, one line each; "" if there are
   /// none.
   std::string news(const control::Peer& peer);
-  /// [any] Called from the thread of answer() when a connection is gone: ends what depended on it.
+  /// [any] Called from the thread of answer() when a connection has ended: ends the leads and subscriptions that
+  /// depended on it.
   void left(const control::Peer& peer);
 
   /// [any] Called from the thread of answer(). Writes the black box to a file. @return the name of the file
@@ -113,7 +114,8 @@ class RequestHandler {
   host::Services::Log log_;
   std::string dump_folder_, scene_file_;
   std::vector<ModelPlace> places_;
-  std::vector<std::unique_ptr<ModelState>> prepared_;  ///< models given to the servo, which has not taken them yet
+  /// models that were given to the servo and that it has not adopted yet
+  std::vector<std::unique_ptr<ModelState>> prepared_;
   uint64_t given_ = 0;
   Leads leads_;
   std::map<uint64_t, uint64_t> listeners_;  ///< subscribers: number of the next event, by peer

@@ -15,16 +15,17 @@ namespace hapticd::servo {
 class RunFiles {
  public:
   /// [main] Chooses folder and name, saves a black box that a crash left, and fills in the options of the run. If there
-  /// is no folder it only warns, and the run has no such files. @param name of the run; "" means "hapticd", or if that
-  /// is in use, a name with the number of the process. Any other name that is in use is an error.
+  /// is no folder, it logs a warning, and the run has no such files. @param name of the run; "" means "hapticd", or, if
+  /// another run has this name, "hapticd-" and the number of the process. If another run has any other given name, that
+  /// is an error.
   static Result<std::unique_ptr<RunFiles>> open(const std::string& name, RunOptions& how);
   ~RunFiles();  ///< [main] frees the name
   RunFiles(const RunFiles&) = delete;
   RunFiles& operator=(const RunFiles&) = delete;
 
-  /// [main] Opens the socket and serves it. If that fails it only warns, and the run continues.
-  /// @param device_file replaces the devices of scenes that are loaded during the run  @param catalog finds their
-  /// plugins
+  /// [main] Opens the socket and serves it. If that fails, it logs a warning, and the run continues.
+  /// @param device_file replaces the devices of scenes that are loaded during the run
+  /// @param catalog finds the plugins of these scenes
   /// @param advise gives warnings about models that are added
   void serve(Runner& runner, const std::string& device_file, host::Catalog& catalog, RequestHandler::Advise advise,
              const host::Services::Log& log);

@@ -37,10 +37,11 @@ struct RunOptions {
   std::string record;         ///< file of the recording of every tick; "" for none
   std::string black_box;      ///< file in memory for the black box; "": memory of the process
   std::string state_dir;      ///< folder for files after a crash; "": none are written
-  bool allow_non_rt = false;  ///< true: real hardware may run without real-time rights
+  bool allow_non_rt = false;  ///< true: a run with real hardware may begin without real-time rights
 };
 
-inline constexpr uint64_t kDryCycles = 2000;  ///< cycles with motors off, to judge the machine before a hand relies on it
+/// cycles with motors off, to measure whether ticks begin in time before a force is on
+inline constexpr uint64_t kDryCycles = 2000;
 
 class Runner {
  public:
@@ -48,8 +49,8 @@ class Runner {
   static Result<std::unique_ptr<World>> buildWorld(const scene::Scene& scene, const RunOptions& options,
                                                    const host::Services::Log& log);
 
-  /// [main] Destroys models and arms. If a module crashes in this, it is named and put on the quarantine list as in a
-  /// run.
+  /// [main] Destroys models and arms. If a plugin or module crashes meanwhile, the message names it, and it goes on the
+  /// quarantine list, as in a run.
   ~Runner();
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
@@ -152,7 +153,8 @@ class Runner {
   std::unique_ptr<Clock> clock_;
   std::unique_ptr<Loop> loop_;
   std::unique_ptr<record::Recorder> recorder_;
-  std::unique_ptr<watch::GuardProcess> guard_;  ///< nullptr if no arm needs one, or none can use one
+  /// nullptr if no arm needs a guard, or if no arm can be switched off by one
+  std::unique_ptr<watch::GuardProcess> guard_;
   uint32_t guards_ended_ = 0;
   std::atomic<bool> suspend_{false};
   std::vector<std::string> warnings_;

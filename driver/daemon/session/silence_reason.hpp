@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Messages for a model that the guard has silenced.
+/// Messages about a model that its Guard has silenced.
 #pragma once
 #include <cstdint>
 #include <string>

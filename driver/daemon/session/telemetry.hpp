@@ -44,7 +44,7 @@ class Telemetry final : public TickLog {
   /// have left stay in the report.
   void name(uint32_t place, const std::string& name, const std::string& plugin);
 
-  /// [main] From now on keeps every tick in this black box, with all inputs and outputs, instead of the short
+  /// [main] From now on stores every tick, with all inputs and outputs, in this black box, instead of a short
   /// BlackBoxRow.
   void attach(std::unique_ptr<Flight> flight);
   /// [main] From now on also writes every tick to this status page.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Waits for the servo, which either does something in its next tick or is stuck.
+/// Waits for the servo to carry out an order. The servo does so in its next tick, unless it is stuck.
 #pragma once
 #include "base/clock.hpp"
 

@@ -13,8 +13,8 @@
 
 namespace hapticd::sim {
 
-/// Period of the search. In this time a probe of 2 m/s moves 10 mm, and surfaces are activated at 100 mm.
-
+/// Distances of the search. In one period of the search (5 ms) a probe at 2 m/s moves 10 mm, which is much less than
+/// activation_radius.
 struct ProximitySettings {
   double activation_radius = 0.10;  ///< [m] a surface nearer than this to a probe is traced
   double hysteresis = 0.05;         ///< [m] tracing stops this much farther away
@@ -29,8 +29,8 @@ enum class Searching {
 
 class Proximity {
  public:
-  /// [main] @param models in the order of the scene. Models without surfaces() find their feet by themselves, so they
-  /// are left out of the search.
+  /// [main] @param models in the order of the scene. Shapes without surfaces() find their foot points by themselves, so
+  /// they are left out of the search.
   Proximity(const std::vector<host::ShapeInstance*>& models, const std::vector<hsp_pose>& poses, uint32_t probe_count,
             const ProximitySettings& settings, link::Link& link);
 
@@ -56,7 +56,7 @@ class Proximity {
     uint32_t surfaces;  ///< number of its surfaces
     uint64_t bytes;     ///< locked memory of the shape
     Eigen::Vector3d box_min,
-        box_max;  ///< [m] corners of the box, model frame; without a box the model is always searched
+        box_max;  ///< [m] corners of the box, model frame; a model without a box is searched every time
     bool has_box;
     Eigen::Vector3d position;
     Eigen::Quaterniond orientation;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Runs the proximity search in runs on a real clock. Without surfaces no search is needed. If there is only one small
-/// surface, the main thread searches, because it only waits otherwise. In all other cases a separate thread searches.
+/// surface, the main thread searches, because it would otherwise only wait. In all other cases a separate thread
+/// searches.
 #pragma once
 #include <algorithm>
 #include <atomic>

@@ -13,7 +13,7 @@ namespace hapticd::status {
 
 constexpr uint64_t kPageMagic = 0x31544154535448;  ///< "HTSTAT1"
 constexpr uint32_t kMaxArms = 8;
-constexpr uint32_t kMaxModels = 96;  ///< models beyond these have no entry
+constexpr uint32_t kMaxModels = 96;  ///< models in places from this number on have no entry
 
 /// Like record::Histogram, but for one writing and many reading threads.
 class SharedHistogram {
@@ -67,17 +67,19 @@ struct ArmStatus {
 
 struct ModelStatus {
   double depth = 0, force = 0, gain = 0;  ///< [m] depth, NaN if not traced; [N] force; factor of the force, 0 to 1
-  uint64_t tick = 0;                      ///< tick in which it was last stepped
+  uint64_t tick = 0;                      ///< number of the tick in which the model was last stepped
   int32_t status = 0;
   uint32_t iterations = 0;
-  uint32_t trouble = 0;       ///< servo::ShapeFault: why it is not felt
+  uint32_t trouble = 0;       ///< servo::ShapeFault: why the hand does not feel it
   int32_t failed_status = 0;  ///< the first status that step() returned and that the ABI does not allow; 0: none
-  /// waits: 1 if it was added or enabled with a tip inside, and is not felt until the tip has left. none: unused.
+  /// waits: 1 if the model was added or enabled while a tip was inside; it is not felt until the tip is outside. none:
+  /// unused.
   uint32_t waits = 0, none = 0;
 };
 
-/// Ticks since a model was added, by the state of its foot point: proved to be the nearest; held by a contact; or
-/// neither.
+/// Counts the ticks since a model was added, by its foot point. nearest: the point is proved to be the nearest. held: a
+/// held contact keeps the point, although another point is nearer. degraded: the answer was degraded, so the point is
+/// not proved to be the nearest.
 struct ModelFeet {
   uint64_t nearest = 0, held = 0, degraded = 0;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The file of a status page, in a memory file system: its owner writes it, and others map it read-only.
+/// The file of a status page, in a memory file system. The daemon that creates it writes it, and other processes map it
+/// read-only.
 #pragma once
 #include <memory>
 #include <string>

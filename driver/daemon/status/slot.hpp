@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// One small record from a writer that never waits to any number of readers, in this process or another. It is a
-/// sequence lock with atomic words: a reader gets a whole record or tries again, and a reader that is killed does no
-/// harm.
+/// Passes one small record from one writer to any number of readers, in this process or in others. The writer never
+/// waits. The slot is a sequence lock with atomic words: a reader gets a whole record or tries again, and a reader that
+/// is killed does no harm.
 #pragma once
 #include <array>
 #include <atomic>

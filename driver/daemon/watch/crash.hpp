@@ -10,8 +10,8 @@
 namespace hapticd::watch {
 
 /// [main] Handles every signal that ends a process, exit(), quick_exit() and _exit(), until forgetCrash(). If another
-/// process sends a signal that is not a crash, such as SIGUSR1, the run ends normally. SIGTERM and the like keep their
-/// former effect, unless this process sent them itself.
+/// process sends a signal that is not a crash, such as SIGUSR1, the run ends normally. SIGTERM, SIGINT, SIGQUIT and
+/// SIGHUP keep their former effect, unless this process sent them itself.
 /// @param dir folder for the black box and the quarantine file; if it is empty, neither is written
 void guardAgainstCrash(WatchTarget& servo, const std::filesystem::path& dir);
 
@@ -22,8 +22,8 @@ void forgetCrash();
 /// the crash may come only when the last objects of the program are destroyed.
 void guardTheEnd(const std::filesystem::path& dir);
 
-/// Calls guardAgainstCrash(), and forgetCrash() at the end of its life. Such objects may nest. Builds with sanitizers
-/// do nothing here, because the sanitizers have their own handlers.
+/// Calls guardAgainstCrash(), and forgetCrash() at the end of its life. Such objects may nest. In builds with
+/// sanitizers it does nothing, because the sanitizers have their own handlers.
 class CrashGuard {
  public:
   CrashGuard(WatchTarget& servo, const std::filesystem::path& dir);
@@ -40,8 +40,8 @@ class CrashGuard {
 /// @param reason such as "Segmentation fault" @param culprit owner of the code that did it; nullptr blames nobody
 [[noreturn]] void endByFault(const char* reason, const Owner* culprit) noexcept;
 
-/// [any] Switches the motors off and ends the process at once, because it was told to end and did not. No plugin is put
-/// in quarantine. @param keeps owner of the code that did not return; nullptr if it is unknown
+/// [any] Switches the motors off and ends the process at once. It is called if the process was asked to end and did not
+/// end. No plugin is put in quarantine. @param keeps owner of the code that did not return; nullptr if it is unknown
 [[noreturn]] void forceEnd(const Owner* keeps) noexcept;
 
 }  // namespace hapticd::watch

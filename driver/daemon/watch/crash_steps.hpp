@@ -7,11 +7,11 @@
 
 namespace hapticd::watch {
 
-/// How strongly a crash in the daemon's own code makes code that does not ship with hapticd suspicious.
+/// How likely it is that code which does not ship with hapticd caused a crash in the daemon's own code.
 enum class Suspicion {
-  kNone,   ///< not at all: the signal came from outside, or the culprit is known
-  kCrash,  ///< such code may be the cause
-  kTorn    ///< such code is most likely the cause: memory was overwritten or freed twice
+  kNone,   ///< not likely: the signal came from outside, or the culprit is known
+  kCrash,  ///< possible
+  kTorn    ///< most likely: memory was overwritten or freed twice
 };
 
 struct Cause {
@@ -20,13 +20,13 @@ struct Cause {
   Suspicion suspicion;
 };
 
-/// Ends the process with exit code 1, in several steps. If a step crashes itself, the next step follows.
+/// Ends the process with exit code 1, in several steps. If a step itself crashes, the next step follows.
 /// @param servo the watched servo; nullptr ends the process without any step
 /// @param dir folder for the black box and the quarantine file; "": neither is written. The text must stay valid
 [[noreturn]] void endInSteps(WatchTarget* servo, const char* dir, const Cause& cause) noexcept;
 
-/// Frees the motors, and waits a moment until the command has been sent: an I/O thread may still have to send it, and
-/// this thread ends with the process.
+/// Switches the motors off, and waits a moment until the command has been sent. A thread of the module may still have
+/// to send it, and would end with the process.
 void cutAndAwait(WatchTarget& servo) noexcept;
 
 /// Adds the name of an owner, such as "plugin 'torus' of model 'ring'".

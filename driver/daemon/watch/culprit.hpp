@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Whose code a fatal signal came from. Functions are [any] and async-signal-safe, except prepareBlame().
+/// Finds out whose code caused a fatal signal. The functions are [any] and async-signal-safe, except prepareBlame().
 #pragma once
 #include <csignal>
 
@@ -13,18 +13,20 @@ struct Blame {
   Suspicion suspicion;
 };
 
-/// [main] Call it before the others: looks up where the C library keeps its last message.
+/// [main] Finds the place where the C library stores the message of an abort. Call it before the other functions.
 void prepareBlame() noexcept;
 
 /// True if another process sent the signal.
 bool sentByOther(const siginfo_t& info) noexcept;
 
 /// Returns the owner of the code that raised a signal; nullptr if the owner is unknown. The owner counts as unknown if
-/// another process sent the signal, or if it was sent to the whole process: no name is better than a wrong one.
+/// another process sent the signal, or if the signal was sent to the whole process, because a wrong name would be worse
+/// than none.
 const Owner* culpritOf(int signal, const siginfo_t& info, const void* context) noexcept;
 
-/// Returns whom a crash blames: as culpritOf(), but code that ships with hapticd is not blamed if the allocator found
-/// damaged memory, because such code may only have freed it.
+/// Returns whose code is to blame for a crash: the owner that culpritOf() returns. But if the allocator found damaged
+/// memory, and code that does not ship with hapticd is loaded, shipped code is not blamed, because it may only have
+/// freed this memory.
 Blame blameFor(int signal, const siginfo_t& info, const void* context) noexcept;
 
 }  // namespace hapticd::watch

@@ -15,7 +15,8 @@ namespace hapticd::watch {
 class EndWatch {
  public:
   static constexpr Nanoseconds kLookEvery = 50'000'000;
-  static constexpr Nanoseconds kEndWithin = 900'000'000;  ///< [ns] longest time without a tick once the run must end
+  /// [ns] longest time without a tick after the run was asked to end
+  static constexpr Nanoseconds kEndWithin = 900'000'000;
 
   /// [ns] longest processor time of a tick. No useful shape takes this long, and processor time does not grow on a busy
   /// machine.
@@ -27,7 +28,7 @@ class EndWatch {
   static constexpr Nanoseconds kWaitsForLast = 10'000'000'000;
 
   /// [main] @param late ends a process that was asked to end @param hung ends a process whose tick hangs; if it finds
-  /// nobody to blame it returns, and is called again later
+  /// no code to blame, it returns and is called again later
   EndWatch(const WatchTarget& servo, std::function<void()> late, std::function<void()> hung)
       : servo_(servo), late_(std::move(late)), hung_(std::move(hung)) {}
   ~EndWatch();
@@ -36,7 +37,7 @@ class EndWatch {
 
   std::error_code start();  ///< [main]
   /// [main] Called after the last tick. The calls that follow, such as stop() of the arms, may take kWaitsForLast.
-  /// @param stuck ends the process after that; if it finds nobody to blame it returns, and is called again later
+  /// @param stuck ends the process after that time; if it finds no code to blame, it returns and is called again later
   void lastCalls(std::function<void()> stuck);
   /// [any] Checks the servo once. The thread only calls this, every kLookEvery.
   void check(Nanoseconds now) noexcept;
@@ -51,7 +52,8 @@ class EndWatch {
   Nanoseconds still_since_ = 0;
   Nanoseconds looked_last_ = 0;  ///< [ns] duration of the calls after the last tick, as far as it was watched
   Nanoseconds tick_begun_ = 0;
-  /// [ns] duration of this tick, as far as it was watched; CPU time of the servo before it
+  /// looked_: [ns] duration of this tick, as far as it was watched. cpu_before_: [ns] CPU time of the servo before this
+  /// tick
   Nanoseconds looked_ = 0, cpu_before_ = 0;
   bool told_ = false, stop_ = false;
   std::mutex mutex_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The guard is a separate process that switches the arms off if the daemon has ended (by `_exit`, SIGKILL, or a crash
-/// that no handler saw), or if the servo makes no more ticks. It is for arms whose hardware does not do so itself.
+/// that no handler saw), or if the servo makes no more ticks. It serves arms whose hardware does not switch its motors
+/// off by itself.
 #pragma once
 #include <atomic>
 #include <map>
@@ -23,8 +24,8 @@ class GuardProcess {
   GuardProcess(const GuardProcess&) = delete;
   GuardProcess& operator=(const GuardProcess&) = delete;
 
-  /// [main] Tells the guard how to switch an arm off; nullptr if that is impossible now. The same data are sent only
-  /// once.
+  /// [main] Sends to the guard how it can switch an arm off. Data that the guard has already are not sent again.
+  /// @param how nullptr if the arm cannot be switched off now
   void sendSilence(uint32_t arm, const hdv_silence* how);
   /// [main] Starts or ends the watching. The guard must watch from the first tick on, but not while the process is
   /// stopped on purpose (Ctrl-Z).
@@ -44,7 +45,8 @@ class GuardProcess {
   Nanoseconds patience_ = 0;
   Heartbeat* beat_ = nullptr;
   Descriptor socket_, memory_;
-  uint64_t memory_is_ = 0;  ///< inode of the memory, to notice that another thread closed the descriptor
+  /// inode of the shared memory; it shows whether other code has closed or replaced the descriptor
+  uint64_t memory_is_ = 0;
   int process_ = -1;
   std::map<uint32_t, uint64_t> told_;  ///< the epoch of the data that were sent last, by arm
 };

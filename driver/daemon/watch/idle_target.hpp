@@ -2,8 +2,8 @@
 /// The WatchTarget for a process without a running servo: after a run, during the set-up of modules, or in a command
 /// without an arm. There are no ticks, and the motors are off.
 ///
-/// WatchTarget itself has no default implementations, so that the compiler reports what a running servo does not
-/// implement.
+/// These functions are not defaults of WatchTarget, so that the compiler reports each function that a running servo
+/// does not implement.
 #pragma once
 #include "watch/watch_target.hpp"
 

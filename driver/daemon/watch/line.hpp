@@ -17,7 +17,8 @@ class Line {
     text_[length_] = '\0';
     return *this;
   }
-  /// Adds a plugin's name as part of a file name. Signs such as / are replaced, so that the file stays in its folder.
+  /// Adds a plugin's name as part of a file name. Characters such as / are replaced, so that the name cannot lead into
+  /// another folder.
   Line& addName(const char* name) noexcept {
     for (; *name != '\0' && length_ + 1 < sizeof text_; ++name) {
       const bool plain = (*name >= 'a' && *name <= 'z') || (*name >= 'A' && *name <= 'Z') ||

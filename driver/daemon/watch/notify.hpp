@@ -13,8 +13,8 @@ namespace hapticd::watch {
 /// failed.
 bool notify(const std::string& message);
 
-/// [main] Returns the period in which the service manager expects a message that all is well (WATCHDOG_USEC, for this
-/// process); nothing if it expects none.
+/// [main] Returns the period within which the service manager expects the next message that all is well (WATCHDOG_USEC,
+/// if it is meant for this process); nothing if it expects no such messages.
 std::optional<Nanoseconds> watchdogPeriod();
 
 /// Sends the message that all is well to the service manager, but only while the servo makes ticks.

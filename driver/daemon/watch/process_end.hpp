@@ -5,8 +5,8 @@
 
 namespace hapticd::watch {
 
-/// [main] Sets a function that is called first when any code calls _exit(); nullptr for none. `heard` must be
-/// async-signal-safe.
+/// [main] Sets a function that is called first when any code calls _exit(); nullptr for none. `heard` is that function,
+/// and must be async-signal-safe.
 void onPlainExit(void (*heard)());
 
 /// [any] Ends the process without calling that function. Async-signal-safe.

@@ -19,12 +19,13 @@ class WatchTarget {
   virtual Nanoseconds nextTick() const noexcept = 0;
   virtual Nanoseconds cpuTime() const noexcept = 0;  ///< CPU time that the servo thread has used
   virtual bool simulated() const noexcept = 0;       ///< all arms are simulated, so that no hand can be hurt
-  virtual void stop() noexcept = 0;                  ///< ends the run normally: forces ramp to zero first
+  virtual void stop() noexcept = 0;                  ///< asks the run to end normally: forces ramp to zero first
   /// CLOCK_MONOTONIC time at which the end was asked for; 0 if it was not.
   virtual Nanoseconds stopAsked() const noexcept = 0;
-  virtual void cut(double stuck_for) noexcept = 0;    ///< frees the motors of every arm at once; stuck_for in s
-  virtual bool cutLeft() const noexcept = 0;          ///< false while the cut has not been sent to the hardware
-  virtual const Owner* inServo() const noexcept = 0;  ///< owner of the code in the servo thread; nullptr: own code
+  virtual void cut(double stuck_for) noexcept = 0;  ///< switches the motors of every arm off at once; stuck_for [s]
+  virtual bool cutLeft() const noexcept = 0;        ///< false while the cut has not been sent to the hardware
+  /// owner of the code that the servo thread runs; nullptr: the daemon
+  virtual const Owner* inServo() const noexcept = 0;
   virtual const void* blackBox() const noexcept = 0;  ///< memory with the rows of the last seconds, or nullptr
   virtual size_t blackBoxBytes() const noexcept = 0;
   virtual bool drives() const noexcept { return true; }  ///< true if motors may be on

@@ -16,7 +16,7 @@ class Watchdog {
  public:
   static constexpr Nanoseconds kCheckEvery = 500'000;
   static constexpr Nanoseconds kOnTime = 2'000'000;  ///< [ns] if the time between two checks is longer, a check is late
-  static constexpr Nanoseconds kLateCounts = 1'000'000;  ///< [ns] part of the time before a late check that counts
+  static constexpr Nanoseconds kLateCounts = 1'000'000;  ///< [ns] time that is counted for the time before a late check
   /// [ns] longest tick of an arm. The next check follows at most 0.5 ms later; in 3 ms, 8.5 N give a free tip of 75 g
   /// an energy of 4.3 mJ.
   static constexpr Nanoseconds kStuckAfter = 2'500'000;
@@ -30,7 +30,8 @@ class Watchdog {
   /// [ns] a tick of a simulation that takes longer counts as hanging. In less time the servo may only have had no
   /// processor, which is not a module's fault. But a simulation that has used kHungAfter of processor time hangs.
   static constexpr Nanoseconds kHungSimulated = 5'000'000'000;
-  static constexpr Nanoseconds kEndWithin = 900'000'000;  ///< [ns] longest time for the end, after it was asked for
+  /// [ns] longest time from the request to end until the end of the process
+  static constexpr Nanoseconds kEndWithin = 900'000'000;
   static constexpr Nanoseconds kSimulatedPause = 200'000'000;  ///< [ns] a busy machine may pause a simulation this long
 
   /// [main] @param hung ends the process @param missed_after [ns] longest delay of the start of a tick
@@ -43,15 +44,16 @@ class Watchdog {
   /// [main] Sets a function that ends the process if its end was asked for and does not come. Call it before start().
   void onLateEnd(std::function<void()> late) { late_ = std::move(late); }
 
-  /// [main] @param priority SCHED_FIFO priority, above that of the servo. Without the right to it, the watchdog runs as
-  /// an ordinary thread
+  /// [main] @param priority SCHED_FIFO priority, above that of the servo. If the process has no right to this priority,
+  /// the watchdog runs as an ordinary thread
   std::error_code start(int priority);
   void stop();
 
-  /// [any] Checks the servo once, and returns true if it cut the motors. The thread only calls this periodically.
-  /// Before a check that comes late, the whole machine may have stood still, with this thread and the servo. So the
-  /// time before it counts as only one millisecond, and the servo gets a moment to end its tick. If all checks come
-  /// late, the motors of a stuck servo are cut by the third check at the latest; if checks are on time, within 3 ms.
+  /// [any] Checks the servo once, and returns true if it cut the motors. The thread of the watchdog only calls this
+  /// function periodically. If a check comes late, the whole machine may have stood still before it, with this thread
+  /// and the servo. So the time before a late check counts as only one millisecond, and the servo gets a moment to end
+  /// its tick. If all checks come late, the motors of a stuck servo are cut by the third check at the latest; if checks
+  /// are on time, within 3 ms.
   bool check(Nanoseconds now) noexcept;
 
   uint64_t cuts() const noexcept { return cuts_.load(); }
@@ -73,7 +75,7 @@ class Watchdog {
   std::function<void()> hung_, late_;
   Nanoseconds missed_after_, stuck_after_;
 
-  Phase cut_in_;  ///< the phase in which the arms were cut; they are cut once a phase
+  Phase cut_in_;  ///< the phase in which the motors were last cut; they are cut only once in each phase
   Phase phase_;
   Nanoseconds checks_since_cut_ = 0, checks_since_stop_ = 0;
   bool hung_told_ = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The largest force that the arms of a scene let through to the hand, known before an arm is opened.
+/// The largest force that the arms of a scene let through to the hand. It is known before an arm is opened.
 #pragma once
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace hapticd::servo {
 /// gives; 0 if the force of one arm is unknown.
 double maxForceOf(const scene::Scene& scene);
 
-/// [any] Returns this force for a recorded run. @param devices reports of the arms when they were opened
+/// [any] Returns the same force for a recorded run. @param devices reports of the arms when they were opened
 double maxForceOf(const scene::Scene& scene, const std::vector<hdv_info>& devices);
 
 }  // namespace hapticd::servo

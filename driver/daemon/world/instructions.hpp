@@ -8,8 +8,8 @@
 
 namespace hapticd::servo {
 
-/// [main] Sets the choice of the scene. Call it before the first shape of the process is made: plugins read the choice
-/// once, so all scenes of a process use the choice of the first.
+/// [main] Sets the instructions that the scene asks for. Call it before the first shape of the process is made: plugins
+/// read the setting once, so all scenes of a process use the setting of the first scene.
 void chooseInstructions(const scene::Servo& servo);
 
 /// [main] Returns the instructions that shapes use on this machine with this scene: "portable" or "avx2+fma".

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// The models of a scene, ready to run: shapes are created and activated, and the core and the proximity search are
-/// connected. Used by run, trace, explain and tests.
+/// connected. The commands run, trace and explain use it, and tests.
 #pragma once
 #include <memory>
 #include <vector>
@@ -18,10 +18,11 @@ namespace hapticd::servo {
 struct WorldOptions {
   double rate = 1000;  ///< [Hz] rate of the servo
   uint32_t probe_count = 1;
-  uint32_t spare_models = 0;   ///< places for models that are added during the run
-  bool measure = false;        ///< true: measure the CPU time of every step
-  bool budgets = false;        ///< true: give every step the CPU time that is left in the tick
-  double evaluation_ns = 0;    ///< if > 0, the cost of a step is its evaluations times this, not its measured time
+  uint32_t spare_models = 0;  ///< places for models that are added during the run
+  bool measure = false;       ///< true: measure the CPU time of every step
+  bool budgets = false;       ///< true: give every step the CPU time that is left in the tick
+  /// if > 0, the cost of a step is this value times the number of its evaluations, not its measured time
+  double evaluation_ns = 0;
   double max_force = 0;        ///< [N] largest force that any arm lets through to the hand; 0: unknown
   bool former_claims = false;  ///< for old recordings, see CoreSettings
 };
@@ -35,7 +36,7 @@ class World {
   /// [main] Creates and activates one more model during a run. It is felt only after the servo has adopted it.
   Result<std::unique_ptr<host::ShapeInstance>> prepare(const scene::Model& model, const host::Services::Log& log) const;
 
-  /// [main] Puts a shape into an empty place, keeps it alive, and adds it to the proximity search.
+  /// [main] Puts a shape into an empty place, which owns it from now on, and adds it to the proximity search.
   void store(uint32_t place, std::unique_ptr<host::ShapeInstance> shape, const scene::Model& model);
 
   /// [main] Removes the model of a place from the proximity search. Call it before the servo is told to release the
@@ -62,7 +63,7 @@ class World {
   /// Returns the largest stiffness [N/m] that a model claims.
   double maxStiffness() const { return max_stiffness_; }
 
-  /// Returns how many bytes the models use that must be locked in memory, as they report it.
+  /// Returns how many bytes must be locked in memory for the models, as the models report it.
   uint64_t lockedBytes() const { return locked_bytes_; }
 
  private:

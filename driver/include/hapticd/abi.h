@@ -5,7 +5,7 @@
  * allocation, lock, file, system call, exception or unbounded loop. [any] any thread at any time. States of an
  * instance: [inactive], [active]. A pointer is valid until the call returns unless a comment says more. Within one
  * HSP_ABI_MAJOR, structs grow only at their ends: struct_size says which members exist (HSP_HAS), and the stride of an
- * array is given with it (HSP_AT). Notes: end of file. */
+ * array is given with it (HSP_AT). The notes are at the end of this file. */
 #ifndef HAPTICD_ABI_H
 #define HAPTICD_ABI_H
 #if __SIZEOF_POINTER__ == 8
@@ -42,7 +42,7 @@ enum {
   HSP_E_NOMEM = -3,       /* there is not enough memory */
   HSP_E_IO = -4,          /* a file or a device could not be read or written; the log says why */
   HSP_E_UNSUPPORTED = -5, /* this instance does not support the call */
-  HSP_E_NUMERIC = -6      /* the surface was lost: the host ramps the force to zero and calls reset() */
+  HSP_E_NUMERIC = -6      /* the foot point could not be followed: the host ramps the force to zero and calls reset() */
 };
 
 /* ---- parameters: constant tables, which can be read without an instance (by `hapticd check` and shell completion) */
@@ -57,7 +57,7 @@ enum {
   HSP_DATA      /* text: any structure as JSON; the module itself checks it */
 };
 enum {
-  HSP_P_LIVE = 1u << 0,     /* may change while active, through hsp_step.changes; other changes need a new activate() */
+  HSP_P_LIVE = 1u << 0,     /* may change while active, by hsp_step.changes; other parameters need a new activate() */
   HSP_P_REQUIRED = 1u << 1, /* has no default: the scene or device file must give it */
   HSP_P_SAFETY = 1u << 2,   /* the hand may feel a change suddenly (stiffness, force limit): it needs consent */
   HSP_P_ACCURACY = 1u << 3  /* trades speed for accuracy: `hapticd tune` may vary it */
@@ -94,10 +94,10 @@ typedef struct hsp_host {
   void (*log)(const struct hsp_host*, int32_t level, const char* utf8);             /* [main][sim] copies the text */
   void (*trace)(const struct hsp_host*, uint32_t event, double a, double b) HSP_RT; /* [rt] see the notes */
   void* (*alloc)(const struct hsp_host*, size_t bytes, size_t align);               /* [main] see the notes */
-  void (*release)(const struct hsp_host*, void*);                                   /* [main] frees memory of alloc */
-  int32_t (*is_rt_thread)(const struct hsp_host*);                    /* [any] 1 if it is; for assertions */
-  void (*request_restart)(const struct hsp_host*);                    /* [any] see the notes */
-  const void* (*extension)(const struct hsp_host*, const char* name); /* [main] NULL if absent */
+  void (*release)(const struct hsp_host*, void*);  /* [main] frees memory that alloc() returned */
+  int32_t (*is_rt_thread)(const struct hsp_host*); /* [any] 1 if the servo thread calls it; for assertions */
+  void (*request_restart)(const struct hsp_host*); /* [any] see the notes */
+  const void* (*extension)(const struct hsp_host*, const char* name); /* [main] NULL if the host has none */
 } hsp_host;
 #ifdef __cplusplus
 #define HSP_STATIC_ASSERT static_assert
@@ -120,7 +120,7 @@ HSP_LAYOUT(hsp_host, 72);
  * alloc        Returns memory for the servo thread: zeroed, resident and locked, at an address that is a multiple of
  *              `align` (a power of two up to 2 MiB; less than 64 counts as 64). Returns NULL if there is not enough
  *              memory. Memory that the plugin did not release is freed after destroy().
- * trace        Keeps (event, a, b) in a ring of bounded size. The plugin defines what they mean. If the ring is full,
- *              events are lost.
+ * trace        Keeps (event, a, b) in a ring of bounded size. The plugin defines what these numbers mean. If the ring
+ *              is full, events are lost.
  * request_restart  Asks the host to call deactivate() and activate(). A host may ignore it. */
 #endif

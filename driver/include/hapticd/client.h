@@ -3,8 +3,9 @@
  *
  * Rows are the output: the daemon keeps the newest rows of every stream in one file in memory, NAME.blackbox.h5, which
  * programs of the daemon's group may map read-only. Leads are the input: on request the daemon hands out a small memory
- * file, and reads it once per tick; the newest record wins. Rare requests are lines of JSON on the control socket.
- * Units are SI. Vectors are in the WORLD frame: x to the right, y up, z toward the user. Quaternions are w,x,y,z. */
+ * file, and reads it once per tick. Only the newest record counts. Rare requests are lines of JSON on the control
+ * socket. Units are SI. Vectors are in the WORLD frame: x to the right, y up, z toward the user. Quaternions are
+ * w,x,y,z. */
 #ifndef HAPTICD_CLIENT_H
 #define HAPTICD_CLIENT_H
 #include <stddef.h>
@@ -17,20 +18,20 @@ extern "C" {
 
 /* The pose that a leader wants for a kinematic model or for the simulated hand. The daemon follows it with bounded
  * speed and acceleration. The daemon refuses and counts the whole record if a number is not finite, the position is
- * beyond 10 m, the orientation is not a unit quaternion (within 1e-3), or the time lies in the future. It ignores a
- * record that is older than the last one. */
+ * more than 10 m from the world's origin, the orientation is not a unit quaternion (within 1e-3), or the time is
+ * negative or more than 0.1 s in the future. It ignores a record that is older than the last one. */
 typedef struct hapticd_target {
   double position[3];    /* m */
   double orientation[4]; /* unit quaternion; it has no effect on the simulated hand */
   double linear[3];      /* m/s: linear velocity, which the daemon bounds */
   double angular[3];     /* rad/s: angular velocity, which the daemon bounds */
-  double time;           /* s, CLOCK_MONOTONIC: time at which the record holds; 0: when the servo reads the record */
+  double time;           /* s, CLOCK_MONOTONIC: time to which the pose belongs; 0: when the servo reads the record */
 } hapticd_target;
 
 /* The force that a program adds to the force of an arm, as an answer to the newest tick that the program has seen. The
  * daemon refuses and counts the whole record if a number is not finite or beyond 1e6, or if the tick has not begun. It
  * ignores a record whose tick is not newer than the last one, or more than 20 ms old. 3 ms after the last answer the
- * force ramps out; after 20 ms it is zero. */
+ * force begins to ramp out; 20 ms after the last answer it is zero. */
 typedef struct hapticd_push {
   uint64_t tick;                /* number of the answered tick: it must grow, and the tick must have begun */
   double force[3], torque[3];   /* N, N*m on the hand; a torque needs limits.torque in the device file */
@@ -147,7 +148,7 @@ typedef struct hapticd_column {
 typedef struct hapticd_client hapticd_client;
 typedef struct hapticd_lead hapticd_lead;
 
-/* Connects to the daemon `name` (NULL: "hapticd"). Returns NULL if it cannot; `error` (may be NULL) says why. */
+/* Connects to the daemon `name` (NULL: "hapticd"). Returns NULL on failure; `error` (may be NULL) says why. */
 HAPTICD_API hapticd_client* hapticd_connect(const char* name, hapticd_error* error);
 /* Ends all leads of the client, and frees it with its leads and texts. `client` may be NULL. */
 HAPTICD_API void hapticd_close(hapticd_client* client);
@@ -180,7 +181,8 @@ HAPTICD_API uint64_t hapticd_written(hapticd_client* client, int stream);
  * rows, or -1 if there is no such stream or the daemon has ended. */
 HAPTICD_API long hapticd_read(hapticd_client* client, int stream, uint64_t* row, void* rows, size_t most);
 /* Sleeps until the rows of tick number `tick` are written, at most timeout_ms; the servo wakes the caller. Returns 1 if
- * the rows are written, 0 if not yet, and -1 if it cannot wait or the daemon has ended. */
+ * the rows are written, 0 if they are not written in this time, and -1 if the library cannot wait or the daemon has
+ * ended. */
 HAPTICD_API int hapticd_wait(hapticd_client* client, uint64_t tick, int timeout_ms);
 
 /* Begins to lead a kinematic model, a simulated hand, or a force on an arm. Returns NULL on failure; `error` says why.
@@ -189,8 +191,8 @@ HAPTICD_API int hapticd_wait(hapticd_client* client, uint64_t tick, int timeout_
 HAPTICD_API hapticd_lead* hapticd_lead_model(hapticd_client* client, const char* model, hapticd_error* error);
 HAPTICD_API hapticd_lead* hapticd_lead_hand(hapticd_client* client, const char* device, hapticd_error* error);
 HAPTICD_API hapticd_lead* hapticd_lead_force(hapticd_client* client, const char* device, hapticd_error* error);
-/* Sets where a model or a hand must go. Wait-free; one thread per lead. Returns 0, or -1 if it is a lead of a force or
- * has ended. */
+/* Sets where a model or a hand must go. Wait-free; one thread per lead. Returns 0, or -1 if the lead is a lead of a
+ * force or has ended. */
 HAPTICD_API int hapticd_lead_put(hapticd_lead* lead, const hapticd_target* target);
 /* Answers a tick with a force. Wait-free; one thread per lead. Returns 0. Returns -1 and pushes nothing if the lead is
  * not a lead of a force or has ended, or if a number is not finite or is beyond 1e6. */
@@ -199,13 +201,13 @@ HAPTICD_API int hapticd_lead_push(hapticd_lead* lead, const hapticd_push* push);
 HAPTICD_API void hapticd_lead_end(hapticd_lead* lead);
 
 /* Waits for the state of an arm in a tick after tick `after` (UINT64_MAX: in any tick), at most timeout_ms. Returns 1
- * if `state` is filled in, 0 if there is no such state yet, and -1 if there is no such arm, it cannot wait, or the
- * daemon has ended. */
+ * if `state` is filled in, 0 if there is no such state in this time, and -1 if there is no such arm, the library cannot
+ * wait, or the daemon has ended. */
 HAPTICD_API int hapticd_next_state(hapticd_client* client, int device, uint64_t after, int timeout_ms,
                                    hapticd_state* state);
 /* Makes hapticd_next_state poll instead of sleep, from `microseconds` before a tick is due until `microseconds` after.
- * Then no wake-up delays an answer, but a CPU is busy for that time. With 0, the default, it sleeps. More than 200
- * counts as 200. */
+ * Then no wake-up delays an answer, but a CPU is busy for that time. With 0, the default, hapticd_next_state only
+ * sleeps. A value above 200 counts as 200. */
 HAPTICD_API void hapticd_listen(hapticd_client* client, unsigned microseconds);
 /* Reads the newest Jacobian of an arm, and never waits. Returns 1 if `jacobian` is filled in. Returns 0 if there is no
  * Jacobian (yet), as for an arm that no program may push on. Returns -1 if there is no such arm, or the daemon is too

@@ -5,7 +5,7 @@
  * commands are in JOINT space; the host maps wrenches to joint torques with the module's kinematics extension. Vectors
  * are in the DEVICE frame, which is fixed to the arm's base; the device file says where the base is in the world.
  *
- * Life:  create -> set* -> open -> start -> read / write* -> stop -> close -> destroy. Notes: end of file.
+ * Life:  create -> set* -> open -> start -> read / write* -> stop -> close -> destroy. The notes are at the end.
  * Time is an argument: a simulated arm advances to the time given to read() and never reads a clock. */
 #ifndef HAPTICD_DEVICE_H
 #define HAPTICD_DEVICE_H
@@ -68,7 +68,7 @@ typedef struct hdv_class {
   const char *id, *name, *version, *license, *doc; /* id: reverse DNS, "org.example.device.arm"; name: "arm" */
   const hsp_param* params;                         /* stride: params[0].struct_size */
   hdv_device* (*create)(const struct hdv_class*, const hsp_host*);      /* [main] NULL if it failed */
-  void (*destroy)(hdv_device*);                                         /* [main] if closed: frees it */
+  void (*destroy)(hdv_device*);                                         /* [main] if closed: frees the instance */
   hsp_status (*set)(hdv_device*, uint32_t param, const hsp_value*);     /* [main] if closed: copies the value */
   hsp_status (*get)(hdv_device*, uint32_t param, hsp_value*);           /* [main] valid until the next call */
   hsp_status (*open)(hdv_device*, hdv_info*);                           /* [main] finds the arm; may block */
@@ -77,7 +77,7 @@ typedef struct hdv_class {
   hsp_status (*write)(hdv_device*, uint64_t now_ns, const hdv_command*) HSP_RT; /* [rt] takes the newest command */
   void (*stop)(hdv_device*);                               /* [main] motors off, then joins threads */
   void (*close)(hdv_device*);                              /* [main] releases the hardware */
-  const void* (*extension)(hdv_device*, const char* name); /* [main] NULL if it has none */
+  const void* (*extension)(hdv_device*, const char* name); /* [main] NULL if it has none of that name */
 } hdv_class;
 
 #define HDV_EXT_KINEMATICS "hdv.kinematics/1" /* required; works from set() on, with and without hardware */
@@ -102,7 +102,7 @@ typedef struct hdv_ext_calibration {
   hsp_status (*calibrate)(hdv_device*); /* may block; after HSP_OK, samples carry HDV_S_CALIBRATED */
 } hdv_ext_calibration;
 
-#define HDV_EXT_CUT "hdv.cut/1" /* switches the motors off without the servo thread: for watchdog and crash */
+#define HDV_EXT_CUT "hdv.cut/1" /* switches the motors off without the servo thread: for watchdog and crash handler */
 typedef struct hdv_ext_cut {
   uint32_t struct_size, reserved;
   /* [any] Switches the motors off at once, also in a signal handler and while another thread is inside write(). They
@@ -118,7 +118,8 @@ typedef struct hdv_ext_hand {     /* vectors in the DEVICE frame */
    * spring and damper. Between two reads the wanted position moves in a straight line. */
   hsp_status (*guide)(hdv_device*, const double position[3], const double velocity[3], const double force[3]) HSP_RT;
   /* [rt] Returns exact values, without errors of the encoders, at the time of the last read: position (m) and velocity
-   * (m/s) of the tip, and the force (N) of the hand's spring and damper on its mass and the arm. */
+   * (m/s) of the tip, and the force (N) that the spring and damper of the hand exert on the mass of the hand and on the
+   * arm. */
   hsp_status (*truth)(hdv_device*, double position[3], double velocity[3], double force[3]) HSP_RT;
   /* [any] Returns 1 if guide() leads the hand, and 0 if a script or a file leads it, so that guide() has no effect. */
   int32_t (*guided)(const hdv_device*) HSP_RT;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* device_capture.h - an extension of device.h: it hands over the bytes on the wire, for an arm whose wire format is not
- * known yet (`hapticd device record`). */
+/* device_capture.h - an extension of device.h: it passes on the bytes of each transfer unchanged, for an arm whose wire
+ * format is not known yet (`hapticd device record`). */
 #ifndef HAPTICD_DEVICE_CAPTURE_H
 #define HAPTICD_DEVICE_CAPTURE_H
 #include "device.h"

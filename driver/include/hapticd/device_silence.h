@@ -25,9 +25,9 @@ typedef struct hdv_silence { /* module -> host: the command that switches the mo
 #define HDV_EXT_SILENCE "hdv.silence/1"
 typedef struct hdv_ext_silence {
   uint32_t struct_size, reserved;
-  /* [any] May be called in a signal handler. Returns 0 while a cut (hdv.cut) is still to be sent to the hardware, so
-   * that the process must not end yet; otherwise 1. The function pointer is NULL if cut() has told the hardware when it
-   * returns. */
+  /* [any] May be called in a signal handler. Returns 0 while a cut (hdv.cut) still has to be sent to the hardware, so
+   * that the process must not end yet; otherwise 1. The function pointer is NULL if cut() returns only after the
+   * command was sent. */
   int32_t (*left)(const hdv_device*) HSP_RT;
   /* [any] Fills in how a process that outlives this one can switch the motors off, and returns 1. Returns 0 if that is
    * not possible now, such as while the arm is unplugged. The function pointer is NULL if it is never possible. */

@@ -158,8 +158,8 @@ inline void logError(const hsp_host* host, const std::string& text) {
   if (host != nullptr && host->log != nullptr) host->log(host, HSP_LOG_ERROR, text.c_str());
 }
 
-/// [main] Puts the defaults of the table into the members of a new object. It is not inlined, because g++ 12 would then
-/// warn about members that the object does not have.
+/// [main] Puts the defaults of the table into the members of a new object. This function is not inlined, because g++ 12
+/// would then warn about members that the object does not have.
 template <class T, size_t N>
 [[gnu::noinline]] void applyDefaults(T& object, const std::array<Field<T>, N>& fields) {
   for (const Field<T>& field : fields) {

@@ -14,17 +14,18 @@ extern "C" {
 #endif
 typedef struct hsp_shape hsp_shape; /* one instance; the plugin owns it, and destroy() frees it */
 
-/* ---- data of the servo thread: plain structs, aligned to 8 bytes; the structs of a probe hold no pointers */
+/* ---- data of the servo thread: plain structs, aligned to 8 bytes; hsp_probe, hsp_contact and hsp_pose hold no
+ * pointers */
 enum {
   HSP_IN_JUMP = 1u << 0,   /* the probe jumped: the foot points of the last step are no longer near it */
-  HSP_IN_INVALID = 1u << 1 /* this tick has no good sample: return zero force; position is the last good one */
+  HSP_IN_INVALID = 1u << 1 /* no good sample in this tick: return zero force; position is from the last good sample */
 };
 enum {
   HSP_OUT_CONTACT = 1u << 0, /* the probe is inside the solid: depth_m > 0 */
   HSP_OUT_EDGE = 1u << 1,    /* the foot point lies on an edge or a corner */
   HSP_OUT_EVENT = 1u << 2,   /* the user feels an event in this tick, such as the click of a button */
   HSP_OUT_TRACED = 1u << 3,  /* point, normal, depth_m, param and feature are valid; also outside of contact */
-  HSP_OUT_HELD = 1u << 4     /* the foot point is followed from an earlier tick; another one may be nearer */
+  HSP_OUT_HELD = 1u << 4     /* the foot point is followed from an earlier tick; another point may be nearer */
 };
 typedef struct hsp_probe {         /* host -> plugin */
   double position[3], velocity[3]; /* m; m/s relative to the model, zero without HSP_R_VELOCITY */
@@ -52,11 +53,11 @@ typedef struct hsp_step {
   double dt_s;                    /* s since the last step; 0 in the first step; several periods after an overrun */
   uint64_t budget_ns;             /* CPU time left for this call; the host counts calls that take longer; 0: no limit */
   double tolerance_m;             /* accuracy that the host asks for; 0 means that the shape's parameters decide */
-  uint32_t max_iterations, order; /* most evaluations per probe; order of the method (1 or 2); 0 as above */
+  uint32_t max_iterations, order; /* most evaluations per probe; order of the method (1, 2); 0: parameters decide */
   const hsp_change* changes;      /* new values of live parameters since the last step */
   uint32_t change_count, viz_capacity; /* viz_capacity: number of vertices that fit into viz_xyz */
-  float* viz_xyz;                      /* about 60 times a second not NULL: write the current vertices, 3 floats each */
-  /* On entry this is the model's pose after the last step, and the probes are given in that frame. A shape with
+  float* viz_xyz; /* if not NULL (about 60 times a second): write the current vertices here, x,y,z in m */
+  /* On entry `pose` is the model's pose after the last step, and the probes are given in that frame. A shape with
    * HSP_R_MOVES first moves by dt_s under the contacts of the last step, writes its new pose and velocities here, and
    * returns the contacts in the frame of the new pose. So point, depth and pose of one tick belong together. Other
    * shapes do not write the pose. */
@@ -78,10 +79,10 @@ enum {                              /* what this shape does and needs; the host 
        HSP_R_MOVES = 1u << 1,       /* it moves: step() writes the pose */
        HSP_R_ORIENTATION = 1u << 2, /* it reads hsp_probe.orientation */
        HSP_R_JUMPS = 1u << 3,       /* its force jumps on purpose, by max_jump at most: snap, pop-through, vibration */
-       HSP_R_PUSHES = 1u << 4       /* it only pushes and has no friction: the host treats a pull as a fault of it */
+       HSP_R_PUSHES = 1u << 4 /* it only pushes and has no friction: the host treats a pull as a fault of the shape */
 };
 typedef struct hsp_report {                /* plugin -> host, valid until deactivate() */
-  uint32_t struct_size, viz_vertices;      /* number of vertices that it writes to viz_xyz; 0 if it is rigid */
+  uint32_t struct_size, viz_vertices;      /* number of vertices that the shape writes to viz_xyz; 0 if it is rigid */
   double max_stiffness, max_force, size_m; /* N/m, N, m (bounding diameter): upper bounds; 0 means unknown */
   uint64_t typical_ns, worst_ns;           /* claimed CPU time of a step; `hapticd plugin check` verifies it */
   uint64_t locked_bytes;                   /* size of the memory that step() uses */
@@ -97,14 +98,14 @@ typedef struct hsp_class {
       *doc;                /* id: reverse DNS, "org.hapticd.shape.nurbs_rigid"; name in scenes: "nurbs_rigid" */
   const hsp_param* params; /* stride: params[0].struct_size */
   hsp_shape* (*create)(const struct hsp_class*, const hsp_host*);         /* [main] NULL if it failed */
-  void (*destroy)(hsp_shape*);                                            /* [main][inactive] frees it */
+  void (*destroy)(hsp_shape*);                                            /* [main][inactive] frees the instance */
   hsp_status (*set)(hsp_shape*, uint32_t param, const hsp_value*);        /* [main][inactive] copies the value */
   hsp_status (*get)(hsp_shape*, uint32_t param, hsp_value*);              /* [main] valid until the next call */
   hsp_status (*activate)(hsp_shape*, const hsp_activation*, hsp_report*); /* [main][inactive] allocates */
   void (*deactivate)(hsp_shape*);                         /* [main][active] frees what activate() took */
   void (*reset)(hsp_shape*) HSP_RT;                       /* [rt][active] forgets its tracks */
   hsp_status (*step)(hsp_shape*, const hsp_step*) HSP_RT; /* [rt][active] all probes of one tick */
-  const void* (*extension)(hsp_shape*, const char* name); /* [main] NULL if it has none */
+  const void* (*extension)(hsp_shape*, const char* name); /* [main] NULL if it has none of that name */
 } hsp_class;
 
 /* ---- extensions (optional) */
@@ -133,7 +134,8 @@ typedef struct hsp_ext_surfaces {
    * Writes up to cap records, and returns how many records there are in all. */
   int64_t (*nearby)(const hsp_shape*, const double p_model[3], double radius_m, hsp_near*, uint64_t cap);
   /* [rt] Starts to trace the surface from param. If the surface is traced already, the record is a second candidate:
-   * the next step takes it if it is nearer. So the periodic search corrects a track that left the global minimum. */
+   * the next step changes to this foot point if it is nearer than the traced one. So the periodic search corrects a
+   * track that left the global minimum. */
   hsp_status (*activate)(hsp_shape*, const hsp_near*) HSP_RT;
   hsp_status (*deactivate)(hsp_shape*, uint32_t probe, uint32_t surface) HSP_RT; /* [rt] stops tracing */
 } hsp_ext_surfaces;

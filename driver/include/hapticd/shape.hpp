@@ -31,7 +31,8 @@ inline double forceToClaimFor(const hsp_activation& activation, double unknown) 
   return HSP_HAS(&activation, max_arm_force) && activation.max_arm_force > 0 ? activation.max_arm_force : unknown;
 }
 
-/// [main] Reports that the force jumps on purpose, by at most `newtons` [N]. It does nothing if the host is too old.
+/// [main] Reports that the force jumps on purpose, by at most `newtons` [N]. Has no effect if the host is too old to
+/// read max_jump.
 inline void reportJumps(hsp_report& report, double newtons) {
   if (!HSP_HAS(&report, max_jump)) return;
   report.flags |= HSP_R_JUMPS;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Compliance control, the other response model of Thompson et al. 1999 (after Yoshikawa et al. 1995): the hand's force
 /// moves a virtual mass with a damper, contacts push the virtual mass, and the arm is made to follow by its own
-/// position loop. For arms that measure torques and are too heavy or too stiff to be pushed about.
+/// position loop. It serves arms that measure joint torques and are too heavy or too stiff for a hand to push.
 #pragma once
 #include <Eigen/Core>
 #include <string>
@@ -14,8 +14,9 @@ namespace hapticd::servo {
 
 class Admittance {
  public:
-  static constexpr double kMaxLead = 0.02;  ///< [m] the virtual mass waits for an arm that lags farther behind
-  /// [1/s] rate at which joints return to their positions at the start, as far as the tip does not move
+  /// [m] largest distance of the virtual mass from the tip; if the arm lags, the virtual mass waits
+  static constexpr double kMaxLead = 0.02;
+  /// [1/s] rate at which the joints return to their positions at the start, by motions that do not move the tip
   static constexpr double kHoming = 1;
 
   /// [main] Returns why compliance control is impossible with this device, or "" if it is possible.
@@ -28,8 +29,9 @@ class Admittance {
   bool start(const double* joints) noexcept HSP_RT;
   bool started() const noexcept { return started_; }
   void stop() noexcept { started_ = false; }
-  /// [rt] Moves the virtual mass, and the joints with it, for dt [s] under a force [N]. The force is constant over a
-  /// tick, and the motion under it is exact. All vectors are in the device frame. @param measured tip of the arm [m]
+  /// [rt] Moves the virtual mass, and the joints with it, for dt [s] under a force [N]. The force counts as constant
+  /// over a tick, and the velocity under this force is calculated exactly. All vectors are in the device frame.
+  /// @param measured tip of the arm [m]
   void step(const Eigen::Vector3d& force, const Eigen::Vector3d& measured, double dt) noexcept HSP_RT;
 
   const JointVector& joints() const noexcept { return q_; }        ///< joint positions that the arm must follow

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// One arm: its device, kinematics, velocity estimate and limits. Turns samples into probes and forces into torques.
+/// One arm: its device, kinematics, velocity estimate and limits. Makes a probe from each sample, and joint torques
+/// from each force.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -47,7 +48,7 @@ class Arm {
   Result<void> start(Nanoseconds now, const Eigen::Vector3d& gravity_world);
   void stop() { device_->stop(); }  ///< [main] ends the exchange with the device: motors off
 
-  /// [rt] Reads and writes the device once before the first tick, with motors off. No result is kept.
+  /// [rt] Reads and writes the device once before the first tick, with motors off. The results are not used.
   void exchangeDry(Nanoseconds now) noexcept HSP_RT;
 
   /// [rt] Returns the newest sample as a probe in the world frame. A bad sample gives an invalid probe and a fault.
@@ -58,15 +59,14 @@ class Arm {
   void write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque,
              passivity::Exchange exchange = {}) noexcept HSP_RT;
 
-  /// [any] Frees the motors at once, while the servo is stuck or dying; async-signal-safe. The motors stay free until
-  /// clear(). @param after [s] how long the servo was stuck
+  /// [any] Switches the motors off at once, while the servo is stuck or the process ends; async-signal-safe. The motors
+  /// stay off until clear(). @param after [s] how long the servo was stuck
   void cut(double after) noexcept;
   /// [any] True if the last cut has been sent to the hardware, as far as the module knows; async-signal-safe.
   bool cutLeft() const noexcept { return device_->cutLeft(); }
-  /// [rt] Sets whether the motors carry the arm's weight. @param wanted true if something in the scene can be felt;
-  /// otherwise they do not
+  /// [rt] Sets whether the motors carry the arm's weight. @param wanted true if something in the scene can be felt
   void carryWeight(bool wanted) noexcept HSP_RT { weight_.carry(wanted); }
-  /// [rt] Clears the latched fault, and a cut, because the user asked for it.
+  /// [rt] Ends the latched fault and a cut, because the user asked for it.
   void clear() noexcept HSP_RT;
 
   /// The moment of a tick at which the servo finds that its motors were cut. A replay must find it at the same moment.
@@ -172,7 +172,7 @@ class Arm {
   std::string slowness_;
   std::string name_, stuck_words_;  // name of the device; text of the fault if its module did not return from a call
   std::atomic<bool> stuck_here_{false};
-  std::atomic<bool> cut_{false}, taken_{false};  // the motors were cut; a thread is inside the module
+  std::atomic<bool> cut_{false}, taken_{false};  // cut_: the motors were cut. taken_: a thread is inside the module
   std::atomic<double> cut_after_{0};
   std::atomic<bool> found_pressed_{false};
   bool as_found_ = false;          // ArmOptions::found_pressed
@@ -184,7 +184,7 @@ class Arm {
   hsp_status read_status_ = HSP_OK, write_status_ = HSP_OK;
   std::atomic<const char*> trouble_{nullptr};
   bool well_ = false;  // the device had no trouble in this tick
-  double calm_ = 0;    // [s] how long the device has been well, and at rest or without force
+  double calm_ = 0;    // [s] time for which the device has had no trouble, and was at rest or without force
   Eigen::Vector3d calm_at_ = Eigen::Vector3d::Zero();
   uint64_t last_sequence_ = 0;
   Nanoseconds fresh_at_ = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Forces by which other programs push on the hand of one arm. Each program answers ticks with a force. This force is
-/// bounded, fades in, and ramps out once the program is silent. The sum passes the same limits as the force of a model.
+/// bounded, fades in, and ramps out once the program is silent. The sum of all these forces passes the same limits as
+/// the force of a model.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -29,9 +30,10 @@ class ClientForces {
 
   /// One program. Other threads read the counts.
   struct Client {
-    hapticd_push push{};                       ///< the last answer that was accepted
-    double gain = 0, silence = 0;              ///< factor of its force, 0 to 1; [s] since its last answer
-    const link::PushSlot* slot = nullptr;      ///< its memory; nullptr if the program has gone: its force ramps out
+    hapticd_push push{};           ///< the last answer that was accepted
+    double gain = 0, silence = 0;  ///< factor of its force, 0 to 1; [s] since its last answer
+    /// the memory of its lead; nullptr if the program has gone, so that its force ramps out
+    const link::PushSlot* slot = nullptr;
     uint64_t seen = 0;                         ///< sequence number of the last record read from `slot`
     bool answered = false;                     ///< true once it has answered any tick
     bool fresh = false;                        ///< true if `push` was accepted in this tick
@@ -56,8 +58,8 @@ class ClientForces {
 
   bool possible() const noexcept { return mode_ != scene::ClientMode::kOff; }  ///< true if programs may push
 
-  /// [rt] A program begins to push. @param slot its memory, valid until end() @param place index of a free place, below
-  /// kMost
+  /// [rt] A program begins to push. @param slot its memory, valid until end() @param place index of a free place in
+  /// clients(), below kMost
   void begin(uint32_t place, const link::PushSlot& slot) noexcept HSP_RT;
   void end(uint32_t place) noexcept HSP_RT;  ///< [rt] the program has gone
 
@@ -73,7 +75,8 @@ class ClientForces {
 
   const Eigen::Vector3d& force() const noexcept { return force_; }  ///< [N] sum of all programs, world frame
   const Eigen::Vector3d& torque() const noexcept { return torque_; }
-  double share() const noexcept { return share_; }  ///< factor for the force of the models meanwhile: 0 to 1
+  /// factor for the force of the models, 0 to 1; below 1 only with ClientMode::kInstead, while a program pushes
+  double share() const noexcept { return share_; }
   /// true while a program pushes, or its force ramps out
   bool present() const noexcept { return places_ > 0; }
   const std::array<Client, kMost>& clients() const noexcept { return clients_; }

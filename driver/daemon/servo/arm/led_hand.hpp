@@ -11,8 +11,8 @@ namespace hapticd::servo {
 
 class LedHand {
  public:
-  /// [main] @param hand the device's extension; nullptr if there is none: the lead is then only recorded, as in a
-  /// replay
+  /// [main] @param hand the device's extension; nullptr if there is none, as in a replay: the motion is then
+  /// calculated, but no hand follows it
   LedHand(const hdv_ext_hand* hand, hdv_device* device, const Eigen::Matrix3d& R_world_device,
           const Eigen::Vector3d& origin_world)
       : hand_(hand), device_(device), R_world_device_(R_world_device), origin_world_(origin_world) {}
@@ -21,7 +21,8 @@ class LedHand {
   bool guided() const noexcept { return hand_ != nullptr && hand_->guided(device_) != 0; }
   bool led() const noexcept { return lead_.led(); }
 
-  /// [rt] A leader begins. @param tip [m] world frame: place of the hand, if nobody has led it before
+  /// [rt] A leader begins. @param tip [m] position of the tip, world frame: the motion begins here, if no program has
+  /// led the hand before
   void begin(const link::PoseSlot& slot, const Eigen::Vector3d& tip) noexcept HSP_RT {
     if (!lead_.active()) {
       Eigen::Map<Eigen::Vector3d>(pose_.position) = tip;

@@ -11,8 +11,8 @@ namespace hapticd::servo {
 using TipJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, HDV_MAX_JOINTS>;
 using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, HDV_MAX_JOINTS, 1>;
 
-/// Inverts J J^T of a tip, near singular poses too: directions in which the arm can hardly move are damped (Nakamura &
-/// Hanafusa 1986), so that a result stays bounded and fades to zero along them.
+/// Inverts J J^T of a tip, also near singular poses. Directions in which the arm can hardly move are damped (Nakamura &
+/// Hanafusa 1986), so that along them a result stays bounded and fades to zero.
 class TipInverse {
  public:
   static constexpr double kDamped = 0.05;  ///< singular values below this fraction of the largest are damped
@@ -25,7 +25,8 @@ class TipInverse {
   /// [rt] Returns pinv(J^T) tau: the force at the tip that explains the torques best (inverts Thompson et al. 1999,
   /// Eq. 9).
   Eigen::Vector3d force(const JointVector& torque) const noexcept;
-  /// [rt] Returns 1 far from singular poses, less if some direction is damped, and 0 if the arm cannot move along it.
+  /// [rt] Returns 1 far from singular poses, less if a direction is damped, and 0 if the arm cannot move in this
+  /// direction at all.
   double health() const noexcept { return health_; }
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The torques that carry the arm's own weight. They come from the masses in a device file, which may be wrong. So
-/// these torques are ramped like every force, and they never correspond to a force of more than limits.weight at the
-/// tip.
+/// Limits the torques by which the motors carry the arm's own weight. They are calculated from the masses in a device
+/// file, which may be wrong. So these torques are ramped like every force, and they never correspond to a force of more
+/// than limits.weight at the tip.
 #pragma once
 #include <array>
 
@@ -18,13 +18,13 @@ class Weight {
   /// no bound
   Weight(const scene::Limits& limits, double max_force);
 
-  /// [rt] Sets whether the weight is carried at all: if nothing in the scene can be felt, the motors stay off.
+  /// [rt] Sets whether the motors carry the weight. They stay off if nothing in the scene can be felt.
   void carry(bool wanted) noexcept HSP_RT { wanted_ = wanted; }
 
   /// [rt] Bounds and fades the torques that the kinematics ask for. Call it once per tick.
   /// @param J Jacobian of the tip, device frame @param allowed share of the full force that ramps and faults allow now,
   /// 0 to 1
-  /// @return true if limits.weight made them smaller
+  /// @return true if limits.weight reduced them
   bool bound(Torques& torques, const TipJacobian& J, double allowed, double dt) noexcept HSP_RT;
 
  private:

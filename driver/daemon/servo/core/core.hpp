@@ -43,22 +43,22 @@ struct ModelState {
   host::ShapeInstance* shape = nullptr;
   hsp_pose pose{};
   Frame frame;
-  Frame before;       ///< its frame one tick ago; only kept if the model moves
+  Frame before;       ///< its frame one tick ago; only set if the model moves
   Path path;          ///< motion of a kinematic model, from a file
   MinimumJerk glide;  ///< motion that a user asked for (ctl move); it overrides the path
   bool kinematic = false;
-  bool enabled = true;                  ///< true: it is felt; false: it fades out and is only traced
-  bool leaving = false;                 ///< true if it fades out to be removed from the run
-  bool until_free = false;              ///< true: it is not felt before every tip is outside, see enters()
-  double free_for = 0;                  ///< [s] how long no tip has been inside, while until_free
+  bool enabled = true;      ///< true: it is felt; false: its force fades out, and it is only traced
+  bool leaving = false;     ///< true if its force fades out, after which it is removed from the run
+  bool until_free = false;  ///< true: it is not felt until every tip has been outside for some time, see enters()
+  double free_for = 0;      ///< [s] time for which no tip has been inside; used while until_free is true
   std::array<hsp_change, 8> changes{};  ///< values of live parameters for the next step
   uint32_t change_count = 0;
   uint32_t active_surfaces = 0;  ///< traced surfaces, all probes together
-  bool always = false;  ///< stepped in every tick, because it finds its foot points by itself, or moves by itself
+  bool always = false;  ///< true: it is stepped in every tick, because its plugin finds the foot points or moves it
   bool moves = false;   ///< true if its pose may change
   hsp_status status = HSP_OK;
   hsp_status failed_status = HSP_OK;  ///< the first status that step() returned and that the ABI does not allow
-  Pull pull;                          ///< the pull that silenced it; without one, the largest jump of its force
+  Pull pull;  ///< the pull for which it was silenced; if there is none, the largest jump of its force
   Guard guard;
   ClaimBounds claims;         ///< how fast its force may change
   bool overran = false;       ///< its last step took too long, and was counted against it (Guard::strike())
@@ -79,11 +79,13 @@ struct CoreSettings {
   double max_probe_speed = 20;  ///< [m/s] a faster probe is treated as a jump
   uint32_t spare_models = 0;    ///< empty places for models that are added during the run
   bool measure = false;         ///< measure the time of each step
-  double evaluation_ns = 0;    ///< [ns] if > 0, the cost of a step is its evaluations times this, not its measured time
-  bool former_claims = false;  ///< for old recordings: torques and steps after a set parameter are not bounded
+  /// [ns] if > 0, the cost of a step is this value times the number of its evaluations, not its measured time
+  double evaluation_ns = 0;
+  /// for old recordings: torques are not bounded, nor is the step after a parameter was set
+  bool former_claims = false;
 };
 
-/// Which results of a tick the arms use; set before the first tick. Other results are not computed.
+/// The results of a tick that the arms use. Other results are not computed.
 struct RequiredResults {
   bool torque = true;    ///< true if an arm can apply torques, or torques are written to a file
   bool exchange = true;  ///< true if an arm has a passivity controller
@@ -98,7 +100,8 @@ class Core {
   Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& scene, uint32_t probe_count,
        const CoreSettings& settings, link::Link& link);
 
-  /// [main] Called before the first tick. Without this call, every result is computed.
+  /// [main] Sets which results tick() computes. Call it before the first tick. Without this call, tick() computes all
+  /// of them.
   void serve(const RequiredResults& uses);
 
   /// [rt] Called before the first tick. `epoch` is the CLOCK_MONOTONIC time [s] of t = 0; leaders use that clock.
@@ -135,12 +138,12 @@ class Core {
   }
   /// True if the last tick had a jump or a lost track, so that a proximity search should run at once.
   bool needsSearch() const noexcept { return needs_search_; }
-  /// Number of transforms in the last tick: one per model and probe, and two per traced foot (point and normal). Models
-  /// whose frame is the world frame need none.
+  /// Number of transforms in the last tick: one per model and probe, and two per traced foot point (the point and its
+  /// normal). Models whose frame is the world frame need none.
   uint32_t transforms() const noexcept { return transforms_; }
   /// Models that are traced or move in this tick, in scene order.
   std::span<const uint32_t> live() const noexcept { return live_; }
-  /// Activation records that the last tick obeyed, for the recording.
+  /// Activation records that were carried out in the last tick, for the recording.
   std::span<const link::ActivationRecord> received() const noexcept { return {received_.data(), received_count_}; }
   uint32_t probeCount() const noexcept { return probe_count_; }
   /// [rt] Returns how many models are in the run, felt or not.
@@ -185,17 +188,19 @@ class Core {
   link::Link& link_;
   uint32_t probe_count_;
   std::vector<ModelState> models_;
-  std::vector<uint32_t> live_;  // see live(); in scene order, so that forces are always added in the same order
+  std::vector<uint32_t> live_;  // see live(). It is in scene order, so that forces are always added in the same order
   std::vector<Load> loads_;     // costs of the models that were stepped
   LoadShedding shedding_;
   std::vector<Claim> claims_;  // [model * probe_count + probe]
-  // The answer that is judged now. A member, because constructing it would cost as much as judging it.
+  // The answer that is being judged. It is a member, because constructing it for each answer would take as long as
+  // judging it.
   ClaimStep claim_step_;
   Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();  // turn in this tick of the model being judged
   std::vector<Contact> contacts_;                       // [model * probe_count + probe]
   std::vector<hsp_probe> inputs_;                       // probes for the model being stepped
   std::vector<hsp_contact> outputs_;
-  // Bounded, so that many records at once do not make a tick late: the rest waits for the next tick.
+  // The number of records per tick is bounded, so that many records at once do not make a tick late. The rest waits for
+  // the next tick.
   std::array<link::ActivationRecord, 1024> received_;
   size_t received_count_ = 0;
   std::vector<Vector3d> last_position_;               // position at the last good sample, by probe
@@ -210,7 +215,7 @@ class Core {
   double epoch_ = 0;
   uint64_t tick_ = 0;
   uint64_t budget_left_ns_ = 0;
-  bool preempted_ = false;  // the kernel interrupted the thread in this tick; only known after excused()
+  bool preempted_ = false;  // true if the kernel interrupted the thread in this tick; only excused() finds this out
   // After a tick that was too long, CPU time is measured for a while, at the cost of one system call per step.
   uint32_t suspicious_ = 0;  // ticks for which CPU time is still measured
   bool cpu_timed_ = false;   // CPU time was measured in the last tick

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Rigid frames and the transforms of one tick. Shapes never move in memory: the probe goes through the inverse of each
-/// model's pose, and only foot points and normals come back (Thompson et al. 1999, section 5.2.2: n + 2m transforms).
+/// Rigid frames and the transforms of one tick. Shapes never move in memory: the probe is transformed by the inverse of
+/// each model's pose, and only foot points and normals are transformed back (Thompson et al. 1999, section 5.2.2: n +
+/// 2m transforms).
 #pragma once
 #include <Eigen/Geometry>
 

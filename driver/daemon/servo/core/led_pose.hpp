@@ -31,10 +31,10 @@ class LedPose {
     fresh_ = false;
     follow_.release();
   }
-  /// [rt] Gives the pose up: something else moves it from now on.
+  /// [rt] Stops moving the pose, because something else moves it from now on.
   void forget() noexcept HSP_RT { active_ = fresh_ = false; }
 
-  /// True if the pose comes from here: while a leader leads, and after it has gone.
+  /// True if this object sets the pose: while a leader leads, and after it has gone, until forget().
   bool active() const noexcept { return active_; }
   bool led() const noexcept { return slot_ != nullptr; }
 

@@ -11,7 +11,7 @@
 namespace hapticd::servo {
 
 /// How exactly a shape must answer. At level 0 it answers as its parameters say. No level uses a first-order method,
-/// because far from a curved surface a first-order step loses the foot, and the probe would seem to be inside.
+/// because far from a curved surface a first-order step loses the foot point, and the probe would seem to be inside.
 struct Accuracy {
   static constexpr uint32_t kCoarsest = 3;
   /// At the coarsest level, a shape that no probe can reach soon answers only once in this many ticks.
@@ -28,9 +28,9 @@ struct Accuracy {
 struct Load {
   uint32_t model = 0, level = 0;
   uint64_t step_ns = 0;   ///< time of its step in the last tick
-  uint64_t finer_ns = 0;  ///< time of a step before its level was last lowered
+  uint64_t finer_ns = 0;  ///< time of a step before its accuracy was last lowered
   double importance = 0;  ///< [m] depth, negative outside; -infinity if it is not traced
-  bool proven = false;    ///< step_ns is its own CPU time, without interruptions
+  bool proven = false;    ///< true if step_ns is its own CPU time, without interruptions
 };
 
 /// Decides the levels of the next tick from the costs of the last one. Costs are an argument, so that tests can use
@@ -38,11 +38,13 @@ struct Load {
 class LoadShedding {
  public:
   static constexpr size_t kMostChanges = 4;  ///< most changes in one tick
-  static constexpr double kComfort = 0.8;    ///< accuracy is raised only below this share of the budget
-  /// [ticks] so many ticks of overload lower the accuracy of a shape in contact
+  /// accuracy is raised only while all steps together take less than this share of the budget
+  static constexpr double kComfort = 0.8;
+  /// [ticks] after this many ticks of overload, the accuracy of a shape in contact may be lowered too
   static constexpr uint32_t kLasting = 20;
-  static constexpr uint32_t kPatience = 200;  ///< [ticks] so many ticks of low load in a row raise the accuracy
-  /// [ticks] longest wait before accuracy is raised; the wait doubles after each raise that was too much
+  /// [ticks] after this many ticks of low load in a row, an accuracy may be raised
+  static constexpr uint32_t kPatience = 200;
+  /// [ticks] longest time before an accuracy is raised; the time doubles after each raise that caused an overload
   static constexpr uint32_t kLongest = 20'000;
 
   struct Change {

@@ -20,11 +20,11 @@ struct Order {
     kSet,      ///< sets a live parameter
     kClear,    ///< the arm's latched fault is cleared; the force ramps in
     kHold,     ///< the arm's force ramps out until it is cleared
-    kAdopt,    ///< a prepared model takes an empty place
-    kRelease,  ///< the model fades out and leaves its place
+    kAdopt,    ///< a prepared model gets an empty place in the list of models
+    kRelease,  ///< the force of the model fades out, and its place becomes empty
     // Decisions of the servo itself. They depend on measured times, which a replay cannot repeat, so they are recorded.
     kAccuracy,  ///< the accuracy level of a model changed
-    kOverran,   ///< the model's step took too long, and was counted against it (Guard::strike())
+    kOverran,   ///< the model's step took too long and was counted as a strike (Guard::strike())
     kCut,       ///< the watchdog cut the arm's motors
     // Leads of other programs.
     kLead,   ///< a leader begins; `param` says what it leads
@@ -33,20 +33,20 @@ struct Order {
   /// What a lead moves: `param` of kLead and kUnlead.
   enum class Led : uint32_t {
     kModel,  ///< the pose of a kinematic model
-    kHand,   ///< where the hand of a simulated arm wants to be
+    kHand,   ///< the position to which the hand of a simulated arm wants to go
     kForce   ///< a force on the hand of an arm
   };
-  /// `param` of kEnable: the model is felt only once no tip is inside.
+  /// `param` of kEnable: the model is felt only after no tip has been inside it for some time.
   static constexpr uint32_t kOnceFree = 1;
   Kind kind = Kind::kNone;
   uint32_t target = 0;  ///< index of the model or the arm
   uint32_t param = 0;   ///< kSet: the parameter; leads: Led; kEnable: kOnceFree, or 0 in older recordings
   uint32_t ticket = 0;  ///< number of the request, for the answer
-  uint32_t place = 0;   ///< leads of a force: place of the program in the arm's ClientForces
+  uint32_t place = 0;   ///< kLead and kUnlead of a force: place of the program in ClientForces::clients()
   double value = 0;  ///< kSet: new value; kAccuracy: level; kCut: 1 if found before the tick's read, 0 if at its write
   double seconds = 0;  ///< kMove: shortest duration, 0: the servo chooses; kCut: how long the servo was stuck
   double position[3] = {}, orientation[4] = {1, 0, 0, 0};  ///< kMove: world frame; four zeros keep the orientation
-  ModelState* model = nullptr;                             ///< kAdopt: swapped with the empty place
+  ModelState* model = nullptr;  ///< kAdopt: the prepared model; its content is swapped with that of the empty place
   const link::PoseSlot* slot = nullptr;  ///< kLead: the leader's memory, valid until kUnlead was obeyed
   const link::PushSlot* push = nullptr;  ///< kLead of a force: the program's memory, valid until kUnlead was obeyed
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// A pose that follows a leader in another process. Whatever the leader says, the pose is never faster than is safe for
-/// a hand, and it rests soon after the leader has fallen silent. There is no buffer and no added delay: between two
-/// records the target moves on with the leader's own twist.
+/// A pose that follows a leader in another process. Whatever targets the leader gives, the pose never moves faster than
+/// is safe for a hand, and it comes to rest soon after the last record. No buffer adds a delay: between two records the
+/// target moves on with the twist that the leader gave.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -19,7 +19,7 @@ class PoseFollower {
   static constexpr double kMostTurnAcceleration = 60;  ///< [rad/s^2] highest angular acceleration
   static constexpr double kCloseIn = 0.02;             ///< [s] time constant with which an error decreases
   static constexpr double kTwistHolds = 0.1;           ///< [s] time for which the twist of a record is used
-  /// [s] time in which the twist then fades to zero: two lost frames of 60 Hz are bridged
+  /// [s] time in which the twist then fades to zero; so the motion goes on if two frames of 60 Hz are lost
   static constexpr double kTwistFades = 0.05;
   /// [m] a target farther from the world's origin is refused: no arm reaches so far
   static constexpr double kFarthest = 10;
@@ -40,8 +40,8 @@ class PoseFollower {
   /// [rt] Starts from a pose and its velocities. Without a target, the motion brakes to rest.
   void begin(const hsp_pose& pose) noexcept HSP_RT;
 
-  /// [rt] Takes a target that is not refused and that holds at time `t` [s] on the clock of step(). Returns false, and
-  /// ignores the target, if it is older than the last one.
+  /// [rt] Takes a target that refusalOf() does not refuse. The target is the pose at time `t` [s] on the clock of
+  /// step(). Returns false, and ignores the target, if it is older than the last one.
   bool aim(const hapticd_target& target, double t) noexcept HSP_RT;
 
   /// [rt] The leader has gone: the pose brakes, and stays where the braking ends.
@@ -50,7 +50,7 @@ class PoseFollower {
   /// [rt] One tick at t [s], dt [s] after the last one: moves, and fills in the pose and its velocities.
   void step(double t, double dt, hsp_pose& pose) noexcept HSP_RT;
 
-  /// [rt] True if the pose stands still until another target comes.
+  /// [rt] True if the pose stands still, and will do so until the next target.
   bool rests() const noexcept { return rests_; }
 
  private:

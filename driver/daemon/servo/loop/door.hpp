@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// What the loop tells other programs in addition to rows: the state of the arms, written before the shapes are
-/// stepped, and a bell that wakes waiting programs. Both are made when a program first asks for them, and stay until
-/// the run ends.
+/// Shows other programs more than the rows: the state of the arms, which the servo writes before it steps the shapes,
+/// and a bell, which wakes waiting programs. Both are made when a program first asks for them, and stay until the run
+/// ends.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -24,7 +24,8 @@ class Door {
  public:
   static constexpr uint32_t kStateAt = sizeof(hapticd_state_page);  ///< [bytes] offset of the first arm
   static constexpr uint32_t kStateStride = 1152;  ///< [bytes] distance from one arm to the next: whole cache lines
-  static constexpr int kMostWoken = 16;  ///< programs woken in one tick, because waking many would delay the tick
+  /// most programs that are woken in one tick, because waking many would delay the tick
+  static constexpr int kMostWoken = 16;
 
   static constexpr size_t stateBytes(size_t arms) { return kStateAt + arms * kStateStride; }
 

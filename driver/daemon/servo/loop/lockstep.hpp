@@ -10,7 +10,8 @@ namespace hapticd::servo {
 
 class Lockstep {
  public:
-  /// [main] @param core says when it needs a search; must outlive this object  @param search runs one global search
+  /// [main] @param core asks for searches by needsSearch(); must outlive this object @param search runs one global
+  /// search
   Lockstep(const Core& core, std::function<void()> search) : core_(core), search_(std::move(search)) {}
 
   /// Runs a search if it is due. Called before a tick at time t [s], after the probes were published. Not real-time:

@@ -17,14 +17,14 @@ namespace hapticd::servo {
 
 struct LoopSettings {
   Nanoseconds period_ns = 1'000'000;
-  uint64_t ticks = 0;     ///< length of the run in periods; 0: until stop()
-  bool lockstep = false;  ///< proximity searches run within ticks (virtual time), not in their own thread
-  bool paced = false;     ///< an arm's samples drive the loop: a tick begins when the sample comes, not at the deadline
+  uint64_t ticks = 0;           ///< length of the run in periods; 0: until stop()
+  bool lockstep = false;        ///< true: the servo thread itself runs proximity searches (virtual time)
+  bool paced = false;           ///< true: a tick begins when a sample of an arm comes, not at the deadline
   Nanoseconds answer_time = 0;  ///< the servo waits for the answers of pushing programs until this time in a tick
-  uint64_t dry_cycles = 0;  ///< cycles with motors off before the first tick, to see how well the machine keeps time
+  uint64_t dry_cycles = 0;      ///< cycles with motors off before the first tick, to count those that begin late
 };
 
-/// [main] Returns the arm whose samples drive the loop: if the scene asks for it, the first arm that can. Returns
+/// [main] Returns the arm whose samples drive the loop: the first arm that can do so, if the scene asks for it. Returns
 /// nullptr if the clock drives the loop.
 Arm* pacingArm(const scene::Servo& servo, const Arms& arms);
 
@@ -37,8 +37,8 @@ class Loop {
   /// @param lockstep runs the proximity search if the settings ask for it
   Loop(Core& core, Lockstep lockstep, Arms& arms, Clock& clock, const LoopSettings& settings, TickLog& log);
 
-  /// [main] Called before run(). @param count is increased in each dry cycle and tick, for watchdogs; must outlive the
-  /// run
+  /// [main] Called before run(). @param count the loop increments it in each dry cycle and each tick, so that a
+  /// watchdog sees that the servo runs; it must outlive the run
   void beatOn(std::atomic<uint64_t>& count) { beat_ = &count; }
 
   /// [rt] Runs until all ticks are done, or until a stop has ramped the forces down. Call it once.
@@ -121,7 +121,7 @@ class Loop {
   uint64_t ramp_ticks_ = 0;
   std::atomic<uint64_t>* beat_ = nullptr;
   double epoch_ = 0;  ///< [s] time of the first tick; CLOCK_MONOTONIC if the run uses the real clock
-  // In virtual time the proximity search runs in this thread too. Its time does not count as time of the servo.
+  // In virtual time the proximity search runs in this thread too. The time of the search does not count as compute.
   Nanoseconds search_time_ = 0;
   Nanoseconds read_time_ = 0;    ///< time in this tick for reading the arms
   Nanoseconds listen_time_ = 0;  ///< time in this tick for waiting for programs' answers

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// A plugin claims the largest stiffness and damping of its shape, and how far its force may jump on purpose. The
-/// claims and the motion of the probe bound how much the force may change in one step. A larger change is let through
-/// only up to this bound. Forces are compared as vectors in the world frame, after every rotation, also of models that
-/// are not traced. Torques are bounded by the same claims, on a handle of length kHandle.
+/// claims and the motion of the probe give a bound on the change of the force in one step. If the force changes by
+/// more, only the part of the change within this bound reaches the hand. Forces are compared as vectors in the world
+/// frame. If the host turned the model since the last step, the former force is turned with it first. Torques are
+/// bounded by the same claims, as if the hand held a handle at the distance kHandle from the tip.
 #pragma once
 #include <Eigen/Core>
 
@@ -37,7 +38,7 @@ struct ClaimStep {
   Eigen::Vector4d orientation = Eigen::Vector4d::UnitW();
   /// [N m] largest torque that the arm lets through, 0: unknown; larger ones are reduced to it first
   double max_torque = 0;
-  bool former = false;  ///< for old recordings: a jump of the probe excuses nothing
+  bool former = false;  ///< for old recordings: kFindsAnew is not used
 };
 
 /// Bounds the force and torque of one model on one probe, and remembers the last step.
@@ -52,31 +53,34 @@ class Claim {
   static constexpr double kDrift = 100;   ///< [N/s] a force may always change at this rate
   static constexpr double kOwnSpeed = 5;  ///< [m/s] highest speed that is believed of a shape that moves itself
   static constexpr double kOwnTurn = 50;  ///< [rad/s] highest angular velocity that is believed of such a shape
-  /// The force changes at once if a surface is newly found under the probe, or if the foot goes over an edge. kPasses
-  /// such changes may come in a row, and then kPassesPerSecond per second.
+  /// The force may change by any amount if a surface is newly found under the probe, or if the foot point goes over an
+  /// edge. kPasses such changes may come in a row. After that, kPassesPerSecond of them are allowed per second.
   static constexpr double kPasses = 3, kPassesPerSecond = 20;
-  static constexpr double kEdge = 0.1;  ///< [rad] if the normal turns farther in one step, the foot went over an edge
-  /// a change below this share of what stiffness explains needs no other check
+  /// [rad] if the normal turns by more than this in one step, the foot point went over an edge
+  static constexpr double kEdge = 0.1;
+  /// if a change is smaller than this share of the change that the stiffness explains, the other checks are skipped
   static constexpr double kSurely = 0.99;
-  /// [m] Distance from the tip to the place where a hand holds the handle. It turns a bound on forces into one on
-  /// torques.
+  /// [m] Assumed distance from the tip to the point at which the hand holds the handle. With this lever, the bound on
+  /// forces becomes a bound on torques.
   static constexpr double kHandle = 0.1;
-  /// The force may change at once after a live parameter was set. kAsked such changes may come in a row, and then
-  /// kAskedPerSecond per second: a program that sets parameters in every tick must not allow a plugin to kick.
+  /// The force may change by any amount in the step after a live parameter was set. kAsked such changes may come in a
+  /// row. After that, kAskedPerSecond of them are allowed per second, because a program that sets parameters in every
+  /// tick must not allow a plugin to kick.
   static constexpr double kAsked = 3, kAskedPerSecond = 2;
   /// [s] After a live parameter was set, a large change of the force is let through slowly. For at most this time,
   /// holding it back is not counted against the plugin (Guard::strike()).
   static constexpr double kExcused = 1;
   /// [s] After a jump of the probe or a bad sample, the search finds the surface again some ticks later. For this time
-  /// the force may come at once, whatever the normal was, and the plugin is not blamed if it is held back.
+  /// the force may rise at once even if the normal has not turned, and the plugin is not blamed if its force is held
+  /// back.
   static constexpr double kFindsAnew = 0.1;
 
   /// [rt] Returns the force of `step`, or the part of it that the claim allows, world frame.
   /// @param dt [s] since the last step  @param held becomes true if the force was held back
   Eigen::Vector3d check(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
-  /// [rt] Like check(), but for the torque of `step`. Call it before check(), because check() stores the place of the
-  /// probe.
+  /// [rt] Like check(), but for the torque of `step`. Call it before check(), because check() replaces the position of
+  /// the probe in the last step, which both need.
   Eigen::Vector3d checkTorque(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
   /// [rt] Somebody set a live parameter of the model: in the next step the force may change without an explanation.
@@ -86,7 +90,7 @@ class Claim {
   /// jumped.
   bool excused() const noexcept HSP_RT { return excused_ > 0 || finds_anew_ > 0; }
 
-  /// [any] Forgets the last step, so that the next one may have any force.
+  /// [any] Forgets the last step, so that any force is allowed in the next step.
   void forget() noexcept { known_ = torque_known_ = false; }
 
  private:
@@ -110,10 +114,12 @@ class Claim {
 
   bool known_ = false, traced_ = false;
   bool torque_known_ = false;
-  bool asked_ = false, jumps_ = false;  // a parameter was set before this step; this step may jump
+  // asked_: a parameter was set before this step. jumps_: force and torque may jump in this step
+  bool asked_ = false, jumps_ = false;
   double passes_ = kPasses, asked_passes_ = kAsked;
-  double excused_ = 0, finds_anew_ = 0;  // [s] remaining times of excused() and of kFindsAnew
-  /// [N] The force that motion explains, world frame. The force that passes is at most one jump away from it.
+  double excused_ = 0, finds_anew_ = 0;  // [s] time that is left of kExcused, and of kFindsAnew
+  /// [N] The force that motion explains, world frame. The force that check() returns differs from this force by at most
+  /// one jump.
   Eigen::Vector3d explained_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_world_ = Eigen::Vector3d::Zero(), p_model_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero(), normal_ = Eigen::Vector3d::Zero();
@@ -126,12 +132,12 @@ class Claim {
 struct Pull {
   double t = -1;      ///< [s] time since the start of the run; negative: unknown
   double depth = -1;  ///< [m] depth that the shape reported; negative: unknown or outside
-  double force = 0;   ///< [N] force with which it pulled, or size of the jump
+  double force = 0;   ///< [N] force of the pull, or size of the jump
 };
 
-/// [rt] True if the force of a contact pulls the probe deeper in, or from outside toward the surface, by more than
-/// rounding. The direction outward is taken from the foot point, not from the reported normal. @param p [m] the probe,
-/// in the model frame
+/// [rt] True if the force of a contact pulls the probe deeper in, or from outside toward the surface. A pull as small
+/// as a rounding error does not count. The outward direction is calculated from the foot point, not taken from the
+/// reported normal. @param p [m] the probe, in the model frame
 bool pullsIn(const hsp_contact& contact, const Eigen::Vector3d& p) noexcept HSP_RT;
 
 }  // namespace hapticd::servo

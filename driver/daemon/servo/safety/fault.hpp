@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Faults, which take the force away until they are cleared or end by themselves, and their texts.
+/// Faults and their texts. A fault takes the force of an arm away until the user clears it, or until it ends by itself.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace hapticd::servo {
 
-/// What took the force away. A unit in brackets is the unit of the measured value. Recordings keep the number, so new
-/// faults come at the end.
+/// The reason why an arm's force was taken away. A unit in brackets is the unit of the measured value. Recordings
+/// contain the number of the fault, so new faults are added at the end.
 enum class Fault : uint8_t {
   kNone,
   kNotFinite,      ///< a force or position is not a number
@@ -19,8 +19,8 @@ enum class Fault : uint8_t {
   kLate,           ///< too many ticks were missed in a row [s]
   kNotCalibrated,  ///< the device must be calibrated before it may push
   kStopped,        ///< a user holds the arm, or the run ends
-  kStuck,          ///< a tick did not end and the watchdog cut the motors [s]
-  kOverheated,     ///< a motor is hotter than allowed, by the model of its heat [degC]
+  kStuck,          ///< a tick did not end in time, so the watchdog cut the motors [s]
+  kOverheated,     ///< a motor is hotter than allowed, as the model of its heat estimates [degC]
   kJumped,         ///< the tip moved farther between two samples than a hand can move it [m/s]
   kNotUnit         ///< the device's orientation is not a unit quaternion [its length]
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Stands between one shape and the hand: fades a shape out if it loses its surface, gives a wrong answer or reports an
-/// error. Only a shape that lost its surface is faded in again.
+/// Decides how much of the force of one shape reaches the hand. The force is faded out if the shape loses its surface,
+/// gives a wrong answer or reports an error. It is faded in again only if the shape had lost its surface.
 #pragma once
 #include <cstdint>
 
@@ -8,17 +8,18 @@
 
 namespace hapticd::servo {
 
-/// Why a shape is not felt.
+/// Why the hand does not feel a shape. After every fault but kLost, the shape is silenced: its force stays off for the
+/// rest of the run.
 enum class ShapeFault : uint8_t {
   kNone,
-  kLost,       ///< HSP_E_NUMERIC: the shape is reset and tried again
-  kNotFinite,  ///< a force or a pose was not a number: never trusted again
-  kBadStatus,  ///< step() returned a status that the ABI does not allow: never trusted again
-  kOverrun,    ///< its steps repeatedly took longer than the budget of all shapes: never trusted again
-  kJump,       ///< its force repeatedly jumped by more than its claims allow: never trusted again
-  kNotUnit,    ///< a pose had a quaternion whose length is not 1: never trusted again
-  kPulls,      ///< a surface that claims to push only pulled the probe in: never trusted again
-  kTwists      ///< like kJump, but the torque jumped: never trusted again
+  kLost,       ///< the shape lost its surface (HSP_E_NUMERIC): it is reset, and its force may be faded in again
+  kNotFinite,  ///< a force or a pose was not a finite number
+  kBadStatus,  ///< step() returned a status that the ABI does not allow
+  kOverrun,    ///< its steps repeatedly took longer than the budget of all shapes
+  kJump,       ///< its force repeatedly jumped by more than its claims allow
+  kNotUnit,    ///< a pose had a quaternion whose length is not 1
+  kPulls,      ///< its surface pulled the probe in, although the shape claims only to push
+  kTwists      ///< its torque repeatedly jumped by more than its claims allow
 };
 
 /// Fades the force of one shape. All times are sums of dt.
@@ -27,17 +28,17 @@ class Guard {
   /// [s] The force of a failed shape is zero after this time. Until then a tip that nobody holds gains energy, see
   /// Limiter::kFaultRamp.
   static constexpr double kFadeOut = 0.002;
-  static constexpr double kLeave = 0.02;  ///< [s] time in which the force ends if the model is disabled on request
+  static constexpr double kLeave = 0.02;  ///< [s] time in which the force fades out if a request disables the model
   /// [s] duration of a fade-in, so that a surface that is found again does not kick
   static constexpr double kFadeIn = 0.05;
-  /// [s] Duration of the fade-in of a model that is added during a run and pushes without a surface: no hand can be
-  /// outside of it.
+  /// [s] Duration of the fade-in of a model that is added during a run and pushes without a surface. It is long,
+  /// because one cannot wait until the tip is outside of such a model.
   static constexpr double kFadeInOfField = 1;
 
   /// [rt] Judges the answer of one step. @param finite true if all its numbers are finite
   ShapeFault check(hsp_status status, bool finite) noexcept HSP_RT;
 
-  /// [rt] Notes a fault that check() cannot see. Once the shape is quarantined, the first reason is kept.
+  /// [rt] Notes a fault that check() cannot see. Once the shape is silenced, the first fault is kept as the reason.
   ShapeFault enter(ShapeFault fault) noexcept HSP_RT;
 
   /// [rt] Notes that one step took too long, or that one force was beyond the claim. This becomes a fault if it
@@ -54,7 +55,8 @@ class Guard {
   /// Returns the factor of the last tick.
   double gain() const noexcept { return gain_; }
   bool quarantined() const noexcept { return fault_ > ShapeFault::kLost; }
-  ShapeFault fault() const noexcept { return fault_; }  ///< the fault that quarantined it, else the last one
+  /// the fault for which the shape was silenced; else kLost or kNone
+  ShapeFault fault() const noexcept { return fault_; }
 
  private:
   static constexpr int kForgivenAfter = 100;  ///< [ticks] after this many ticks one strike is forgiven

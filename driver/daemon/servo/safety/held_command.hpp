@@ -9,9 +9,11 @@ namespace hapticd::servo {
 /// [s] A command that is held for at most this time may have the full force. In this time 8.5 N move the free tip of a
 /// simulated Premium 1.5 (59 g where it is lightest) by 0.6 mm and give it 4.8 mJ.
 constexpr double kHeldInFull = 2.8e-3;
-/// [s] In this time 8.5 N move this tip by 0.93 mm. This bounds the force of a command that is held for longer.
+/// [s] In this time 8.5 N move the same tip by 0.93 mm. The force of a command that is held for longer is reduced until
+/// the tip moves no farther.
 constexpr double kHeldForWay = 3.6e-3;
-/// [N] Largest force of the arm for which the times above were calculated. A stronger arm is heavier too.
+/// [N] Largest force of the arm for which the times above were calculated. For a stronger arm, shareHeld() is a share
+/// of its own largest force, because a stronger arm is also heavier.
 constexpr double kReckonedForce = 8.5;
 
 /// [any] Returns how long [s] a command may stay on after a single fault: until the next tick, or until a sample shows
@@ -26,7 +28,8 @@ double shareHeld(double held);
 /// @param device_force [N] the arm's own maximum, 0: unknown
 double mostForceAt(double servo_rate, double arm_rate, double device_force);
 
-/// [any] Returns why an arm pushes less than its limits allow, and the cure; "" if it pushes in full.
+/// [any] Returns why a low rate makes an arm push less than its limits allow, and the cure; "" if the arm may push with
+/// its full force.
 /// @param asked [N] force limit without this bound, 0: unknown
 std::string describeSlow(double servo_rate, double arm_rate, double device_force, double asked);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Limits every force between contact and motors, whatever the plugins do. Forces are finite, ramped, and limited in
-/// size, torque, slew, power and impulse. They flow only while the enable switch allows it, and a fault turns them off.
-/// The limiter never makes a force larger than asked for.
+/// size, torque, slew, power and impulse. A force reaches the motors only while the enable switch allows it, and a
+/// fault turns it off. The limiter never makes a force larger than asked for.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -20,10 +20,10 @@ enum class Limit : uint8_t { kWorkspace, kHeat, kForce, kTorque, kPower, kImpuls
 constexpr size_t kLimitCount = 10;
 const char* nameOf(Limit limit);  ///< such as "force" for limits.force
 
-/// Counts in how many ticks each limit made the force smaller.
+/// Counts the ticks in which a limit reduced the force.
 struct Clips {
   std::array<uint64_t, kLimitCount> ticks{};
-  uint64_t any = 0;  ///< ticks in which at least one limit made it smaller
+  uint64_t any = 0;  ///< ticks in which at least one limit reduced the force
 };
 
 class Limiter {
@@ -54,23 +54,25 @@ class Limiter {
   void watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT;
   /// [main] For recordings of old versions: a hold button that was down before the run enables forces.
   void enableByFoundPressed() { released_ = true; }
-  /// [main] Sets values for limits.power. @param lag [s] of the velocity that watchVelocity() gets
+  /// [main] Sets what the limit limits.power needs to know. @param lag [s] delay of the velocity that watchVelocity()
+  /// gets
   /// @param mass [kg] of the arm at its tip, 0: unknown
   void expectMotion(double lag, double mass) { power_.expect(lag, mass); }
-  /// [rt] Sets the share of the force that the newest sample allows, from 1 down to 0 as it ages. Call it before
-  /// apply().
+  /// [rt] Sets the share of the force that the age of the newest sample allows, from 1 (new) to 0 (too old). Call it
+  /// before apply().
   void trustSample(double share) noexcept HSP_RT { trusted_ = share; }
-  /// [rt] Sets the share of the force that hot motors allow, 0 to 1, from the next tick on.
+  /// [rt] Sets the share of the force that the heat of the motors allows, 0 to 1, from the next tick on.
   void spareMotors(double factor) noexcept HSP_RT { heat_factor_ = factor; }
   /// [rt] Counts that the motors' own limit reduced the torques of this tick.
   void clippedByMotors() noexcept HSP_RT { count(Limit::kMotors); }
   void clippedWeight() noexcept HSP_RT { count(Limit::kWeight); }
 
-  /// [rt] Latches a fault: the present force ramps to zero. The first fault is kept, but a fault that ends by itself is
-  /// replaced by one that does not. @param measured value for the message, in the unit of the fault
+  /// [rt] Latches a fault, so that the present force ramps to zero. If a fault is latched already, it is kept, unless
+  /// it would end by itself and the new fault would not. @param measured value for the message, in the unit of the
+  /// fault
   void trip(Fault fault, double measured = 0) noexcept HSP_RT;
 
-  /// [rt] Latches a fault after the motors were cut: no force is left to ramp.
+  /// [rt] Latches a fault after the motors were cut. The force is zero at once, without a ramp.
   void cut(Fault fault, double measured) noexcept HSP_RT;
 
   /// [rt] Called after apply() if the force could not be sent, because the position of the arm is unknown. A ramp to
@@ -80,7 +82,8 @@ class Limiter {
   /// [rt] Ends a fault that can end by itself, and the force ramps in again. Other faults stay.
   void recover() noexcept HSP_RT;
 
-  /// [rt] Clears a latched fault because the user asked for it: once the force has ramped out, it ramps in again.
+  /// [rt] Clears a latched fault because the user asked for it. Once the force has ramped out, the force of the models
+  /// ramps in.
   void clear() noexcept HSP_RT;
 
   Fault fault() const noexcept { return fault_.get(); }          ///< [any] the latched fault, or kNone
@@ -117,15 +120,16 @@ class Limiter {
   // The switch must be pressed during the run. A button that is down from the start may be taped down.
   bool enabled_ = true, button_was_down_ = true, released_ = false, found_pressed_ = false;
   bool clipped_ = false;  // a limit has reduced the force of this tick
-  bool cleared_ = false;  // cleared by the user while the force was still ramping down
+  bool cleared_ = false;  // the user cleared the fault while the force was still ramping down
   double heat_factor_ = 1, impulse_ = 0;
-  // factors for the age of the sample: the one allowed now; the one in use, which grows back slowly
+  // shares of the force for the age of the sample. trusted_: the share that is allowed now. fresh_: the share in use,
+  // which grows slowly
   double trusted_ = 1, fresh_ = 1;
   Clips clips_;
   PowerBound power_;
   Vector3d fault_force_ = Vector3d::Zero(), fault_torque_ = Vector3d::Zero();
   Vector3d last_force_ = Vector3d::Zero(), last_torque_ = Vector3d::Zero();
-  // These follow the last force and torque at limits.slew.
+  // These follow the last force at limits.slew, and the last torque at limits.torque_slew.
   Vector3d slow_force_ = Vector3d::Zero(), slow_torque_ = Vector3d::Zero();
 };
 

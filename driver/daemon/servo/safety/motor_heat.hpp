@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Estimates how hot the motors of one arm are from the commanded torques: each winding heats a housing, which gives
-/// its heat to the air. No sensor is needed, and stall torque can be used until the winding is near its limit.
+/// its heat to the air. So an arm needs no sensors of temperature, and a motor may give its stall torque until its
+/// winding is near its limit.
 #pragma once
 #include <array>
 #include <vector>
@@ -18,7 +19,7 @@ class MotorHeat {
   explicit MotorHeat(const std::vector<scene::Motor>& motors);
 
   bool empty() const noexcept { return count_ == 0; }
-  size_t count() const noexcept { return count_; }  ///< number of joints whose motors are modelled
+  size_t count() const noexcept { return count_; }  ///< number of joints with a model of their motor
 
   /// [rt] Calculates how torques [N m] at the joints, held for dt [s], heat the motors.
   void heat(const double* torque, double dt) noexcept HSP_RT;

@@ -11,11 +11,12 @@ namespace hapticd::servo {
 
 class PowerBound {
  public:
-  static constexpr double kMargin = 1.5;     ///< factor on the largest recent acceleration: the next may be larger
+  /// factor on the largest recent acceleration, because the next acceleration may be larger
+  static constexpr double kMargin = 1.5;
   static constexpr double kRemember = 0.02;  ///< [s] time after which an acceleration is forgotten
 
-  /// [main] @param lag [s] of the velocity estimate  @param mass [kg] of the arm at its tip; 0: do not count how the
-  /// force accelerates the arm
+  /// [main] @param lag [s] delay of the velocity estimate @param mass [kg] of the arm at its tip; 0: unknown, so the
+  /// acceleration of the arm by the force is not counted
   void expect(double lag, double mass) {
     lag_ = lag;
     mass_ = mass;

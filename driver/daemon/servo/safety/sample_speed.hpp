@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Calculates the speed of a tip between two samples from the times at which they were measured. It serves to find
-/// jumps: an encoder that lost its count, or a packet that was misread, must not set the force.
+/// Calculates the speed of a tip between two samples from the times at which they were measured. The speed shows jumps:
+/// after an encoder lost its count, or a packet was misread, the wrong position must not cause a force.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -19,9 +19,9 @@ class SampleSpeed {
   /// [main] @param rate [Hz] of the arm's samples, 0: unknown  @param resolution [m] of its position, 0: unknown
   SampleSpeed(double rate, double resolution);
 
-  /// [rt] Takes a new sample and returns the speed [m/s], 0 for the first sample. Two samples may arrive, and be
-  /// stamped, together: they count as at least one period of the arm apart. @param stamp_ns time of the measurement, or
-  /// 0
+  /// [rt] Takes a new sample and returns the speed [m/s], 0 for the first sample. Two samples may arrive and get their
+  /// time stamps almost at once. So the time between two samples counts as at least one period of the arm.
+  /// @param stamp_ns time of the measurement; 0: unknown
   /// @param passed [s] time on the host since the last sample
   double update(const Eigen::Vector3d& position, uint64_t stamp_ns, double passed) noexcept HSP_RT;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The velocity estimators, each with one parameter. All accept varying dt, because a missed tick doubles the time
-/// between two samples.
+/// The velocity estimators, each with one parameter. All of them accept a dt that varies, because a missed tick doubles
+/// the time between two samples.
 #pragma once
 #include <Eigen/Core>
 
@@ -10,7 +10,8 @@ namespace hapticd::velocity {
 
 constexpr int kMaxWindow = 1024;  ///< most samples of a window
 constexpr int kMaxAdaptive = 32;  ///< most samples of foaw; its cost grows with the square of their number
-constexpr int kMaxMissed = 16;    ///< a filter bridges a gap of this many periods; after a longer gap it restarts
+/// a filter continues after a gap of at most this many periods; after a longer gap it restarts
+constexpr int kMaxMissed = 16;
 
 /// The difference (x_i - x_(i-n)) / (nT) of Thompson et al. 1999, Eq. 5. Its delay is nT/2, its gain for white noise
 /// sqrt(2)/(nT).

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The last positions of a probe, newest first, each with the time since the one before. No absolute time is kept, so
-/// times do not lose digits over days.
+/// The last positions of a probe, newest first, each with the time since the position before it. No absolute times are
+/// stored, because they would lose digits over days.
 #pragma once
 #include <Eigen/Core>
 #include <vector>

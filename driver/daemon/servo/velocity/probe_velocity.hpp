@@ -12,7 +12,8 @@ namespace hapticd::servo {
 
 using velocity::VelocityEstimator;
 
-inline constexpr double kMaxProbeSpeed = 20;  ///< [m/s] twice the speed of a hand; a faster sample is a jump
+/// [m/s] twice the speed of a hand; if a sample needs a higher speed, it is a jump
+inline constexpr double kMaxProbeSpeed = 20;
 
 /// [main] Makes the estimator that servo.velocity names. @param rate [Hz] of the samples @param resolution [m] of a
 /// position; 0: unknown
@@ -24,8 +25,9 @@ inline Result<VelocityEstimator> makeEstimator(const scene::Velocity& how, doubl
   }
 }
 
-/// Estimates the velocity, and restarts after a gap or a jump: a difference across it would give a wrong velocity, with
-/// which a damper would push for as long as the estimator remembers it.
+/// Estimates the velocity of a probe, and restarts the estimator after a gap or a jump. Otherwise the difference
+/// between the positions before and after the jump would become a velocity, and damping would push the hand until the
+/// estimator has forgotten this difference.
 class ProbeVelocity {
  public:
   explicit ProbeVelocity(const VelocityEstimator& estimator) : estimator_(estimator) {}
@@ -41,7 +43,7 @@ class ProbeVelocity {
     return estimator_.update(position, dt);
   }
 
-  void reset() noexcept {  ///< [rt] called at a gap: there is no good sample
+  void reset() noexcept {  ///< [rt] called if this tick has no good sample
     known_ = false;
     estimator_.reset();
   }
