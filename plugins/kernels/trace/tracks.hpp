@@ -41,8 +41,8 @@ class Tracks {
   bool isRival(int index) const noexcept { return index >= patch_count_; }
 
   /// [rt] Follows a patch from the result (u, v) of a search. If the patch is already followed, (u, v) becomes a rival,
-  /// or replaces a foot point that no recent search has found. The result is ignored if it leads to a foot point that is
-  /// followed already, or is more than kSoon [m] farther away than `best`.
+  /// or replaces a foot point that no recent search has found. The result is ignored if it leads to a foot point that
+  /// is followed already, or is more than kSoon [m] farther away than `best`.
   /// @param distance [m] lower bound of the distance from the probe to the patch
   /// @param best [m] distance of the nearest foot point
   /// @param asked true if the host activated the patch
