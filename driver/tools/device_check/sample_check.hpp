@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Checks that samples are as the host needs them.
+/// Checks that the samples of a module keep the rules of the host.
 #pragma once
 #include <string>
 
