@@ -21,9 +21,9 @@ void warnOfImplausibleArm(const document::Node& root, const scene::Device& devic
 void warnOfImplausibleFields(const document::Node& root, const scene::Device& device, size_t joints,
                              const host::DeviceInstance* arm, document::Problems& warnings);
 
-/// [main] Warns of limits so small that no force is felt or so large that they have no effect, of joints and torques
-/// for which the wire format has no field, and of simulated arms whose friction, weight or motor lag is greater than
-/// the forces of shapes.
+/// [main] Warns of limits so small that no force is felt, or so large that no arm reaches them; of a wire format
+/// without the fields that `admittance` needs, with an id in only one of the two reports, or with a clock that is
+/// slower than the reports; and of simulated arms whose friction, mass or delay is greater than a hand would accept.
 /// @param arm is nullptr if the file has mistakes, so that only single values are judged
 void warnOfImplausibleLimits(const document::Node& root, const scene::Device& device, const host::DeviceInstance* arm,
                              document::Problems& warnings);
