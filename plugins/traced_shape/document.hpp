@@ -24,7 +24,7 @@ class Problems {
   void add(const Path& path, const std::string& what);
   bool any() const { return !found_.empty(); }
   std::size_t count() const { return found_.size(); }
-  /// Returns true if some problem is about this key, anywhere in the file.
+  /// Returns true if some problem is about this key, or a value inside it, anywhere in the file.
   bool about(const std::string& key) const;
   bool full() const;
   /// [main] Returns the problems, each as `file:line:column: key: what`.

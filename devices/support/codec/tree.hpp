@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A view of structured data that knows the path of every key, so that errors in a device file can name their place.
+/// A view of structured data. Each value has the path of its key, so that an error message can name the key in the
+/// device file.
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -91,7 +91,8 @@ class Arm {
   uint32_t capabilities_ = 0, told_fault_ = 0;
   /// [s] time of the daemon at which the arm was first seen to be held; < 0 if the arm is not held
   double stopped_since_ = -1;
-  bool told_limit_ = false;  ///< true while the program asks for more than the largest force of the arm; told once
+  /// true while the program asks for more force than the arm can exert, which was reported once
+  bool told_limit_ = false;
   Bounds bounds_;
 };
 

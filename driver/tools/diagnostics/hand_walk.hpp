@@ -42,7 +42,7 @@ struct Walk {
   double period = 0;   ///< [s] period of a tick
   std::vector<WalkedModel> models;
   std::vector<WalkedArm> arms;
-  std::vector<servo::Limiter> limiters;  ///< limiter of each arm, as it was at the end
+  std::vector<servo::Limiter> limiters;  ///< limiter of each arm at the end of the walk
 };
 
 /// [main] Runs at most 10 s and 10,000 ticks. Returns nothing if an arm is not simulated or cannot be started. Also

@@ -56,7 +56,7 @@ struct FeltContact {
   /// probe had already pressed it for a long time
   bool placed = false;
   /// true if the probe was not near the surface in the last tick: a surface that has swung out beyond the probe is then
-  /// moved back to it, so that they just touch
+  /// moved back to it, but not below its position at rest
   bool fresh = false;
 
   double inside = 0;               ///< out: [m] depth of the probe below the displaced surface
