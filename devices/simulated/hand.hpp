@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The simulated hand: a mass on a spring and damper whose other end follows a script, with a seeded tremor. Its wanted
-/// position and force depend only on time, so that a run does not depend on the size of the steps. The exception is the
-/// guided hand, which a program leads.
+/// The simulated hand: a mass on a spring and damper whose other end follows a script, with a seeded tremor. This
+/// target and the force of the tremor depend only on time, so a run does not depend on the size of the steps. The
+/// exception is the guided hand, whose target comes from a program.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -49,10 +49,10 @@ class Hand {
   /// [main] Throws std::invalid_argument with a message for the user.
   Hand(const HandSettings& settings, HandPath path);
 
-  /// [rt] Returns where the hand wants to be `t` seconds after the start.
+  /// [rt] Returns the target of the hand `t` [s] after the start.
   HandTarget at(double t) const noexcept;
 
-  /// [rt] Sets where a guided hand wants to be from now on.
+  /// [rt] Sets the target of a guided hand from now on.
   void guide(const HandTarget& target) noexcept { guided_ = target; }
 
   bool holds() const noexcept { return settings_.script != Script::kNone; }

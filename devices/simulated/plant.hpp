@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A rigid arm that its motors drive and a hand pulls, integrated in small steps.
+/// A rigid arm under the torques of its motors and the force of a hand, integrated in small steps.
 ///
 /// The integrator is linearly implicit Euler. Springs, dampers, friction and end stops enter with their derivatives, so
 /// a step is stable for any stiffness of the hand and of the stops. Mass, Coriolis and motor torques enter explicitly.

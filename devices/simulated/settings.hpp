@@ -22,7 +22,7 @@ struct JointSettings {
   double stop_damping = 0.5;            ///< [N m s/rad] damping of the end stops
 };
 
-/// What the motors do during one integration step.
+/// What the motors receive during one integration step.
 struct Drive {
   bool position_mode = false;
   JointVector torque, reference, reference_rate;  ///< [N m]; [rad]; [rad/s]

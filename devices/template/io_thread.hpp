@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// For hardware whose transfers may block (a serial line, USB, a network): a thread of the module talks to the arm, and
-/// the servo thread only exchanges the newest values with this thread. For safety, the thread sends "off" to an arm
-/// that falls silent after a fixed time, without waiting for its next report. The simulated gantry does not use this
+/// For hardware whose transfers may block (a serial line, USB, a network). A thread of the module talks to the arm, and
+/// the servo thread only exchanges the newest values with this thread. For safety, the thread sends "off" if no report
+/// or no order has come for a fixed time; it does not wait for the next report. The simulated gantry does not use this
 /// file.
 #pragma once
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace template_arm {
 
-/// Passes the newest value from one thread to another. No thread waits, and a newer value replaces one that was not
-/// taken yet.
+/// Passes the newest value from one thread to another. No thread waits. A newer value replaces one that was not yet
+/// taken.
 template <class T>
 class Newest {
  public:
@@ -86,14 +86,15 @@ class IoThread {
   }
   /// [rt] To be called in read(): returns the newest report. @return false if no newer report has come
   bool newest(Report& report) noexcept { return reports_.take(report); }
-  /// [rt] To be called in write(): passes an order to the thread. Its time_ns is the time that write() was given.
+  /// [rt] To be called in write(): passes an order to the thread. Set Order::time_ns to the time that write() was
+  /// given.
   void leave(const Order& order) noexcept { orders_.put(order); }
-  /// [any] While `free` is true, only "off" is sent. hdv.cut/1 calls it with true, and a write() with HDV_OFF with
-  /// false.
+  /// [any] While `free` is true, the thread sends only "off". hdv.cut/1 calls this function with true, and a write()
+  /// with HDV_OFF calls it with false.
   void cut(bool free) noexcept { cut_.store(free, std::memory_order_relaxed); }
 
-  /// [io] One round takes a report if one comes, and always sends a command. So the motors of an arm that falls silent
-  /// are off after at most kOld + kWait, and an arm that missed a command gets it again.
+  /// [io] Makes one round: takes a report if one comes, and always sends a command. So if the arm falls silent, its
+  /// motors are off after at most kOld + kWait, and an arm that missed a command gets it again.
   void exchange() noexcept {
     Vec3 position{};
     const bool came = port_.receive(position);

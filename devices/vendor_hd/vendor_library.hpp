@@ -8,12 +8,12 @@
 
 namespace hapticd::vendor_hd {
 
-/// [main] Each arm has one; the library itself is loaded once per process.
+/// [main] Each arm has a VendorLibrary of its own. The dynamic linker loads the library only once per process.
 class VendorLibrary {
  public:
   /// Throws std::runtime_error whose text says what is missing and how to get it.
   void load(const std::string& file);
-  /// Takes all pending errors and returns them as text, which is empty if there are none.
+  /// Removes all pending errors of the library and returns them as text; "" if there are none.
   std::string errors() const;
 
   decltype(&::hdInitDevice) init = nullptr;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// The mailbox that the host and an arm controller board share: two blocks in a window of the bus, without a lock. A
 /// block has a sequence number at its beginning and one at its end. The writer writes the number at the end last. The
-/// reader reads it first and the block afterwards; the block is complete if the number at its beginning is the same.
+/// reader reads the number at the end first, and then the block. The block is complete if both of its numbers equal the
+/// number that was read first.
 #pragma once
 #include <array>
 

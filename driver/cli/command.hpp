@@ -31,15 +31,15 @@ int fail(int exit_code, const std::string& message);
 /// Prints a message of a plugin or module as one line on standard error.
 void logToTerminal(int level, const std::string& who, const std::string& text);
 
-/// While an object of this type lives, errors of plugins and modules are kept instead of printed. If the set-up fails
-/// because of them, its own message contains them, so that each is reported once.
+/// While an object of this type lives, errors of plugins and modules are stored instead of printed. If the set-up fails
+/// because of them, the message of the failure contains them, so that each error is reported once.
 class SetupErrors {
  public:
   SetupErrors();
   ~SetupErrors() { print(); }
   SetupErrors(const SetupErrors&) = delete;
   SetupErrors& operator=(const SetupErrors&) = delete;
-  /// [any] Returns true if this message is an error that is kept for now.
+  /// [any] Returns true if this message is an error, and stores it for later.
   static bool holdsBack(int level, const std::string& who, const std::string& text);
   /// [main] Prints the kept errors; later ones are printed at once.
   static void print();
@@ -69,8 +69,9 @@ void printProblems(const document::Problems& problems, std::FILE* out);
 void printWarnings(document::Problems warnings, std::FILE* out);
 
 /// Loads a scene, or prints every problem on standard error.
-/// @param device_file device file that replaces the scene's devices; empty to keep them @param default_device true uses
-/// the simulated arm if the scene names no device; false leaves the list of devices empty then
+/// @param device_file device file that replaces the scene's devices; empty to keep them
+/// @param default_device used if the scene names no device: true adds the simulated arm, false leaves the list of
+/// devices empty
 std::optional<scene::Scene> loadSceneOrReport(const std::string& file, const std::string& device_file = "",
                                               bool default_device = true);
 

@@ -11,8 +11,8 @@ struct PlainTable {
   size_t left_out = 0;  ///< rows that were not a good report
 };
 
-/// [main] Removes the columns in which `device decode` judges a report (report, time, verdict, why), and the rows that
-/// it did not find good. Any other table stays as it is.
+/// [main] Removes the columns in which `device decode` describes a report (report, time, verdict, why), and the rows
+/// whose verdict is not good. Returns any other table unchanged.
 PlainTable plainTable(const std::string& text);
 
 }  // namespace hapticd::cli

@@ -9,14 +9,16 @@
 
 namespace hapticd::cli {
 
-/// Says which columns of a table become numbers of a report, and how.
+/// The columns of a table that become numbers of a report.
 struct EncodeColumns {
-  std::vector<std::string> names;  ///< name of each number of a row, as encodeRow() knows it
-  std::vector<size_t> from;  ///< column of the table for each of these names; none for joints that follow from the tip
-  std::vector<size_t> tip;  ///< columns x, y and z of the tip, whose joints come last in a row; empty if there are none
+  std::vector<std::string> names;  ///< name of each number of a row, as encodeRow() expects it
+  /// column of the table for each of these names; joints that are computed from the tip have none
+  std::vector<size_t> from;
+  /// columns x, y and z of the tip; the joints that are computed from it come last in a row. Empty if not used
+  std::vector<size_t> tip;
 
-  /// Returns the numbers of one row. @param joints joints of the row before, from which inverse kinematics starts; gets
-  /// the joints of this row
+  /// Returns the numbers of one row. @param joints in: joints of the row before, at which inverse kinematics starts;
+  /// out: joints of this row
   Result<std::vector<double>> row(const double* values, const host::DeviceInstance& arm,
                                   std::vector<double>& joints) const;
 };

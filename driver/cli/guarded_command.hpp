@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Watches a command while it calls plugins: if one crashes, exits or hangs, a message names it and the place of the
-/// scene that asks for it.
+/// Watches a command while it calls plugins. If a plugin crashes, exits or hangs, a message names it and the line of
+/// the scene that asks for it.
 #pragma once
 #include <filesystem>
 
@@ -13,8 +13,8 @@ namespace hapticd::cli {
 
 class GuardedCommand {
  public:
-  /// [main] @param dir folder of the quarantine, to which a plugin is added that ends this command; if empty, the
-  /// plugin is only named
+  /// [main] @param dir folder of the quarantine. If a plugin ends this command, it is added to the quarantine there. If
+  /// empty, the message only names the plugin
   explicit GuardedCommand(const std::filesystem::path& dir = {}) : guard_(none_, dir) { os::prepareSignalStack(); }
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Decides which existing files a command may overwrite: only files of the kind that it writes itself, never other
-/// files or one of its inputs. Without this check, users have overwritten scenes and meshes by a wrong name.
+/// Decides which existing files a command may overwrite. It may overwrite only files of the kind that it writes itself,
+/// and none of its inputs. Otherwise a wrong name could destroy a scene or a mesh.
 #pragma once
 #include <string>
 #include <string_view>
@@ -13,7 +13,8 @@ namespace hapticd::cli {
 struct OutputKind {
   const char* name;                          ///< name with article, such as "a picture (SVG)"
   std::vector<std::string_view> beginnings;  ///< the file must begin with one of these
-  std::string_view within = {};              ///< and must contain this within its first 8 KiB; empty if nothing
+  /// text that the file must contain within its first 8 KiB; empty for no such condition
+  std::string_view within = {};
 };
 
 const OutputKind& pictureKind();                                       ///< SVG

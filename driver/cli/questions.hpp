@@ -27,7 +27,7 @@ class Questions {
  public:
   explicit Questions(const Command& command) : command_(command) {}
 
-  /// Asks again until `wrong`, which says what is wrong with the answers so far, gives "".
+  /// Asks until the answer is accepted. @param wrong returns what is wrong with the answers so far, or ""
   template <class Value, class Wrong>
   void ask(const char* option, const char* question, Value& value, const Wrong& wrong) {
     if (command_.given(option)) return;

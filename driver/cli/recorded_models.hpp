@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Builds the models of a recording again, so that they can be drawn. Answers `list` and `geometry` as the daemon
-/// would, on a control socket in a folder of its own.
+/// Builds the models of a recording again, so that they can be drawn. It answers `list` and `geometry` as the daemon
+/// would, on a control socket in a temporary folder.
 #pragma once
 #include <memory>
 #include <string>
@@ -14,7 +14,7 @@ class RecordedModels {
   /// [main] Builds all models that can be built. Requests for a model whose plugin or files no longer exist are
   /// answered with the reason.
   static Result<std::unique_ptr<RecordedModels>> serve(const std::string& recording);
-  virtual ~RecordedModels() = default;  ///< the folder is removed too
+  virtual ~RecordedModels() = default;  ///< also removes the folder
   RecordedModels() = default;
   RecordedModels(const RecordedModels&) = delete;
   RecordedModels& operator=(const RecordedModels&) = delete;

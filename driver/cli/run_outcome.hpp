@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What `hapticd run` leaves behind: summary, report and picture.
+/// The results of `hapticd run` after its end: summary, report and picture.
 #pragma once
 #include <string>
 #include <vector>

@@ -5,15 +5,15 @@
 
 namespace hapticd::cli {
 
-/// From now on SIGINT and SIGTERM end the run of the present StopBySignal. If a signal comes before there is a run, the
-/// run ends as soon as it exists.
+/// From now on SIGINT and SIGTERM end the run that a StopBySignal names. If a signal comes before there is such an
+/// object, the run ends as soon as one is created.
 void heedStopSignals();
 
-/// From now on SIGTSTP makes the run ramp its forces out before the process stops.
+/// From now on SIGTSTP makes the run ramp out its forces before the process is suspended.
 void heedSuspendSignal();
 
-/// Names the run that signals end, while this object lives. A second Ctrl-C has no further effect on a run that the
-/// first is ending.
+/// While an object of this class lives, signals end the run of its `runner`. While the run ends, a second Ctrl-C has no
+/// effect.
 class StopBySignal {
  public:
   explicit StopBySignal(servo::Runner& runner);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Finds settings of a scene's models that nobody meant, for `check` and for models that are added to a running daemon.
+/// Finds unusual settings of a scene's models, for `check` and for models that are added to a running daemon.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,11 +12,12 @@
 
 namespace hapticd::cli {
 
-/// [main] Warns of a model so far away that no arm reaches it, because its position was meant in another unit.
+/// [main] Warns of a model that is so far away that no arm reaches it, probably because its position is in another
+/// unit.
 document::Problems farModels(const scene::Scene& scene);
 
-/// [main] Warns of a stiffness too small to feel, because it was given in N/mm, as data sheets do; read as N/m it is a
-/// thousandth of what was meant.
+/// [main] Warns of a stiffness too small to feel. It was probably given in N/mm, as in data sheets: read as N/m it is a
+/// thousandth of that.
 document::Problems softModels(const scene::Scene& scene);
 
 /// [main] Returns the scene, with the arm that `run` uses if the scene names none.
@@ -33,8 +34,9 @@ document::Problems idleBounds(const scene::Scene& scene);
 /// [main] Warns of models that `run` would leave out because their plugin is in quarantine.
 document::Problems quarantinedModels(const scene::Scene& scene);
 
-/// [main] Adds warnings about unusual values. A value that has a warning already gets no second one. @param boxes boxes
-/// of the models, as tryModels() found them @param unread keys with problems, on which no judgement may depend
+/// [main] Adds warnings about unusual values. A value that already has a warning gets no second one.
+/// @param boxes boxes of the models from tryModels()
+/// @param unread keys that could not be read; no warning depends on them
 void addImplausible(const scene::Scene& scene, const diagnostics::ModelBoxes& boxes,
                     const diagnostics::UnreadKeys& unread, document::Problems& warnings);
 

@@ -18,7 +18,7 @@ class SetOption {
   /// @param classes classes of the plugin file; each ID must be a parameter of one of them
   SetOption(const std::vector<std::string>& pairs, const std::vector<host::ClassInfo>& classes);
 
-  /// [main] Returns the values for one class; values for other classes are left out.
+  /// [main] Returns the values for the parameters of one class, and leaves out those for other classes.
   std::vector<scene::Value> valuesFor(const host::ClassInfo& info);
 
   /// Returns one line for each problem so far: what is wrong, and what was expected.
@@ -29,8 +29,8 @@ class SetOption {
   std::vector<std::string> problems_;
 };
 
-/// [main] Returns a line with "give --set heights=FILE" for each required parameter that has no value, with its
-/// documentation.
+/// [main] Returns one line for each required parameter that has no value: its documentation, and the option to give,
+/// such as "give --set heights=FILE".
 std::vector<std::string> missing(const host::ClassInfo& info, const std::vector<scene::Value>& values);
 
 }  // namespace hapticd::cli

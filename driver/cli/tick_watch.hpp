@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Watches a command that runs the servo core without a servo loop: if a step of a plugin does not return, the plugin
-/// is named and the command ends.
+/// Watches a command that steps the servo core without a servo loop. If a step of a plugin does not return, the command
+/// ends with a message that names the plugin.
 #pragma once
 #include "base/offline_tick.hpp"
 #include "base/thread_usage.hpp"
@@ -12,11 +12,11 @@ namespace hapticd::cli {
 
 class TickWatch {
  public:
-  /// [main] Construct it in the thread that ticks. If no watching thread can be started, nothing is watched.
+  /// [main] Create it in the thread that makes the ticks. If the watching thread cannot be started, nothing is watched.
   TickWatch() { (void)watch_.start(); }
 
  private:
-  /// Tells EndWatch the ticks of a command. The command has no servo loop, but a tick may still hang.
+  /// Gives EndWatch the ticks of the command, because a tick may hang even though there is no servo loop.
   class Ticks final : public watch::IdleTarget {
    public:
     uint64_t ticks() const noexcept override { return OfflineTick::ended(); }

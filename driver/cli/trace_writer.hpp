@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Writes the results of `hapticd trace`: one CSV row per tick and model. Numbers have 17 digits, so that reading them
-/// gives the same doubles.
+/// Writes the results of `hapticd trace`: one CSV row per tick and model. Numbers have 17 digits, so that a reader gets
+/// the same doubles.
 #pragma once
 #include <cstdint>
 #include <cstdio>

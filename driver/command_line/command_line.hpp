@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The command line of a program: its options, subcommands, help and errors. It uses the library CLI11, but keeps
-/// CLI11's headers out of the files that include this one, so that they compile fast.
+/// The command line of a program: its options, subcommands, help and errors. It uses the library CLI11. Files that
+/// include this header do not include the headers of CLI11, so they compile fast.
 ///
 /// Commands and options belong to their Program. A Command or an Option object is only a reference, which is cheap to
 /// copy and valid as long as the Program lives. Definitions that contradict each other (two options with one name)
@@ -49,7 +49,7 @@ class Option {
   Option excludes(const Option& other) const;
   Option excludes(const std::string& name) const;
   Option showDefault() const;  ///< the help shows the value that the variable has now
-  /// Sets the value that counts if the option is given without one.
+  /// Sets the value that the variable gets if the option is given without a value.
   Option valueWithoutWord(const std::string& value) const;
 
   // What the help says about the option.
@@ -108,9 +108,9 @@ class Program : public Command {
   Program& operator=(const Program&) = delete;
 
   void version(const std::string& text) const;  ///< sets the text that --version prints
-  /// Reads the command line and runs the callback of the given command; the callback's exceptions pass through.
-  /// @return 0 if it printed the help or the version, kBadUsage if it printed an error: the program must end with this
-  /// code; nothing if the program must go on
+  /// Reads the command line and runs the callback of the given command. Exceptions of the callback are passed on.
+  /// @return the exit code with which the program must end: 0 if the help or the version was printed, kBadUsage if an
+  /// error was printed. Nothing if the program must go on
   std::optional<int> parse(int argc, const char* const* argv) const;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A WebSocket connection that is used by one thread, whose calls wait for each message; and a port that accepts such
+/// A WebSocket connection for use by one thread, whose calls wait for each message, and a port that accepts such
 /// connections.
 #pragma once
 #include <memory>
@@ -29,9 +29,9 @@ class Listener {
   /// [main] Binds 127.0.0.1. @param port 0 takes any free port
   static Result<std::unique_ptr<Listener>> listen(unsigned short port);
   virtual unsigned short port() const = 0;
-  /// [any] Called from one thread only. Returns the next connection; nullptr if nobody connected in this time, or if
-  /// the connection was refused. A browser is refused unless this machine serves its page; otherwise any page on the
-  /// web could connect.
+  /// [any] Called from one thread only. Waits for the next connection, for at most `timeout_ms` [ms]. Returns nullptr
+  /// if none came or if the connection was refused. A browser is refused unless its page comes from this machine;
+  /// otherwise any page on the web could connect.
   virtual std::unique_ptr<Channel> accept(int timeout_ms) = 0;
 };
 

@@ -11,8 +11,8 @@
 
 namespace hapticd {
 
-/// The newest displacements of all nodes. One thread writes them and another reads them, without waiting for each
-/// other: a reader that was overtaken by the writer tries again.
+/// The newest displacements of all nodes. One thread writes them and another thread reads them. Neither waits for the
+/// other: if the writer has overwritten the values during a read, the reader reads them again.
 class DisplacementBuffer {
  public:
   explicit DisplacementBuffer(std::size_t nodes) : values_(4 * nodes + 1) {}  ///< [main]
@@ -30,8 +30,8 @@ class DisplacementBuffer {
 };
 
 /// Writes the vertices of a contour for a host that takes the vertices from step() (hsp_step::viz_xyz). A contour that
-/// is too large for one step is computed in parts over several steps, all for the body as it was at the first part. The
-/// host then gets the last complete frame.
+/// is too large for one step is computed over several steps, from the displacements at the first of them. Meanwhile the
+/// host gets the last complete frame.
 class Frames {
  public:
   Frames(std::unique_ptr<medial::MovingMesh> contour, std::size_t nodes);  ///< [main] allocates all memory

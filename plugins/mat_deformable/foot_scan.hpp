@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Searches for a nearer part of a skeleton while a probe is pressed in, because in a valley two flanks are nearly
-/// equally near.
+/// Searches for a nearer part of a skeleton while a probe is pressed in. In a valley two flanks are nearly equally
+/// near, and Newton's method follows only one of them.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -15,14 +15,14 @@ namespace hapticd {
 class FootScan {
  public:
   explicit FootScan(const medial::Skeleton& skeleton);  ///< [main] makes the samples
-  /// [rt] Examines some samples after the sample `next`, and sets `next` to the last of them; after the last sample
-  /// comes the first.
+  /// [rt] Examines the next samples in turn and begins again after the last sample.
   /// @param width [m] a foot that is certainly at another place may be less deep by this much
-  /// @return the parameters of the best sample at another place that may be nearer to p than the foot, or less near by
-  /// at most `width`
+  /// @param next in: index of the sample that was examined last; out: the new one
+  /// @return the parameters of the best sample at another place whose foot may be nearer to p than `foot`, or farther
+  /// away by at most `width`
   std::optional<std::array<double, 2>> rival(const Eigen::Vector3d& p, const medial::SkeletonFoot& foot, double width,
                                              uint32_t& next) const noexcept;
-  /// [rt] Returns 0 if two feet are at the same place of the skeleton, 1 if they are at two places; values between
+  /// [rt] Returns 0 if two feet are at the same place of the skeleton, 1 if they are at two places, and values between
   /// if the two places are close together.
   static double apart(const medial::SkeletonFoot& a, const medial::SkeletonFoot& b) noexcept;
   std::size_t bytes() const noexcept {

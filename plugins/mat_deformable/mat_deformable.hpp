@@ -143,7 +143,7 @@ class MatDeformable final : public Shape {
   static constexpr const char* kDynamicsNames[] = {"off", "on", "seen", "felt", "auto", "file"};
   enum Dynamics { kOff, kOn, kSeen, kFelt, kAuto, kAsFile };
 
-  /// The state of a body as bytes: `kept` at the last deactivation, `loaded` for the next activation.
+  /// The state of a body as bytes: `kept` was saved at the last deactivation, `loaded` is for the next activation.
   struct States {
     std::vector<unsigned char> kept, loaded;
   };
@@ -155,7 +155,8 @@ class MatDeformable final : public Shape {
   medial::BodyOptions bodyOptions(const MedialFile& file, double rate_hz) const;
   Dynamics dynamicsOf(const MedialFile& file) const;
   void openBody(const MedialFile& file, double rate_hz);
-  /// [main] Reads the geometry file, and logs what is doubtful in one with problems. @throws ModelFileError
+  /// [main] Reads the geometry file. If the file has problems, also logs warnings about its other values. @throws
+  /// ModelFileError
   MedialFile readFile() const;
   void openContacts(uint32_t probes);
   uint32_t openDisplay();    ///< @return the number of moving vertices; 0 if none are drawn
@@ -168,7 +169,7 @@ class MatDeformable final : public Shape {
   void describeMaterial(const MedialFile& file, double tick) const;
   void describeDynamics(const MedialFile& file) const;
   void describeContact(const MedialFile& file, double tick) const;
-  /// material of a point as the file gives it
+  /// Returns the material of a point of the file. Its relaxation comes from the parameters.
   medial::Tissue tissueAt(const MedialFile& file, std::size_t point) const;
   std::vector<medial::Tissue> distinct(const MedialFile& file) const;
   void writeLog(int level, const std::string& text) const;  ///< [main] writes to the log of the host, if it has one
@@ -215,12 +216,13 @@ class MatDeformable final : public Shape {
   std::unique_ptr<SoftBody> body_;
   std::vector<Track> tracks_;           ///< one per probe
   std::vector<medial::Press> presses_;  ///< contacts of this step; has room for all probes
-  /// On a felt surface: one entry for each probe that is near in this step, with the probe's index.
+  /// On a felt surface: one entry for each probe that is near the surface in this step, with the index of the probe.
   struct FeltProbe {
     uint32_t probe = 0;
     Felt felt;
   };
-  /// contacts of this step; there is room for the most contacts of one surface, and the first met_.size() are in use
+  /// Contacts of this step. The list has as many entries as one surface can have contacts; the first met_.size() are in
+  /// use.
   std::vector<medial::FeltContact> contacts_;
   std::unique_ptr<medial::FeltPlace> beside_;  ///< place of the rival foot, for the contact that is being handled
   std::vector<FeltProbe> met_;                 ///< contacts of this step; has room for all probes

@@ -9,7 +9,7 @@
 
 namespace hapticd {
 
-/// [m] greatest coordinate and radius; with larger ones, squares would lose all digits
+/// [m] greatest coordinate and greatest radius. The squares of larger numbers would lose all digits of small distances
 inline constexpr double kFarthestPoint = 1e6;
 
 /// The contents of a model file: a body from a grid or from a mesh.
@@ -21,8 +21,8 @@ struct MedialFile {
   std::vector<std::string> odd;        ///< warnings of warnOfMedialFile()
 };
 
-/// Material of all vertices if the file gives none. A file may give at most ten times this damping, or 5 N s/m if that
-/// is more, because the host takes the parameter as the damping that the body claims.
+/// Material of all vertices if the file gives none. The damping in a file is at most ten times this damping, or 5 N s/m
+/// if that is more, because the host takes the parameter as the damping that the body claims.
 struct Material {
   double stiffness = 0, damping = 0, mass = 0;  ///< [N/m], [N s/m], [kg]
   /// [m] radius of the flat tip for which Young's modulus is converted into a stiffness

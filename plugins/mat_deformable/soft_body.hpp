@@ -17,7 +17,7 @@
 
 namespace hapticd {
 
-/// How the foot point is searched.
+/// How the foot point is searched for.
 struct FindOptions {
   medial::NewtonOptions newton;
   bool binary = false;  ///< true: uses the bisection of Corso et al. 2002 instead of Newton's method
@@ -25,39 +25,40 @@ struct FindOptions {
   double crease = 0;  ///< [m] width over which the force turns from one part of a mesh to another; see MeshBody::foot()
 };
 
-/// What is remembered of one probe on a body from tick to tick.
+/// The values of one probe on a body that are kept from tick to tick.
 struct Track {
   medial::SkeletonFoot foot;
   Eigen::Vector3d last{0, 0, 0};    ///< [m] position of the probe in the last tick
   Eigen::Vector3d pushed{0, 0, 0};  ///< direction in which the surface pushed in the last tick; zero if it did not push
   std::array<double, 2> offer{};    ///< parameters of the foot that the proximity search found last
   bool active = false, known = false, offered = false;
-  int side = 0;          ///< side of a sheet from which the probe came, +1 or -1; 0 if from neither
+  int side = 0;          ///< side of a sheet from which the probe came, +1 or -1; 0 if the side is not decided
   bool settled = false;  ///< in the interior of a sheet: `pushed` has turned fully to the direction of the foot
   contact::Friction friction;
   // The following is used only on a felt surface:
-  /// the probe was located in an earlier tick since it came near; if false, it may have begun inside
+  /// true if the probe was already located in an earlier tick since it came near; if false, the probe may have begun
+  /// inside
   bool met = false;
   bool counted = false;  ///< true if `inside` was set in the last tick
   bool near = false;     ///< the probe was within reach of the swinging surface in the last tick
-  /// in a valley: the foot on another part of the surface, below which the probe is nearly as deep
+  /// in a valley: the foot on the other flank, if the probe is nearly as deep below that flank
   medial::SkeletonFoot rival;
-  /// 0 if there is no rival or if it is at the foot's own place; 1 if it is at another place; values between while the
-  /// two places separate
+  /// 0 if there is no rival, or if the rival is the same foot; 1 if the two feet are clearly separate. Values between
+  /// occur while the two feet move apart
   double apart = 0;
-  bool swapped = false;  ///< true if the foot is the rival of the last tick
+  bool swapped = false;  ///< true if the foot was the rival of the last tick
   uint32_t scanned = 0;  ///< index of the sample that the search for a rival examined last
   bool hopped = false;   ///< true if the foot jumped to another part of the surface in this tick
   double inside = 0;     ///< [m] depth of the probe below the displaced surface
 };
 
-/// The surface as the probe feels it. After a push through the skeleton, this is still the surface of the side from
+/// The surface that the probe feels. After a push through the skeleton, this is still the surface of the side from
 /// which the probe came.
 struct Felt {
   Eigen::Vector3d normal{0, 0, 1};
   double depth = 0;
   double steep = 1;  ///< length of the depth's gradient; less than 1 if two parts of the surface push together
-  double share = 0;  ///< share of the rival, 0 to 1
+  double share = 0;  ///< weight of the rival (see rivalShare()), 0 to 1
 };
 /// if the cosine between the felt direction and the direction of the foot is above this, they count as equal
 inline constexpr double kSameDirection = 0.99;
@@ -76,7 +77,7 @@ struct Description {
   bool warning = false;
 };
 
-/// The stiffness of one place of the body: as the file gives it, and as a hand feels it.
+/// The stiffness at one point of the body: the number in the file, and the stiffness that a hand feels.
 struct FeltMaterial {
   Eigen::Vector3d place{0, 0, 0};  ///< [m] point on the contour
   double told = 0;                 ///< [N/m] stiffness in the file
@@ -97,14 +98,16 @@ class SoftBody {
   /// [rt] Returns the surface that the probe feels at p.
   /// @param moved [m] motion of the probe since the last tick
   virtual Felt felt(const Eigen::Vector3d& p, const Eigen::Vector3d& moved, Track& track) const noexcept = 0;
-  /// [rt] Returns the force on a probe at p at the depth `felt.depth`.
+  /// [rt] Returns the force on a probe at p, at the depth `felt.depth`. @param closing_speed [m/s] speed at which the
+  /// depth grows
   virtual medial::BodyForce press(const Eigen::Vector3d& p, const medial::SkeletonFoot& foot, const Felt& felt,
                                   double closing_speed) const noexcept = 0;
   /// [rt] Describes to a felt surface the place where the probe touches it.
   virtual void placeOf(const Eigen::Vector3d& p, const medial::SkeletonFoot& foot, const Felt& felt,
                        medial::Envelope envelope, medial::FeltPlace& place) noexcept = 0;
-  virtual medial::FeltSurface* feltSurface() noexcept = 0;  ///< [any] nullptr if the dynamics are only seen
-  /// [rt] Moves the body under all contacts of a tick; only if the dynamics are only seen.
+  /// [any] nullptr if the dynamics are only drawn and not felt
+  virtual medial::FeltSurface* feltSurface() noexcept = 0;
+  /// [rt] Moves the body under all contacts of a tick, if the dynamics are only drawn and not felt.
   virtual void yield(std::span<const medial::Press> contacts) noexcept = 0;
   /// [sim] Returns the foot of p, by a search without a known start.
   virtual medial::SkeletonFoot search(const Eigen::Vector3d& p, const FindOptions& options) const noexcept = 0;
@@ -112,7 +115,7 @@ class SoftBody {
   virtual medial::Nodes& nodes() noexcept = 0;  ///< [rt] the moving parts of the body
   virtual const Eigen::AlignedBox3d& bounds() const noexcept = 0;
   virtual double greatestRadius() const noexcept = 0;     ///< [m] greatest radius of all spheres
-  virtual double greatestStiffness() const noexcept = 0;  ///< [N/m] no force grows faster with depth
+  virtual double greatestStiffness() const noexcept = 0;  ///< [N/m] greatest slope of the force over depth
   virtual std::unique_ptr<medial::MovingMesh> contour(double chord_error) const = 0;  ///< [main] a mesh for drawing
   /// [main] Returns a mesh that is fine enough for the body's volume to be right to a thousandth.
   virtual std::unique_ptr<medial::MovingMesh> hull() const = 0;

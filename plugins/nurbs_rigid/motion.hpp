@@ -52,25 +52,24 @@ struct MotionParameters {
   std::array<double, 3> pivot_{}, axis_{0, 1, 0}, velocity_{}, spin_{};
 };
 
-/// [main] Returns the centre of mass and the inertia of 1 kg that fills a model: the volume inside its surfaces, or, if
-/// these are not closed, the box around the model. `bounded` is set to true in the first case.
+/// [main] Returns the centre of mass and the inertia of 1 kg that fills a model evenly. If the surfaces are closed, it
+/// fills the volume inside them, and `bounded` becomes true. Otherwise it fills the box around the model.
 dynamics::MassProperties massProperties(const trace::Model& model, bool& bounded);
-/// [main] Does the same as the function above for a part, from triangles that are exact to a ten-thousandth of its
-/// size.
+/// [main] Does the same for a part. It integrates over triangles that are exact to a ten-thousandth of the part's size.
 dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded);
 
 /// A model that moves under forces: its rigid body, its frame, and its contacts.
 class DynamicBody {
  public:
   /// [main] Places the body.
-  /// @param shape properties for 1 kg, used where the parameters give none
+  /// @param shape properties for 1 kg, used where the parameters leave out the centre of mass or the inertia
   /// @throws std::invalid_argument if no body can have these properties.
   DynamicBody(const MotionParameters& parameters, const dynamics::MassProperties& shape,
               const hsp_activation& activation);
 
-  /// [rt] Moves the body through the step, pushed by the contacts that were given to remember() since the last step.
-  /// Writes the new pose.
-  /// @return the same step, with its probes seen from the new pose
+  /// [rt] Moves the body through the step. It is pushed by the contacts that were given to remember() since the last
+  /// step. Writes the new pose.
+  /// @return the same step, with the positions and velocities of its probes relative to the new pose
   hsp_step move(const hsp_step& step) noexcept HSP_RT;
 
   /// [rt] Stores the contact of probe `index` with the body, in the model frame. Probes that are not stored do not push

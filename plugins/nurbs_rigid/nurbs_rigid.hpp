@@ -64,7 +64,8 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
   const void* extension(const char* name);
 
  private:
-  /// greatest slope of bumps; together with the wall itself it is half of what a host allows
+  /// Greatest slope of bumps [m per m]. The stiffness of a wall with such bumps is (1 + 4) times that of the wall,
+  /// which is half of what a host allows.
   static constexpr double kSteepest = 4;
   enum Motion { kStatic = 0, kKinematic = 1, kDynamic = 2 };
   static constexpr const char* kMotionNames[] = {"static", "kinematic", "dynamic"};
@@ -87,8 +88,8 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
   Eigen::Array2d wavesOf(const Extent& extent) const noexcept HSP_RT {
     return (extent.length / texture_wavelength_).round().max(1);
   }
-  /// Returns the greatest slope of the bumps on a surface with the given amplitude, if the parameters are evenly
-  /// spread.
+  /// Returns the greatest slope of the bumps on a surface with the given amplitude. The length of a bump is assumed to
+  /// be equal all over the surface.
   double slopeOf(const Extent& extent) const noexcept HSP_RT {
     return texture_amplitude_ * 2 * std::numbers::pi * (wavesOf(extent) / extent.length).maxCoeff();
   }

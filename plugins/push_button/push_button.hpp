@@ -43,7 +43,7 @@ class PushButton final : public TracedShape {
   struct Press {
     double travel = 0;   ///< [m] travel of the probe from the cap at rest, along the axis
     double along = 1;    ///< component of the cap's normal along the axis
-    bool blind = false;  ///< true if a probe had no good sample
+    bool blind = false;  ///< true if some probe had no good sample
   };
   Press press(const hsp_step& step) noexcept HSP_RT;
   MovingFrame frame(double dt) noexcept HSP_RT;

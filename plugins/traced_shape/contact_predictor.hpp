@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tools for traced shapes that the probes push: the force of each probe on the body in the coming step.
+/// For traced shapes that the probes push: predicts the force of each probe on the body in the coming step.
 #pragma once
 #include <algorithm>
 #include <span>

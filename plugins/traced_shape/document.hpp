@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A YAML or JSON file as a tree, and the place of each value in the file.
+/// A YAML or JSON file as a tree, and the line and column of each value.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -16,16 +16,15 @@ struct PathStep {
 };
 using Path = std::vector<PathStep>;
 
-/// Collects the problems of one file and prefixes them with line and column. Positions are found by reading the file a
-/// second time, only if there is a problem. So JSON files of tens of megabytes load as fast as with a plain JSON
-/// reader.
+/// Collects the problems of one file, each with line and column. The positions are found by reading the file a second
+/// time, and only if there is a problem. So JSON files of tens of megabytes load as fast as with a plain JSON reader.
 class Problems {
  public:
   Problems(std::string file, const std::string& text) : file_(std::move(file)), text_(text) {}
   void add(const Path& path, const std::string& what);
   bool any() const { return !found_.empty(); }
   std::size_t count() const { return found_.size(); }
-  /// Returns true if a problem is about this key, in the whole file or a part of it.
+  /// Returns true if some problem is about this key, or a value inside it, anywhere in the file.
   bool about(const std::string& key) const;
   bool full() const;
   /// [main] Returns the problems, each as `file:line:column: key: what`.

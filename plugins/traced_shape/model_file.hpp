@@ -13,14 +13,14 @@ namespace hapticd {
 /// The contents of a file of format hapticd-model/1.
 struct ModelFile {
   std::vector<spline::SurfaceData> surfaces;  ///< at least one, each valid
-  std::vector<trace::EdgeLink> edges;         ///< common edges that the file states; the others are found by geometry
+  std::vector<trace::EdgeLink> edges;         ///< common edges that the file gives; all others are found by geometry
 };
 
 /// All problems of a model file, one per line: `file:line:column: key: what, expected what`.
 class ModelFileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
-  /// Warnings about the values of the file that could be read, as warnOfModel() and warnOfMedialFile() give them.
+  /// Warnings about the values of the file that could be read, from warnOfModel() and warnOfMedialFile().
   std::vector<std::string> odd;
 };
 

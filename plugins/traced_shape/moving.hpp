@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Tools for traced shapes that move: the frame of a model, and its probes as seen from its new frame.
+/// For traced shapes that move: the frame of a model, and the probes relative to the frame to which the model has
+/// moved.
 #pragma once
 #include <Eigen/Geometry>
 #include <vector>
@@ -34,12 +35,12 @@ struct MovingFrame {
   }
 };
 
-/// The probes of a step, as seen from the pose to which the model has moved in this step.
+/// The probes of a step, relative to the pose to which the model has moved in this step.
 class MovedProbes {
  public:
   explicit MovedProbes(uint32_t most) : probes_(most) {}  ///< [main]
 
-  /// [rt] Returns the step `given`, whose probes are in the frame `before`, with its probes in the frame `now`.
+  /// [rt] Returns a copy of the step `given` with its probes converted from the frame `before` to the frame `now`.
   hsp_step step(const hsp_step& given, const MovingFrame& before, const MovingFrame& now) noexcept HSP_RT {
     const Eigen::Quaterniond turn = now.orientation.conjugate() * before.orientation;
     hsp_step moved = given;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Finds out if a point lies inside other solids of a part. Each solid is asked alone, because a search over all solids
-/// returns only the nearest face, and if a bolt fills a hole, the faces of both are equally near.
+/// Finds out if a point lies inside other solids of a part. Each solid is searched separately, because a search over
+/// all solids returns only the nearest face. If a bolt fills a hole, for example, a face of the bolt and a face of the
+/// hole are equally near.
 #pragma once
 #include "kernels/brep/tracer.hpp"
 
@@ -10,7 +11,7 @@ class OtherSolids {
  public:
   explicit OtherSolids(const brep::Model& part) : part_(part), search_(part) {}
 
-  /// [main] True if a point (in the model frame) is inside another solid than that of `place`.
+  /// [main] True if a point (in the model frame) is inside a solid other than that of `place`.
   bool hold(const Eigen::Vector3d& point, const brep::Placement& place);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Finds walls of a part that a press would go through.
+/// Finds walls of a part that are so thin that a probe goes through them when it presses.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -13,9 +13,9 @@ struct ThinWall {
   std::uint32_t feature = 0;  ///< the face or triangle that was pressed
 };
 
-/// [main] Returns the thinnest wall of the part's solids through which a press of `depth` [m] goes, so that the probe
-/// comes out behind a face that looks away from the pressed one. Returns nothing if there is no such wall, or if no
-/// sample met it. Tries at most about 2000 points, spread over all faces and triangles.
+/// [main] Finds the thinnest wall of the part's solids that a press of `depth` [m] goes through: the probe is then
+/// outside again, behind a face whose normal points away from the pressed face. Returns nothing if there is no such
+/// wall, or if no sample point lies on it. Tries at most about 2000 points, spread over all faces and triangles.
 std::optional<ThinWall> thinnestWall(const brep::Model& part, double depth);
 
 }  // namespace hapticd

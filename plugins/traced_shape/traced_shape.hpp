@@ -15,7 +15,7 @@
 
 namespace hapticd {
 
-/// The position of a probe relative to a model, seen from the side that is felt.
+/// The contact of a probe with a model: foot point, normal and depth, as felt from the side on which the probe is.
 struct Touch {
   contact::Foot foot;
   Eigen::Vector3d normal{0, 0, 1};  ///< unit normal, pointing away from the solid
@@ -74,12 +74,12 @@ class TracedShape : public Shape {
   void reset() noexcept HSP_RT;
 
  protected:
-  /// [N] Force up to which a claim of stiffness holds if no arm is known: more than any hand-held arm gives.
+  /// [N] The claimed stiffness holds up to this force if no arm is known. It is more than any hand-held arm exerts.
   static constexpr double kUnknownForce = 100;
   enum Sides { kFront = 0, kBack = 1, kBoth = 2, kAuto = 3 };
 
-  /// [main] Reads and prepares the model, with one tracer per probe. Logs the model's warnings; fills size and memory
-  /// of the report. @throws std::exception with a text for the user.
+  /// [main] Reads and prepares the model, with one tracer per probe. Writes the warnings of the model to the log, and
+  /// the sizes of the model and of its memory to `report`. @throws std::exception with a text for the user.
   void load(const hsp_activation& activation, hsp_report& report);
   /// [rt] Traces one probe, and sets point, normal, depth, parameters and flags of its contact. The forces stay zero.
   Touch trace(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
@@ -117,16 +117,18 @@ class TracedShape : public Shape {
   static constexpr const char* kMethodNames[] = {"dpt", "newton"};
   static constexpr const char* kEvaluationNames[] = {"table", "net"};
 
-  /// The feet that the proximity search has offered since the last step. After a jump only these are valid.
+  /// The foot points that the proximity search has found for one probe since the last step. After a jump only these are
+  /// valid.
   struct OfferedFeet {
     std::array<hsp_near, 64> near;
     uint32_t count = 0;
   };
 
-  /// The result of a search about a place, and how often it has been returned since.
+  /// The result of a search around a point. Several requests near this point can be answered with it.
   struct CachedSearch {
     Eigen::Vector3d at{0, 0, 0};
-    /// [m] place of the last request that was answered with this result; the same hand asks again near it
+    /// [m] position of the last request that was answered with this result. A request far from it comes from another
+    /// hand
     Eigen::Vector3d asked{0, 0, 0};
     double radius = -1;
     int told = 0;  ///< number of requests answered with this result
@@ -156,7 +158,7 @@ class TracedShape : public Shape {
   std::unique_ptr<trace::Model> model_;
   std::vector<trace::Tracer> tracers_;            ///< one per probe
   std::vector<OfferedFeet> offers_;               ///< one per probe
-  std::vector<char> searched_;                    ///< by probe: 1 if a search has answered since the last jump
+  std::vector<char> searched_;                    ///< by probe: 1 if a search has returned a result since the last jump
   mutable std::array<CachedSearch, 4> searches_;  ///< [sim] the newest results, enough for several fingers
   mutable std::size_t next_search_ = 0;           ///< [sim] index of the result that is replaced next
   Mesh mesh_;

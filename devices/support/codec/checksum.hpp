@@ -17,8 +17,10 @@ struct Check {
   uint8_t bits = 8;         ///< number of bits of the result, 1 to 64
   uint8_t word = 1;         ///< [bytes] size of the words of a sum or xor; a last word may be shorter
   bool big_endian = false;  ///< byte order of a word
-  bool reflected = false;   ///< a CRC that takes the lowest bit of each byte first, and gives its result in that order
-  bool negated = false;     ///< two's complement of a sum: the sum of all words and the checksum is zero
+  /// a CRC that processes the lowest bit of each byte first; the bits of its result have the reverse order
+  bool reflected = false;
+  /// the checksum is the two's complement of the sum, so that the sum of all words and the checksum is zero
+  bool negated = false;
   uint64_t polynomial = 0, initial = 0, final_xor = 0;
 };
 

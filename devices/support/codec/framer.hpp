@@ -9,15 +9,15 @@
 
 namespace hapticd::codec {
 
-/// Bounded and allocation-free. After garbage it finds the next report by its marks.
+/// It takes bounded time and allocates no memory. After wrong bytes it finds the next report by its marks.
 class Framer {
  public:
   Framer(const Framing& framing, size_t report_bytes) : framing_(framing), report_bytes_(report_bytes) {}
 
   void reset() noexcept { filled_ = 0, pending_ = false; }
 
-  /// [any] Takes the bytes of one transfer, and calls `report(bytes)` for each report that is whole now.
-  /// @return bytes that belonged to no report
+  /// [any] Takes the bytes of one transfer, and calls `report(bytes)` for each report that is complete now.
+  /// @return number of bytes that belonged to no report
   template <class Report>
   size_t take(std::span<const uint8_t> bytes, const Report& report) noexcept {
     size_t lost = 0;
@@ -43,7 +43,7 @@ class Framer {
     return false;
   }
 
-  /// A mark byte that is not escaped is a mark at any place. @return true if `held_` is a whole report
+  /// A mark byte that is not escaped counts as a mark at every position. @return true if `held_` is a whole report
   bool takeEscaped(uint8_t byte, size_t& lost) noexcept {
     const Escape& escape = framing_.escape;
     if (byte == escape.mark && !pending_) return pending_ = true, false;

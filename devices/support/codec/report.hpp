@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The layout of an arm's reports as data. Decoding and encoding are pure functions, allocation-free and bounded in
-/// time. Every byte sequence gets a verdict, and a decoder returns only finite numbers.
+/// The layout of an arm's reports as data. Decoding and encoding are pure functions that allocate nothing and take
+/// bounded time. Every byte sequence gets a verdict, and only finite numbers are decoded.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -65,7 +65,7 @@ struct Field {
   double value = 0;
   uint64_t code = 0;      ///< the bits of an integer constant
   uint64_t modulo = 0;    ///< a sequence counts from 0 to modulo - 1; 0 if it uses all of its bits
-  bool inverted = false;  ///< a bit of 0 means yes
+  bool inverted = false;  ///< true if a bit of 0 means yes
   Check check;            ///< method of a checksum
   /// Returns how many bytes the field touches, counted from `at`.
   size_t bytes() const noexcept { return (size_t{bit_skip} + bits + 7) / 8; }
@@ -76,7 +76,8 @@ struct Report {
   int id = -1;      ///< HID report id, which comes before the other bytes; -1 if there is none
   size_t size = 0;  ///< bytes without the id
   std::vector<Field> fields;
-  bool whole = false;  ///< each field was read: what none of them is, the report does not have
+  /// true if every field of the file could be read; only then it is certain which roles the report does not have
+  bool whole = false;
   size_t bytes() const noexcept { return size + (id >= 0 ? 1 : 0); }
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A view of structured data that knows the path of every key, so that errors in a device file can name their place.
+/// A view of structured data. Each value has the path of its key, so that an error message can name the key in the
+/// device file.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -9,12 +10,13 @@
 
 namespace hapticd::codec {
 
-/// One value and its path. A problem is noted with the path, and reading continues with an allowed value, so that all
-/// problems of a file are reported at once.
+/// One value and its path. If the value is wrong, a problem is noted with the path, and an allowed value is returned
+/// instead. So reading continues, and all problems of a file are reported at once.
 class Tree {
  public:
   bool has(const char* key) const;
-  Tree at(const char* key) const;  ///< a key that must exist; if it is missing, its values are allowed defaults
+  /// returns the value of a key that must exist; if the key is missing, notes a problem and returns allowed values
+  Tree at(const char* key) const;
   Tree item(size_t index) const;
   size_t count() const;  ///< number of items of a list
   /// Reads a number, or text such as 0x1A. @param unit unit for messages, or "" if there is none
@@ -23,7 +25,7 @@ class Tree {
   uint64_t bits(unsigned width) const;  ///< an exact whole number of up to 64 bits; two's complement if negative
   bool boolean() const;
   std::string text() const;
-  bool only(std::span<const char* const> keys) const;  ///< false, with a note, if it has other keys
+  bool only(std::span<const char* const> keys) const;  ///< returns false and notes a problem if there are other keys
   void fail(const std::string& what) const;            ///< notes the problem "path: what"
   bool exists() const { return value_ != nullptr; }
   size_t problems() const;  ///< number of problems noted so far in the whole document

@@ -18,15 +18,15 @@ enum class Exchange : uint8_t {
   kPoll,    ///< the arm answers each command
 };
 
-/// How to send a byte that may not appear inside a report: as the escape mark and a second byte. In HDLC and PPP the
-/// second byte is the first with some bits flipped; SLIP has a code for each such byte.
+/// How a byte is sent that may not appear inside a report: as the escape mark and a second byte. In HDLC and PPP the
+/// second byte is the original byte with some bits flipped. SLIP has a code for each such byte.
 struct Escape {
   bool used = false;
   uint8_t mark = 0;
   uint8_t flip = 0x20;  ///< bits that are flipped in the byte after the mark; used if there are no codes
   size_t count = 0;     ///< number of codes
   std::array<uint8_t, 8> plain{}, code{};
-  std::array<uint8_t, 16> also{};  ///< bytes that are escaped in addition to the marks, if there are no codes
+  std::array<uint8_t, 16> also{};  ///< bytes that are escaped in addition to the marks; used if there are no codes
   size_t also_count = 0;
 
   /// encoded() returns the byte that follows the mark for `byte`; decoded() is its inverse.
@@ -73,7 +73,7 @@ struct StartStep {
   double timeout = 1;  ///< [s] longest time until the answer
 };
 
-/// Everything about the wire except the transport's own addresses.
+/// The description of the wire. The address of the device is not part of it (see wire_arm::Address).
 struct Wire {
   Exchange exchange = Exchange::kStream;
   double rate = 1000;        ///< [Hz] rate of the arm's reports
@@ -83,8 +83,8 @@ struct Wire {
   std::vector<StartStep> startup;
   Report input, output;
   uint8_t endpoint_in = 0x81, endpoint_out = 0x02;
-  /// True if the arm's own watchdog ends a force soon enough to protect a hand. If not, the daemon starts a guard
-  /// process.
+  /// True if the arm's own watchdog switches the motors off soon enough to protect a hand. If it does not, the daemon
+  /// starts a guard process.
   bool cutsSoon() const noexcept { return watchdog > 0 && watchdog <= 0.1; }
   /// True if the arm's clock has a new value in each report, so that two reports with the same value are the same
   /// report. For this the clock must advance at least twice per report, wrap after more than two reports, and not
@@ -103,9 +103,9 @@ struct Wire {
 /// report and a torque field in the output report
 Wire readWire(const std::string& json, size_t joints);
 
-/// [main] Reads as much of such a text as is right, so that a check can judge the rest of a description with mistakes.
-/// Fields come in the order of the text, and what is wrong in one has its default. It is not for encoding or decoding,
-/// because its fields may lie outside of their report, and it has no startup steps. Throws only if the text is no JSON.
+/// [main] Reads the correct parts of a wire description with mistakes, so that a check can judge them. The fields keep
+/// their order. A wrong value becomes its default. Do not use the result for encoding or decoding: its fields may lie
+/// outside of their report, and it has no startup steps. Throws only if the text is not JSON.
 Wire draftOfWire(const std::string& json, size_t joints);
 
 }  // namespace hapticd::codec

@@ -11,11 +11,12 @@ namespace hapticd::codec {
 /// Every key that a field may have.
 std::span<const char* const> fieldKeys();
 
-/// A field, and how much of it is known: `target_known` says whether its role and its joint are valid.
+/// A field that was read. Some of its values may be missing because of problems in the file: `target_known` is true if
+/// the role and the joint are valid.
 struct ReadField {
   Field field;
   bool target_known = false;
-  bool placed = false;  ///< true if its place and its number of bits are known
+  bool placed = false;  ///< true if its position in the report and its number of bits are known
 };
 
 /// [main] Reads and checks one field, and notes each problem in the tree.

@@ -23,7 +23,7 @@ std::vector<const Field*> outsideChecksum(const Report& report);
 
 /// [main] Notes a problem for each field of a joint that shares a bit with another field. Flags may share a status
 /// byte.
-/// @param placed for each field, whether its place is known; other fields are not checked
+/// @param placed for each field: true if its position in the report is known; other fields are not checked
 void checkOverlaps(const Tree& fields, const Report& report, const std::vector<bool>& placed);
 
 }  // namespace hapticd::codec

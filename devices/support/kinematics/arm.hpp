@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Kinematics and statics of an arm: where its tip is, how joint motion moves the tip, and which joint torques carry
-/// the arm's weight. Vectors are in the DEVICE frame: x right, y up, z toward the user.
+/// Kinematics and statics of an arm: the pose of its tip, the velocity of the tip for given joint velocities, and the
+/// joint torques that carry the arm's weight. Vectors are in the DEVICE frame: x right, y up, z toward the user.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -52,7 +52,7 @@ class Arm {
   /// or needs joints beyond their limits.
   virtual bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept = 0;
 
-  /// [any] The pose in the middle of the workspace.
+  /// [any] Returns the joint positions for which the tip is in the middle of the workspace.
   virtual JointVector neutral() const noexcept = 0;
 
   /// How the links are connected: for each link, the number of the link at whose end it begins, or -1 for the base. The

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// An arm with further joints that do not carry its tip, such as the thumb of an exoskeleton. These joints are measured
-/// and have motors, but a force at the tip gives them no torque. Their weight is part of the link that they hang on.
+/// and have motors, but a force at the tip gives them no torque. Their weight counts as part of the link to which they
+/// are attached.
 #pragma once
 #include <memory>
 

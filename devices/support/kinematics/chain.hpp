@@ -53,8 +53,10 @@ class Chain : public Arm {
   /// [any] All frames of the chain.
   void frames(const JointVector& q, ChainFrames& at) const noexcept;
 
-  /// [any] The Jacobian of a point that only the first `moving` joints move, such as a wrist (Thompson et al. 1999,
-  /// Eq. 8). The column of a revolute joint is z x (point - o), then z; the columns of the other joints are zero.
+  /// [any] Returns the Jacobian of a point that only the first `moving` joints move, such as a wrist (Thompson et al.
+  /// 1999, Eq. 8). The column of a revolute joint has z x (point - o) in its upper three rows and z in its lower three
+  /// rows. The column of a sliding joint has z in its upper rows. The columns of the joints that do not move the point
+  /// are zero.
   Jacobian jacobianAt(const ChainFrames& at, const Eigen::Vector3d& point, int moving) const noexcept;
 
  private:

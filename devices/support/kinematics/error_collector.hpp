@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Gathers everything that is wrong with the parameters of an arm, so that a person is told all of it at once.
+/// Collects all problems in the parameters of an arm, so that the user sees them at once.
 #pragma once
 #include <stdexcept>
 #include <string>

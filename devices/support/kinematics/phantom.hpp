@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The PHANToM class of arms: a base that turns and a parallelogram whose links are driven from the base, so that both
-/// link angles are absolute, not relative to one another: q2 is measured from the horizontal, q3 from the downward
-/// vertical.
+/// The PHANToM class of arms: a base that turns, and a parallelogram whose links are driven from the base. So the
+/// angles of both links are absolute and not relative to each other: q2 is measured from the horizontal, q3 from the
+/// downward vertical.
 #pragma once
 #include <vector>
 
@@ -60,7 +60,8 @@ class Phantom : public Arm {
 
   Eigen::Vector3d position(const Eigen::Vector3d& q) const noexcept;          ///< [any] tip [m]
   Eigen::Matrix3d positionJacobian(const Eigen::Vector3d& q) const noexcept;  ///< [any] d position / d q
-  Eigen::Vector3d weight(const Eigen::Vector3d& q, const Eigen::Vector3d& gravity) const noexcept;  ///< [any] gravity()
+  /// [any] see gravity()
+  Eigen::Vector3d weight(const Eigen::Vector3d& q, const Eigen::Vector3d& gravity) const noexcept;
   Eigen::Vector3d position(const PhantomAngles& at) const noexcept;
   Eigen::Matrix3d positionJacobian(const PhantomAngles& at) const noexcept;
   Eigen::Vector3d weight(const PhantomAngles& at, const Eigen::Vector3d& gravity) const noexcept;

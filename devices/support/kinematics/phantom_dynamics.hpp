@@ -13,7 +13,8 @@ struct PhantomInertia {
   Eigen::Vector3d be{11.09e-4, 10.06e-4, 0.591e-4};
   Eigen::Vector3d df{7.11e-4, 0.629e-4, 6.246e-4};
   double base_yy = 11.87e-4;
-  Eigen::Vector3d rotor{1.08e-6 * 13.3 * 13.3, 1.08e-6 * 11.2 * 11.2, 1.08e-6 * 11.2 * 11.2};  ///< at the joints
+  /// of the motors' rotors, multiplied by the squared gear ratios
+  Eigen::Vector3d rotor{1.08e-6 * 13.3 * 13.3, 1.08e-6 * 11.2 * 11.2, 1.08e-6 * 11.2 * 11.2};
 };
 
 /// The equation of motion M(q) qdd + c(q, qd) = tau - gravity. M depends on q2 and q3 only through two cosines and two

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Exchanges values between a thread that calls a vendor's library and the daemon's servo thread. In both directions
-/// the newest value wins, and no thread waits for the other.
+/// only the newest value is passed on, and no thread waits for the other.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -26,7 +26,7 @@ struct ArmReading {
 
 class Exchange {
  public:
-  /// [main] Goes back to the beginning: no position has come, and no force is wanted.
+  /// [main] Resets the exchange: no position has come, and the wanted force is zero.
   /// @param max_force [N] largest force
   void reset(double max_force) {
     max_force_ = max_force;
@@ -54,8 +54,8 @@ class Exchange {
     seen_.publish();
     ok_ = !seen.lost && !seen.fault;
   }
-  /// Writes the force to apply now [N] to `out`. It is at most max_force. It is zero while a cut holds, while the arm
-  /// is lost or has a fault, and if the servo has sent no command for 20 ms.
+  /// Writes the force to apply now [N] to `out`. It is at most max_force. It is zero during a cut, while the arm is
+  /// lost or has a fault, and if the servo has sent no command for 20 ms.
   void force(double out[3]) noexcept {
     constexpr uint64_t kOldNs = 20'000'000;
     wanted_.update();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Stores zero positions in a file, for arms whose encoders count from the position in which they were switched on. A
-/// stored zero is valid as long as the arm stays plugged in, and the machine is not booted again.
+/// stored zero becomes invalid when the arm is plugged in again or the machine is booted.
 #pragma once
 #include <filesystem>
 
@@ -8,7 +8,8 @@
 
 namespace hapticd::wire_arm {
 
-/// [main] Returns $STATE_DIRECTORY, $XDG_STATE_HOME/hapticd or ~/.local/state/hapticd: the first that is set.
+/// [main] Returns the first of these folders whose variable is set: $STATE_DIRECTORY, $XDG_STATE_HOME/hapticd,
+/// ~/.local/state/hapticd.
 std::filesystem::path stateFolder();
 
 /// [main] Writes the zero offsets of `count` joints.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The I/O thread of one arm. It stands between a transport, which may block, and the servo thread, which may not. In
-/// both directions the newest value wins. If the device is unplugged, the thread searches for it until it is back.
+/// The I/O thread of one arm. The thread calls the transport, which may block. The servo thread must not block, so it
+/// only exchanges the newest sample and the newest command with the I/O thread. If the device is unplugged, the I/O
+/// thread searches for it until it is back.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -55,23 +56,23 @@ class Link {
 
   /// [rt] Returns the newest sample. @return false if it is the same as at the last call
   bool read(Sample& sample) noexcept HSP_RT;
-  /// [rt] Called between two ticks, if the samples of the arm pace the servo. Lets the newest command go out at once,
-  /// and sleeps until read() has something new, or until `until`. From the first call on, the I/O thread sends each
-  /// command as soon as it comes.
+  /// [rt] To be called between two ticks, if the samples of the arm pace the servo. Lets the I/O thread send the newest
+  /// command at once, and sleeps until there is a new sample or trouble, at the latest until `until`. From the first
+  /// call on, the I/O thread sends each command as soon as it comes.
   void waitForNews(Nanoseconds until) noexcept;
   /// [rt] Gives the newest command to the I/O thread.
   void write(const ArmCommand& wanted) noexcept HSP_RT;
 
-  /// [any] Switches the motors off until endCut(), whatever the commands say. Async-signal-safe. The I/O thread tells
-  /// the arm with its next command, about one period of wire.rate later at most.
+  /// [any] Switches the motors off until endCut(), whatever the commands of the servo are. Async-signal-safe. The I/O
+  /// thread sends the cut with its next command, at most about one period of wire.rate later.
   void cut() noexcept;
   /// [any] Returns false while a cut must still be sent to the arm; true if there is no cut or no arm.
   /// Async-signal-safe.
   bool cutLeft() const noexcept { return !cut_.load() || cut_left_.load(); }
-  /// [any] Fills in how another process can switch the motors off. Returns false if no report has come yet (it may be a
-  /// wrong device), or if another process cannot reach the device.
+  /// [any] Fills in how another process can switch the motors off. Returns false if another process cannot reach the
+  /// device, or if no report has come yet, because it may then be the wrong device.
   bool silence(hdv_silence& how) const;
-  /// [rt] Ends a cut: the next command counts again.
+  /// [rt] Ends a cut: the commands after this call are sent again.
   void endCut() noexcept HSP_RT { cut_.store(false, std::memory_order_relaxed); }
 
   /// [main] While `wanted` is true, tells the device to find its zero.
@@ -107,10 +108,12 @@ class Link {
   Bell news_, commanded_;  ///< news_ wakes the servo for a sample or a trouble; commanded_ wakes the I/O thread
   uint32_t heard_ = 0;     ///< the servo's count of news_ at its last read()
   os::Thread thread_;
-  std::atomic<bool> cut_{false}, cut_left_{false};  ///< the watchdog or a crash cut the motors; this cut was sent
+  /// cut_: cut() was called and endCut() was not; cut_left_: this cut was sent, or there is no arm to which it could be
+  /// sent
+  std::atomic<bool> cut_{false}, cut_left_{false};
   bool cut_sent_ = false;
   hdv_silence silence_{};              ///< how to reach the device that was opened last
-  Descriptor silence_descriptor_;      ///< the descriptor in silence_; empty if another process cannot reach the device
+  Descriptor silence_descriptor_;      ///< the descriptor in silence_; empty if the device cannot be opened twice
   std::atomic<bool> reported_{false};  ///< a report came since the device was opened
   std::atomic<bool> paced_{false};     ///< the samples of the arm pace the servo
   std::atomic<bool> stop_{false}, calibrate_{false}, zero_wanted_{false}, zero_done_{false};
@@ -120,7 +123,7 @@ class Link {
   JointArray pose_{}, offset_{};
   bool open_ = false, answered_ = false;
   Trouble told_ = Trouble::kNone;
-  std::string refusal_;           ///< why the device could not be opened again
+  std::string refusal_;           ///< why the last try to open the device again failed
   std::string back_ = "healthy";  ///< message for the time when the arm is healthy again
   Nanoseconds tried_at_ = 0;      ///< time of the last try to open the device again
   Nanoseconds due_ = 0, period_ = 0, sent_at_ = 0;

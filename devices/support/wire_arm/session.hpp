@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Turns the reports of one arm into samples, and the host's torques into commands. A command has torques only if
-/// the arm and the host are healthy. Bytes and time are arguments, so that tests can play every fault in virtual time.
+/// Turns the reports of one arm into samples, and the host's torques into commands. A command has torques only if both
+/// the arm and the host are healthy. Bytes and time are arguments, so that tests can replay every fault in virtual
+/// time.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -40,7 +41,7 @@ struct SessionSettings {
   HealthLimits health;
 };
 
-/// The data that the servo reads.
+/// One sample for the servo thread. Positions are in rad or m.
 struct Sample {
   Nanoseconds time = 0;
   uint64_t sequence = 0;
@@ -50,7 +51,7 @@ struct Sample {
   JointArray position{}, velocity{}, torque{};
 };
 
-/// The command that the servo writes.
+/// One command of the servo thread.
 struct ArmCommand {
   Nanoseconds time = 0;
   uint64_t sequence = 0;            ///< grows with every write
@@ -83,7 +84,7 @@ class Session {
   void calibrateByDevice(bool wanted) noexcept { calibrate_ = wanted; }
   /// Sets the offsets [rad or m] that are added to positions. The arm counts as calibrated from now on.
   void setZero(const JointArray& zero) noexcept;
-  /// Returns the positions without the zero offsets. Positions that wrap have their full turns added.
+  /// Returns the positions before the zero offsets are added. The full turns of positions that wrap are included.
   const JointArray& raw() const noexcept { return raw_; }
   uint64_t badReports() const noexcept { return bad_reports_; }
 

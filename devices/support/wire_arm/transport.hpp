@@ -30,7 +30,7 @@ struct Address {
   bool operator==(const Address&) const = default;
 };
 
-/// What a device says about itself when it is opened.
+/// Facts about a device that are read when it is opened.
 struct Identity {
   std::string serial, product, firmware;
   std::string epoch;  ///< changes each time the device is plugged in

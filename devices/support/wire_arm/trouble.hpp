@@ -14,7 +14,7 @@ enum class Trouble : uint8_t {
   kShort,      ///< reports have a wrong size
   kCorrupt,    ///< reports have wrong marks, checksums or numbers
   kStale,      ///< no report came, or the same one came again and again
-  kSlow,       ///< fewer reports come than the device file says
+  kSlow,       ///< reports come more slowly than the device file says
   kJump,       ///< a joint moved faster than HealthLimits::max_speed, so its encoder lost counts
   kHardware,   ///< the device reports a fault
   kAbsent,     ///< no board answers on the bus

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// One arm of a daemon for one program. A thread answers every tick with the program's newest force, so that the
-/// program may send forces less often.
+/// One arm of a daemon, for one program. A thread answers every tick with the newest force of the program, so that the
+/// program may send forces at a lower rate.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -24,7 +24,7 @@ class Arm {
   Arm& operator=(const Arm&) = delete;
 
   const std::string& name() const { return name_; }
-  /// [main] Reads the newest state. Returns false if no new states come any more.
+  /// [main] Reads the newest state. Returns false if the daemon sends no more states.
   bool readState(hapticd_state& state);
   /// [main] Sets the force [N, world frame] that is applied from now on. The first call begins a lead of the force.
   Result<void> push(const double force[3]);

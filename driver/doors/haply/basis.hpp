@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The axes of the vectors that a program of Haply's interface sends and gets. By default they are Haply's axes: x
-/// right, y away from the user, z up. hapticd's world has x right, y up, z toward the user.
+/// The axes of the vectors that a program with Haply's interface sends and receives. By default they are Haply's axes:
+/// x right, y away from the user, z up. The axes of hapticd's world are x right, y up, z toward the user.
 #pragma once
 #include <array>
 #include <string>
@@ -19,7 +19,7 @@ class Basis {
 
  private:
   bool mirrored() const;
-  std::array<int, 3> axis_{0, 1, 2};  ///< number of Haply's axis for each axis of the program
+  std::array<int, 3> axis_{0, 1, 2};  ///< Haply's axis (0 to 2) for each axis of the program
   std::array<double, 3> sign_{1, 1, 1};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The conversation with one program that uses Haply's interface. The program first gets an inventory, then one state
+/// The connection to one program that uses Haply's interface. The program first receives an inventory, then one state
 /// for each message that it sends.
 #pragma once
 #include <memory>
@@ -24,7 +24,7 @@ class Session {
   std::string inventory();
   /// [main] Returns the answer to a message, or "" if the daemon reports no more ticks.
   std::string answer(const std::string& message);
-  /// [main] Returns what the program asked for but cannot have, or "". Each problem is returned once.
+  /// [main] Returns a message about a request of the program that cannot be met, or "". Each problem is returned once.
   std::string takeProblem();
 
  private:

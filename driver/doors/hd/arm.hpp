@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// An opened arm: its frames, its capabilities, and the force that is sent. The caller holds the library's lock.
+/// An opened arm: its frames, its capabilities, and the force that is sent. The caller must hold Library::lock.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -11,7 +11,8 @@
 
 namespace hapticd::hd {
 
-/// A frame of the HDAPI: the state that it read, and the force that the program asked for. SI units.
+/// A frame of the HDAPI: the state that was read at its beginning, and the force that the program has set in it. SI
+/// units.
 struct Frame {
   hapticd_state state{};
   double velocity[3] = {}, angular[3] = {};
@@ -62,7 +63,7 @@ class Arm {
   bool forceOn() const { return isEnabled(HD_FORCE_OUTPUT); }
   bool knowsJacobian() const;                ///< true if joint torques can be turned into a force
   double motorTemperature(int joint) const;  ///< from 0 (ambient temperature) to 1 (the hottest that is allowed)
-  bool first = false;                        ///< true if it was opened as the default device
+  bool first = false;                        ///< true if the arm was opened as the default device
   int32_t light = 0;                         ///< value of HD_USER_STATUS_LIGHT; no arm has this light
 
  private:
@@ -88,8 +89,10 @@ class Arm {
   bool pushed_ = false;
   double held_force_[3] = {}, held_torque_[3] = {};
   uint32_t capabilities_ = 0, told_fault_ = 0;
-  double stopped_since_ = -1;  ///< [s] time of the daemon since which the arm is held; < 0 if it is not held
-  bool told_limit_ = false;    ///< true while the program asks for more than the largest force of the arm; told once
+  /// [s] time of the daemon at which the arm was first seen to be held; < 0 if the arm is not held
+  double stopped_since_ = -1;
+  /// true while the program asks for more force than the arm can exert, which was reported once
+  bool told_limit_ = false;
   Bounds bounds_;
 };
 

@@ -19,12 +19,12 @@ struct DeviceFacts {
   /// [mm] least x, y, z, then greatest x, y, z, in the axes of the programs.
   double workspace[6] = {}, usable[6] = {};
   double tabletop = 0;     ///< [mm] height of the workspace's middle above the table
-  int enable_button = -1;  ///< number of the enable button, needed for any force; -1 if there is none
-  bool pushable = false;   ///< true if the scene lets programs push
+  int enable_button = -1;  ///< number of the button that must be pressed for any force; -1 if the arm has none
+  bool pushable = false;   ///< true if the scene allows programs to push on this arm
   struct Motor {
     double hottest, ambient;  ///< [degC]
   };
-  std::vector<Motor> motors;  ///< joints that have a thermal model of their motor
+  std::vector<Motor> motors;  ///< one entry for each joint whose motor has a thermal model
   /// One joint as programs see it: sign times the device's joint, plus an offset.
   struct Joint {
     size_t joint;
@@ -39,8 +39,8 @@ struct DeviceFacts {
   double turn[4] = {1, 0, 0, 0};  ///< w x y z: rotation from the programs' axes to the world's
 };
 
-/// [main] Reads the facts of one device. @param about JSON in which the daemon describes itself @return false if it
-/// cannot be understood
+/// [main] Reads the facts of one device. @param about the daemon's description of its devices, as JSON @return false if
+/// the description is not as expected
 bool readFacts(const char* about, int device, DeviceFacts& facts);
 
 /// [any] Returns a copy of the text that lives as long as the process, because programs may keep strings of the HDAPI.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Converts joint torques, which some programs set, to the force and the torque on the hand that hapticd takes.
+/// Converts joint torques, which some HDAPI programs set, to a force and a torque at the tip, which hapticd takes.
 #pragma once
 #include <vector>
 

@@ -10,7 +10,7 @@
 
 namespace hapticd::hd {
 
-/// Only one thread at a time may open, lead and close. Meanwhile other threads may wait, push and read.
+/// Only one thread at a time may call open, lead and close. Other threads may wait, push and read at the same time.
 class Link {
  public:
   /// [main] Connects to the daemon of $HAPTICD_NAME. @param name name of the arm; empty for the first arm @param why
@@ -29,9 +29,9 @@ class Link {
   void listen(unsigned microseconds) const { hapticd_listen(client_, microseconds); }
   /// [any] Reads the newest Jacobian of the arm. @return false if there is none
   bool jacobian(hapticd_jacobian& jacobian) const { return hapticd_read_jacobian(client_, device_, &jacobian) == 1; }
-  /// [any] Tells whether a daemon of this name runs. It may be another daemon than before.
+  /// [any] True if a daemon of this name runs. It may be another daemon than the one to which this object connected.
   bool runs() const { return hapticd_alive(client_) == 1; }
-  /// [main] Tells whether the daemon to which this object connected still runs.
+  /// [main] True if the daemon to which this object connected still runs.
   bool alive() const {
     return !lost && runs() && hapticd_ask(client_, R"({"do":"snapshot"})", nullptr, 0, nullptr) >= 0;
   }

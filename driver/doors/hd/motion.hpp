@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Estimates velocities of an arm from its last ticks, because the daemon does not send them.
+/// Estimates the velocities of an arm from its states in the last ticks, because the daemon sends no velocities.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace hapticd::hd {
 
 class Motion {
  public:
-  void add(const hapticd_state& state);  ///< takes a state newer than the last; others are ignored
+  void add(const hapticd_state& state);  ///< takes a state that is newer than the last one; ignores all others
   /// Writes the velocity of the tip [m/s], by least squares over the states that were kept; zeros if there are fewer
   /// than two.
   void velocity(double out[3]) const;

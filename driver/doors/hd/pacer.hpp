@@ -19,7 +19,7 @@ class Pacer {
   /// Waits for a tick and gives its states to the arms. Only one thread at a time may call it. @return time [ns,
   /// CLOCK_MONOTONIC] at which the tick began
   uint64_t wait();
-  /// [any] Makes wait() poll instead of sleep, from this number of microseconds before a tick is due; with 0 it sleeps
+  /// [any] Sets how long before a tick is due [us] wait() begins to poll instead of sleeping. With 0 it only sleeps
   /// (see hapticd_listen).
   void listen(unsigned microseconds) { listen_us_ = microseconds; }
   void endTick();  ///< [servo] tells the daemon, for every arm, that the program still runs
@@ -37,9 +37,9 @@ class Pacer {
 
   Library& library_;
   std::mutex waiting_;
-  std::weak_ptr<Link> followed_;  ///< the arm whose ticks are used; closed by its device
+  std::weak_ptr<Link> followed_;  ///< the link whose ticks are used; only its arm keeps it open
   uint64_t seen_ = UINT64_MAX, silent_since_ns_ = 0, looked_ns_ = 0;
-  bool lost_ = false;  ///< true after it was reported that the daemon is lost
+  bool lost_ = false;  ///< true if it was already reported that the daemon is lost
   std::atomic<unsigned> listen_us_{0};
 };
 

@@ -19,20 +19,21 @@ class Scheduler {
   explicit Scheduler(Pacer& pacer) : pacer_(pacer) {}
 
   bool start();  ///< starts the thread; returns false if none can be started
-  void stop();   ///< stops the thread; waits for the end of the current tick, unless a callback of this tick calls it
+  void stop();   ///< stops the thread; waits for the end of the current tick, unless a callback calls this function
   bool running() const { return running_; }
 
   /// Adds a callback. @return its handle, or HD_INVALID_HANDLE if there are too many callbacks
   HDSchedulerHandle schedule(HDSchedulerCallback function, void* data, HDushort priority);
-  /// Adds a callback and returns when it is done. @return false if there are too many callbacks
+  /// Adds a callback and returns when the callback has returned HD_CALLBACK_DONE. @return false if there are too many
+  /// callbacks
   bool runToEnd(HDSchedulerCallback function, void* data, HDushort priority);
   bool unschedule(HDSchedulerHandle handle);  ///< removes a callback; returns false if it has ended or never existed
   bool isScheduled(HDSchedulerHandle handle, bool wait);
 
-  /// [Hz] returns false if it is not the daemon's rate divided by a whole number.
+  /// Sets the rate [Hz] of the callbacks. Returns false if it is not the daemon's rate divided by a whole number.
   bool setRate(double rate);
   double rate() const;                          ///< [Hz]
-  bool realTime() const { return real_time_; }  ///< true if the servo loop has real-time priority
+  bool realTime() const { return real_time_; }  ///< true if the thread has real-time priority
   double instantaneousRate() const { return instantaneous_; }
 
   /// Returns the number of the tick whose callbacks the calling thread runs, or UINT64_MAX if it runs none.
@@ -63,11 +64,11 @@ class Scheduler {
   Tasks tasks_;  ///< callbacks in the order in which they run
   std::thread thread_;
   std::atomic<bool> running_{false};
-  std::atomic<uint64_t> run_{0};  ///< number of the thread that may run the callbacks
+  std::atomic<uint64_t> run_{0};  ///< number of the present thread; a thread with an older number ends
   HDSchedulerHandle next_handle_ = 1;
   std::atomic<double> wanted_rate_{0}, instantaneous_{0};
   std::atomic<uint64_t> tick_{0}, began_ns_{0};
-  /// Whether the thread has real-time priority; true until the library has tried to get it.
+  /// true if the thread has real-time priority, and until the library has tried to get it
   std::atomic<bool> real_time_{true};
 };
 

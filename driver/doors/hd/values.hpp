@@ -8,14 +8,15 @@ namespace hapticd::hd {
 
 constexpr int kMostNumbers = 16;
 
-/// Says from which arm and frame a parameter is read.
+/// The arm, the frame and the scheduler from which a parameter is read.
 struct Query {
   Arm& arm;
   const Frame& current;  ///< the frame that CURRENT_... means for the caller
   const Scheduler& scheduler;
 };
 
-/// Writes the numbers of a parameter. @return how many, 0 if there is no such parameter, or -1 if it is a text
+/// Writes the numbers of a parameter. @return the number of values written, 0 if there is no such parameter, or -1 if
+/// the parameter is a text
 int numbersOf(const Query& asked, HDenum name, double out[kMostNumbers]);
 
 /// Returns the text of a parameter, or nullptr if it is not a text.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Decides which requests may be answered, only from the head of the request. Pages of other sites in the user's
-/// browser, and other users of this machine, must get nothing.
+/// Decides from the head of a request whether it may be answered. Pages of other sites in the user's browser and other
+/// users of this machine must get no answer.
 #pragma once
 #include <string>
 #include <string_view>
@@ -20,8 +20,9 @@ enum class Subprotocol { kNone, kHapticd, kFoxglove };
 
 /// The decision about a request.
 struct Admission {
-  unsigned status = 200;     ///< HTTP status: 200, 400, 401 no token, 403 foreign origin, 421 foreign host
-  bool give_cookie = false;  ///< true if the token was in the URL: the answer sets the cookie, which then replaces it
+  unsigned status = 200;  ///< HTTP status: 200, 400, 401 no token, 403 foreign origin, 421 foreign host
+  /// true if the token was in the URL: the answer then sets the cookie, which the page uses from then on
+  bool give_cookie = false;
   Subprotocol protocol = Subprotocol::kNone;
   std::string protocol_name;  ///< name of the protocol in the answer
   std::string why;            ///< reason of a refusal

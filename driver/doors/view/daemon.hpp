@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The control socket of a running daemon (see control.md). Requests do not wait for their answers, so that rows are
-/// sent meanwhile.
+/// The control socket of a running daemon (see control.md). Requests do not wait for their answers, so that rows can be
+/// sent in the meantime.
 #pragma once
 #include <boost/asio/io_context.hpp>
 #include <functional>
@@ -16,7 +16,8 @@ using Json = nlohmann::ordered_json;
 
 class Daemon {
  public:
-  /// Gets the answer, or {"ok": false, "error": ...} if there is none, and the memory file that came with it.
+  /// Called with the answer and the memory file that came with it. If no answer came, the answer is {"ok": false,
+  /// "error": ...}.
   using Answered = std::function<void(const Json& answer, const Descriptor& memory)>;
 
   virtual ~Daemon() = default;

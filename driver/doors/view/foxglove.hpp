@@ -9,7 +9,7 @@
 
 namespace hapticd::view {
 
-/// [main] Both arguments outlive the conversation.
+/// [main] Both arguments must outlive the session.
 std::unique_ptr<PeerSession> startFoxgloveSession(Peer& peer, Stage& stage);
 
 }  // namespace hapticd::view

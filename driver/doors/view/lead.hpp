@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A lead that a page has taken: the memory file of the lead, and the connection to the daemon that keeps the lead
-/// alive.
+/// A lead that a page has taken: the memory file of the lead, and a connection to the daemon. The lead lasts as long as
+/// this connection.
 #pragma once
 #include <boost/asio/io_context.hpp>
 #include <functional>
@@ -17,15 +17,18 @@ class Lead {
  public:
   using Taken = std::function<void(const Json& answer)>;
 
-  /// [main] Asks for the lead on a separate connection: the daemon ends the lead when this connection closes, even if
-  /// this process is killed. @param request {"do": "lead", ...} @param taken called once, with the daemon's answer
+  /// [main] Asks for the lead on a separate connection. The daemon ends the lead when this connection closes, even if
+  /// this process is killed.
+  /// @param request {"do": "lead", ...}
+  /// @param taken called once, with the daemon's answer
   static std::unique_ptr<Lead> ask(boost::asio::io_context& io, const std::string& socket, const Json& request,
                                    Taken taken);
   ~Lead();
   Lead(const Lead&) = delete;
   Lead& operator=(const Lead&) = delete;
 
-  /// [main] Writes a record; it never waits, and the newest record wins. @param record the bytes of a hapticd_target
+  /// [main] Writes a record and never waits. A newer record replaces an older one. @param record the bytes of a
+  /// hapticd_target
   /// @return false if the size is wrong, or there is no lead (yet)
   bool put(std::span<const std::byte> record);
   bool refused() const { return refused_; }  ///< [main] true if the daemon refused the lead

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The two sides of a WebSocket, independent of the WebSocket library.
+/// The two ends of a WebSocket: the peer (a page or a program) and the session that talks to it. Neither depends on the
+/// WebSocket library.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -14,15 +15,15 @@ namespace hapticd::view {
 /// Bytes that are sent to one or several peers.
 using Message = std::shared_ptr<const std::string>;
 
-/// The connection to a page or program, as a conversation sees it.
+/// The connection to a page or program, as a PeerSession uses it.
 class Peer {
  public:
   virtual ~Peer() = default;
-  /// [main] Sends a text (JSON) after all waiting messages. If more than kMostWaiting bytes wait, the connection ends.
+  /// [main] Sends a text (JSON) after all waiting messages. If then more than kMostWaiting bytes wait, the connection
+  /// is closed.
   virtual void text(std::string json) = 0;
   virtual void binary(Message bytes) = 0;  ///< [main] sends bytes in the same way
-  /// [main] Tells whether no message waits to be sent. The newest values are sent only then, so that a slow reader
-  /// skips some.
+  /// [main] True if no message waits to be sent. New values are sent only then, so that a slow reader skips old values.
   virtual bool idle() const = 0;
 
   static constexpr size_t kMostWaiting = 64u << 20;  ///< [bytes] enough for the meshes of a large scene

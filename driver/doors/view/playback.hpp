@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The playback of a recording for one page: present place, speed and loop.
+/// The playback of a recording for one page: present time, speed and loop.
 #pragma once
 #include <chrono>
 #include <string>
@@ -17,18 +17,19 @@ class Playback {
   Playback(const RowSource& rows, const Json& about);
 
   static bool knows(const std::string& word);  ///< [any] true for play, pause and seek
-  /// [main] Does what a request says: {"do": "play", "speed": 1, "loop": true}, {"do": "pause"} or {"do": "seek", "t":
+  /// [main] Executes a request: {"do": "play", "speed": 1, "loop": true}, {"do": "pause"} or {"do": "seek", "t":
   /// seconds}. @return an error, or ""
   std::string execute(const Json& request);
 
-  void advance();                                              ///< [main] advances by the time since the last call
-  double time() const { return t_; }                           ///< [s] [main]
-  const std::vector<uint64_t>& ends() const { return ends_; }  ///< [main] rows of each stream up to the present place
-  /// [main] Returns for each stream the number of its first row in the last `seconds` before the present place.
+  void advance();                     ///< [main] advances by the time since the last call
+  double time() const { return t_; }  ///< [s] [main] present time of the playback
+  /// [main] number of rows of each stream up to the present time
+  const std::vector<uint64_t>& ends() const { return ends_; }
+  /// [main] Returns for each stream the number of its first row in the last `seconds` [s] before the present time.
   std::vector<uint64_t> rowsFrom(double seconds) const;
 
-  bool takeJumped();              ///< [main] true if the place jumped since the last call: earlier rows are invalid
-  bool takeChanged();             ///< [main] true if the state changed since the last call, and must be reported
+  bool takeJumped();   ///< [main] true if the time has jumped since the last call: the page must drop earlier rows
+  bool takeChanged();  ///< [main] true if the state has changed since the last call, so that the page must be told
   std::string stateJson() const;  ///< [main] {"type": "playback", ...}
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The source of the rows of a view: the black box of a running daemon, or a recording. Rows are passed on unchanged;
-/// `about` describes their columns.
+/// The source of the rows of a view: the black box of a running daemon, or a recording. The rows are passed on
+/// unchanged. Their columns are described by aboutJson().
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -33,14 +33,16 @@ class RowSource {
   virtual uint64_t begin(size_t stream) const = 0;  ///< [main] number of the oldest row that is kept
   virtual uint64_t end(size_t stream) const = 0;    ///< [main] number of the newest row plus one
 
-  /// [main] Copies up to `count` rows from row number `first` on. @return how many, or 0 if `first` is no longer kept
+  /// [main] Copies up to `count` rows, beginning with row number `first`. @return the number of rows copied; 0 if
+  /// `first` is no longer kept
   virtual uint64_t copy(size_t stream, uint64_t first, uint64_t count, std::byte* rows) const = 0;
 
   /// [main] Returns the index of the stream of that name, or streams().size() if there is none.
   size_t find(const std::string& name) const;
 };
 
-/// [main] Maps the black box of a running daemon read-only. Fails if the file is not one, or is still being made.
+/// [main] Maps the black box of a running daemon read-only. Fails if the file is not a black box or is not yet
+/// complete.
 Result<std::unique_ptr<RowSource>> openBlackBox(const std::string& file);
 
 /// [main] Maps a recording, a dump, or the file that a crash left.

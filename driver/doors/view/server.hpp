@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// HTTP and WebSocket on the loopback interface. Everything is bounded: 8 KiB for the head of a request, 10 s for its
+/// HTTP and WebSocket on the loopback interface, with these limits: 8 KiB for the head of a request, 10 s for its
 /// arrival, 64 KiB per message, 8 WebSockets, 32 connections. Only server.cpp uses Boost.Beast.
 #pragma once
 #include <boost/asio/io_context.hpp>
@@ -26,7 +26,7 @@ class Server {
  public:
   static constexpr size_t kMostSockets = 8, kMostConnections = 32;
 
-  /// Makes the conversation of a new WebSocket; `peer` outlives it.
+  /// Makes the session of a new WebSocket. `peer` outlives the session.
   using Converse = std::function<std::unique_ptr<PeerSession>(Subprotocol, Peer& peer)>;
 
   /// [main] Listens on 127.0.0.1 and, if it exists, on ::1. @param port 0 for any free port
@@ -38,7 +38,7 @@ class Server {
 
   virtual std::string url() const = 0;  ///< [main] address of the page, with the token
   virtual size_t sockets() const = 0;   ///< [main] number of open WebSockets
-  virtual void tick() = 0;              ///< [main] calls onTick() of every conversation
+  virtual void tick() = 0;              ///< [main] calls onTick() of every session
 };
 
 }  // namespace hapticd::view

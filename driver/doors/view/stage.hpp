@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The data that all conversations share: the rows of the run, its models and their meshes. If a daemon ends and
-/// another one starts with the same name, the stage changes to the new one.
+/// The data that all sessions share: the rows of the run, its models and their meshes. If the daemon ends and another
+/// one starts with the same name, the stage changes to the new one.
 #pragma once
 #include <boost/asio/io_context.hpp>
 #include <chrono>
@@ -56,7 +56,7 @@ class Stage {
   void draw(const std::string& model, std::function<void(const DrawnModel&)> drawn);
 
   /// [main] Calls `drawn` with the vertices that a body of the recording had at time t [s], or with nullptr if they are
-  /// not available. It is not called if the run changes before.
+  /// not available. If the run changes before they come, `drawn` is not called.
   void drawAt(const std::string& model, double t, std::function<void(const Message&)> drawn);
   std::vector<std::string> bodies() const;  ///< names of models that deform
 

@@ -11,8 +11,9 @@ namespace hapticd::capture {
 
 /// The range between the stops of a joint [rad or m].
 struct Stops {
-  bool given = false;   ///< false if the stops are unknown, so that every position is possible
-  bool placed = false;  ///< false if the zero is unknown: only the distance between the stops counts
+  bool given = false;  ///< false if the stops are unknown, so that every position is possible
+  /// false if the zero of the positions is unknown: then only the distance between the stops is used
+  bool placed = false;
   double low = 0, high = 0;
 };
 

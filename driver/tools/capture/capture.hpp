@@ -15,7 +15,7 @@ enum class Form : uint8_t {
   kHex,    ///< one transfer per line: two hex digits per byte; # begins a comment. Also hid-recorder's "E:" lines.
 };
 
-/// One transfer: a HID report, a packet of an endpoint. A raw capture is one long transfer.
+/// One transfer: a HID report, or a packet of an endpoint. A raw capture is one long transfer.
 struct Transfer {
   double time = -1;  ///< [s] when it was captured; -1 if unknown
   std::vector<uint8_t> bytes;
@@ -27,8 +27,8 @@ struct Capture {
   size_t bytes() const;  ///< sum over all transfers
 };
 
-/// [main] Reads a capture. An error names the line. Lines that begin with "> " are what was sent to the arm; they are
-/// left out.
+/// [main] Reads a capture. An error names the line. Lines that begin with "> " are bytes that were sent to the arm;
+/// they are left out.
 Result<Capture> readCapture(const std::string& bytes, Form form);
 
 /// [any] Returns the bytes as hexadecimal text, such as "01 ff 3c".

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Finds what the bad reports of a capture have in common, and from that what is probably wrong in the device file.
+/// Looks for a property that most bad reports of a capture share, and finds from it what is probably wrong in the
+/// device file.
 #pragma once
 #include <string>
 

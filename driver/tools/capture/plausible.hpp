@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Finds positions that an arm cannot have. If only the layout or the scale is wrong, every report still counts as
-/// good.
+/// Finds positions that an arm cannot have. They show that the layout or the scale in the device file is wrong,
+/// although every report is well formed.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,8 +12,9 @@ namespace hapticd::capture {
 /// What the device file says about the arm that sent the reports.
 struct ArmFacts {
   size_t joints = 0;
-  std::vector<double> limits;      ///< [rad] least and greatest position of each joint; empty if not given
-  bool zeroed = false;             ///< positions count from the switch-on; a pose will give their zero
+  std::vector<double> limits;  ///< [rad] least and greatest position of each joint; empty if not given
+  /// true if positions count from the position at power-on, so that only a calibration pose gives their zero
+  bool zeroed = false;
   std::vector<double> max_torque;  ///< [N m] largest torque of each joint; empty if not given
   double max_speed = 100;          ///< [rad/s] greatest speed of a joint
   double least_rate = 0.57;        ///< no torque is sent if the reports arrive at less than this share of wire.rate

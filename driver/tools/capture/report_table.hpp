@@ -23,7 +23,7 @@ struct DecodedReport {
   std::string wrong;
 };
 
-/// A bad report, kept to find out what is wrong with all of them.
+/// A bad report. The first bad reports are kept, so that the hints can find the error in the device file.
 struct BadReport {
   const codec::Field* wrong = nullptr;  ///< the wrong field of the wire format; nullptr if the report's size is wrong
   std::vector<uint8_t> bytes;           ///< the bytes of the report, without its id if a field is wrong

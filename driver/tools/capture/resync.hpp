@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Finds the next report by its id and checksum in raw bytes in which some bytes are missing or too many.
+/// Finds the next report in raw bytes by its id and checksum, if some bytes are missing or too many.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,9 +10,10 @@
 
 namespace hapticd::capture {
 
-/// [main] Returns where the next report begins. This is `at`, unless there is no good report at `at`, none one or more
-/// report sizes later, and a good one at another place. The bytes in between are passed to `odd`. For reports without
-/// an id or a checksum this is always `at`, because too many places would look like a report.
+/// [main] Returns the position of the next report. This is `at` if a good report begins at `at` or a whole number of
+/// report sizes later, because then no byte is missing. Otherwise it is the position of the next good report, and the
+/// bytes before it are passed to `odd`. For reports without an id or a checksum this is always `at`, because bytes at
+/// many positions would look like a report.
 size_t skipOddBytes(const codec::Wire& wire, std::span<const uint8_t> bytes, size_t at,
                     const std::function<void(std::span<const uint8_t>)>& odd);
 

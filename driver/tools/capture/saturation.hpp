@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Finds numbers that do not fit into the field that carries them.
+/// Finds numbers that are too large or too small for their field in a report.
 #pragma once
 #include <string>
 #include <utility>
@@ -9,7 +9,8 @@
 
 namespace hapticd::capture {
 
-/// Collects, column by column, the numbers that a field could not carry, so that other numbers were sent.
+/// Collects, for each column, the numbers that did not fit into the field, so that other numbers were sent in their
+/// place.
 class Saturation {
  public:
   /// @param motors [N m] greatest torques of the joints; empty if unknown

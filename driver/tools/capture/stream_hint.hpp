@@ -7,8 +7,8 @@
 
 namespace hapticd::capture {
 
-/// [main] Returns one line about a header byte that the size in the file does not count, or about a capture that begins
-/// in the middle of a report. Returns "" if neither is found.
+/// [main] Returns one line about a header byte that is missing in the size in the device file, or about a capture that
+/// begins in the middle of a report. Returns "" if neither is found.
 std::string streamHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded);
 
 }  // namespace hapticd::capture

@@ -13,7 +13,7 @@ namespace hapticd::conformance {
 constexpr double kConformanceDt = 1e-3;  ///< [s] duration of every step
 constexpr int kConformanceSteps = 2000;  ///< number of steps once around the path of onPath()
 
-/// Names of tests that must pass before other tests mean anything.
+/// Names of tests on which other tests depend (see ConformanceTest::needs).
 constexpr const char *kInTime = "steps-end-in-time", *kFinite = "finite-outputs", *kSame = "determinism-bitwise",
                      *kFoot = "foot-and-normal", *kGuarded = "eight-probes";
 /// The beginning of the message about an overrun that did not end the process.
@@ -29,8 +29,8 @@ struct Made {
 std::string text(double value);
 std::string text(const Eigen::Vector3d& p);  ///< "X, Y, Z m"
 
-/// Returns the objection (a text that says what is wrong) with the place where it was found in front of it. At its end,
-/// the place would come after the advice that an objection often ends with.
+/// Returns the objection (a text that says what is wrong) with the place in front of it. The place does not stand at
+/// the end, because an objection often ends with advice.
 std::string placed(const std::string& objection, const Eigen::Vector3d& p);
 
 /// Returns a point of a smooth closed path through and around the shape, which begins and ends at a corner outside its
@@ -42,8 +42,8 @@ Eigen::Vector3d onPath(const Subject& subject, double part, double phase = 0);
 std::string along(Subject& subject, const std::function<std::string(const Answer&, const Eigen::Vector3d&)>& look,
                   int steps = kConformanceSteps);
 
-/// Does the same as along(). Then at each place it goes straight in, as deep as deepestPress(), and out again, because
-/// a click or a second layer that deep may allocate, lock or print too.
+/// Does the same as along(). Then it presses straight in at each place, as deep as deepestPress(), and comes out again.
+/// A click or a second layer at that depth may allocate, lock or print too.
 std::string alongAndDeep(Subject& subject,
                          const std::function<std::string(const Answer&, const Eigen::Vector3d&)>& look);
 
@@ -69,19 +69,19 @@ std::string loopsGiveNoEnergy(const Recipe& recipe, uint64_t);
 /// Returns "warn: ..." if there are parameters whose units are not SI, otherwise "".
 std::string unitsSi(const Recipe& recipe, uint64_t);
 
-/// [bytes] Returns the memory that leaks in each life of an instance, from create() to destroy(). `used` is the memory
-/// in use after each life. The
-/// lives are cut into four quarters; each has a least and a greatest use. The leak is the smallest growth of either
-/// from one quarter to the next, divided by the lives of a quarter. Memory that is taken once, however late, and memory
-/// that an allocator keeps and gives back do not grow in every quarter, so they do not count. Returns 0 for fewer than
-/// eight lives.
+/// [bytes] Returns the memory that leaks in each life of an instance, from create() to destroy(). The lives are divided
+/// into four quarters. Each quarter has a least and a greatest use. The leak is the smallest growth of the least or of
+/// the greatest use from one quarter to the next, divided by the number of lives in a quarter. Memory that is taken
+/// once, however late, and memory that an allocator keeps and gives back do not grow in every quarter, so they do not
+/// count. Returns 0 for fewer than eight lives.
+/// @param used memory in use after each life
 double leakOf(const std::vector<double>& used);
 
-/// Returns what is leaked from create() to destroy(), or "".
+/// Returns how much memory leaks from create() to destroy(), as a text, or "".
 std::string createDestroyLeak(const Recipe& recipe, uint64_t);
 
-/// Returns why the drawing that the shape gives by hsp.geometry/1 is not where the shape is felt, or "". Returns "skip:
-/// WHY" if the shape draws nothing.
+/// Returns the objection that the drawing of the shape (hsp.geometry/1) is not where the shape is felt, or "". Returns
+/// "skip: WHY" if the shape draws nothing.
 std::string drawingWhereFelt(const Recipe& recipe, uint64_t);
 
 /// Returns what goes wrong with eight probes, as many as a run may have, in guarded memory, or "".

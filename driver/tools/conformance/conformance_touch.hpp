@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Finds where a shape can be touched from the shape's own answers, because a test that never touches it would show
-/// nothing.
+/// Finds the places where a shape can be touched, from the answers of the shape. A test that never touches the shape
+/// would show nothing.
 #pragma once
 #include <Eigen/Core>
 #include <functional>
@@ -19,11 +19,11 @@ struct Place {
   Eigen::Vector3d out = Eigen::Vector3d::Zero();   ///< unit vector from the solid to the free side, model frame
 };
 
-/// What a search over several sides and sizes, from 1 mm to 1 m, found.
+/// The result of a search for places on several sides of the shape, for sizes from 1 mm to 1 m.
 struct Touch {
   std::vector<Place> places;
-  bool traced = false;  ///< the shape named a foot point somewhere
-  bool felt = false;    ///< it gave a force or a torque somewhere
+  bool traced = false;  ///< true if the shape gave a foot point somewhere
+  bool felt = false;    ///< true if the shape gave a force or a torque somewhere
 };
 
 /// Follows the foot points that the shape gives, and presses at each to try it. Throws no exception. Returns an empty
@@ -40,10 +40,10 @@ struct PressStep {
   bool settled = false;  ///< the probe rests and came straight in, so damping and friction give no force
 };
 
-/// [m] How deep a press goes, if it begins outside: 1 mm, and less for a small shape.
+/// Returns how deep [m] a press goes if it begins outside: 1 mm, and less for a small shape.
 double pressDepth(const Subject& subject);
 
-/// [m] How deep a shape is pressed when its depths are examined: 10 mm, and less for a small shape.
+/// Returns how deep [m] a shape is pressed when its depths are examined: 10 mm, and less for a small shape.
 double deepestPress(const Subject& subject);
 
 /// Returns the steps of a press: from outside straight in, once round on a small circle, and out again, without a jump.

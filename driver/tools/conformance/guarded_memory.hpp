@@ -5,8 +5,8 @@
 
 namespace hapticd::conformance {
 
-/// While the object lives, blocks that this thread allocates are guarded, as long as there is room. They stay guarded
-/// after the object has gone. A block that was freed can no longer be read.
+/// While an object of this class lives, blocks that this thread allocates are guarded, as long as there is room. They
+/// stay guarded after the object was destroyed. A block that was freed can no longer be read.
 class GuardedMemory {
  public:
   GuardedMemory() noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Counts the locks that a loaded library takes. Its calls of lock functions are replaced by calls of functions that
-/// count.
+/// Counts the locks that a loaded library takes. The calls of lock functions in the library are redirected to functions
+/// that count and then lock.
 #pragma once
 #include <cstdint>
 #include <string>

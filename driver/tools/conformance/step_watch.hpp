@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Watches the steps of a plugin in the process that runs them: counts their system calls, and remembers where the
-/// probe was if the process ends.
+/// Watches the steps of a plugin in the process that runs them. Counts their system calls, and records the position of
+/// the probe for the case that the process ends.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -13,8 +13,8 @@ namespace hapticd::conformance {
 /// The function of a plugin that was called and has not returned.
 enum class Inside : uint32_t { kNothing, kCreate, kSet, kActivate, kStep, kDestroy };
 
-/// What a child process does at present. It lies in memory that the child shares with its parent, because a crash
-/// leaves no other trace.
+/// The present state of a child process. It lies in memory that the child shares with its parent, because a process
+/// that crashes can report nothing itself.
 struct LastStep {
   static constexpr uint32_t kMost = 8;
   double position[kMost][3];  ///< [m] positions of the probes of a step
@@ -27,8 +27,8 @@ struct LastStep {
 /// [main] Makes the shared memory, once and before the first child, and forgets the last step of the previous child.
 void shareLastStep();
 
-/// [main] Returns where the last child ended (", in step() with the probe at X, Y, Z m", ", in activate()", or "" if it
-/// was not in the plugin), and what it overran.
+/// [main] Returns where the last child ended, and which block of memory it overran: ", in step() with the probe at X,
+/// Y, Z m", or ", in activate()", or "" if it was not in the plugin.
 std::string whereItEnded();
 
 /// [main] True if the last child ended by a fault in guarded memory, so that the overrun block is known.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The tests of a device module: they tell its author what is wrong before a hand feels it.
+/// The tests of a device module. They show the author of the module what is wrong, before a person holds the arm.
 #pragma once
 #include <vector>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tells which memory a module overran, if a fault ends the child process that ran it.
+/// If a module writes or reads beyond a block of memory, and this ends its child process: tells the parent which block.
 #pragma once
 #include <string>
 

@@ -29,7 +29,7 @@ struct Reading {
 /// [main] Starts the arm, reads it (a simulated arm for two seconds of its own time, a real one for half a second), and
 /// stops it. Every command is HDV_OFF. Returns what is wrong, or "".
 /// @param look judges each reading; if it returns a text other than "", no more is read and the text is returned
-/// @param around is called in place of each read() and write(), which it gets as an argument and must call
+/// @param around called in place of each read() and write(): receives the call as an argument and must make it
 std::string readFor(host::DeviceInstance& arm, hdv_sample& sample,
                     const std::function<std::string(const Reading&)>& look,
                     const std::function<void(const std::function<void()>&)>& around);

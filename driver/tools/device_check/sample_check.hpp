@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Checks that samples are as the host needs them.
+/// Checks that the samples of a module keep the rules of the host.
 #pragma once
 #include <string>
 
@@ -13,7 +13,7 @@ class SampleCheck {
   explicit SampleCheck(const hdv_info& info) : info_(info) {}
   /// Judges one sample. Returns what would be a fault in a run, or "".
   std::string look(const Reading& reading);
-  /// Judges all samples together. Fails for what would be a fault in a run, and warns of everything else.
+  /// Judges all samples together. Fails if a run would raise a fault, and warns of all other problems.
   Finding sum() const;
 
  private:

@@ -20,7 +20,7 @@ struct Control {
   std::string hazards;  ///< numbers of the hazards in hazards.md, such as "H1 H2"
   std::string name;
   ControlState state = ControlState::kUnknown;
-  std::string text;  ///< how far the control goes; if it is off, how to enable it
+  std::string text;  ///< what the control does and its bounds; if it is off, how to enable it
 };
 
 /// [main] @param device created from the description, and opened if the arm is present
@@ -29,20 +29,21 @@ std::vector<Control> controlsOf(const scene::Device& description, const host::De
 /// The controls and facts that were found for one device file.
 struct ArmControls {
   std::string arm;
-  bool opened = false;  ///< false if the arm is absent: facts that only it can give are unknown
+  bool opened = false;  ///< false if the arm is absent; facts that only the arm can give are then unknown
   std::vector<Control> controls;
-  bool silenced_after_us = false;   ///< something switches its motors off when the daemon has gone
-  std::vector<std::string> doubts;  ///< about its module, which no run refuses
-  bool simulated = false;           ///< it has no motors
-  bool watchdog = false;            ///< its own hardware does so when commands stop, as far as is known
-  std::string why;                  ///< why it could not be opened; "" if it could
-  std::string slow;                 ///< why it pushes less than its limits allow; "" if it does not
-  std::string usb_id;               ///< "1209:0006"; "" for an arm on another bus
-  bool repeats_pass = false;        ///< the same report, sent repeatedly, would not be noticed
+  bool silenced_after_us = false;   ///< true if something switches the arm's motors off when the daemon has ended
+  std::vector<std::string> doubts;  ///< warnings of the module about its parameters; a run does not refuse them
+  bool simulated = false;           ///< true for a simulated arm, which has no motors
+  /// true if the arm's hardware switches its motors off when no commands come, as far as is known
+  bool watchdog = false;
+  std::string why;            ///< why the arm could not be opened; "" if it could
+  std::string slow;           ///< why the arm pushes less than its limits allow; "" if it does not
+  std::string usb_id;         ///< "1209:0006"; "" for an arm on another bus
+  bool repeats_pass = false;  ///< true if it would not be noticed that the arm sends the same report again and again
 };
 
-/// [main] Loads the file, opens the arm if it is present, and moves nothing. Returns nothing if the file has problems,
-/// which `problems` gets.
+/// [main] Loads the file, opens the arm if it is present, and moves nothing. If the file has problems, adds them to
+/// `problems` and returns nothing.
 std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog& catalog,
                                           document::Problems& problems);
 

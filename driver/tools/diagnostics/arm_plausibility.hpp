@@ -8,20 +8,22 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of such numbers, each at its key. @param arm is opened if it is simulated, which touches no hardware;
-/// it is nullptr if the file has mistakes, so that only single values are judged
+/// [main] Warns of such numbers, each at its key.
+/// @param arm the arm; if it is simulated, it is opened, which touches no hardware. nullptr if the file has mistakes:
+/// then only single values are judged
 void warnOfImplausibleArm(const document::Node& root, const scene::Device& device, host::DeviceInstance* arm,
                           document::Problems& warnings);
 
 /// [main] Warns of a field of the wire format that differs from the same field of the other joints in byte order, in
-/// sign, or by powers of ten in scale; and of positions of which one count moves the tip so far that a hand feels the
-/// step.
+/// sign, or by powers of ten in scale. Also warns of positions whose single count moves the tip so far that a hand
+/// feels the step.
 /// @param arm is nullptr if the file has mistakes, so that only single fields are judged
 void warnOfImplausibleFields(const document::Node& root, const scene::Device& device, size_t joints,
                              const host::DeviceInstance* arm, document::Problems& warnings);
 
-/// [main] Warns of limits that leave nothing to feel or bound nothing, of what the wire format has no fields for, and
-/// of joints of simulated arms that rub, weigh or lag more than shapes push.
+/// [main] Warns of limits so small that no force is felt, or so large that no arm reaches them; of a wire format
+/// without the fields that `admittance` needs, with an id in only one of the two reports, or with a clock that is
+/// slower than the reports; and of simulated arms whose friction, mass or delay is greater than a hand would accept.
 /// @param arm is nullptr if the file has mistakes, so that only single values are judged
 void warnOfImplausibleLimits(const document::Node& root, const scene::Device& device, const host::DeviceInstance* arm,
                              document::Problems& warnings);

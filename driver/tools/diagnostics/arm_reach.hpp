@@ -10,11 +10,11 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] [m] Returns the farthest distance that the joints can move the tip from where it is, within arm.limits.
-/// Without arm.limits the distance is an overestimate.
+/// [main] Returns how far [m] the joints can move the tip from `tip_device` (device frame) within arm.limits. Without
+/// arm.limits the result is an overestimate.
 double reachOf(const scene::Device& device, const host::DeviceInstance& arm, const Eigen::Vector3d& tip_device);
 
-/// [main] Returns the distance in m from a tip to one model, or nothing if the model cannot tell.
+/// [main] Returns the distance [m] from a tip to one model; nothing if the model gives no distance.
 std::optional<double> distanceOf(const scene::Scene& scene, const servo::World& world, servo::Core& core,
                                  uint32_t model, const Eigen::Vector3d& tip, uint32_t probe);
 
@@ -24,9 +24,10 @@ struct NearestModel {
   double away = 0;  ///< [m] distance from the tip to the surface, or to a box around the model
 };
 
-/// [main] Returns the model that is nearest to `tip`. For a model that moves along a path, the nearest pose of the path
-/// counts. Returns nothing if a model does not report its box, because it may be anywhere. @param world world of the
-/// scene, after its first tick @param probe index of the probe whose tip is `tip`
+/// [main] Returns the model that is nearest to `tip`. If a model moves along a path, its nearest pose on this path is
+/// used. Returns nothing if some model does not report its box, because it may be anywhere.
+/// @param world world of the scene, after its first tick
+/// @param probe index of the probe whose tip is `tip`
 std::optional<NearestModel> nearestModel(const scene::Scene& scene, const servo::World& world, servo::Core& core,
                                          const Eigen::Vector3d& tip, uint32_t probe);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Checks programs that push on arms of running daemons: do their answers come in time?
+/// Checks whether the programs that push on arms of running daemons answer in time.
 #pragma once
 #include <string>
 #include <vector>
@@ -13,10 +13,10 @@ namespace hapticd::diagnostics {
 /// A program that pushes now.
 struct ClientStatus {
   record::ClientReport report;
-  double force = 0;  ///< [N] size of the force that it asks for now
+  double force = 0;  ///< [N] magnitude of the force that the program asks for now
 };
 
-/// [any] Returns the programs that a status page shows.
+/// [any] Returns the programs on a status page.
 std::vector<ClientStatus> clientsOf(const status::Page& page);
 
 /// [main] Checks the programs of all daemons whose status pages are in a folder.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Warns, without touching hardware, about what a device file may contain but its author hardly meant.
+/// Warns, without touching hardware, of entries in a device file that are allowed but were hardly meant.
 #pragma once
 #include <filesystem>
 
@@ -8,10 +8,11 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Returns warnings about a device file: `limits.force` above what the arm gives,
-/// whole-number positions without a scale, a `limits.workspace` that does not contain the tip of the arm at rest, and
-/// all that the other headers here judge. @param known problems of the file that were found before; what they are about
-/// is not judged, and neither is what follows from it
+/// [main] Returns the warnings about a device file: `limits.force` above the force of the arm, whole-number positions
+/// without a scale, a `limits.workspace` that does not contain the tip of the arm at rest, and the warnings of the
+/// other headers in this folder.
+/// @param known problems of the file that were found before; keys with a problem, and values that follow from them, are
+/// not judged
 document::Problems warnOfDevice(const std::filesystem::path& file, host::Catalog& catalog,
                                 const document::Problems& known = {});
 

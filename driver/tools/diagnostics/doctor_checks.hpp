@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Checks for what can keep real time or a device from working. Each gives the command that fixes the problem.
+/// Checks the machine for problems with real time and with devices. Each finding gives the command that fixes the
+/// problem.
 #pragma once
 #include <string>
 #include <vector>

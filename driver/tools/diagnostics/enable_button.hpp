@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Checks whether an arm has the enable (dead-man) button, and the joints and buttons of HDAPI programs, that its
-/// device file asks for.
+/// Checks whether an arm has the buttons and joints that its device file uses: the enable (dead-man) button, and those
+/// for HDAPI programs.
 #pragma once
 #include <string>
 
@@ -12,7 +12,7 @@ namespace hapticd::diagnostics {
 /// format does not describe its buttons, so only `run` can check it.
 void checkEnableButton(const document::Node& root, const std::string& file, document::Problems& problems);
 
-/// [main] Adds a problem for each joint and button in hd that the wire format of the arm lacks.
+/// [main] Adds a problem for each joint and button under the key `hd` that the wire format of the arm does not have.
 void checkHd(const document::Node& root, const std::string& file, document::Problems& problems);
 
 /// [any] Returns the name of a button: "button 0 (counted from 0; button: 1 of a wire format)".

@@ -11,7 +11,7 @@
 
 namespace hapticd::diagnostics {
 
-/// One part of a run. Its cost is what would be saved without it.
+/// One part of a run. Its cost is the time and the memory that a run without this part would save.
 struct CostRow {
   std::string part;      ///< "model teapot", "velocity estimator"
   std::string asked_by;  ///< "file:line key"; empty if nothing asked for the part, so that it does not exist

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A model as its file gives it, with what its plugin says about its parameters. Checks of unusual values use it.
+/// A model with the parameters from its file and the parameter table of its plugin. The checks for unusual values use
+/// it.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -16,8 +17,9 @@ namespace hapticd::diagnostics {
 
 class GivenModel {
  public:
-  /// @param box box around the model in its own frame; nothing if unknown  @param info description of its plugin. Scene
-  /// and info must outlive this object.  @param unread what was not read of the model
+  /// @param box box around the model in its own frame; nothing if unknown
+  /// @param info description of its plugin. `scene` and `info` must outlive this object
+  /// @param unread keys and parameters of the model that could not be read
   GivenModel(const scene::Scene& scene, size_t index, const std::optional<Eigen::AlignedBox3d>& box,
              const host::ClassInfo& info, document::Problems& warnings, UnreadModel unread)
       : scene_(scene),
@@ -43,12 +45,13 @@ class GivenModel {
   /// Returns the chosen word of an enumeration, or "" if the plugin has no such parameter.
   std::string choice(std::string_view id) const;
 
-  /// Begins another judgement. If a judgement asks for a value that was not read, it cannot warn until the next begins.
+  /// Call it before each check. If a check then asks for a value that could not be read, warn() does nothing until the
+  /// next begin().
   void begin() const { unsure_ = false; }
 
-  /// Adds a warning at the first of these parameters that the file gives; if it gives none, at the model under the name
-  /// of the first. Warns only once.
-  /// @param also true for a reason of its own, beside which another warning at the same parameter may stand
+  /// Adds a warning at the first of these parameters that the file gives. If the file gives none, the warning is at the
+  /// model, under the name of the first parameter. If there is already a warning at this parameter, adds nothing.
+  /// @param also true adds the warning although the parameter has one, because its reason is another
   void warn(std::initializer_list<std::string_view> ids, const std::string& what, bool also = false) const;
 
  private:
@@ -59,7 +62,7 @@ class GivenModel {
   const std::optional<Eigen::AlignedBox3d>& box_;
   const host::ClassInfo& info_;
   UnreadModel unread_;
-  mutable bool unsure_ = false;  ///< the judgement that is made now asked for a value that was not read
+  mutable bool unsure_ = false;  ///< true if the present check has asked for a value that could not be read
   document::Problems& warnings_;
   size_t first_;  ///< index of the first warning about this model
 };

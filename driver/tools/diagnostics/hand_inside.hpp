@@ -24,8 +24,8 @@ struct InsideTip {
 bool circlesModel(const scene::Device& device, const HandScript& hand, const scene::Model& model,
                   const host::ShapeInstance& shape);
 
-/// [main] Warns of one such tip: at the surfaces if they face the wrong way, at the radius of the hand if it is too
-/// small, otherwise at the pose of the model.
+/// [main] Warns of one such tip. The warning is at the surfaces if they face the wrong way, at the radius of the hand
+/// if it is too small, otherwise at the pose of the model.
 void reportInside(const scene::Scene& scene, const InsideTip& inside, document::Problems& warnings);
 
 }  // namespace hapticd::diagnostics

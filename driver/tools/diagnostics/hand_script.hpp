@@ -26,7 +26,7 @@ struct HandScript {
   bool moves() const { return kind != Kind::kNone && kind != Kind::kGuided; }
   bool presses() const { return kind == Kind::kPress || kind == Kind::kTap; }
   double speed() const;      ///< [m/s] greatest speed of its motion
-  double cycleTime() const;  ///< [s] time until it has done its whole motion once
+  double cycleTime() const;  ///< [s] time in which the hand completes its motion once
 };
 
 inline constexpr double kFastestHand = 2;  ///< [m/s] greatest speed of a human hand that strokes, presses or taps
@@ -34,22 +34,24 @@ inline constexpr double kFastestHand = 2;  ///< [m/s] greatest speed of a human 
 /// [main] Returns the value that the files give for a parameter, or nullptr if they give none.
 const scene::Value* givenIn(const std::vector<scene::Value>& values, const char* id);
 
-/// A place and a key of the files that decide what a hand does.
+/// A key of the files that determines the motion of a hand, and its place (file, line and column).
 struct HandKey {
   document::Place place;
   std::string id = "hand";
 };
-/// [main] Returns the first of some keys that the scene itself gives, or else the first that the device file gives, or
-/// else the place of the arm. If the scene names no device file, the default arm is used, whose file ships with
-/// hapticd; then the place is the first line of the scene, because only the scene can be changed.
+/// [main] Returns the first of the keys `ids` that the scene itself gives. If there is none, returns the first that the
+/// device file gives; if there is none there either, the place of the arm. If the scene names no device file, its arm
+/// is the default arm, whose file belongs to hapticd. The place is then the first line of the scene, because the user
+/// can change only the scene.
 HandKey keyOfHand(const scene::Scene& scene, const scene::Device& device, std::initializer_list<const char*> ids);
 
 /// [main] Returns the script of an arm's hand; nothing if the arm is not simulated or its module cannot be loaded.
 std::optional<HandScript> handScriptOf(const scene::Device& device);
 
-/// [main] Warns of strokes of more than half a turn to either side, which were meant in degrees, of a hand that is
-/// faster than human hands, of a path so slow that its times were not meant in s, and of values that no hand has.
-/// @param unread keys with problems, on which no judgement depends
+/// [main] Warns of strokes of more than half a turn to either side, which seem to be in degrees; of a hand that is
+/// faster than human hands; of a path that is so slow that its times seem not to be in s; and of values that no hand
+/// has.
+/// @param unread keys that could not be read; no warning depends on them
 document::Problems fastHands(const scene::Scene& scene, const UnreadKeys& unread = {});
 
 }  // namespace hapticd::diagnostics

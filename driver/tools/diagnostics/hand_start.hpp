@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Checks where the tip of each arm is when a run begins: it must be within reach of the arm, and outside every model,
-/// or a force pushes the hand at once.
+/// Checks where the tip of each arm is when a run begins. It must be within reach of the arm and outside every model.
+/// Inside a model, a force would push the hand at once.
 #pragma once
 #include <filesystem>
 #include <vector>
@@ -12,11 +12,11 @@
 namespace hapticd::diagnostics {
 
 /// [main] Warns if the tip of an arm is inside a model at the first tick, with the depth, and if an arm can reach none
-/// of the models. Simulated hands are where their script begins, other arms in the pose of their calibration. If there
-/// is no such warning and all arms are simulated, their hands then run their scripts through the scene: see
-/// walk_warnings.hpp. The models are set up in a child process. @param scene scene with the devices that a run would
-/// use
-/// @param strays models that move as nobody meant, as for warnOfWalk()
+/// of the models. The tips of simulated arms are at the start of their script, those of other arms in the calibration
+/// pose. If there is no such warning and all arms are simulated, their hands then run their scripts through the scene
+/// (see walk_warnings.hpp). The models are set up in a child process.
+/// @param scene scene with the devices that a run would use
+/// @param strays as for warnOfWalk()
 document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool>& strays = {});
 
 /// [main] Returns a problem for each simulated arm that `run` would refuse, with the text of `run`: an arm that cannot
@@ -25,8 +25,9 @@ document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool
 /// velocity of a probe
 document::Problems refusedArms(const scene::Scene& scene, bool needs_velocity);
 
-/// [main] Does the same for one device file. If the file has no hand, scenes give it one, so its hand is not judged.
-/// @param warnings gets the warnings of fastHands() about its hand
+/// [main] Does the same for one device file. If the file has no hand, its hand is not judged, because the scenes give
+/// it one.
+/// @param warnings receives the warnings of fastHands() about its hand
 document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog& catalog,
                                 document::Problems& warnings);
 

@@ -8,8 +8,8 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of a mass, a spring, a tremor, a rate or a lead-in that was meant in another unit. @param unread keys
-/// with problems, on which no judgement depends
+/// [main] Warns of a mass, a spring, a tremor, a rate or a lead-in time that seems to be in another unit. @param unread
+/// keys that could not be read; no warning depends on them
 void checkHandValues(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
                      const UnreadKeys& unread, document::Problems& warnings);
 

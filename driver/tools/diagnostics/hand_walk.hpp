@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Moves the hands of simulated arms through a scene in virtual time, before anybody runs it. This is the servo loop of
-/// a run, without log and recording.
+/// Moves the hands of simulated arms through a scene in virtual time, before the scene is run. The loop is the servo
+/// loop of a run without log and recording.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace hapticd::diagnostics {
 
-/// What all hands together met of one model.
+/// The contacts of one model with all hands.
 struct WalkedModel {
   uint64_t touched = 0;                            ///< ticks in which a tip was inside
   double depth = 0, force = 0;                     ///< greatest depth [m], greatest force [N]
@@ -25,9 +25,9 @@ struct WalkedModel {
   bool clicked = false;                            ///< the model reported an event (HSP_OUT_EVENT)
 };
 
-/// What one hand met.
+/// The contacts of one hand with all models.
 struct WalkedArm {
-  uint64_t contact = 0, cut = 0;  ///< ticks with a force after the ramp; how many of these had a force that was cut
+  uint64_t contact = 0, cut = 0;  ///< ticks with a force after the ramp; how many of them had a force that a limit cut
   std::array<uint64_t, servo::kLimitCount> limits{};  ///< ticks with a cut force, for each limit
   double asked = 0;      ///< [N] greatest sum of the forces of all models, before the limits
   double depth = 0;      ///< [m] greatest depth in any model
@@ -42,12 +42,12 @@ struct Walk {
   double period = 0;   ///< [s] period of a tick
   std::vector<WalkedModel> models;
   std::vector<WalkedArm> arms;
-  std::vector<servo::Limiter> limiters;  ///< limiter of each arm, as it was at the end
+  std::vector<servo::Limiter> limiters;  ///< limiter of each arm at the end of the walk
 };
 
-/// [main] Runs at most 10 s and 10,000 ticks. Returns nothing if an arm is not simulated, if one cannot be started, or
-/// if this takes more than 3 s of processor time, because the result would depend on the speed of the machine. @param
-/// world world of the scene, built for as many probes as it has arms
+/// [main] Runs at most 10 s and 10,000 ticks. Returns nothing if an arm is not simulated or cannot be started. Also
+/// returns nothing after 3 s of processor time, because the result would then depend on the speed of the machine.
+/// @param world world of the scene, built for as many probes as the scene has arms
 std::optional<Walk> walkHands(const scene::Scene& scene, servo::World& world);
 
 }  // namespace hapticd::diagnostics

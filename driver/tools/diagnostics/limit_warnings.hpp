@@ -11,8 +11,8 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Returns the joints of the arm at rest [rad]: those of its calibration pose, or without one zero or the stop
-/// nearest to zero.
+/// [main] Returns the joint positions of the arm at rest [rad]: its calibration pose. Without a calibration pose, each
+/// joint is at zero, or at the stop nearest to zero.
 std::array<double, HDV_MAX_JOINTS> restJoints(const document::Node& root, uint32_t joints);
 
 /// [main] Returns arm.max_torque of each joint [N m]; empty if it is not known for all joints.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Sets up a scene's models to find what only a plugin can judge, such as the content of a geometry file.
+/// Sets up the models of a scene, to find problems that only their plugins can find, such as an error in a geometry
+/// file.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -13,7 +14,7 @@ namespace hapticd::diagnostics {
 /// The box around each model in its own frame, in scene order; nothing if its plugin does not report a box.
 using ModelBoxes = std::vector<std::optional<Eigen::AlignedBox3d>>;
 
-/// What plugins say about a scene's models.
+/// The problems that plugins found in a scene's models, and the facts that they gave about the models.
 struct ModelTrial {
   document::Problems problems, warnings;
   std::vector<double> stiffness;  ///< [N/m] that each model claims, in scene order

@@ -7,11 +7,12 @@
 
 namespace hapticd::diagnostics {
 
-/// [any] Returns the largest |x| for which |J^T x| is at most `torque` in each joint. It lies at a corner of the
+/// [any] Returns the largest |x| for which |J^T x| is at most `torque` in each joint. It is reached at a corner of the
 /// polytope of all such x.
-/// @param jacobian 3 rows (for the tip's velocity, or for its angular velocity), one column per joint @param torque
-/// greatest torque of each motor at its joint [N m] @return [N] or [N m]; nothing if in some direction the mechanism
-/// carries the load, so that no motor bounds it
+/// @param jacobian 3 rows (for the velocity of the tip, or for its angular velocity), one column per joint
+/// @param torque [N m] greatest torque of each motor at its joint
+/// @return [N] or [N m]; nothing if the mechanism carries the load in some direction, so that the motors do not limit
+/// it
 std::optional<double> farthestReach(const Eigen::Matrix3Xd& jacobian, const std::vector<double>& torque);
 
 }  // namespace hapticd::diagnostics

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Judges whether the motors of a device file can be those of its arm: wrong units or gears make their computed heat
-/// meaningless.
+/// Judges whether the motors of a device file can be those of its arm. If units or gears are wrong, the computed heat
+/// of the motors is wrong too.
 #pragma once
 #include "description/scene.hpp"
 #include "document/node.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Warns, before any force, of what a device file leaves out or reverses that a hand would feel.
+/// Warns of dangerous gaps and errors in a device file, before the arm gets any force.
 #pragma once
 #include "description/scene.hpp"
 #include "document/node.hpp"
@@ -7,9 +7,10 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of an arm whose force or torque nothing bounds, of a joint whose position and torque have opposite
-/// signs, of a slow watchdog, of samples so rare that the arm pushes less, of relative encoders without a calibration,
-/// of a weight that the motors cannot hold, and of keys of a report's field that this kind of field does not use.
+/// [main] Warns of these: an arm whose force or torque has no limit, a joint whose position and torque have opposite
+/// signs, a slow watchdog, samples so rare that the arm pushes less than its limits allow, a time without reports
+/// (health.stale) that one late report exceeds, relative encoders without a calibration, a weight that the motors
+/// cannot hold, keys that the kind of their field does not use, and two fields for the same button.
 void warnOfSafety(const document::Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                   document::Problems& warnings);
 

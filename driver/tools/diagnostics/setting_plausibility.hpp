@@ -11,13 +11,14 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of gravity, search radii and budgets that are not usual, and of arms that stand in one another.
-/// @param boxes as tryModels() found them
+/// [main] Warns of gravity, search radii and budgets that are not usual, and of arms that stand in the same place.
+/// @param boxes boxes of the models from tryModels()
 document::Problems implausibleSettings(const scene::Scene& scene, const ModelBoxes& boxes = {});
 
-/// [main] Judges models that lie in the same place by tune::unstableSettings() with the sum of their stiffness, because
-/// a hand feels them together. @param info what the arm says about itself  @param stiffness [N/m] stiffness that each
-/// model claims, in scene order
+/// [main] Adds up the stiffness of models that lie in the same place, because a hand feels them together, and judges
+/// the sum by tune::unstableSettings().
+/// @param info the facts that the module gave when the arm was opened
+/// @param stiffness [N/m] stiffness that each model claims, in scene order
 document::Problems stiffTogether(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
                                  const std::vector<double>& stiffness);
 

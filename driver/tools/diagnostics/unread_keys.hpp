@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tells which values of a scene with problems were not read, so that no other judgement relies on them.
+/// The keys of a scene with problems whose values could not be read, so that no check relies on them.
 #pragma once
 #include <cstddef>
 #include <map>
@@ -13,12 +13,12 @@
 
 namespace hapticd::diagnostics {
 
-/// What was not read of one model.
+/// The keys and parameters of one model that could not be read.
 struct UnreadModel {
-  std::set<std::string, std::less<>> ids;  ///< parameters whose values are wrong, or that a misspelt key stands for
+  std::set<std::string, std::less<>> ids;  ///< parameters whose values are wrong, or whose keys are misspelt
   std::set<std::string, std::less<>> own;  ///< keys of the model itself: "pose", "path", "motion", ...
-  bool any = false;      ///< a key is unknown, and nobody can tell what it stands for: it may be any key that is absent
-  bool gravity = false;  ///< servo.gravity was not read
+  bool any = false;      ///< true if a key is unknown and resembles no other: it may stand for any key that is absent
+  bool gravity = false;  ///< true if servo.gravity could not be read
 
   /// Returns true if every key of the model was read. Keys of other parts of the scene do not count.
   bool sound() const { return ids.empty() && own.empty() && !any; }
@@ -32,15 +32,15 @@ class UnreadKeys {
 
   /// Returns true if there is a problem with this key, with the mapping that contains it, or with a part of its value.
   bool has(std::string_view key) const;
-  /// Returns what was not read of a model. @param info description of its plugin
+  /// Returns the keys of a model that could not be read. @param info description of its plugin
   UnreadModel ofModel(size_t index, const host::ClassInfo& info) const;
 
  private:
   void addOwn(const std::string& key, UnreadModel& model) const;
   void addParameter(const std::string& key, const host::ClassInfo& info, UnreadModel& model) const;
 
-  std::vector<std::string> keys_;                         ///< all but those of models
-  std::map<size_t, std::vector<std::string>> of_models_;  ///< without "models[3]."
+  std::vector<std::string> keys_;                         ///< all keys outside of models
+  std::map<size_t, std::vector<std::string>> of_models_;  ///< keys of each model, without "models[3]."
 };
 
 }  // namespace hapticd::diagnostics

@@ -12,15 +12,15 @@ namespace hapticd::diagnostics {
 
 class GivenModel;
 
-/// [main] Warns of each parameter that is beyond what is usual for a quantity of its unit, of bodies that fall or hang
-/// far from their place, and of models that lie in the same place. @param boxes boxes that tryModels() found; if empty,
-/// nothing is compared with the sizes of the models
-/// @param unread keys with problems; nothing is judged that depends on one of them
+/// [main] Warns of each parameter that is beyond the usual range of a quantity of its unit, of bodies that fall or hang
+/// far from their place, and of models that lie in the same place.
+/// @param boxes boxes of the models from tryModels(); if empty, no value is compared with the sizes of the models
+/// @param unread keys that could not be read; no warning depends on them
 document::Problems implausibleValues(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog,
                                      const UnreadKeys& unread = {});
 
-/// [main] Tells of each model whether implausibleValues() finds a value by which it moves as nobody meant, such as a
-/// mass in grams or a body that falls.
+/// [main] Returns true for each model that will move in a way that was hardly meant, because implausibleValues() warns
+/// of a value such as a mass in grams.
 std::vector<bool> strayModels(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog);
 
 /// Warns of each parameter by itself, by the unit that its plugin gives for it.

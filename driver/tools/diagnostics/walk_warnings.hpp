@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Warns of what a simulated hand meets in a scene and nobody meant: no model at all, a force that cannot be felt, a
-/// force that the limits cut.
+/// Warns of unwanted effects that a simulated hand meets in a scene: it touches no model, its force is too small to
+/// feel, or the limits cut its force.
 #pragma once
 #include <vector>
 
@@ -10,10 +10,11 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Moves the hands of simulated arms through a scene, and warns of a hand that touches no model, of a model
-/// whose force is too small to feel, of limits that cut the force, and of a button that does not click. @param world
-/// world of the scene, built for as many probes as it has arms @param strays true for each model that moves as nobody
-/// meant: what a hand meets of it follows from that, and is not told
+/// [main] Moves the hands of simulated arms through a scene. Warns of a hand that touches no model, of a model whose
+/// force is too small to feel, of limits that cut the force, and of a button that does not click.
+/// @param world world of the scene, built for as many probes as the scene has arms
+/// @param strays true for each model that will move in a way that was hardly meant (see strayModels()). Effects of such
+/// a model are not reported, because it has a warning already
 document::Problems warnOfWalk(const scene::Scene& scene, servo::World& world, const std::vector<bool>& strays);
 
 }  // namespace hapticd::diagnostics

@@ -9,7 +9,8 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Returns nothing if the arm has no wire format or a wrong one; others report a wrong format as a problem.
+/// [main] Returns the wire format of a device; nothing if the arm has none or a wrong one. Other functions report a
+/// wrong format as a problem.
 inline std::optional<codec::Wire> wireOf(const scene::Device& device, size_t joints) {
   try {
     for (const scene::Value& value : device.parameters)
@@ -20,7 +21,8 @@ inline std::optional<codec::Wire> wireOf(const scene::Device& device, size_t joi
   return std::nullopt;
 }
 
-/// [main] Returns the wire format of a device, or what is right in one with mistakes, for checks of single fields only.
+/// [main] Returns the wire format of a device. If it has mistakes, returns its correct parts, which only checks of
+/// single fields may use.
 inline std::optional<codec::Wire> wireDraftOf(const scene::Device& device, size_t joints) {
   if (auto right = wireOf(device, joints)) return right;
   try {

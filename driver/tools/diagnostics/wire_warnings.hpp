@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Warns of what a wire format may contain but its author hardly meant.
+/// Warns of entries in a wire format that are allowed but were hardly meant.
 #pragma once
 #include "description/scene.hpp"
 #include "document/node.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Writes MCAP (mcap.dev, specification version 0): messages in compressed chunks with an index, for Foxglove,
-/// PlotJuggler, rosbag2 and everything that reads their files.
+/// Writes MCAP (mcap.dev, specification version 0): messages in compressed chunks with an index. Foxglove, PlotJuggler,
+/// rosbag2 and others can read these files.
 #pragma once
 #include <cstdint>
 #include <cstdio>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Turns rows into ROS 2 messages. Columns have the same alignment as in CDR (OMG DDS-XTypes 1.3, 7.4.3: each number at
-/// a multiple of its size). So a row with four bytes in front of it is such a message already, and nothing is encoded
-/// again.
+/// Turns rows into ROS 2 messages. The columns of a row are aligned as in CDR (OMG DDS-XTypes 1.3, 7.4.3): each number
+/// lies at a multiple of its size. So a message consists of four bytes and the unchanged row, and nothing has to be
+/// encoded.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace hapticd::record {
 
-/// The four bytes in front of a row that make it a message. They mean: plain CDR, little-endian, no options.
+/// The four bytes that stand before a row in a message. They mean: plain CDR, little-endian, no options.
 constexpr std::array<char, 4> kCdrHead = {0, 1, 0, 0};
 
 /// [any] Returns the name of the message type, such as "hapticd_msgs/msg/Ticks" for "ticks".

@@ -16,9 +16,9 @@ struct Calibration {
   std::string out;    ///< file to write (.yaml, hapticd-model/2): the same body with a stiffness for each point
 };
 
-/// [main] Fits the stiffness of each point so that the plugin gives the forces of all answers, writes the body and
-/// prints how well it fits. Presses should be small, because the spring of a place is linear. With dents, fits the
-/// shear reach of a grid to them as well.
+/// [main] Fits the stiffness of each point so that the plugin gives the forces of all answers. Writes the body and
+/// prints how well it fits. Presses should be small, because the fitted springs are linear. With dents, also fits the
+/// shear reach of a grid to them.
 Result<void> calibrate(const Calibration& options, host::Catalog& catalog);
 
 }  // namespace hapticd::importing

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// Computes the medial axis of a body from samples of its surface, as spheres joined by edges and triangles.
 ///
-/// For each sample, a shrinking ball (Ma, Bae and Choi 2012) gives a point of the axis. Then as few balls as possible
-/// are kept: their spheres, grown by the tolerance, must cover the surface (the covering of Dou et al. 2022, solved
-/// greedily). All other balls are witnesses that tell which spheres to join: the two spheres nearest to a witness get
-/// an edge, the three nearest a triangle (the witness complex of de Silva and Carlsson 2004). Edges and triangles that
-/// would stick out of the body are left out.
+/// For each sample, a shrinking ball (Ma, Bae and Choi 2012) gives a point of the axis. As few of these balls as
+/// possible are kept: their spheres, grown by the tolerance, must cover the surface (the covering of Dou et al. 2022,
+/// solved greedily). All other balls are witnesses, which decide which spheres are joined. The two spheres nearest to a
+/// witness get an edge, the three nearest a triangle (the witness complex of de Silva and Carlsson 2004). Edges and
+/// triangles that would stick out of the body are left out.
 #pragma once
 #include <Eigen/Core>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The settings of a scene's models that trade speed for accuracy, and the values that are tried for each.
+/// The parameters of a scene's models that trade speed for accuracy, and the values that are tried for each.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -10,7 +10,8 @@
 
 namespace hapticd::tune {
 
-/// One setting. A parameter that a plugin marks with HSP_P_ACCURACY is one knob for all models of that plugin.
+/// One such parameter. If several models have the same plugin, a parameter that the plugin marks with HSP_P_ACCURACY is
+/// one knob for all of them.
 struct Knob {
   std::string plugin;  ///< name of the plugin, such as "nurbs_rigid"
   std::string key;     ///< parameter, such as "tolerance"
@@ -27,13 +28,13 @@ struct Knob {
 /// The index of one value per knob, in the order of the knobs.
 using Choice = std::vector<size_t>;
 
-/// [main] Finds the knobs of a scene, and the value of each in the reference. This is the smallest value of a real
-/// parameter (a tolerance), the largest of a whole number (a count) or of a list of them, and the default of an
-/// enumeration, because plugins make their exact method the default. A switch (off, on) adds something to the model, so
-/// the reference keeps the value of the scene.
+/// [main] Finds the knobs of a scene, and the value of each knob in the reference. A real parameter (a tolerance) has
+/// its smallest value there, and a whole number (a count) or a list of them its largest. An enumeration has its
+/// default, because plugins make their exact method the default. A switch (off, on) adds something to the model, so the
+/// reference keeps the value of the scene.
 std::vector<Knob> findKnobs(const scene::Scene& scene, host::Catalog& catalog);
 
-/// [main] Returns the scene with other settings.
+/// [main] Returns the scene with the chosen values of the knobs.
 scene::Scene applied(scene::Scene scene, const std::vector<Knob>& knobs, const Choice& choice);
 
 Choice currentOf(const std::vector<Knob>& knobs);

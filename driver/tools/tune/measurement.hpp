@@ -46,9 +46,10 @@ struct Difference {
   double geometry() const { return untraced > 0 ? 1 : std::max(foot_m, depth_m); }
 };
 
-constexpr double kCostNoise = 0.05;  ///< share of a time by which measurements of the same setting differ at least
+constexpr double kCostNoise = 0.05;  ///< two measurements of the same time are assumed to differ at least by this share
 
-/// Adds another measurement of the same setting. The shorter times count, and the interval includes both medians.
+/// Adds another measurement of the same setting. The cost keeps the shorter times, and its interval is extended to
+/// include both medians.
 void widen(Cost& cost, const Cost& again);
 
 enum class VelocityFrom { kEstimator, kMotion };
@@ -57,8 +58,9 @@ enum class VelocityFrom { kEstimator, kMotion };
 Result<Run> answer(const scene::Scene& scene, const Motion& motion, VelocityFrom velocity,
                    const host::Services::Log& log);
 
-/// [main] Returns answers computed with the motion's own velocity, so that errors of the velocity estimator do not
-/// count as errors of a setting. The cost is measured with the scene's estimator; the shortest of `passes` counts.
+/// [main] Returns the answers of a setting and its cost. The answers are computed with the motion's own velocity, so
+/// that errors of the velocity estimator do not count as errors of the setting. The cost is measured with the scene's
+/// estimator, as the shortest of `passes` measurements.
 Result<Run> measure(const scene::Scene& scene, const Motion& motion, int passes, const host::Services::Log& log);
 
 /// [main] Compares two runs over the same motion with the same models.

@@ -11,8 +11,8 @@
 
 namespace hapticd::tune {
 
-/// What the user asks for. Errors of the chosen setting are at most half the tolerance, so that other motions stay
-/// within the tolerance too.
+/// The goal of the user. The chosen setting has at most half of each tolerated error, so that the errors over other
+/// motions stay within the tolerances too.
 struct Goal {
   std::optional<double> budget_ns;  ///< if given, choose the most accurate setting whose p99 is at most this; if not,
                                     ///< choose the cheapest one within the tolerances
@@ -25,7 +25,8 @@ struct Candidate {
   Cost cost;
   Difference error;  ///< difference from the converged reference
   bool on_front = false;
-  size_t point = 0;  ///< number in tables and pictures, from 1; 0 if it has none and is only a dot
+  /// number in tables and pictures, from 1; 0 for a setting that has no number and is drawn as a dot only
+  size_t point = 0;
 };
 
 struct Progress {
@@ -39,7 +40,7 @@ struct Tuning {
   bool reached = false;      ///< true if the chosen setting meets the goal
   bool complete = false;     ///< true if neither the time limit nor the user stopped the search
   bool out_of_time = false;  ///< true if the time limit stopped the search
-  size_t planned = 0;        ///< how many settings there were to try
+  size_t planned = 0;        ///< number of settings to try
 };
 
 struct SearchOptions {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// Decides from tick to tick at which foot point a probe is felt. A small state machine that all kernels share.
+/// Decides from tick to tick at which foot point a probe is felt. All kernels share this state machine.
 ///
-/// Outside, the foot is the nearest point of all faces. A contact begins on the face that the probe's path crosses
-/// first, and is then held: its foot is followed continuously over that face and its neighbours, until the probe comes
-/// out or crosses a convex edge. The foot is a proxy (Zilles & Salisbury 1995) on exact geometry. If the solid is
-/// thicker than the probe is deep, this foot is the nearest point too; in a thin wall it keeps the hand from passing
-/// through. If the path of the probe is unknown (a start inside, a jump, a lost sample, a contact that ended at an
-/// edge), a contact begins on the nearest face.
+/// Outside, the foot point is the nearest point of all faces. A contact begins on the face that the probe's path
+/// crosses first. The contact is then held: its foot point is followed continuously over that face and its neighbours,
+/// until the probe comes out or crosses a convex edge. The foot point is a proxy (Zilles & Salisbury 1995) on exact
+/// geometry. If the solid is thick compared with the depth, the held foot point is also the nearest point. In a thin
+/// wall it keeps the hand from passing through. If the path of the probe is unknown (a start inside, a jump, a lost
+/// sample, a contact that ended at an edge), a contact begins on the nearest face.
 #pragma once
 #include <Eigen/Core>
 #include <cmath>
@@ -19,8 +19,9 @@ namespace hapticd::contact {
 
 struct ContactRule {
   Sides sides = Sides::kFront;
-  /// [m] Contact hysteresis: a held contact changes to another face if that is nearer by more than this. 0: always the
-  /// nearest face, nothing is held. Infinite: the contact is held until the probe comes out.
+  /// [m] Contact hysteresis: a held contact changes to another face if that face is nearer by more than this. With 0,
+  /// no contact is held and the nearest face is always felt. With infinity, a contact is held until the probe comes
+  /// out.
   double hysteresis = std::numeric_limits<double>::infinity();
 };
 
@@ -31,28 +32,29 @@ enum class Followed : std::uint8_t {
   kLost       ///< the kernel no longer traces the surface
 };
 
-/// The contact of one probe with one solid. `Faces` is the kernel at the probe's position p of this tick. It has these
-/// functions, all [rt]:
-///   Followed follow(double side, Foot& foot)  follows the held foot to p, over edges as atEdge() says
-///   Foot nearest()                            the nearest foot of all faces; status kNearest if this is certain
-///   bool enter(from, Sides, double& side)     looks for the first face that the path from `from` to p meets
-///                                             from a side that is felt; holds this face and sets `side`
-///                                             to that side. On entry, `side` is the side on which
-///                                             `from` lies if it is almost on a face
+/// The contact of one probe with one solid. `Faces` gives access to the kernel at the probe's position p of this tick.
+/// It has these functions, all [rt]:
+///   Followed follow(double side, Foot& foot)  follows the held foot to p, over edges by the rule of atEdge()
+///   Foot nearest()                            returns the nearest foot of all faces; status kNearest if it is certain
+///   bool enter(from, Sides, double& side)     finds the first face that the path from `from` to p enters through a
+///                                             side that is felt; holds this face and sets `side` to that side.
+///                                             On entry, `side` is the side on which `from` counts if it is almost
+///                                             on a face
 ///   void holdNearest()                        holds the nearest foot from now on
 ///   void release()                            ends the held contact
-/// The feet from these functions have outward normals; this class turns them to the side that is felt.
+/// The feet from these functions have outward normals. This class turns them to the side that is felt.
 class ContactState {
  public:
-  /// [rt] Returns the foot of this tick, seen from the side that is felt.
+  /// [rt] Returns the foot of this tick, as felt from side().
   /// @param last position of the probe in the last tick [m]
-  /// @param p its position now [m]
+  /// @param p position of the probe now [m]
   template <class Faces>
   Foot step(Faces& faces, const Eigen::Vector3d& last, const Eigen::Vector3d& p, const ContactRule& rule) noexcept;
 
-  /// [rt] A shortcut for the most common tick; call it before step(). The kernel must have the nearest foot of all (or
-  /// the held foot, if one is held), followed from the last tick, in the interior of its face. If the function returns
-  /// true, the contact has not changed, and this foot seen from side() is the result of the tick.
+  /// [rt] A shortcut for the most common tick. Call it before step(). The kernel must have followed, from the last
+  /// tick, the held foot or, if none is held, the nearest foot of all; and this foot must be in the interior of its
+  /// face. If the function returns true, the contact has not changed, and the result of the tick is this foot, as felt
+  /// from side().
   /// @param height [m] height of the probe above the face, along its outward normal
   /// @param distance [m] distance from the probe to the foot
   bool isUnchanged(double height, double distance, const Eigen::Vector3d& p, const ContactRule& rule) noexcept {
@@ -68,7 +70,7 @@ class ContactState {
   }
 
   /// [rt] A shortcut like isUnchanged(), for a probe that was outside in the last tick and can have met only the face
-  /// of its foot since then. If the function returns true, the probe has only passed by this face, however near.
+  /// of its foot since then. If the function returns true, the probe is still outside, however near it is to the face.
   /// @param last position of the probe in the last tick [m]
   bool isPassing(double height, double distance, const Eigen::Vector3d& last, const Eigen::Vector3d& p,
                  const ContactRule& rule) noexcept {
@@ -84,7 +86,7 @@ class ContactState {
   /// [rt] Forgets where the probe came from, after a jump or a lost sample.
   void forget() noexcept { phase_ = Phase::kUnknown; }
   /// [rt] Call it if step() was skipped because the probe was certainly outside. The next path then begins at the
-  /// probe's position of the last tick.
+  /// probe's position in the tick before the next step().
   void pass() noexcept {
     if (phase_ != Phase::kUnknown) phase_ = Phase::kPassed;
   }
@@ -96,9 +98,9 @@ class ContactState {
 
  private:
   enum class Phase : std::uint8_t { kUnknown, kPassed, kOutside, kHeld };
-  /// [m] if a face is nearer than this, rounding would decide on which side the probe is
+  /// [m] if a face is nearer than this, rounding errors would decide on which side of the face the probe is
   static constexpr double kTouching = 1e-9;
-  /// a path shorter than this share of the distance to the nearest face certainly meets no face
+  /// a path that is shorter than this share of the distance to the nearest face certainly meets no face
   static constexpr double kSure = 0.999;
 
   template <class Faces>
@@ -137,7 +139,7 @@ Foot ContactState::step(Faces& faces, const Eigen::Vector3d& last, const Eigen::
   return atNearest(faces, p, rule);
 }
 
-/// Follows the held contact. If it has ended, sets the phase for the next test and returns false.
+/// Follows the held contact. If the contact has ended, sets the phase for the tests that come next and returns false.
 template <class Faces>
 bool ContactState::stays(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule, Foot& foot) noexcept {
   const Followed how = faces.follow(side_, foot);
@@ -152,8 +154,8 @@ bool ContactState::stays(Faces& faces, const Eigen::Vector3d& p, const ContactRu
   return false;
 }
 
-/// True if another face is nearer than the held foot by more than the hysteresis. Sets the foot's status to kHeld if it
-/// is not the nearest.
+/// True if another face is nearer than the held foot by more than the hysteresis. Sets the status of the held foot to
+/// kHeld if that foot is not the nearest.
 template <class Faces>
 bool ContactState::isLeft(Faces& faces, const ContactRule& rule, Foot& foot) noexcept {
   constexpr double kSame = 1e-9;  // [m] distances that differ by less count as equal
@@ -163,7 +165,7 @@ bool ContactState::isLeft(Faces& faces, const ContactRule& rule, Foot& foot) noe
   return found(nearest) && nearest.distance < foot.distance - rule.hysteresis;
 }
 
-/// Makes the swept test: returns true if the path since the probe was last outside leads into a face.
+/// Makes the swept test: returns true if the path from the last position outside leads into a face.
 template <class Faces>
 bool ContactState::begins(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule, Foot& foot) noexcept {
   const double way2 = (p - from_).squaredNorm();
@@ -207,8 +209,8 @@ Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const Conta
   return foot;
 }
 
-/// Returns the foot by the rule without hysteresis. A shell is felt from the side from which the probe came, until the
-/// probe has gone round a free edge.
+/// Returns the foot if there is no contact hysteresis. A shell is felt from the side from which the probe came, until
+/// the probe has gone round a free edge.
 inline Foot ContactState::nearestAlways(const Foot& nearest, const Eigen::Vector3d& p, Sides sides) noexcept {
   if (!found(nearest)) {
     phase_ = Phase::kUnknown;

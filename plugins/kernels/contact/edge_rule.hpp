@@ -14,7 +14,8 @@ enum class EdgeKind : std::uint8_t {
   kConcave  ///< the next face rises, as a wall from the floor
 };
 
-/// [rad] Faces whose normals differ by less count as one smooth surface. 0.1 degrees covers the tolerance of CAD files.
+/// [rad] Faces whose normals differ by less than this (0.1 degrees, the tolerance of CAD files) count as one smooth
+/// surface.
 inline constexpr double kSmoothEdge = 1.8e-3;
 
 /// [any] Returns how two faces meet.
@@ -27,13 +28,14 @@ inline EdgeKind edgeKind(const Eigen::Vector3d& here, const Eigen::Vector3d& nex
 }
 
 enum class AtEdge : std::uint8_t {
-  /// the foot continues on the next face if that is nearer to the probe, else it stays on the edge, and both faces push
+  /// the foot continues on the next face if it comes nearer to the probe there; otherwise it stays on the edge, and
+  /// both faces push
   kSlide,
   kRelease  ///< the probe is in front of the next face: it has crossed the edge, and the contact ends
 };
 
-/// [any] Decides for a held foot that is on an edge and would continue beyond it. The paper's rule (Thompson et al.
-/// 1999, 5.2.4) says which face is next; this function says whether the probe is still in contact there.
+/// [any] Decides whether the contact continues when its held foot is on an edge and would move beyond it. The rule of
+/// Thompson et al. (1999, 5.2.4) gives the next face. This function tells whether the probe is still in contact there.
 /// @param next outward unit normal of the next face
 /// @param r vector from the foot to the probe [m]
 inline AtEdge atEdge(EdgeKind kind, const Eigen::Vector3d& next, const Eigen::Vector3d& r) noexcept {

@@ -17,15 +17,16 @@ struct FrictionLaw {
 /// The friction of one probe. Its stuck point is in the model frame: it moves with the model, so a moving model drags
 /// the probe.
 ///
-/// The force is a spring from the stuck point to the foot. If the force would exceed the limit, the stuck point is
-/// dragged along. So the force is continuous, and the spring never returns more energy than it got. While the probe
-/// slips, the limit falls from static to dynamic over a distance equal to the stretch of the spring; it returns when
-/// the probe sticks again. Neither change makes the force jump.
+/// The force is that of a spring from the stuck point to the foot point. If it would exceed the limit, the stuck point
+/// is dragged along with the foot point. So the force is continuous, and the spring never returns more energy than it
+/// received. While the probe slips, the limit falls from the static to the dynamic one over a distance equal to the
+/// stretch of the spring. When the probe sticks again, the limit returns to the static one. Neither change makes the
+/// force jump.
 class Friction {
  public:
   /// [rt] Returns the force [N] on the probe along the surface: dry friction of at most mu * normal_force, plus the
   /// drag.
-  /// @param foot nearest point of the surface [m], in the model frame
+  /// @param foot foot point of the probe [m], in the model frame
   /// @param normal outward unit normal at the foot
   /// @param normal_force [N] normal force of the wall, >= 0; 0 or NaN forgets the stuck point
   /// @param velocity velocity of the probe relative to the model [m/s]; only its part along the surface counts

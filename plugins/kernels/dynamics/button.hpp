@@ -8,8 +8,8 @@
 
 namespace hapticd::dynamics {
 
-/// The detent: the force F2 [N] over the button's travel x2 [m]. It has straight lines between its points; beyond the
-/// last point it rises with end_stiffness.
+/// The detent: the button's own force F2 [N] over its travel x2 [m]. The curve has straight lines between its points.
+/// Beyond the last point the force rises with the slope end_stiffness.
 class DetentCurve {
  public:
   struct Knot {
@@ -17,12 +17,13 @@ class DetentCurve {
   };
   static constexpr int kMaxKnots = 64;
 
-  /// [main] Takes points of growing travel; adds the point (0, 0) if `knots` does not begin there. end_stiffness is in
-  /// N/m. @throws std::invalid_argument that names the wrong point.
+  /// [main] Takes points in the order of growing travel, and adds the point (0, 0) if `knots` does not begin there.
+  /// @param end_stiffness [N/m] slope beyond the last point
+  /// @throws std::invalid_argument that names the wrong point.
   DetentCurve(std::span<const Knot> knots, double end_stiffness);
 
-  double force(double travel) const noexcept;   ///< [rt] [N]; for travel < 0 the first line continues
-  double energy(double travel) const noexcept;  ///< [rt] [J] stored energy; travel must be >= 0
+  double force(double travel) const noexcept;   ///< [rt] [N]; for travel < 0 [m] the first line continues
+  double energy(double travel) const noexcept;  ///< [rt] [J] energy stored at this travel [m], which must be >= 0
   int pieces() const noexcept { return static_cast<int>(knots_.size()); }
   const Knot& knot(int piece) const noexcept { return knots_[static_cast<size_t>(piece)]; }
   /// [N/m] slope of the line that begins at this knot
@@ -34,8 +35,8 @@ class DetentCurve {
   std::vector<double> slopes_;
 };
 
-/// One way to divide the probe's travel: x1 [m] into the surface, and x2 [m] by which the button moves. The force [N]
-/// is the same in both springs.
+/// One way to divide the probe's travel: x1 [m] is the depth in the surface, x2 [m] the travel of the button. The force
+/// [N] is the same in both springs.
 struct Equilibrium {
   double x1 = 0, x2 = 0, force = 0;
   int piece = 0;
@@ -51,18 +52,19 @@ struct Equilibria {
 /// faster than k1 there is more than one, and the button snaps.
 Equilibria buttonEquilibria(double k1, const DetentCurve& detent, double travel) noexcept;
 
-/// [rt] Follows the button's present branch of equilibria, and leaves it only at its end (snap-through, with
-/// hysteresis).
+/// [rt] Follows the button's present branch of equilibria. At the end of the branch the button snaps to another branch,
+/// so its motion has hysteresis.
 class ButtonState {
  public:
   struct Step {
     Equilibrium at;
-    /// the button went past the detent in this step, or came back from there
+    /// the button went past its detent in this step, or came back from beyond it
     bool clicked = false;
     bool snapped = false;  ///< the button jumped from one branch of equilibria to another
   };
   /// [rt] Advances the button by one tick.
-  /// @param travel [m] travel of the probe from the surface of the button at rest; if it is <= 0 there is no contact,
+  /// @param k1 [N/m] spring of the surface
+  /// @param travel [m] travel of the probe from the surface of the button at rest; if it is <= 0, there is no contact
   /// and the button is at rest
   Step step(double k1, const DetentCurve& detent, double travel) noexcept;
   void reset() noexcept {

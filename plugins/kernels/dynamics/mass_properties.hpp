@@ -20,7 +20,8 @@ class SolidIntegral {
  public:
   /// [any] @param origin a point near the solid [m]; it keeps the precision if the solid is far from the frame's origin
   explicit SolidIntegral(const Eigen::Vector3d& origin) noexcept : origin_(origin) {}
-  /// [any] Adds a small piece of the surface: a point of it [m] and its outward area vector [m^2].
+  /// [any] Adds a small piece of the surface. @param point a point of the piece [m]
+  /// @param area outward normal times the area of the piece [m^2]
   void add(const Eigen::Vector3d& point, const Eigen::Vector3d& area) noexcept;
   double volume() const noexcept { return volume_; }  ///< [any] [m^3]; negative if the surface is inside out
   /// [any] Returns the properties of the solid that the pieces enclose. volume() must not be 0.

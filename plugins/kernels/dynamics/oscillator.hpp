@@ -4,9 +4,9 @@
 
 namespace hapticd::dynamics {
 
-/// The exact step. Measured from the equilibrium x_e = f/k, the state (x, v) one step later is a linear map of the
-/// present state: four numbers that are computed once (the exponential of the 2x2 system matrix). It is stable for
-/// every m > 0, b >= 0, k >= 0 and every step.
+/// The exact step. Let (x, v) be the state relative to the equilibrium x_e = f/k. The state one step later is a linear
+/// map of the present state. Its four coefficients are computed once (the exponential of the 2x2 system matrix). The
+/// step is stable for every m > 0, b >= 0, k >= 0 and every length.
 struct OscillatorStep {
   double xx = 1, xv = 0;  ///< x' = xx x + xv v
   double vx = 0, vv = 1;  ///< v' = vx x + vv v
@@ -17,11 +17,12 @@ struct OscillatorStep {
 /// @throws std::invalid_argument unless mass > 0, damping >= 0, stiffness >= 0, dt >= 0 and all are finite.
 OscillatorStep oscillatorStep(double mass, double damping, double stiffness, double dt);
 
-/// [rt] Returns the same as oscillatorStep() without a check of the arguments, for a dt that varies from tick to tick.
+/// [rt] Does the same as oscillatorStep(), but does not check the arguments. Use it for a dt that varies from tick to
+/// tick.
 OscillatorStep oscillatorStepUnchecked(double mass, double damping, double stiffness, double dt) noexcept;
 
-/// [rt] Advances a free motion about 0 by one step. With a constant force f, pass x - f/k for x. T is a scalar, or an
-/// Eigen vector or array.
+/// [rt] Advances a motion about x = 0 without external force by one step. With a constant force f, pass x - f/k for x.
+/// T is a scalar, or an Eigen vector or array.
 template <class T>
 inline void advance(const OscillatorStep& step, T& x, T& v) noexcept {
   const T moved = step.xx * x + step.xv * v;

@@ -24,19 +24,19 @@ struct PendulumState {
 /// length and damping are not below 0.
 void validate(const PendulumLaw& law);
 
-/// [rad] largest phase of the linear swing in one step for which advance() is stable (test
-/// Pendulum.IsStableUpToItsLargestSwing). It is accurate up to a tenth of this.
+/// [rad] largest phase by which a small swing may advance in one step of advance(), so that the step is stable (test
+/// Pendulum.IsStableUpToItsLargestSwing). The step is accurate up to a tenth of this.
 inline constexpr double kLargestSwing = 32;
 
 /// [main] Checks that a body that swings at `swing_rate` [rad/s] is not too fast for steps at `rate_hz`; 0 means that
 /// the rate is not known yet. @throws std::invalid_argument that names the bound.
 void validateSwing(double swing_rate, double rate_hz);
 
-/// [rt] Advances by one step of dt [s] under a constant torque of the user [N m]. A fast motion is divided into
-/// substeps. Without damping the method is a splitting of fourth order, which keeps the energy. With weak damping it is
-/// Runge-Kutta of fourth order. If damping / inertia times the substep exceeds 0.05, it is an exponential step of
-/// second order, which is stable for every damping (tests Pendulum.KeepsItsEnergyForTenMillionTicks,
-/// Pendulum.ConvergesWithTheOrderItClaims).
+/// [rt] Advances by one step of dt [s]. A fast motion is divided into substeps. Without damping the method is a
+/// splitting of fourth order, whose energy error stays bounded. With weak damping it is Runge-Kutta of fourth order. If
+/// damping / inertia times the substep exceeds 0.05, it is an exponential step of second order, which is stable for
+/// every damping (tests Pendulum.KeepsItsEnergyForTenMillionTicks, Pendulum.ConvergesWithTheOrderItClaims).
+/// @param torque [N m] torque of the user, constant in the step
 PendulumState advance(const PendulumLaw& law, PendulumState state, double torque, double dt) noexcept;
 
 /// [any] Returns kinetic plus potential energy [J]; 0 if the pendulum hangs at rest.
@@ -45,7 +45,7 @@ double energy(const PendulumLaw& law, const PendulumState& state) noexcept;
 /// [any] Returns the period [s] of a free swing of `amplitude` [rad], by the arithmetic-geometric mean.
 double period(const PendulumLaw& law, double amplitude) noexcept;
 
-/// [any] Returns the rate at the bottom [rad/s] above which the pendulum goes all the way round.
+/// [any] Returns the angular velocity [rad/s] that the pendulum needs at its lowest point to go all the way round.
 double separatrixRate(const PendulumLaw& law) noexcept;
 
 }  // namespace hapticd::dynamics

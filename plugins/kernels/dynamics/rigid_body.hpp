@@ -32,9 +32,9 @@ struct RigidBodyLaw {
   Eigen::Vector3d axis{0, 1, 0};   ///< direction of the axis of a hinge or slider
 };
 
-/// The motion of a body. Translation is exact if the force is constant in the step (a parabola, a decay, or the
+/// The motion of a body. The translation is exact if the force is constant in the step (a parabola, a decay, or the
 /// oscillator's exponential). For the rotation, the angular momentum is stored in the world frame, so integration
-/// errors cannot change it. The body is turned by a splitting of fourth order whose energy error stays bounded
+/// errors cannot change it. The body is turned by a splitting of fourth order, whose energy error stays bounded
 /// (top.hpp). Torque and angular drag act before and after this turn, to second order (tests FreeTop.*,
 /// RigidBody.DampedTopConvergesWithSecondOrder). A hinge is a pendulum (pendulum.hpp).
 class RigidBody {
@@ -50,10 +50,10 @@ class RigidBody {
   /// world frame and constant in the step. NaN counts as zero.
   void step(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double dt) noexcept;
 
-  /// [rt] Advances by one step of dt [s] under contacts, by backward Euler: it uses the forces at the end of the step.
-  /// The motion stays bounded for every mass and stiffness; the price is an additional damping ratio of w dt/2, with
-  /// w^2 = k/m. Forces held constant in the step would need a damping B > k dt/2 and a mass above B dt/2 (test
-  /// Coupling.HeldForcesAreStableOnlyAboveTheirBounds).
+  /// [rt] Advances by one step of dt [s] under contacts, by backward Euler, which uses the forces at the end of the
+  /// step. The motion stays bounded for every mass and stiffness. The cost is an additional damping ratio of w dt/2,
+  /// with w^2 = k/m. If the forces were held constant in the step, a contact would need a damping B > k dt/2 and a mass
+  /// above B dt/2 (test Coupling.HeldForcesAreStableOnlyAboveTheirBounds).
   void step(std::span<const PredictedContact> presses, double dt) noexcept;
 
   /// [rt] Returns the velocity [m/s] of the point of the body that is at `point` [m], in the world frame.
@@ -68,10 +68,10 @@ class RigidBody {
   /// [rt] angular momentum about the centre of mass, in the world [kg m^2/s]
   const Eigen::Vector3d& momentum() const noexcept { return l_; }
   Eigen::Vector3d bodyRate() const noexcept;  ///< [rt] angular velocity in the model frame [rad/s]
-  /// [rt] energy [J]: kinetic, of the tether, and of gravity (0 at the start)
+  /// [rt] energy [J]: kinetic energy, energy of the tether, and potential energy of gravity (0 at the start)
   double energy() const noexcept;
   /// [any] Returns the angular frequency [rad/s] of small swings of a hinge about its lowest point; 0 for other joints.
-  /// A step of more than kLargestSwing rad of this swing is not stable (pendulum.hpp).
+  /// Steps in which such a swing advances by more than kLargestSwing [rad] are not stable (pendulum.hpp).
   double swingRate() const noexcept { return std::sqrt(law_.joint == Joint::kHinge ? hinge_.frequencySquared() : 0); }
 
   /// [rt] Sets the velocity of the centre of mass (world frame, m/s) and the angular velocity (model frame, rad/s).

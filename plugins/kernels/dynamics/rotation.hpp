@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Orientations that do not drift: unit quaternions that are turned exactly and renormalised, instead of multiplied
-/// matrices.
+/// Orientations that do not drift. They are unit quaternions that are turned exactly and renormalised. Products of
+/// matrices would drift.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -10,7 +10,8 @@ namespace hapticd::dynamics {
 /// angles.
 Eigen::Quaterniond rotationBy(const Eigen::Vector3d& turn) noexcept;
 
-/// A unit quaternion near 1, as (1 + less, vector). It stores its small difference from 1 in full precision.
+/// A unit quaternion near 1: the scalar part is 1 + less, the vector part is `vector`. The small difference from 1
+/// keeps its full precision.
 struct SmallTurn {
   Eigen::Vector3d vector{0, 0, 0};
   double less = 0;

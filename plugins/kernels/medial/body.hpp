@@ -19,16 +19,16 @@ struct BodyData {
   SkeletonGrid grid;
   std::vector<double> stiffness;  ///< [N/m] one per point
   std::vector<double> damping;    ///< [N s/m] one per point; empty if the body has no damping
-  /// [kg] one per point; empty if the body has no mass: its control points then creep back without swinging
+  /// [kg] one per point; empty if the body has no mass: its control points then return to rest without swinging
   std::vector<double> mass;
-  /// [m] distance along the skeleton by which the dent of a felt body is wider than its control points alone make it
+  /// [m] length along the skeleton by which shear widens a dent of a felt body, see Deformation::nodesAt()
   double shear_reach = 0;
 };
 
 /// Options of a surface whose own dynamics is felt.
 struct FeltOptions {
   bool on = false;
-  double contact_ratio = 3;                          ///< contact spring divided by the stiffness of a fast press
+  double contact_ratio = 3;  ///< stiffness of the contact spring, divided by that of a fast press
   double relaxation_share = 0, relaxation_time = 0;  ///< see Tissue
   double tick = 1e-3;                                ///< [s] length of most steps
 };
@@ -36,10 +36,11 @@ struct FeltOptions {
 struct BodyOptions {
   int degree = 3;
   spline::Form form = spline::Form::kTable;
-  /// distance from a contact to the ends of its four shear springs, as a share of the parameter range; 0: no shear
-  /// springs
+  /// parameter distance from a contact to the ends of its four shear springs, as a share of the parameter range; 0: no
+  /// shear springs
   double shear_offset = 0.05;
-  /// [m] the same distance along the skeleton; if above 0, it replaces shear_offset (see press())
+  /// [m] distance along the skeleton to the ends of the shear springs; if above 0, it replaces shear_offset (see
+  /// press())
   double shear_distance = 0;
   /// [m] depth at which the contact's damping reaches its full value; it is 0 at the surface
   double damping_scale = 5e-3;
@@ -51,14 +52,15 @@ struct BodyOptions {
 struct BodyForce {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N] force on the probe
   double normal = 0;                                ///< [N] outward part of `force`
-  double stiffness = 0;                             ///< [N/m] stiffness of the normal spring at this place
+  double stiffness = 0;                             ///< [N/m] stiffness of the normal spring at the contact
   double energy = 0;                                ///< [J] energy stored in the springs
 };
 
-/// The result of the test that the force grows with depth at every examined place.
+/// Result of the check that the force grows with depth at every examined place. It describes the worst place.
 struct MonotonicityReport {
-  double slope = 1;  ///< least slope of the force, divided by the stiffness of the normal spring at the same place
-  /// ratio: rest length over least length of the worst spring at that place; limit: the greatest allowed value of
+  /// slope of the force over depth at that place, divided by the stiffness of the normal spring there
+  double slope = 1;
+  /// ratio: rest length divided by least length of the worst spring at that place; limit: greatest allowed value of
   /// `ratio`
   double ratio = 1, limit = 1;
   double u = 0, v = 0;  ///< parameters of that place
@@ -79,9 +81,9 @@ class Body {
 
   /// [rt] Returns the force on a probe at `p` with the foot `foot`, at the depth `depth` [m] along the outward unit
   /// direction `normal`. The force comes from a normal spring, from four springs along the surface, and from damping
-  /// against `closing_speed` [m/s]. It never pulls inward along the normal. With `shear_distance` the four springs
-  /// together are as stiff as the normal spring and only turn the force: its part along the normal is then stiffness *
-  /// depth, with the stiffness of the file.
+  /// against `closing_speed` [m/s]. It never pulls inward along the normal. With `shear_distance` the four springs only
+  /// turn the force: together they are as stiff as the normal spring, and the part of the force along the normal is
+  /// stiffness * depth, with the stiffness of the file.
   BodyForce press(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;
   /// [rt] Describes to a felt surface the place where a probe at `p` touches the contour.
@@ -93,8 +95,8 @@ class Body {
   FeltSurface* feltSurface() noexcept { return felt_ ? &*felt_ : nullptr; }
   /// [main] Checks at samples all over the skeleton, on both sides, that the force grows with depth.
   MonotonicityReport checkMonotonicity() const;
-  /// [any] Returns an upper bound of the slope of the force over depth [N/m]: the slope of the normal spring with the
-  /// four others in line with it.
+  /// [any] Returns an upper bound of the slope of the force over depth [N/m]: the stiffness of the normal spring, plus
+  /// that of the four springs along the surface unless they only turn the force.
   double greatestStiffness() const noexcept {
     return (options_.shear_offset > 0 && !turns() ? 5 : 1) * stiffness_.greatest();
   }
@@ -112,8 +114,8 @@ class Body {
   /// neighbour.
   std::array<double, 2> offsetsAt(const SkeletonFoot& foot) const noexcept;
   Neighbours neighboursOf(const SkeletonFoot& foot, const Eigen::Vector3d& normal) const noexcept;
-  /// Updates `report` if the springs reduce the slope of the force along `normal` more here than at the places examined
-  /// before.
+  /// Updates `report` if the springs reduce the slope of the force along `normal` at this place more than at the places
+  /// that were examined before.
   void checkMonotonicityAt(const SkeletonFoot& at, const Eigen::Vector3d& normal, MonotonicityReport& report) const;
   std::vector<Oscillator> materialOf(const BodyData& data) const;
   std::vector<Tissue> tissueOf(const std::vector<Oscillator>& material) const;

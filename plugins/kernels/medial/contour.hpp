@@ -20,7 +20,7 @@ class Contour : public MovingMesh {
   Contour(const Skeleton& skeleton, double chord_error);
 
  private:
-  /// A place of the skeleton with the values that a vertex of the contour needs there.
+  /// A point of the skeleton with the values that a vertex of the contour needs there.
   struct Place {
     std::array<uint32_t, 2> line;
     Eigen::Vector3d center, tangent_u, tangent_v, across;

@@ -27,15 +27,15 @@ class Deformation : public Nodes {
   /// @throws std::invalid_argument for a negative or non-finite number.
   Deformation(const Skeleton& skeleton, const std::vector<Oscillator>& material, const DeformationOptions& options);
 
-  /// [rt] Moves control points so that at every contact the contour is pushed in at least to the probe, for several
-  /// contacts at once. Without dynamics the displacements come from these contacts alone.
+  /// [rt] Moves control points until the contour at every contact is not outside the probe. Without dynamics the
+  /// displacements come from these contacts alone.
   void press(std::span<const Press> contacts) noexcept;
   /// [rt] Returns the displacement of the skeleton (x, y, z) and the change of the radius at one point [m].
   Eigen::Vector4d at(double u, double v) const noexcept;
   /// [rt] Writes to `place` the control points that shape the contour at (u, v), with weights and derivatives. With a
-  /// shear reach L, the displacement of a place is half its own, plus a quarter each of those at the distance L before
-  /// and after it, along u and along v. So a press pulls down the surface beside it, which resists. The energy is still
-  /// the energy of the nodes.
+  /// shear reach L [m], the displacement of a point is a mean along u and along v: half the displacement of the point
+  /// itself, and a quarter each of the displacements at the distance L before and after it. So a press also pulls down
+  /// the surface beside it, and that surface resists. The only energy is that of the nodes.
   void nodesAt(double u, double v, FeltPlace& place) const noexcept;
   /// [main] Returns one compliance per control point, chosen so that the sum of weight^2 * compliance is nearly 1
   /// everywhere.

@@ -3,10 +3,11 @@
 /// springs that never pull.
 ///
 /// The displacement of the contour at one place, inward, is a weighted sum of the nodes' displacements:
-/// s = scale * sum of weight_i * (-normal, -1) . x_i. A contact force acts on the nodes through the same weights, so
-/// that its work on the nodes equals its work on the surface: no energy is created, wherever the probe slides. `scale`
-/// is chosen so that a held press feels the stiffness of the material at its place, whatever nodes are near. A place
-/// then yields most to a force on itself, and the force of a held press has no part along the surface.
+/// s = scale * sum of weight_i * (-normal, -1) . x_i.
+/// A contact force acts on the nodes through the same weights. So its work on the nodes equals its work on the surface,
+/// and no energy is created, wherever the probe slides. `scale` is chosen so that a held press feels the stiffness of
+/// the material at its place, whatever nodes are near. With this choice, a force displaces its own place more than any
+/// other, and the force of a held press has no part along the surface.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -48,12 +49,14 @@ struct FeltPlace {
 /// One probe at a surface during one tick.
 struct FeltContact {
   FeltPlace place;
-  double depth = 0;    ///< [m] depth of the probe below the contour at rest; negative outside
+  double depth = 0;    ///< [m] depth of the probe below the contour at rest; < 0 outside
   double before = 0;   ///< [m] depth of the probe below the displaced surface at the last tick
   bool known = false;  ///< true if `before` is known
-  /// the probe did not move to this place (it was put there): the surface counts as already held by it
+  /// true if the probe did not move to this place but begins or was put here: the surface is then displaced as if this
+  /// probe had already pressed it for a long time
   bool placed = false;
-  /// the probe comes from far away: if the surface has swung out beyond the probe, the probe counts as just touching it
+  /// true if the probe was not near the surface in the last tick: a surface that has swung out beyond the probe is then
+  /// moved back to it, but not below its position at rest
   bool fresh = false;
 
   double inside = 0;               ///< out: [m] depth of the probe below the displaced surface
@@ -66,14 +69,15 @@ class FeltSurface {
  public:
   /// [main] Prepares the steps of all materials.
   /// @param tissue one per node, or one for all
-  /// @param compliance one per node; with it the displacement of most places is nearly right even without `scale`
+  /// @param compliance one per node, so that the displacement of most places is nearly right even if `scale` is 1
   /// @param ratio see elementOf()
   /// @param dt [s] length of most ticks
   FeltSurface(Nodes& nodes, const std::vector<Tissue>& tissue, std::vector<double> compliance, double ratio, double dt);
 
   /// [rt] Computes the contact spring and the scale of a place whose nodes and stiffness are already set.
   void fit(FeltPlace& place) const noexcept;
-  /// [rt] Advances all moving nodes by one tick of dt [s] under all contacts. dt = 0 computes only the present forces.
+  /// [rt] Advances all moving nodes by one tick of dt [s] under all contacts. With dt = 0 it only computes the present
+  /// forces.
   void advance(double dt, std::span<FeltContact> contacts) noexcept;
   void reset() noexcept;  ///< [rt] puts all nodes back to rest
   /// [rt] Returns the kinetic and elastic energy [J] of nodes and contact springs.

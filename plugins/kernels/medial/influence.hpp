@@ -32,9 +32,9 @@ enum class PointSelection {
 /// @param span k, the knot span of the point
 Influence influence(std::span<const double> basis, int span, int p_prime, PointSelection choice) noexcept;
 
-/// How skeleton and radius share a contact of depth delta: the skeleton moves by split * delta, and the radius shrinks
-/// by (1 - split) * delta. So the touched side always moves by delta, and the opposite side by (1 - 2 split) delta
-/// toward the contact (negative: away from it).
+/// How skeleton and radius share a contact of depth delta. The skeleton moves by split * delta, and the radius shrinks
+/// by (1 - split) * delta. So the touched side always moves by delta. The opposite side moves by (1 - 2 split) delta
+/// toward the contact; if this is negative, it moves away.
 struct Split {
   double skeleton = 0;  ///< [m] motion of the skeleton along the inward normal of the contact
   double radius = 0;    ///< [m] length by which the radius shrinks

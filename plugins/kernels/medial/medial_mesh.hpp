@@ -34,7 +34,8 @@ struct MeshFeet {
   std::size_t count = 0;
   int evaluations = 0;  ///< primitives that were examined
   int visits = 0;       ///< nodes of the tree that were examined, including leaves
-  double doubt = 0;     ///< [m] another primitive may be nearer by up to this; 0 if none is
+  /// [m] by how much another primitive may be nearer than the first foot, because the search ended early; 0 if none may
+  double doubt = 0;
 };
 
 class MedialMesh {
@@ -45,7 +46,7 @@ class MedialMesh {
     uint8_t count = 0;
   };
   static constexpr uint32_t kNoStart = UINT32_MAX;
-  /// limit of a search in one tick; it takes half of a 1 kHz tick in the worst case, when all parts are equally near
+  /// limit for a search in one tick; in the worst case, when all parts are equally near, it takes half of a 1 kHz tick
   static constexpr int kMostVisits = 6000;
 
   /// [main] Builds the tree. Edges of triangles are part of their slabs and make no cones of their own; vertices of
@@ -54,9 +55,9 @@ class MedialMesh {
   explicit MedialMesh(const MeshData& data);
 
   /// [any] Finds the nearest foot of p, and others that are at most `band` [m] farther away.
-  /// @param start an element that was nearest a moment ago, or kNoStart
-  /// @param most_visits the search ends after so many nodes of the tree, with its result so far and a `doubt`; this may
-  /// happen in the middle of a body whose parts are all equally near
+  /// @param start element that is examined first, such as the nearest one of the last tick; or kNoStart
+  /// @param most_visits number of nodes of the tree after which the search ends early. The result is then the best one
+  /// so far, with a `doubt`. This may happen in the middle of a body whose parts are all equally near
   void nearest(const Eigen::Vector3d& p, uint32_t start, double band, MeshFeet& out,
                int most_visits = INT_MAX) const noexcept;
   /// [any] Returns the foot of p on one cone or slab.

@@ -15,30 +15,31 @@
 
 namespace hapticd::medial {
 
-/// The contents of a model file about a body from a medial mesh; one material per vertex, or one for all.
+/// The body of a model file with a medial mesh. The lists of material have one entry per vertex, or one for all
+/// vertices.
 struct MeshBodyData {
   MeshData mesh;
   std::vector<double> stiffness;  ///< [N/m]
   std::vector<double> damping;    ///< [N s/m]; empty if the body has no damping
-  /// [kg]; empty if the body has no mass: its vertices then creep back without swinging
+  /// [kg]; empty if the body has no mass: its vertices then return to rest without swinging
   std::vector<double> mass;
 };
 
-/// How a medial mesh yields to contacts: its nodes are the vertices. A contact moves the corners of the element that
-/// holds its foot, and rings of neighbours round them. How far each vertex moves is its weight: at first only the
-/// corners have weights; then, once per ring, every vertex gives a part of its weight to its neighbours in equal parts.
-/// So the weights do not jump while the contact slides from one element to the next.
+/// How a medial mesh yields to contacts. Its nodes are the vertices. A contact moves the corners of the cone or slab
+/// that holds its foot, and rings of neighbours around them. The weight of a vertex says how far it moves. At first
+/// only the corners have weights. Then, once per ring, every vertex gives a part of its weight to its neighbours in
+/// equal parts. So the weights do not jump while the contact slides from one element to the next.
 class MeshDeformation : public Nodes {
  public:
   /// [main] @throws std::invalid_argument if a material is impossible.
   MeshDeformation(const MedialMesh& mesh, const std::vector<Oscillator>& material, const DeformationOptions& options);
 
-  /// [rt] Moves vertices so that at every contact the contour is pushed in at least to the probe. On a slab, u and v
-  /// are the weights of corners 1 and 2; on a cone, u is the place along it. Without dynamics the displacements come
-  /// from these contacts alone.
+  /// [rt] Moves vertices until the contour at every contact is not outside the probe. Press::u and Press::v are the
+  /// parameters of the foot: on a slab the weights of corners 1 and 2, on a cone the position along the axis (0 to 1)
+  /// and 0. Without dynamics the displacements come from these contacts alone.
   void press(std::span<const Press> contacts) noexcept;
-  /// [rt] Writes to `place` the vertices that shape a felt surface at a foot, with weights and derivatives. The
-  /// corners' weights have no slope where the mesh ends (soft_weights.hpp). They are spread over `rings` of neighbours,
+  /// [rt] Writes to `place` the vertices that shape a felt surface at a foot, with weights and derivatives. The weights
+  /// of the corners have zero slope where the mesh ends (soft_weights.hpp). They are spread over `rings` of neighbours,
   /// so that neighbouring cones and slabs yield together.
   void nodesAt(uint32_t element, const Eigen::Array2d& parameter, FeltPlace& place) noexcept;
   /// [rt] Returns the displacement of the skeleton (x, y, z) and the change of the radius at a foot [m].
@@ -65,8 +66,9 @@ class MeshDeformation : public Nodes {
   std::vector<uint8_t> ends_;  ///< for each vertex: 1 if the mesh ends there
   /// vertex i has the neighbours neighbour_[first_[i]] to neighbour_[first_[i + 1] - 1]
   std::vector<uint32_t> first_, neighbour_;
-  std::vector<uint32_t> place_;  ///< for each vertex: its place in the list that is being made
-  std::vector<Reach> reaches_;   ///< one per contact
+  /// for each vertex: its index in the list of vertices that is being made; UINT32_MAX if it is not in the list
+  std::vector<uint32_t> place_;
+  std::vector<Reach> reaches_;  ///< one per contact
 };
 
 class MeshBody {
@@ -80,11 +82,10 @@ class MeshBody {
   MeshDeformation& deformation() noexcept { return *deformation_; }
   const MeshDeformation& deformation() const noexcept { return *deformation_; }
 
-  /// [any] Returns the foot of p. The search starts at element `start`, or at the root of the tree if that is
-  /// MedialMesh::kNoStart. Inside, if another part of the body is at most `crease` [m] farther away, the normal is
-  /// blended from one part to the other over this width, so that the force does not jump where a branch begins. If the
-  /// search ended at `most_visits`, the foot is not converged, and its residual says by how much another foot may be
-  /// nearer.
+  /// [any] Returns the foot of p. The search starts at element `start`, or at the root of the tree if `start` is
+  /// MedialMesh::kNoStart. If p is inside and another part of the body is at most `crease` [m] farther away, the normal
+  /// is blended between the two parts, so that the force does not jump where a branch begins. If the search ended at
+  /// `most_visits`, the foot is not converged, and its residual says by how much another foot may be nearer.
   SkeletonFoot foot(const Eigen::Vector3d& p, uint32_t start, double crease, int most_visits = INT_MAX) const noexcept;
   /// [rt] Finds the foot of p with its own normal, and as `rival` the most important foot on another part of the body
   /// that is at most `crease` [m] farther away.

@@ -13,10 +13,10 @@
 
 namespace hapticd::medial {
 
-/// [m] a node with a smaller amplitude counts as at rest: nobody sees or feels its motion
+/// [m] a node with a smaller amplitude counts as at rest: its motion can be neither seen nor felt
 inline constexpr double kAsleep = 1e-7;
-/// Share of the motion that every tick takes away. The exact step of an undamped node is a rotation, but rounding could
-/// make a growing spiral of it, by a few units in the last place per tick.
+/// Fraction of the motion that is removed in every tick. The exact step of an undamped node is a rotation, but rounding
+/// can turn it into a growing spiral, by a few units in the last place per tick.
 inline constexpr double kRoundingLoss = 4e-15;
 /// two step lengths dt with a smaller relative difference use the same prepared step
 inline constexpr double kSameStep = 1e-9;
@@ -30,7 +30,7 @@ struct DeformationOptions {
   double shear_reach = 0;              ///< [m] for a felt grid: places up to this distance from a contact sink with it
 };
 
-/// A node and its weight in a point of the skeleton.
+/// A node, and the weight with which it contributes to a point of the skeleton.
 struct NodeWeight {
   uint32_t node;
   double weight;
@@ -43,7 +43,7 @@ class Nodes {
   /// @throws std::invalid_argument for a negative or non-finite number.
   Nodes(std::size_t count, const std::vector<Oscillator>& material, const DeformationOptions& options);
 
-  /// [rt] Advances every awake node by dt [s] with the exact solution, for every length of dt.
+  /// [rt] Advances every awake node by dt [s]. The step is exact for every dt.
   void advance(double dt) noexcept;
   /// [rt] Puts all nodes back to rest and removes the bulge.
   void reset() noexcept;
@@ -74,10 +74,10 @@ class Nodes {
   };
   void clear() noexcept;  ///< [rt] puts all nodes to rest; the bulge stays
   const DeformationOptions& options() const noexcept { return options_; }
-  /// [rt] Moves nodes until the contour is not outside the probe, and until it is at least as fast as a probe that goes
-  /// deeper.
+  /// [rt] Moves nodes until the contour is not outside the probe. If the probe goes deeper, also raises the speed of
+  /// the contour to that of the probe.
   /// @param felt the nodes that shape the contour at the contact
-  /// @param moved the nodes that give way; the sum of the products of both weights is 1
+  /// @param moved the nodes that give way; the products of both weights of a node sum to 1
   void yield(const NodeContact& contact, std::span<const NodeWeight> felt, std::span<const NodeWeight> moved) noexcept;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The damping that an arm needs so that its contact with a felt surface is passive, whoever holds the arm.
+/// The damping that an arm needs so that its contact with a felt surface is passive for every person who holds the arm.
 #pragma once
 #include "kernels/medial/viscoelastic.hpp"
 

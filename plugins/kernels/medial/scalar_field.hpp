@@ -8,8 +8,8 @@
 namespace hapticd::medial {
 
 /// An interpolation with continuous first derivatives (C1). It is never negative if the samples are not, and along a
-/// grid line it stays between neighbouring samples (Fritsch & Carlson 1980); a cubic spline through the radii 0, 0.05,
-/// 1 would fall to -0.27. Equal samples cost neither time nor memory.
+/// grid line it stays between neighbouring samples (Fritsch & Carlson 1980). A cubic spline does not: through the radii
+/// 0, 0.05, 1 it would fall to -0.27. If all samples are equal, the field stores only their value.
 class ScalarField {
  public:
   ScalarField() = default;

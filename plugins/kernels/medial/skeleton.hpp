@@ -37,15 +37,15 @@ struct SkeletonFoot {
   bool converged = false;
 };
 
-/// What "nearest sphere" means for a point Q, a place S of the skeleton and its radius r.
+/// Which sphere counts as nearest to a point Q. S is a point of the skeleton, and r is the radius there.
 enum class Envelope {
-  kExact,  ///< the union of the spheres: the place S with the least |Q - S| - r
-  /// the test of Corso et al. 2002: the place S with the least |Q - S|, then the radius there. The body is too small by
-  /// the factor 1/sqrt(1 - r'^2) where radii vary
+  kExact,  ///< the sphere with the least |Q - S| - r: the body is the union of the spheres
+  /// the test of Corso et al. 2002: the sphere at the S with the least |Q - S|. Where radii vary, the body is too small
+  /// by the factor 1/sqrt(1 - r'^2)
   kFoot
 };
 
-/// Accuracy of a search that starts at a known place.
+/// Accuracy of a search that starts from a known foot.
 struct NewtonOptions {
   Envelope envelope = Envelope::kExact;
   /// [m] the search ends at a Newton step shorter than this; the remaining error is of the order of its square
@@ -61,7 +61,7 @@ struct ControlGrid {
   std::vector<Eigen::Vector3d> points;  ///< [m]
 };
 
-/// The place of a skeleton where the radius changes most.
+/// The point of a skeleton at which the radius changes fastest.
 struct Steepness {
   double slope = 0;     ///< change of the radius per metre of skeleton; from 1 on, spheres lie inside their neighbours
   double u = 0, v = 0;  ///< parameters of that place
@@ -78,9 +78,9 @@ class Skeleton {
   SkeletonFoot nearest(const Eigen::Vector3d& p, double u, double v, const NewtonOptions& options) const noexcept;
   /// [any] Returns the foot of p if no start is known: Newton iterations from the best samples of the whole skeleton.
   SkeletonFoot search(const Eigen::Vector3d& p, const NewtonOptions& options) const noexcept;
-  /// [any] Returns the foot of p by the binary search of Corso et al. 2002. It is nested, so that it also works on skew
-  /// skeletons: in each of the `halvings` steps
-  /// along u it makes as many steps along v. It assumes one minimum along each line.
+  /// [any] Returns the foot of p by the binary search of Corso et al. 2002. The search is nested, so that it also works
+  /// on skew skeletons: in each of the `halvings` steps along u it makes as many steps along v. It assumes that there
+  /// is one minimum along each line.
   SkeletonFoot bisect(const Eigen::Vector3d& p, Envelope envelope, int halvings) const noexcept;
   /// [any] Returns a lower bound of the distance from p to the body [m]; 0 inside the bounding box.
   double leastDistance(const Eigen::Vector3d& p) const noexcept { return bounds_.exteriorDistance(p); }

@@ -5,22 +5,22 @@
 
 namespace hapticd::medial {
 
-/// The material of one place of a body as a hand feels it in a slow press: at the frequency w it has the dynamic
-/// stiffness `stiffness + i w damping - w^2 mass`. With relaxation, the response to a step of the depth is stiffness *
-/// (1 + share * exp(-t / time)).
+/// The material of one point of a body as a hand feels it. In a slow press at the angular frequency w it has the
+/// dynamic stiffness `stiffness + i w damping - w^2 mass`. With relaxation, the response to a step of the depth is
+/// stiffness * (1 + share * exp(-t / time)).
 struct Tissue {
   double stiffness = 0;         ///< [N/m] stiffness that a held press feels
   double damping = 0;           ///< [N s/m] damping that the hand feels
   double mass = 0;              ///< [kg] mass that the hand feels
-  double relaxation_share = 0;  ///< additional stiffness of a fast press, as a share of `stiffness`
+  double relaxation_share = 0;  ///< additional stiffness of a fast press, divided by `stiffness`
   double relaxation_time = 0;   ///< [s] time constant of the relaxation
 };
 
-/// The same material in the form that is integrated. The spring of the contact lies between the probe and the surface.
-/// So the force does not jump when a contact begins or ends, because the mass is behind this spring. Both springs in
-/// series have the stiffness Tissue::stiffness.
+/// The same material in the form that is integrated: a mass on springs and a damper, and the contact spring between
+/// this mass and the probe. Because the probe never touches the mass itself, the force does not jump when a contact
+/// begins or ends. The contact spring and the spring of the surface in series have the stiffness Tissue::stiffness.
 struct SurfaceElement {
-  /// [N/m] spring between the probe and the surface; no motion, however fast, feels a greater stiffness
+  /// [N/m] spring between the probe and the surface; even the fastest press feels no greater stiffness
   double contact = 0;
   double stiffness = 0;    ///< [N/m] spring between the surface and its position at rest
   double damping = 0;      ///< [N s/m] damper parallel to `stiffness`

@@ -10,9 +10,9 @@
 namespace hapticd::medial {
 
 /// Grows all radii by the same length, the bulge, until the body has its volume at rest again. The volume is the exact
-/// integral over the triangles of the displaced contour. Each tick adds a bounded number of triangles; each complete
-/// sum gives one Newton step of the bulge. The bulge depends on the displacements alone and does no work on them, so
-/// the energy of the nodes falls as it does without a bulge.
+/// integral over the triangles of the displaced contour. Each tick adds a bounded number of triangles to this sum. When
+/// the sum is complete, the bulge makes one Newton step. The bulge does no work on the displacements of the nodes, so
+/// the energy of the nodes falls as it would without a bulge.
 class VolumeKeeper {
  public:
   /// [main] Allocates all memory.
@@ -22,8 +22,8 @@ class VolumeKeeper {
     area_ = contour.area(xyz_);
   }
 
-  /// [rt] Continues the sum, and sets the bulge of `nodes` when the sum is complete. Costs nothing while the body is at
-  /// rest.
+  /// [rt] Adds the next triangles to the sum, and sets the bulge of `nodes` when the sum is complete. Returns at once
+  /// while the body is at rest.
   void step(Nodes& nodes) noexcept {
     if (nodes.awake() == 0 && nodes.bulge() == 0 && next_vertex_ == 0) return;
     for (std::size_t work = 0; work < kWork;) {
@@ -44,7 +44,7 @@ class VolumeKeeper {
       }
     }
   }
-  /// [rt] Starts the sum again. Call it after the body was put to rest.
+  /// [rt] Starts the sum again. Call it after all nodes were put back to rest.
   void reset() noexcept {
     next_vertex_ = next_triangle_ = 0;
     sum_ = 0;

@@ -46,11 +46,13 @@ class Axis {
   const std::vector<double>& knots() const noexcept { return knots_; }
   std::size_t bytes() const noexcept;
 
-  /// [main] Expands the table's coefficients of the first (`low`) or last (`high`) cell about that end of the domain
-  /// instead of about the middle of the cell. If both are true and there is a single cell, the cell is halved.
+  /// [main] Changes the point about which the table's coefficients of end cells are expanded: `low` moves that of the
+  /// first cell to the low end of the domain, `high` that of the last cell to the high end. Otherwise it is the middle
+  /// of the cell. If both are true and there is a single cell, the cell is halved.
   void anchor(bool low, bool high);
 
-  /// [main] Frees what only window(), count() and knots() need; they must not be called any more.
+  /// [main] Frees the memory that only window(), count() and knots() use. These functions must not be called
+  /// afterwards.
   void forgetKnots();
 
  private:

@@ -27,15 +27,15 @@ struct CurvePoint {
 /// the domain are moved to its ends, and NaN to its low end.
 class Curve {
  public:
-  /// [main] Checks and stores a curve. `kTable` is a request: if the power basis would lose digits (as in very narrow
-  /// spans), the curve uses kNet instead. form() returns the form in use.
+  /// [main] Checks and stores a curve. kTable is only a preference: if the power basis would lose digits (as in very
+  /// narrow spans), the curve uses kNet. form() returns the form in use.
   /// @throws std::invalid_argument as validate() does.
   explicit Curve(const CurveData& data, Form form = Form::kNet, Instructions instructions = Instructions::kFastest);
 
   /// [any] Computes C and C1 at u; C2 stays unchanged.
   void evaluate1(double u, CurvePoint& out) const noexcept;
   /// [any] Computes C, C1 and C2 at u. At a knot, the derivatives are those of the span to its right. Source: Piegl &
-  /// Tiller A3.2 and A4.2, about a local origin.
+  /// Tiller A3.2 and A4.2. Coordinates are relative to a local origin, to keep precision.
   void evaluate2(double u, CurvePoint& out) const noexcept;
 
   /// [any] Returns the parameter range [lo, hi].

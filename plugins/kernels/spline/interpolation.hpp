@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Splines through given points, in any number of dimensions: only positions, or also radii and material.
+/// Splines through given points in any number of dimensions, such as positions alone, or positions with radii and
+/// material.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -23,9 +24,9 @@ struct GridFit {
   Eigen::MatrixXd control;
 };
 
-/// [main] Returns chord-length parameters (Piegl & Tiller 9.5), 0 to 1. @param chord_dimensions how many of the first
-/// columns are positions; distances are measured in these columns, so that radii or stiffnesses in later columns do not
-/// stretch the parameters. 0 means all columns.
+/// [main] Returns chord-length parameters from 0 to 1 (Piegl & Tiller 9.5).
+/// @param chord_dimensions number of columns, from the first on, that are positions; 0 means all columns. Distances are
+/// measured in these columns only, so that radii or stiffnesses in later columns do not stretch the parameters
 /// @throws std::invalid_argument if two neighbours coincide or a number is not finite.
 std::vector<double> chordParameters(const Eigen::MatrixXd& data, int chord_dimensions = 3);
 
@@ -35,7 +36,8 @@ std::vector<double> chordParameters(const Eigen::MatrixXd& data, int chord_dimen
 std::vector<double> averagedKnots(const std::vector<double>& parameters, int degree);
 
 /// The collocation matrix of a clamped spline, factored once. The matrix is banded and totally positive, so elimination
-/// needs no pivots and stays in the band (de Boor & Pinkus 1977). It takes n * degree^2 steps and n * degree memory.
+/// needs no pivots and stays in the band (de Boor & Pinkus 1977). Factoring takes n * degree^2 operations and n *
+/// degree numbers of memory.
 class Collocation {
  public:
   /// [main] @throws std::invalid_argument if the parameters and knots do not determine every control point

@@ -25,22 +25,23 @@ struct NetWindow {
   int stride;          ///< number of Quads from one u row to the next
 };
 
-/// Kernels write the vectors S, Su, Sv, and those of second order then Suu, Suv, Svv. Each vector takes four doubles,
-/// of which the fourth has no meaning. So a vector is written by one store, and the next read of any of its parts is
-/// served by the processor's store buffer.
+/// Kernels write the vectors S, Su, Sv, and kernels of second order also Suu, Suv, Svv. Each vector takes four doubles,
+/// of which the fourth has no meaning. So one store writes a whole vector, and the processor's store buffer can serve
+/// the next read of any of its components.
 inline constexpr int kOutStride = 4;
 using NetKernel = void (*)(const NetWindow& net, double u, double v, double* out) noexcept;
 /// Returns how many numbers a power-basis coefficient has: x, y, z, and the weight if the surface is rational.
 constexpr int tableStride(bool rational) {
   return rational ? 4 : 3;
 }
-/// Evaluates one cell of a table at (s, t), measured from the point about which it is expanded. The kernel also reads
-/// the number behind the cell, which must exist and has no effect.
+/// Evaluates one cell of a table. The kernel also reads the number behind the cell. That number must exist, but does
+/// not change the result.
+/// @param s, t parameters, relative to the parameters about which the cell is expanded
 /// @param cell the local origin, then size_u x size_v coefficients of s^i t^j, i-major, each of tableStride() numbers
 using TableKernel = void (*)(const double* cell, int size_u, int size_v, double s, double t, double* out) noexcept;
 
-/// One cell of a table, with all that evaluating it needs. It saves the look-up for callers that stay in a cell for
-/// many evaluations.
+/// One cell of a table, with all values that its evaluation needs. Callers that stay in a cell for many evaluations
+/// keep it, so that they need not look it up again.
 struct TableCell {
   double lo[2], end[2];  ///< parameters strictly between `lo` and `end` lie in the cell
   double origin[2];      ///< parameters about which the coefficients are expanded
@@ -49,8 +50,8 @@ struct TableCell {
   int size[2];
 };
 
-/// Sizes of cells (degree + 1 along u and v) that have unrolled kernels. Cells of smaller degree are padded with zeros
-/// to the first of these sizes that holds them. The sizes of 1 along v are those of curves.
+/// Sizes of cells (degree + 1 along u and along v) that have unrolled kernels. A smaller cell is padded with zeros to
+/// the first of these sizes into which it fits. The sizes of 1 along v are those of curves.
 inline constexpr int kTableShapes = 12;
 inline constexpr int kTableSizes[kTableShapes][2] = {{4, 1}, {6, 1}, {2, 2}, {2, 3}, {3, 2}, {3, 3},
                                                      {4, 2}, {2, 4}, {4, 4}, {6, 2}, {2, 6}, {6, 6}};
@@ -64,7 +65,7 @@ enum class Weights : std::uint8_t {
 
 struct KernelSet {
   NetKernel net[3][2];  ///< [Weights][second order]
-  /// Indices: [place in kTableSizes, or kTableShapes for other sizes][rational][second order].
+  /// Indices: [index in kTableSizes, or kTableShapes for other sizes][rational][second order].
   TableKernel table[kTableShapes + 1][2][2];
 };
 

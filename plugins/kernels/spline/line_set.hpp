@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Knot insertion along one axis, done at once for all lines of control points along this axis.
+/// Inserts knots along one axis, at once for all lines of control points that run along this axis.
 #pragma once
 #include <vector>
 
@@ -9,8 +9,8 @@
 namespace hapticd::spline {
 
 /// The control points of a curve (one line) or of a surface (one line for each control point across the axis). Points
-/// are not multiplied by their weights: a step of knot insertion is a weighted mean of two points, and the mean of
-/// equal points is exactly that point. So collapsed sides stay collapsed bit for bit.
+/// are not multiplied by their weights. So a step of knot insertion is a weighted mean of two points, and the mean of
+/// two equal points is exactly that point. Therefore collapsed sides stay collapsed bit for bit.
 class LineSet {
  public:
   explicit LineSet(const CurveData& curve);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Control points as the kernels read them: weights are scaled to about 1, and coordinates are scaled if they are
+/// Control points in the form that the kernels read. Weights are scaled to about 1. Coordinates are scaled if they are
 /// extreme.
 #pragma once
 #include <Eigen/Core>

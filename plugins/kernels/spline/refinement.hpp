@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Rewrites a curve or surface with more knots, as Bezier pieces, or as smooth parts. Shape and parameters never
-/// change.
+/// Rewrites a curve or surface with more knots, as Bezier pieces, or as smooth parts. The shape and its parameters do
+/// not change.
 #pragma once
 #include <span>
 #include <vector>
@@ -11,12 +11,12 @@
 namespace hapticd::spline {
 
 /// [rad] A surface counts as smooth across a knot of multiplicity `degree` if its normals on both sides differ by less
-/// than this. The spans of an exact circle or sphere join in this way; their normals agree to rounding, 1e-15.
+/// than this. The spans of an exact circle or sphere meet at such knots, and their normals agree to 1e-15.
 inline constexpr double kSmoothAngle = 1e-6;
 
-/// [main] Inserts knots inside the domain, each as often as it occurs in `added`, but at most up to multiplicity
-/// `degree`. The shape stays the same. @throws std::invalid_argument if the data are invalid or a knot lies outside the
-/// domain.
+/// [main] Inserts the knots `added`, which must be inside the domain. A knot that occurs several times is inserted as
+/// often, but its multiplicity does not rise above `degree`. The shape stays the same. @throws std::invalid_argument if
+/// the data are invalid or a knot lies outside the domain.
 CurveData refine(const CurveData& curve, std::span<const double> added);
 SurfaceData refine(const SurfaceData& surface, int axis, std::span<const double> added);
 

@@ -35,8 +35,8 @@ class Surface {
  public:
   /// [main] Makes an empty object. Assign a surface to it before evaluation.
   Surface() = default;
-  /// [main] Checks and stores a surface. `kTable` is a request: if the power basis would lose digits (weights that
-  /// differ much within a span, some high degrees), the surface uses kNet instead. form() returns the form in use.
+  /// [main] Checks and stores a surface. kTable is only a preference: if the power basis would lose digits (weights
+  /// that differ much within a span, some high degrees), the surface uses kNet. form() returns the form in use.
   /// @throws std::invalid_argument as validate() does.
   explicit Surface(const SurfaceData& data, Form form = Form::kTable,
                    Instructions instructions = Instructions::kFastest);
@@ -44,8 +44,8 @@ class Surface {
   /// [any] Computes S, Su, Sv at (u, v); Suu, Suv, Svv stay unchanged.
   void evaluate1(double u, double v, SurfacePoint& out) const noexcept { evaluate<1>(u, v, out); }
   /// [any] Computes S and all first and second derivatives at (u, v). At a knot, the derivatives are those of the span
-  /// to its right. Source: Piegl & Tiller, The NURBS Book, A2.3 and A4.4 (with the mixed derivative), about a local
-  /// origin.
+  /// to its right. Source: Piegl & Tiller, The NURBS Book, A2.3 and A4.4 (with the mixed derivative). Coordinates are
+  /// relative to a local origin, to keep precision.
   void evaluate2(double u, double v, SurfacePoint& out) const noexcept { evaluate<2>(u, v, out); }
 
   /// [any] Returns the cell that contains an evaluated point.

@@ -11,8 +11,8 @@ namespace hapticd::spline {
 
 /// Highest degree of a curve, and of a surface along u and along v.
 inline constexpr int kMaxDegree = 15;
-/// Narrowest knot span and largest absolute value of a knot. Within these limits, first and second derivatives stay
-/// finite doubles.
+/// Narrowest knot span and largest absolute value of a knot. Within these limits, first and second derivatives do not
+/// overflow.
 inline constexpr double kNarrowestSpan = 1e-100;
 inline constexpr double kWidestKnot = 1e100;
 /// Largest ratio of two weights of one surface. Beyond it the point with the smaller weight would not affect the
@@ -49,8 +49,8 @@ void validate(const SurfaceData& data);
 /// @throws std::invalid_argument
 void validateKnots(const SurfaceData& data, int axis);
 
-/// [main] Checks one knot vector for `count` control points. @param what the message begins with this text, such as
-/// "surface 'lid': knots[u]"
+/// [main] Checks one knot vector for `count` control points. @param what beginning of the message, such as "surface
+/// 'lid': knots[u]"
 /// @throws std::invalid_argument
 void validateKnots(const std::vector<double>& knots, int degree, std::size_t count, const std::string& what);
 

@@ -17,14 +17,14 @@ enum class Form : std::uint8_t {
   kNet     ///< only control points (Cox-de Boor evaluation); the smallest form, exact to rounding for any weights
 };
 
-/// Largest allowed growth of rounding errors in a cell: the sum of the magnitudes of its terms over the size of their
-/// sum. If a cell exceeds this, the surface keeps the control net, whose terms are all positive. A growth of 100 is an
-/// error of 2e-14 of a span.
+/// Largest allowed growth of rounding errors in a cell: the sum of the magnitudes of its terms, divided by the
+/// magnitude of their sum. If a cell exceeds this, the surface is evaluated from its control net, whose terms are all
+/// positive. A growth of 100 is an error of 2e-14 of the size of a span.
 inline constexpr double kMaxTableGrowth = 100;
 
 struct Table {
-  /// The cells, u-major: each is its local origin, then its coefficients, all of tableStride() numbers. One more number
-  /// follows the last cell, see TableKernel.
+  /// The cells, u-major. Each cell has its local origin, then its coefficients; each of them takes tableStride()
+  /// numbers. One more number follows the last cell, see TableKernel.
   std::vector<double> cells;
   int size_u = 0, size_v = 0;
   int shape = 0;                  ///< index into KernelSet::table

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Bounding boxes of small, nearly flat pieces of patches, as a binary tree for each patch. They tell a global search
-/// which pieces it can leave out.
+/// Bounding boxes of small, nearly flat pieces of patches, as a binary tree for each patch. A global search uses them
+/// to skip the pieces that are too far away.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace hapticd::trace {
 
-/// A piece of a patch that is so flat that Newton's method finds a foot on it from its middle.
+/// A piece of a patch that is so flat that Newton's method, started at its middle, finds a foot point on it.
 struct Leaf {
   Eigen::AlignedBox3d box;          ///< box of the control points of the piece, which encloses it
   Eigen::Array2d middle;            ///< (u, v) at which Newton's method starts
@@ -19,7 +19,7 @@ struct Leaf {
   Eigen::Vector3d center{0, 0, 0};  ///< S(middle)
   Eigen::Vector3d normal{0, 0, 0};  ///< unit normal of the surface at the middle; 0 if there is none
   double radius = 0;                ///< [m] radius of a ball about the center that contains the piece
-  double cone = 0;                  ///< [rad] estimate of the largest turn of the normal on the piece
+  double cone = 0;  ///< [rad] estimate of the largest angle between `normal` and the normals of the piece
   int patch = 0;
 
   /// [any] Returns false if no normal of the piece points to p or straight away from p. Then no foot lies inside the
@@ -44,9 +44,9 @@ class BoxTree {
   void add(const spline::SurfaceData& patch, int index, double flat = kFlat);
   /// [main] Builds the trees; call it once, after the last add().
   void build();
-  /// [sim] Lists what a search has to examine, nearest box first. These are the leaves that may be at most `margin` [m]
-  /// farther from p than the nearest point of their part. For each other patch within `radius` [m] there is one leaf,
-  /// with a lower bound. @param parts part of each patch, from 0 to part_count - 1
+  /// [sim] Lists the leaves that a search has to examine, those with the nearest boxes first: all leaves that may be at
+  /// most `margin` [m] farther from p than the nearest point of their part. For each other patch within `radius` [m]
+  /// the list has one leaf, with a lower bound. @param parts part of each patch, from 0 to part_count - 1
   void near(const Eigen::Vector3d& p, double radius, double margin, std::span<const int> parts, int part_count,
             std::vector<LeafHit>& hits) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Lets contact::ContactState query a model, or one of its parts, at the probe of this tick.
+/// The Faces of contact::ContactState for a traced model or one of its parts, at the probe's position in this tick.
 #pragma once
 #include "kernels/trace/tracer.hpp"
 

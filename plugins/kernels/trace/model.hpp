@@ -29,7 +29,7 @@ struct ModelOptions {
   spline::Form form = spline::Form::kTable;  ///< how the patches are stored
 };
 
-/// A surface near a probe, as an activation record needs it.
+/// A surface near a probe, with the values that an activation record needs.
 struct Near {
   int surface = 0;
   double u = 0, v = 0;
@@ -47,8 +47,8 @@ struct Found {
 /// thread while a Tracer steps.
 class Model {
  public:
-  /// [m] By how much the difference of two distances can change before the next search, 5 ms later, if the probe moves
-  /// at 2 m/s toward one surface and away from the other: 10 mm each.
+  /// [m] Largest change of the difference between two distances until the next search, 5 ms later. It is reached if the
+  /// probe moves at 2 m/s toward one surface and away from the other: each distance then changes by 10 mm.
   static constexpr double kSoon = 0.02;
   static constexpr int kMaxParts = 8;
 
@@ -57,9 +57,10 @@ class Model {
   explicit Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOptions& options = {});
 
   /// [sim] Makes a global search: finds every surface within `radius` [m] of `p` (model frame), nearest first. The
-  /// nearest surface of each part, and surfaces at most kSoon farther, come with their global foot. The others come
-  /// with a lower bound of the distance and parameters to start from. Rivals are other local minima of the distance on
-  /// the same surfaces, at most kSoon farther than the nearest foot of the part.
+  /// nearest surface of each part, and surfaces that are at most kSoon farther away, are returned with their nearest
+  /// foot point. The others are returned with a lower bound of the distance and parameters at which tracing can start.
+  /// Rivals are other local minima of the distance on the same surfaces, at most kSoon farther away than the nearest
+  /// foot point of the part.
   void search(const Eigen::Vector3d& p, double radius, Found& found) const;
   /// [sim] Makes the same search as search(), but returns no rivals. Writes at most `cap` records. Returns the number
   /// of surfaces within the radius, which may be larger than `cap`.

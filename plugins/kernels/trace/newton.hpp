@@ -10,13 +10,13 @@
 
 namespace hapticd::trace {
 
-/// The last evaluated point of a patch, which a track keeps from tick to tick. The first step of the next tick starts
-/// from this point without a new evaluation; the evaluation of that tick is done at the end of the step.
+/// The point of a patch that was evaluated last. A track keeps it from tick to tick. A tick makes its first Newton step
+/// from this point without a new evaluation, and then evaluates the surface at the end of the step.
 struct Iterate {
   enum class Known : std::uint8_t {
     kParameters,  ///< only uv is known
-    kPoint,       ///< uv, and E, the point there
-    kAll          ///< uv, E, and the state, which belongs to E
+    kPoint,       ///< uv and E, the point there, are known
+    kAll          ///< uv, E and the `state` of E are known
   };
   Eigen::Array2d uv{0, 0};
   spline::SurfacePoint E{};
@@ -24,7 +24,7 @@ struct Iterate {
   WarmStepState state{};
 };
 
-/// A foot on one patch. WarmStepState::step writes the members up to `height`, in this order.
+/// A foot point on one patch. WarmStepState::step writes the members from `uv` to `height`, in this order.
 struct LocalFoot {
   alignas(32) Eigen::Array2d uv{0, 0};
   alignas(32) Eigen::Vector3d S;
@@ -32,10 +32,11 @@ struct LocalFoot {
   alignas(32) double distance = 0;     ///< [m] |p - S|
   double residual = 0;                 ///< [m] estimated distance from S to the true foot
   double height = 0;                   ///< [m] height of the probe over the tangent plane
-  SideMask sides = 0;                  ///< sides at which the foot is held, because the distance would fall beyond them
+  SideMask sides = 0;  ///< sides that stop the foot point: beyond them the distance would become smaller
   int evaluations = 0;
   bool converged = false;
-  bool regular = false;  ///< true if the tangents span a plane; otherwise normal and height have no meaning
+  /// true if the tangents at the foot point span a plane; if false, normal and height have no meaning
+  bool regular = false;
 };
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -43,18 +44,19 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Rounding error of the difference of two points, relative to the size of the coordinates.
 inline constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 
-/// [rt] These functions are the parts of newtonFoot() that most ticks do not need. startNewton() prepares quick steps.
-/// mayStepAgain() counts a warm step that found no foot, and returns true if another one makes sense. descend() finds
-/// the foot from any point.
+/// [rt] The parts of newtonFoot() that most ticks do not need. startNewton() evaluates `at`, so that warm steps can
+/// begin there. mayStepAgain() counts the evaluations of a warm step that did not find the foot point, and returns true
+/// if another warm step may help. descend() finds the foot point from any start.
 void startNewton(const Patch& patch, Iterate& at, LocalFoot& foot) noexcept;
 bool mayStepAgain(const Patch& patch, WarmStepResult result, Iterate& at, LocalFoot& foot) noexcept;
 void descend(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
              LocalFoot& foot) noexcept;
 
 /// [rt] Finds the point of the patch near `at` that is nearest to p, by Newton's method on |S(u,v) - p|^2 over the
-/// parameter rectangle. Each step solves the quadratic model exactly inside the rectangle, so a foot that meets a side
-/// slides along it and stops in corners. A step that does not decrease the distance is shortened. The search stops when
-/// the estimated error is below `tolerance` [m] or after `max_evaluations`. `at` becomes the last evaluated point.
+/// parameter rectangle. Each step solves the quadratic model exactly inside the rectangle. So a foot point that meets a
+/// side slides along this side and stops in corners. A step that does not decrease the distance is shortened. The
+/// search stops when the estimated error is below `tolerance` [m] or after `max_evaluations`. `at` becomes the point
+/// that was evaluated last.
 inline void newtonFoot(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
                        LocalFoot& foot) noexcept {
   constexpr int kWarmSteps = 3;

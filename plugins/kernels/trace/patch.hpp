@@ -15,7 +15,7 @@ namespace hapticd::trace {
 /// Corner 0: (lo, lo), 1: (hi, lo), 2: (lo, hi), 3: (hi, hi).
 inline constexpr int kSides = 4;
 inline constexpr int kCorners = 4;
-/// A set of sides, because a foot can lie on several sides at once. Bit i is set for side i.
+/// A set of sides, because a foot point in a corner lies on two sides at once. Bit i is set for side i.
 using SideMask = std::uint8_t;
 constexpr SideMask bit(int side) {
   return static_cast<SideMask>(1u << side);
@@ -32,9 +32,9 @@ struct PoleFan {
   static constexpr int kRays = 32;
   std::array<double, kRays> along;               ///< parameter of each ray along the collapsed side
   std::array<Eigen::Vector3d, kRays> direction;  ///< unit tangent of each ray, into the patch
-  std::array<double, kRays> speed;               ///< [m] length in space per unit of the parameter across the side
-  int patch = -1, side = -1;                     ///< patch and side that have this pole
-  int next = -1;  ///< index of the next fan around the same point; the fans of a point form a ring
+  std::array<double, kRays> speed;  ///< [m] length in space per unit of the parameter across the collapsed side
+  int patch = -1, side = -1;        ///< patch and side that have this pole
+  int next = -1;                    ///< index of the next fan around the same point; the fans of a point form a ring
 };
 
 struct Side {
@@ -75,8 +75,8 @@ struct Patch {
     constexpr std::array<std::array<int, 2>, kSides> kEnds = {{{0, 2}, {1, 3}, {0, 1}, {2, 3}}};
     return kEnds[static_cast<std::size_t>(side)];
   }
-  /// [any] True if the surface continues beyond one of these sides. Then a foot there may not be a local minimum of the
-  /// distance.
+  /// [any] True if the surface continues beyond one of these sides. Then a foot point there may not be a local minimum
+  /// of the distance.
   bool continuesBeyond(SideMask mask) const noexcept {
     for (int side = 0; side < kSides; ++side)
       if ((mask & bit(side)) && sides[static_cast<std::size_t>(side)].kind != SideKind::kFree) return true;

@@ -12,9 +12,9 @@ namespace hapticd::trace {
 class Sewing {
  public:
   Sewing(Model& model, const ModelOptions& options);
-  /// [main] Joins the sides that the options name, then other sides by geometry: those that run within the tolerance of
-  /// each other, in either direction. Sides that cannot be joined (T-junctions, a third surface at an edge) cause a
-  /// warning, and so do joined surfaces whose outward normals are on opposite sides.
+  /// [main] Joins first the sides that the options name, then the sides that run within the tolerance of each other, in
+  /// either direction. A warning is added for sides that cannot be joined (T-junctions, a third surface at an edge),
+  /// and for joined surfaces whose outward normals are on opposite sides.
   void run();
 
  private:

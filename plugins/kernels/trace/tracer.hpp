@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Traces one probe over the active surfaces of a model: outside the model it gives the nearest foot, inside it gives
-/// the foot of the held contact. Each probe needs its own Tracer; all can share the Model.
+/// Traces one probe over the active surfaces of a model. While no contact is held, the result is the nearest foot
+/// point. While one is held, the result is the foot point of that contact. Each probe needs its own Tracer. All Tracers
+/// can share one Model.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,40 +20,43 @@ enum class Method : std::uint8_t {
 struct TraceOptions {
   Method method = Method::kNewton;
   int iterations = 1;        ///< steps of kDirect per tick on a surface, 1 to 4
-  double tolerance = 1e-9;   ///< [m] error of the foot at which kNewton stops
-  int max_evaluations = 12;  ///< most evaluations in one tick, over all surfaces
-  /// Which sides are felt, and the contact hysteresis. By default always the front of the nearest face is felt, without
-  /// hysteresis.
+  double tolerance = 1e-9;   ///< [m] kNewton stops when the estimated error of the foot point is below this
+  int max_evaluations = 12;  ///< most evaluations of surfaces in one tick, over all surfaces
+  /// Which sides of the faces are felt, and the contact hysteresis. By default the probe always feels the front of the
+  /// nearest face, and no contact is held.
   contact::ContactRule rule{contact::Sides::kFront, 0};
-  /// True if overlapping parts are felt as one solid. If false, only the nearest foot of all parts decides.
+  /// True if overlapping parts are felt as one solid. If false, the model is not divided into parts: one foot point is
+  /// found on all surfaces together.
   bool unite = true;
 };
 
-/// The foot that is felt, in the model's frame. If the probe is inside two parts at once, the foot leads out of both.
+/// The foot point that is felt, in the model frame. If the probe is inside several parts at once and `unite` is true,
+/// it is the point at which the shortest way out of all of them ends.
 using contact::Foot;
 using contact::FootStatus;
 
-/// Follows the local feet of all active surfaces from tick to tick. A surface is evaluated only in ticks in which it
-/// could have the nearest foot (see tracks.hpp).
+/// Follows local foot points (local minima of the distance) of all active surfaces from tick to tick. A surface is
+/// evaluated only in ticks in which it could have the nearest foot point (see tracks.hpp).
 class Tracer {
  public:
   /// [main] Allocates all that stepping needs.
   explicit Tracer(const Model& model);
 
-  /// [rt] Starts tracing a surface at (u, v). If the surface is already active, its known feet are kept and the foot
-  /// near (u, v) is followed as well. @param distance [m] a lower bound of the distance from the probe, or 0 if it is
-  /// unknown
+  /// [rt] Starts tracing a surface at (u, v). If the surface is already active, its known foot points are kept, and the
+  /// foot point near (u, v) is followed as well.
+  /// @param distance [m] lower bound of the distance from the probe to the surface; 0 if it is unknown
   void activate(int surface, double u, double v, double distance = 0) noexcept;
   /// [rt] Stops tracing a surface.
   void deactivate(int surface) noexcept;
-  /// [rt] Forgets everything; no surface is active then.
+  /// [rt] Stops tracing all surfaces and forgets the contact and the last position of the probe.
   void reset() noexcept;
-  /// [rt] Returns the foot of probe `p` (model frame) that is felt. If `p` is not finite, the status is kInvalid and
-  /// all tracks stay unchanged; the next contact then begins on the nearest face.
+  /// [rt] Returns the foot point that the probe at `p` (model frame) feels. If `p` is not finite, the status is
+  /// kInvalid and all tracks stay unchanged. The next contact then begins on the nearest face.
   Foot step(const Eigen::Vector3d& p, const TraceOptions& options = {}) noexcept;
-  /// [rt] Forgets where the probe was, so the next contact begins on the nearest face.
+  /// [rt] Forgets the last position of the probe and the side it was on, so that the next contact begins on the nearest
+  /// face.
   void forgetContact() noexcept;
-  /// [rt] Lets the probe pop through a shell: from now on the other side of the shell is felt.
+  /// [rt] Moves the probe to the other side of a shell (pop-through): from the next tick on, it feels that side.
   void popThrough() noexcept;
 
   bool active(int surface) const noexcept;
@@ -69,16 +73,16 @@ class Tracer {
   };
   /// The first face that the path of the probe meets.
   struct Crossing {
-    double share = 2;  ///< position of the crossing on the path, 0 to 1; 2 if there is none
-    double side = 1;   ///< side of the face from which it is entered: 1 front, -1 back
+    double share = 2;  ///< fraction of the probe's path at which it crosses the face, 0 to 1; 2 if there is no crossing
+    double side = 1;   ///< side of the face through which the probe enters: 1 front, -1 back
     int track = -1;
   };
 
-  /// What the tracer knows about one part of the model.
+  /// The last known position of the probe relative to one part. It shows whether the part can be skipped in this tick.
   struct Part {
     int nearest = -1;  ///< track with the nearest foot of the part, or -1
     double depth = 0;  ///< [m] depth of the probe (above 0 inside) when the part's nearest foot was last certain
-    double way = 0;    ///< [m] Tracks::pathLength() at that time
+    double way = 0;    ///< [m] Tracks::pathLength() when `depth` was computed
     bool known = false;
   };
 
@@ -126,9 +130,9 @@ class Tracer {
   const Model& model_;
   Tracks tracks_;
   std::array<Part, Model::kMaxParts> parts_{};
-  std::array<Contact, Model::kMaxParts> contacts_{};  ///< one per part; the first is also used for all parts together
+  std::array<Contact, Model::kMaxParts> contacts_{};  ///< one per part; the first is also used for the whole model
   Eigen::Vector3d last_p_{0, 0, 0};
-  int nearest_ = -1;  ///< track with the nearest foot of all, or -1
+  int nearest_ = -1;  ///< track with the nearest foot point of all surfaces, or -1
   int budget_ = 0;    ///< evaluations left in this tick
   bool has_last_ = false;
 };

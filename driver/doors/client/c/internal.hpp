@@ -51,7 +51,7 @@ struct Stream {
   std::string name;
   uint64_t* written = nullptr;  ///< number of rows written so far, in the memory of the daemon
   uint64_t* rows = nullptr;
-  uint64_t handed = 0;  ///< number of rows that some thread has read already
+  uint64_t handed = 0;  ///< number of rows up to the newest one that some thread has read
   uint64_t capacity = 0;
   size_t row_words = 0;
   std::list<std::string> texts;  ///< owns the texts to which the columns point
@@ -67,7 +67,7 @@ class RowFile {
   /// Returns the time [ns] from one tick to the next.
   int64_t period() const { return period_; }
   std::vector<Stream>& streams() { return streams_; }
-  /// Tells whether `file` is still the file that was opened. Another daemon of this name would have replaced the file.
+  /// True if `file` is still the file that was opened. Another daemon of this name would have replaced it.
   bool isFile(const std::string& file) const;
   static uint64_t written(const Stream& stream);
   static long read(const Stream& stream, uint64_t& row, void* rows, size_t most);
@@ -93,7 +93,7 @@ struct Answer {
 /// Fills in `error`, which may be nullptr.
 void setError(hapticd_error* error, const char* code, const std::string& text);
 
-/// Ends a lead with a request, so that it ends in order. Called before the client ends.
+/// Sends the request that ends a lead in order. It is called before the client is closed.
 void endInOrder(hapticd_client& client, const hapticd_lead& lead);
 
 }  // namespace hapticd::client
@@ -111,7 +111,7 @@ struct hapticd_client {
   /// mapped at the first call, and kept in `kept`.
   std::byte* page(const char* request, hapticd::client::Mapping& kept, size_t least, int protection);
 
-  /// [any] Tells whether the daemon of this client has ended, so that its rows and states are old.
+  /// [any] True if the daemon of this client has ended. Its rows and states are then out of date.
   bool ended();
   void reportSilence(const std::string& problem, hapticd_error* error);
 
@@ -121,7 +121,8 @@ struct hapticd_client {
   std::mutex asking, mapping;
   hapticd::client::Mapping bell, states;
   std::list<hapticd_lead*> leads;
-  std::atomic<int64_t> listen_ns = 0;  ///< [ns] time before and after a tick is due in which next_state polls
+  /// [ns] how long before and after a tick is due next_state polls instead of sleeping
+  std::atomic<int64_t> listen_ns = 0;
 };
 
 struct hapticd_lead {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Finds faces of a STEP or IGES file that its reader could not make.
+/// Finds faces of a STEP or IGES file that the reader could not convert.
 #pragma once
 #include <XSControl_WorkSession.hxx>
 

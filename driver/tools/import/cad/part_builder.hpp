@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Builds a part from a CAD file: each body once, with an instance for each of its places.
+/// Builds a part from a CAD file. Each body is stored once, with an instance for each place where it is used.
 #pragma once
 #include "cad_import/cad_file.hpp"
 #include "cad_import/report.hpp"

@@ -7,9 +7,9 @@
 
 namespace hapticd::cad {
 
-/// [main] Appends a surface, at least the range [lo, hi] of it. A kind of surface that a part does not have is
+/// [main] Appends a surface over at least the range [lo, hi]. If a part has no such kind of surface, it is
 /// approximated.
-/// @throws Unkept
+/// @throws Unkept if the surface cannot be kept
 Kept addSurface(const Handle(Geom_Surface) & surface, const brep::Vector2& lo, const brep::Vector2& hi,
                 brep::Part& part);
 

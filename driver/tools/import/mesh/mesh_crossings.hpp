@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Finds where shells of a mesh pass through each other. Such a mesh bounds no solid, even if each of its edges has two
-/// triangles.
+/// Finds where shells of a mesh pass through each other. Such a mesh does not bound a solid, even if each edge belongs
+/// to two triangles.
 #pragma once
 #include <Eigen/Core>
 #include <array>

@@ -14,7 +14,7 @@ namespace hapticd::importing {
 
 inline constexpr std::size_t kMostTriangles = 20'000'000;
 
-/// Triangles as a file states them, in its unit. Points that are equal bit for bit are stored once.
+/// The triangles of a file, in the unit of the file. Points that are equal bit for bit are stored once.
 struct MeshFile {
   std::vector<Eigen::Vector3d> points;
   std::vector<std::array<std::uint32_t, 3>> corners;  ///< polygons are cut into triangles

@@ -16,7 +16,7 @@ struct MeshOptions {
   std::string unit{"m"};    ///< the unit that was assumed for the file's numbers; it is written into the part
 };
 
-/// What was found in a mesh, and what was done about it.
+/// Properties of a mesh, and the repairs that were made.
 struct MeshReport {
   std::size_t triangles = 0, points = 0;  ///< numbers of triangles and points that were kept
   std::size_t joined = 0;                 ///< points that were joined with one that differs by rounding only
