@@ -2,7 +2,6 @@
 #include "simulated/mechanisms.hpp"
 
 #include <Eigen/Geometry>
-#include <cmath>
 
 namespace hapticd::simulated {
 

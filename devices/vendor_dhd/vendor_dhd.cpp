@@ -4,7 +4,6 @@
 /// to the right, z up.
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 #include <thread>

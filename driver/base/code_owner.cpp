@@ -2,7 +2,6 @@
 #include "base/code_owner.hpp"
 
 #include <array>
-#include <cstdint>
 #include <mutex>
 #include <string>
 #include <unordered_map>

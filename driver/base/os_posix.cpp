@@ -13,7 +13,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
 #include <memory>
 #include <sstream>

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <optional>
 
 namespace hapticd::cli {
 namespace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Exponentials, logarithms and powers: reduction by powers of two, then series.
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "elementary/functions.hpp"

@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <string_view>
 

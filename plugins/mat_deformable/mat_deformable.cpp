@@ -2,8 +2,6 @@
 #include "mat_deformable.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <string_view>
 #include <utility>
 

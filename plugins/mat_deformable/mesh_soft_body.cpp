@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Soft bodies from a medial mesh: cones and slabs.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "kernels/medial/mesh_body.hpp"

@@ -2,7 +2,6 @@
 #include "push_button.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <string_view>
 

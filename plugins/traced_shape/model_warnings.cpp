@@ -3,11 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <map>
 #include <set>
-#include <utility>
 
 #include "document.hpp"
 #include "kernels/trace/side_curve.hpp"

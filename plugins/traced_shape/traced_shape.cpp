@@ -2,7 +2,6 @@
 #include "traced_shape.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <stdexcept>
 

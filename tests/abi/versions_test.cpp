@@ -2,7 +2,6 @@
 /// The host as it ships, with plugins of smaller and larger minor versions, and with plugins that are broken.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
 #include <string>
 #include <vector>

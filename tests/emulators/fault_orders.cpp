@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "emulators/fault_orders.hpp"
 
-#include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <utility>

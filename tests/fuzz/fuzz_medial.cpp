@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// Any bytes as a model file of a soft body, YAML or JSON, a grid or a mesh: read, built, searched, pressed and drawn.
-#include <cmath>
 
 #include "mat_deformable/medial_file.hpp"
 #include "mat_deformable/soft_body.hpp"

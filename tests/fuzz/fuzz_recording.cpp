@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// Any bytes as a recording: every number of what it claims to hold is read.
-#include <vector>
 
 #include "record/recording.hpp"
 

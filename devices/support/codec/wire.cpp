@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <stdexcept>
 
 #include "codec/choice.hpp"
 #include "codec/tree.hpp"

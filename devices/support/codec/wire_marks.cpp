@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdio>
-#include <span>
 #include <string>
 
 #include "codec/wire_overlap.hpp"

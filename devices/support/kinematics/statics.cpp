@@ -2,7 +2,6 @@
 #include "kinematics/statics.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace hapticd::kinematics {

@@ -2,7 +2,6 @@
 #include "host/describe.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <set>
 #include <stdexcept>

@@ -3,7 +3,6 @@
 /// be written beyond the memory for them.
 #include <cstdio>
 #include <functional>
-#include <optional>
 
 #include "host/class_table.hpp"
 #include "host/kinematics_calls.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "host/kinematics_check.hpp"
 
-#include <cmath>
 #include <cstdio>
 #include <optional>
 

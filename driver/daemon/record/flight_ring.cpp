@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <new>
 
 #include "record/hdf5.hpp"
 #include "record/recording_file.hpp"

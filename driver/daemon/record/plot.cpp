@@ -2,7 +2,6 @@
 #include "record/plot.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "record/plot_panel.hpp"
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/format.hpp"
 
-#include <array>
-
 namespace hapticd::scene {
 
 using namespace document;

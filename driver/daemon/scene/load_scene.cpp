@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <map>
 #include <set>
-#include <string_view>
 #include <unordered_map>
 
 #include "document/suggestion.hpp"

@@ -2,7 +2,6 @@
 #include "session/flight.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 

@@ -7,7 +7,6 @@
 
 #include <atomic>
 #include <cerrno>
-#include <cstring>
 #include <iterator>
 
 #include "base/call_name.hpp"

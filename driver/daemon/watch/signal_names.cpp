@@ -2,7 +2,6 @@
 #include "watch/signal_names.hpp"
 
 #include <csignal>
-#include <cstring>
 
 namespace hapticd::watch {
 

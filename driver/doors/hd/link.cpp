@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "link.hpp"
 
-#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>

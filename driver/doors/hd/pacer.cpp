@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pacer.hpp"
 
-#include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <ctime>
 
 #include "library.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// The HDAPI's functions for the scheduler.
-#include <exception>
 
 #include "HD/hd.h"
 #include "library.hpp"

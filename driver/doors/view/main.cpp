@@ -9,7 +9,6 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cstdio>
-#include <filesystem>
 
 #include "command_line/command_line.hpp"
 #include "foxglove.hpp"

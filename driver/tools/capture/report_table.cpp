@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "capture/resync.hpp"

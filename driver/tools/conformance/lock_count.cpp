@@ -11,7 +11,6 @@
 
 #include <atomic>
 #include <cstring>
-#include <filesystem>
 
 namespace hapticd::conformance {
 

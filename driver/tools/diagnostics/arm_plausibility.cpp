@@ -5,9 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <optional>
 #include <string>
 
 #include "diagnostics/limit_warnings.hpp"

@@ -11,7 +11,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "diagnostics/arm_plausibility.hpp"
 #include "diagnostics/arm_table.hpp"

@@ -2,7 +2,6 @@
 /// Finds parameters that have no effect, because another parameter of the model switches them off.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <string>
 #include <string_view>
 

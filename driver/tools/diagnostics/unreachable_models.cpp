@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <optional>
-#include <utility>
 
 #include "diagnostics/arm_reach.hpp"
 #include "diagnostics/key_place.hpp"

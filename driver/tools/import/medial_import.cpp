@@ -8,7 +8,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 
 #include "document/node.hpp"
 #include "host/shape_instance.hpp"

@@ -2,7 +2,6 @@
 #include "tune/motion.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "session/runner.hpp"
 

@@ -2,7 +2,6 @@
 #include "tune/search.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "base/clock.hpp"

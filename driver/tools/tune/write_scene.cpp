@@ -3,7 +3,6 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <cstdio>
 #include <fstream>
 
 #include "hapticd/abi.h"

@@ -2,7 +2,6 @@
 #include "kernels/brep/model.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <initializer_list>
 #include <span>
 
 #include "kernels/brep/spline_check.hpp"

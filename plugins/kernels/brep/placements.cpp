@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/brep/placements.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "kernels/brep/part_names.hpp"

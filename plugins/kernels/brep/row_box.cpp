@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/brep/row_box.hpp"
 
-#include <cmath>
-
 namespace hapticd::brep {
 
 using Eigen::AlignedBox3d;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/brep/tracer.hpp"
 
-#include <cmath>
-
 namespace hapticd::brep {
 
 using contact::Foot;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "kernels/brep/trim.hpp"
 #include "kernels/brep/trim_grid.hpp"

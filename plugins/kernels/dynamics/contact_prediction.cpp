@@ -2,7 +2,6 @@
 #include "kernels/dynamics/contact_prediction.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace hapticd::dynamics {
 

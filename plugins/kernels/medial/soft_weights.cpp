@@ -2,7 +2,6 @@
 #include "kernels/medial/soft_weights.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace hapticd::medial {
 namespace {

@@ -2,7 +2,6 @@
 #include "kernels/spline/line_set.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace hapticd::spline {
 namespace {

@@ -2,8 +2,6 @@
 #include "kernels/spline/refinement.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "kernels/spline/line_set.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Decides on which side of the model the probe is, from the place of the nearest foot: on a face, an edge or a corner.
 #include <Eigen/Geometry>
-#include <cmath>
 
 #include "kernels/trace/tracer.hpp"
 

@@ -6,7 +6,6 @@
 #include <map>
 #include <numeric>
 #include <stdexcept>
-#include <tuple>
 
 #include "kernels/trace/side_curve.hpp"
 

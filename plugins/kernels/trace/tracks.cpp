@@ -2,7 +2,6 @@
 #include "kernels/trace/tracks.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace hapticd::trace {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// A floor that requires parameters of every kind, for `hapticd plugin check --set`; and one whose depth has the wrong
 /// sign.
-#include <cmath>
 #include <fstream>
 #include <stdexcept>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// Shapes of several sizes with one mistake each, for `hapticd plugin check`; and the same without it.
-#include <algorithm>
 #include <cmath>
 
 #include "hapticd/shape.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// The kernel alone, for sizes that no scene may have: the host's search is limited to 1 km.
-#include <algorithm>
 
 #include "extreme_case.hpp"
 #include "kernels/trace/tracer.hpp"

@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "bench.hpp"
 #include "kernels/medial/body.hpp"
 #include "kernels/medial/contour.hpp"

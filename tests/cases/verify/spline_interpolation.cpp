@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 
 #include "kernels/spline/basis.hpp"
 #include "kernels/spline/interpolation.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// A plugin's force is compared, as a vector in the world, with what the probe's motion and the plugin's own claims
 /// explain; traced or not, claimed or not.
-#include <cmath>
 #include <tuple>
 
 #include "scenario.hpp"

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "servo/core/core.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/clock.hpp"
 
 namespace hapticd::servo {

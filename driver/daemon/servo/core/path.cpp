@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "servo/core/path.hpp"
 
-#include <algorithm>
-
 namespace hapticd::servo {
 
 namespace {

@@ -2,7 +2,6 @@
 #include "servo/safety/limiter.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace hapticd::servo {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Reads PLY, the format of Greg Turk and of most scanners: a text header, then text or binary of either byte order.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <cstring>

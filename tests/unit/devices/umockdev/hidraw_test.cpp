@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <mutex>
 
 #include "emulators/wire_file.hpp"
 #include "played_hidraw.hpp"

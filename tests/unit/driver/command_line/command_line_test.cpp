@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdint>
-
 namespace hapticd::command_line {
 namespace {
 

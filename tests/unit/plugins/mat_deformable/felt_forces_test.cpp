@@ -2,7 +2,6 @@
 /// Forces of felt bodies on recorded motions: whatever makes a tick cheaper, the hand feels the same.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <map>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// Bodies from a medial mesh, through the C ABI.
-#include <map>
 
 #include "../kernels/medial/meshes.hpp"
 #include "soft_plugin.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// Felt bodies whose foot comes to be held at the rim of the skeleton, or leaves it.
-#include <array>
 
 #include "soft_plugin.hpp"
 

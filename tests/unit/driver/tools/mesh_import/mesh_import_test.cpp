@@ -2,9 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <bit>
 #include <cctype>
-#include <cstring>
 #include <random>
 
 #include "kernels/brep/part_check.hpp"

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <random>
 
 #include "sample_solids.hpp"

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "kernels/spline/curve.hpp"
 #include "kernels/spline/surface.hpp"

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <numbers>
 #include <random>
 
 #include "kernels/trace/tracer.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// A shape with one parameter of every kind, for tests of the host and of scene files.
-#include <cstring>
 #include <stdexcept>
 
 #include "hapticd/shape.hpp"

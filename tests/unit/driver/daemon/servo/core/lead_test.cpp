@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// A model that a program outside leads: what the program writes, whatever it is, moves the model within its bounds.
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <random>
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "servo/loop/loop.hpp"
 
-#include <cmath>
-#include <functional>
-
 #include "base/allocation_owner.hpp"
 #include "record/allocation_text.hpp"
 #include "test_rig.hpp"

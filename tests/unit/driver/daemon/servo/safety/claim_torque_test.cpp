@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// The torque of a shape is held to its claim as its force is, at the length of a handle.
 #include <Eigen/Geometry>
-#include <cmath>
 
 #include "claim_rig.hpp"
 

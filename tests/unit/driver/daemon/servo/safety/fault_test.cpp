@@ -3,7 +3,6 @@
 /// 20 ms of it and never larger on the way, and it stays so until somebody clears it.
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <thread>
 
 #include "test_rig.hpp"

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "servo/safety/passivity/controller.hpp"
 #include "support/sweep.hpp"
