@@ -20,14 +20,14 @@ void warnOfNoMount(const Node& root, const scene::Device& device, const host::De
   const Node* described = find(root, {"parameters", "arm"});
   const Node* given = root.find("mount");
   if (described == nullptr || !described->isMap() || (given != nullptr && !given->entries.empty())) return;
-  for (const char* placed : {"origin", "base_position"})  // somebody thought of where the arm stands
-    if (described->find(placed) != nullptr) return;
   const hdv_ext_kinematics& kinematics = arm.kinematics();
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();
   std::array<double, 4> turn{};
   const auto q = restJoints(root, kinematics.joint_count);
   if (kinematics.forward(arm.handle(), q.data(), tip.data(), turn.data()) < 0 || !tip.allFinite()) return;
-  if (tip.norm() >= kInside && tip.norm() <= kAway) return;
+  // Who gave one of these has thought of where the tip is.
+  const bool placed = described->find("origin") != nullptr || described->find("base_position") != nullptr;
+  if (tip.norm() <= kAway && (placed || tip.norm() >= kInside)) return;
   const Eigen::Vector3d mount = Eigen::Vector3d(0, 0, 0.09) - tip;
   const Node& at = given != nullptr ? *given : root;
   const auto shown = [](double value) { return std::round(value * 1e3) / 1e3 + 0.0; };  // [m] no -0
