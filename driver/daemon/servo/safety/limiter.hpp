@@ -54,8 +54,7 @@ class Limiter {
   void watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT;
   /// [main] For recordings of old versions: a hold button that was down before the run enables forces.
   void enableByFoundPressed() { released_ = true; }
-  /// [main] Sets what the limit limits.power needs to know. @param lag [s] delay of the velocity that watchVelocity()
-  /// gets
+  /// [main] Sets two values for limits.power. @param lag [s] delay of the velocity that watchVelocity() gets
   /// @param mass [kg] of the arm at its tip, 0: unknown
   void expectMotion(double lag, double mass) { power_.expect(lag, mass); }
   /// [rt] Sets the share of the force that the age of the newest sample allows, from 1 (new) to 0 (too old). Call it
@@ -89,7 +88,8 @@ class Limiter {
   Fault fault() const noexcept { return fault_.get(); }          ///< [any] the latched fault, or kNone
   Fault recovered() const noexcept { return recovered_.get(); }  ///< [any] the last fault that ended by itself
   double measured() const noexcept { return measured_; }         ///< [main] value at the fault, in its unit
-  bool enabled() const noexcept { return enabled_; }  ///< true if there is no enable switch, or it enables forces
+  /// true if there is no enable switch, or if the switch enables forces
+  bool enabled() const noexcept { return enabled_; }
   /// true if the enable switch was down at the start and has not been released since
   bool foundPressed() const noexcept { return found_pressed_; }
   double rampOut() const noexcept { return limits_.ramp_out; }  ///< [s] time from full force to zero, at a planned end
