@@ -78,7 +78,7 @@ class Limiter {
   /// zero then ends at once, and a later force grows from zero.
   void sentNothing() noexcept HSP_RT;
 
-  /// [rt] Ends a fault that can end by itself, and the force ramps in again. Other faults stay.
+  /// [rt] Ends a fault that can end by itself, so that the force ramps in again. Other faults stay latched.
   void recover() noexcept HSP_RT;
 
   /// [rt] Clears a latched fault because the user asked for it. Once the force has ramped out, the force of the models
@@ -87,13 +87,14 @@ class Limiter {
 
   Fault fault() const noexcept { return fault_.get(); }          ///< [any] the latched fault, or kNone
   Fault recovered() const noexcept { return recovered_.get(); }  ///< [any] the last fault that ended by itself
-  double measured() const noexcept { return measured_; }         ///< [main] value at the fault, in its unit
+  /// [main] value measured at the fault, in the unit of the fault
+  double measured() const noexcept { return measured_; }
   /// true if there is no enable switch, or if the switch enables forces
   bool enabled() const noexcept { return enabled_; }
   /// true if the enable switch was down at the start and has not been released since
   bool foundPressed() const noexcept { return found_pressed_; }
   double rampOut() const noexcept { return limits_.ramp_out; }  ///< [s] time from full force to zero, at a planned end
-  const Clips& clips() const noexcept { return clips_; }        ///< [main] only after the run
+  const Clips& clips() const noexcept { return clips_; }        ///< [main] valid only after the run
   double maxForce() const noexcept { return max_force_; }       ///< [N] 0: no limit
   double maxTorque() const noexcept { return limits_.torque; }  ///< [N m] 0: no limit
   /// [rt] Returns the share of a full force that the ramps allow in this tick, 0 to 1. Call it after apply().

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The velocity of a probe, by the estimator that servo.velocity of the scene names.
+/// Estimates the velocity of a probe with the estimator that servo.velocity of the scene names.
 #pragma once
 #include <Eigen/Core>
 #include <stdexcept>
