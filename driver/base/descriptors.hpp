@@ -40,8 +40,8 @@ constexpr size_t kMostDescriptors = 250;  ///< largest number in one message; th
 std::ptrdiff_t sendWith(int socket, std::string_view bytes, std::span<const int> descriptors) noexcept;
 
 /// [any] Receives bytes and appends the descriptors that came with them, closed on exec.
-/// @return how many bytes came; 0 if the other end has closed; -1 on failure, with errno. EMSGSIZE means that there
-/// were more descriptors than one message may bring, and that all of them were closed
+/// @return how many bytes came; 0 if the other process has closed the connection; -1 on failure, with errno. EMSGSIZE
+/// means that there were more descriptors than one message may bring, and that all of them were closed
 std::ptrdiff_t receiveWith(int socket, std::span<char> to, std::vector<Descriptor>& descriptors);
 
 }  // namespace hapticd

@@ -10,8 +10,8 @@ namespace hapticd::os {
 /// signals. nullptr restores the system's default.
 void onFatalSignals(void (*handler)(int, siginfo_t*, void*));
 
-/// Replaces the present handlers of SIGINT, SIGTERM, SIGQUIT and SIGHUP by this one, except if the signal is ignored.
-/// nullptr restores the former handlers, unless the program has installed another one meanwhile.
+/// Replaces the present handlers of SIGINT, SIGTERM, SIGQUIT and SIGHUP by this handler. A signal that is ignored stays
+/// ignored. nullptr restores the former handlers, unless the program has installed another one meanwhile.
 void onStopSignals(void (*handler)(int, siginfo_t*, void*));
 /// Returns the handler of a signal before onStopSignals(); nullptr if it was the system's default. Async-signal-safe.
 void (*formerStop(int signal) noexcept)(int);

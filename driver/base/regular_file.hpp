@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Reads and writes files that a user names. Pipes are refused: one without a writer would block the thread for ever.
+/// Reads and writes files that a user names. Pipes are refused, because a pipe without a writer would block the thread
+/// for ever.
 #pragma once
 #include <cstddef>
 #include <filesystem>

@@ -9,7 +9,7 @@
 namespace hapticd::document {
 
 /// [any] Returns advice such as "; write 0.04: 40 mm is 0.04 m" for a text in the place of a number; "" if nothing can
-/// be guessed. It knows decimal commas, units, quotes, blanks or signs between digits, and formulas.
+/// be guessed. It recognises decimal commas, units, quotes, blanks or signs between digits, and formulas.
 /// @param unit the expected unit; "" if it is unknown
 std::string suggestNumber(std::string_view text, std::string_view unit = "");
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Tables of numbers from CSV files, in one dialect: fields between commas, blanks around them ignored, empty lines and
-/// lines that begin with # skipped, and a header line. A file may leave the header out.
+/// Reads tables of numbers from CSV files. Commas separate the fields, and blanks around a field are ignored. Empty
+/// lines and lines that begin with # are skipped. The first line may be a header.
 #pragma once
 #include <cmath>
 #include <cstddef>

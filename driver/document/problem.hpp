@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What is wrong with a file, for the person who wrote it.
+/// Problems: what is wrong with a file, in words for the person who wrote the file.
 #pragma once
 #include <string>
 #include <vector>

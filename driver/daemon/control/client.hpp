@@ -27,7 +27,7 @@ bool connectTo(const std::string& file);
 class Client {
  public:
   static constexpr size_t kMostNews =
-      4096;  ///< lines kept for receiveLine(); if there are more, the oldest are dropped
+      4096;  ///< most lines that are kept for receiveLine(); if more come, the oldest are dropped
 
   /// [main] @param file the socket of a running daemon
   static Result<Client> connect(const std::string& file);

@@ -19,7 +19,7 @@ struct Peer {
   Nanoseconds asked = 0;  ///< CLOCK_MONOTONIC when the work on the request began
 };
 
-/// One line without its end, and perhaps a descriptor that is sent to the client with it.
+/// One line without its end, and perhaps a descriptor that is sent together with the line.
 struct Reply {
   Reply() = default;
   Reply(std::string text) : line(std::move(text)) {}  // NOLINT: implicit by intent

@@ -47,7 +47,8 @@ class Server {
   /// most clients with KeepAlive::stays, so that places are left for other clients
   static constexpr size_t kMaxStaying = 24;
   static constexpr Nanoseconds kNewsPeriod = 20'000'000;
-  static constexpr size_t kMaxWaiting = 1 << 20;       ///< [bytes] most that is kept for a client that does not read
+  /// [bytes] most bytes that are kept for a client that does not read its answers
+  static constexpr size_t kMaxWaiting = 1 << 20;
   static constexpr Nanoseconds kIdle = 2'000'000'000;  ///< [ns] a client idle for longer is dropped if another waits
   /// [ns] longest time for a client to send the rest of a line, or to read its answers
   static constexpr Nanoseconds kPatience = 10'000'000'000;
@@ -76,7 +77,7 @@ class Server {
     Nanoseconds since = 0;
     Nanoseconds heard = 0;   ///< time when bytes were last received or sent
     bool closing = false;    ///< the connection ends when `out` has been sent
-    bool hung = false;       ///< the client has closed its end; its requests are still carried out
+    bool hung = false;       ///< the client has closed its side of the connection; its requests are still carried out
     bool seated = true;      ///< it has a place; if false, it waits for one
     bool asked = false;      ///< one of its requests is being carried out
     bool listening = false;  ///< its news are being collected

@@ -43,7 +43,7 @@ struct Model {
   std::string name, plugin;
   std::filesystem::path library;  ///< the .so that contains the plugin
   Pose pose;                      ///< pose of the model in the world at the start
-  bool kinematic = false;         ///< true if `path` moves the model, not its plugin
+  bool kinematic = false;         ///< true: a path, a request or a leader moves the model, not its plugin
   std::vector<PathPoint> path;
   std::vector<Value> parameters;
   Place place;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Calls the four kinematic functions of a module in such a way that a check knows which of them crashed, hung, or
-/// wrote beyond the memory for its results.
+/// Calls the four kinematic functions of a module in such a way that a check can find out which of them crashed, hung,
+/// or wrote beyond the memory for its results.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -14,7 +14,7 @@
 
 namespace hapticd::host {
 
-/// Numbers that a shape passed to trace() in the servo thread. Only the shape knows what they mean.
+/// Numbers that a shape passed to trace() in the servo thread. The shape alone defines what they mean.
 struct TraceEvent {
   uint32_t event = 0;
   double a = 0, b = 0;

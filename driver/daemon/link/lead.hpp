@@ -42,7 +42,8 @@ class LeadSlot {
   /// [any] Writes the record. There must be only one writer.
   void put(const Record& record) noexcept HSP_RT {
     const auto words = std::bit_cast<std::array<uint64_t, kWords>>(record);
-    const uint64_t even = (count_.load(std::memory_order_relaxed) + 1) & ~uint64_t{1};  // even after a killed writer
+    // even, also if a writer was killed while the count was odd
+    const uint64_t even = (count_.load(std::memory_order_relaxed) + 1) & ~uint64_t{1};
     count_.store(even + 1, std::memory_order_relaxed);
     for (size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_release);
     count_.store(even + 2, std::memory_order_release);

@@ -26,7 +26,8 @@ struct ClientReport {
   double nextTick() const { return share(next_tick); }
 
  private:
-  double share(uint64_t part) const {  // at most 1: a reader may see `part` before `answers` is counted
+  // at most 1, because a reader may see the new value of `part` but the old value of `answers`
+  double share(uint64_t part) const {
     const double whole = static_cast<double>(answers), some = static_cast<double>(part);
     return answers == 0 ? 0 : some < whole ? some / whole : 1;
   }

@@ -13,7 +13,8 @@ namespace hapticd::record {
 /// The work of one model on one probe.
 class ContactWork {
  public:
-  /// [rt] Adds a tick. Between two ticks the mean of their forces counts, which is exact for a spring.
+  /// [rt] Adds a tick. The work between two ticks is calculated with the mean of their two forces, which is exact for a
+  /// spring.
   /// @param number number of the tick; if ticks are missing before it, no work is counted
   /// @param force [N] and position [m] in the world frame
   void add(uint64_t number, const Eigen::Vector3d& force, const Eigen::Vector3d& position) noexcept HSP_RT {

@@ -11,7 +11,7 @@
 
 namespace hapticd::record {
 
-/// The buckets divide each power of two into 32 equal steps, for values from 2^-10 to 2^26 us.
+/// The buckets divide each interval between two powers of two into 32 equal steps, for values from 2^-10 to 2^26 us.
 class Histogram {
  public:
   static constexpr int kSteps = 32, kLowest = -10, kHighest = 26;

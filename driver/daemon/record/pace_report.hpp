@@ -10,8 +10,9 @@ namespace hapticd::record {
 
 /// [any] Returns lines for people; "" if nothing is slow. The lines name models with many steps that take longer than a
 /// whole period, and say if a run in virtual time could not keep up with a real clock. A few slow ticks do not count,
-/// because a busy machine causes them. Only if nothing else is slow, the lines name the model whose longest step alone
-/// made the loop miss ticks. @param asked_hz rate that the scene asks for
+/// because a busy machine causes them. If nothing else is slow, the lines name the model with the longest step,
+/// provided that this one step made the loop miss ticks, or in virtual time took more than 50 periods. @param asked_hz
+/// rate that the scene asks for
 std::string paceText(const RunReport& report, double asked_hz);
 
 }  // namespace hapticd::record

@@ -20,7 +20,7 @@ struct Sample {
   double asked_n = 0;  ///< [N] force of the models, before the limits; nan if it is unknown
   uint32_t fault = 0;  ///< fault of the arm; 0 if there is none
   double lateness_us = 0, compute_us = 0;
-  std::array<double, 3> position_m{};  ///< position of the tip; nan if it is unknown
+  std::array<double, 3> position_m{};  ///< [m] position of the tip; nan if it is unknown
 };
 
 /// Names and marks for a picture.

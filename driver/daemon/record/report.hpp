@@ -33,7 +33,7 @@ struct ModelReport {
 /// Counts the ticks in which limits reduced the force of one device.
 struct LimitReport {
   std::string device;
-  uint64_t any = 0;                                     ///< ticks in which at least one limit reduced it
+  uint64_t any = 0;                                     ///< ticks in which at least one limit reduced the force
   std::vector<std::pair<std::string, uint64_t>> ticks;  ///< for each limit, the ticks in which it reduced the force
 };
 
@@ -46,8 +46,9 @@ struct StopReport {
 
 struct RunReport {
   std::string scene;
-  double seconds = 0, rate_hz = 0;  ///< simulated or real duration of the run; achieved ticks per second
-  double wall_seconds = 0;          ///< time that passed on the wall clock
+  /// [s] simulated or real duration of the run; [Hz] ticks per second that the run achieved
+  double seconds = 0, rate_hz = 0;
+  double wall_seconds = 0;  ///< time that passed on the wall clock
   bool virtual_time = false;
   uint64_t ticks = 0, overruns = 0, missed_ticks = 0;
   Histogram lateness_us, compute_us;

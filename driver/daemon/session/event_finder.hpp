@@ -51,7 +51,7 @@ class EventFinder {
     uint64_t refused = 0;
     double refused_told = -kRefusedPeriod;
   };
-  struct ArmNote : RefusedNote {  // RefusedNote: for the leader of the hand
+  struct ArmNote : RefusedNote {  // its own counts are for the leader of the hand, `pushes` for the pushing programs
     Fault fault = Fault::kNone;
     RefusedNote pushes;
   };

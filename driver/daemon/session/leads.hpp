@@ -74,7 +74,7 @@ class Leads {
   void setMayPush(bool may) { may_push_ = may; }  ///< [main] sets mayPush()
   /// [main] True if this peer has a lead, which ends with its connection.
   bool holds(const control::Peer& peer) const;
-  /// [main] Returns the numbers of all peers that have a lead.
+  /// [main] Returns the ids of all peers that have a lead.
   std::set<uint64_t> holders() const;
 
  private:

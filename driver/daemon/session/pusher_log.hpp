@@ -31,7 +31,7 @@ class PusherLog {
 
   /// [any] Called when a program begins to push. @param place less than ClientForces::kMost
   Message begins(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
-  /// [any] Called when a program stops pushing. @param client its counts
+  /// [any] Called when a program stops pushing. @param client the counts of the program
   Message ends(uint32_t arm, uint32_t place, End how, const ClientForces::Client& client);
   /// [any] Returns messages about changes since the last call, of the programs on an arm. @param now [s]
   std::vector<Message> update(uint32_t arm, const ClientForces& forces, double now);

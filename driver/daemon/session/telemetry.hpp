@@ -25,10 +25,11 @@ struct BlackBoxRow {
   float lateness_us = 0, compute_us = 0;
   std::array<float, 3> position{};  ///< [m] tip of the first arm, world frame
   std::array<float, 3> force{};     ///< [N] force as sent to the first arm, world frame
-  float depth_m = 0;                ///< deepest contact; negative: distance to the nearest foot; 0: no model is traced
-  uint32_t model = UINT32_MAX;      ///< model of this contact or foot
-  int32_t status = 0;               ///< worst status of the tick
-  uint32_t fault = 0;               ///< servo::Fault of the first arm
+  /// [m] depth of the deepest contact; negative: distance to the nearest foot point; 0: no model is traced
+  float depth_m = 0;
+  uint32_t model = UINT32_MAX;  ///< model of this contact or foot point
+  int32_t status = 0;           ///< worst status of the tick
+  uint32_t fault = 0;           ///< servo::Fault of the first arm
 };
 
 class Telemetry final : public TickLog {

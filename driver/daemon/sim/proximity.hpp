@@ -17,7 +17,7 @@ namespace hapticd::sim {
 /// activation_radius.
 struct ProximitySettings {
   double activation_radius = 0.10;  ///< [m] a surface nearer than this to a probe is traced
-  double hysteresis = 0.05;         ///< [m] tracing stops this much farther away
+  double hysteresis = 0.05;         ///< [m] tracing stops at activation_radius plus this distance
 };
 
 /// How long a search takes.
@@ -49,9 +49,9 @@ class Proximity {
   Searching amount() const;
 
  private:
-  mutable std::mutex mutex_;  ///< models come and leave between two searches
+  mutable std::mutex mutex_;  ///< because other threads add and remove models between two searches
   struct Model {
-    uint32_t index;  ///< number of the model in the scene; UINT32_MAX: it has left
+    uint32_t index;  ///< place of the model, which is its number in the scene; UINT32_MAX: it has left
     const host::ShapeInstance* shape;
     uint32_t surfaces;  ///< number of its surfaces
     uint64_t bytes;     ///< locked memory of the shape

@@ -119,7 +119,7 @@ struct Page {
     Slot<Pusher> who;
     Slot<PusherStatus> now;
   } pusher[kMaxArms * kPushersOfArm];  ///< places of arm i begin at i * kPushersOfArm
-  Slot<ModelFeet> feet[kMaxModels];    ///< feet of each model, by its place
+  Slot<ModelFeet> feet[kMaxModels];    ///< counts of the foot points of each model, by its place
 };
 
 }  // namespace hapticd::status

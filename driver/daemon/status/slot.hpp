@@ -29,7 +29,8 @@ class Slot {
     sequence_.store(sequence + 2, std::memory_order_release);
   }
 
-  /// [any] Returns the record, or nothing if the writer was writing at each try, or died while it wrote.
+  /// [any] Returns the record. Returns nothing if the writer was writing at every try, or if it was killed while it
+  /// wrote.
   std::optional<T> read() const noexcept {
     constexpr int kTries = 1000;
     for (int i = 0; i < kTries; ++i) {

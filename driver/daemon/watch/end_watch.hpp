@@ -39,7 +39,7 @@ class EndWatch {
   /// [main] Called after the last tick. The calls that follow, such as stop() of the arms, may take kWaitsForLast.
   /// @param stuck ends the process after that time; if it finds no code to blame, it returns and is called again later
   void lastCalls(std::function<void()> stuck);
-  /// [any] Checks the servo once. The thread only calls this, every kLookEvery.
+  /// [any] Checks the servo once. The thread of this object only calls this function, once every kLookEvery.
   void check(Nanoseconds now) noexcept;
 
  private:

@@ -17,7 +17,7 @@ struct Heartbeat {
 /// A message about one arm, sent over a socket, with a descriptor if the guard can switch the arm off.
 struct GuardMessage {
   uint32_t arm = 0;
-  uint32_t there = 0;  ///< 0: the arm is no longer there
+  uint32_t there = 0;  ///< 0: the guard cannot switch this arm off now; `how` is then not used
   hdv_silence how{};
 };
 

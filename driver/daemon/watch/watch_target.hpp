@@ -18,9 +18,9 @@ class WatchTarget {
   /// CLOCK_MONOTONIC time by which the next tick must have begun; 0 if there will be none.
   virtual Nanoseconds nextTick() const noexcept = 0;
   virtual Nanoseconds cpuTime() const noexcept = 0;  ///< CPU time that the servo thread has used
-  virtual bool simulated() const noexcept = 0;       ///< all arms are simulated, so that no hand can be hurt
+  virtual bool simulated() const noexcept = 0;       ///< true if all arms are simulated, so that no hand can be hurt
   virtual void stop() noexcept = 0;                  ///< asks the run to end normally: forces ramp to zero first
-  /// CLOCK_MONOTONIC time at which the end was asked for; 0 if it was not.
+  /// CLOCK_MONOTONIC time at which the run was asked to end; 0 if it was not.
   virtual Nanoseconds stopAsked() const noexcept = 0;
   virtual void cut(double stuck_for) noexcept = 0;  ///< switches the motors of every arm off at once; stuck_for [s]
   virtual bool cutLeft() const noexcept = 0;        ///< false while the cut has not been sent to the hardware

@@ -22,7 +22,8 @@ class Watchdog {
   static constexpr Nanoseconds kStuckAfter = 2'500'000;
   /// [ns] longest tick in a virtual machine, where the processor may do other work during a tick.
   static constexpr Nanoseconds kStuckInVirtualMachine = 10'000'000;
-  /// [ns] least value for simulated arms: they cannot hurt a hand, and pauses of a virtual machine count as servo time.
+  /// [ns] longest tick of simulated arms, unless `stuck_after` is longer. Simulated arms cannot hurt a hand, and pauses
+  /// of a virtual machine count as time of the tick.
   static constexpr Nanoseconds kStuckSimulated = 60'000'000;
   /// [ns] longest delay of the next tick. In a virtual machine it is longer, because the host pauses single processors.
   static constexpr Nanoseconds kMissedAfter = 2'500'000, kMissedInVirtualMachine = 50'000'000;
@@ -41,7 +42,8 @@ class Watchdog {
       : servo_(servo), hung_(std::move(hung)), missed_after_(missed_after), stuck_after_(stuck_after) {}
   ~Watchdog() { stop(); }
 
-  /// [main] Sets a function that ends the process if its end was asked for and does not come. Call it before start().
+  /// [main] Sets a function that ends the process if the run was asked to end and has not ended after kEndWithin. Call
+  /// it before start().
   void onLateEnd(std::function<void()> late) { late_ = std::move(late); }
 
   /// [main] @param priority SCHED_FIFO priority, above that of the servo. If the process has no right to this priority,

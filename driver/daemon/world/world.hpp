@@ -39,8 +39,8 @@ class World {
   /// [main] Puts a shape into an empty place, which owns it from now on, and adds it to the proximity search.
   void store(uint32_t place, std::unique_ptr<host::ShapeInstance> shape, const scene::Model& model);
 
-  /// [main] Removes the model of a place from the proximity search. Call it before the servo is told to release the
-  /// model.
+  /// [main] Removes the model of a place from the proximity search. Call it before the order kRelease is given to the
+  /// servo.
   void forget(uint32_t place) { proximity_->remove(place); }
 
   /// [main] Destroys the shape of a place that the servo has released.

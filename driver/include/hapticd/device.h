@@ -106,8 +106,8 @@ typedef struct hdv_ext_calibration {
 typedef struct hdv_ext_cut {
   uint32_t struct_size, reserved;
   /* [any] Switches the motors off at once, also in a signal handler and while another thread is inside write(). They
-   * stay off, whatever later commands say, until a write() with HDV_OFF. So a thread that was stuck cannot undo the
-   * cut when it goes on. */
+   * stay off until a write() with HDV_OFF, even if other commands come before it. So a thread that was stuck cannot
+   * undo the cut when it continues. */
   void (*cut)(hdv_device*) HSP_RT;
 } hdv_ext_cut;
 

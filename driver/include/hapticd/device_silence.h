@@ -14,7 +14,7 @@ enum {                     /* hdv_silence.kind: how to send the bytes */
        HDV_BY_USB = 3u     /* fd is a file of usbfs: claim `interface`, then send the bytes to `endpoint` */
 };
 #define HDV_SILENCE_BYTES 1024
-typedef struct hdv_silence { /* module -> host: the command that switches the motors off, whatever was sent before */
+typedef struct hdv_silence { /* module -> host: the command that switches the motors off, in every state */
   uint32_t struct_size, kind;
   int32_t fd;                         /* the module owns it; the host duplicates it */
   uint32_t interface, endpoint, size; /* size: how many of `bytes` to send */

@@ -76,8 +76,8 @@ class Arm {
   CutFound takeCutFound() noexcept HSP_RT { return std::exchange(cut_found_, CutFound::kNo); }
   /// [s] how long the servo had been stuck when the motors were cut
   double cutAfter() const noexcept { return cut_after_.load(); }
-  /// [rt] Called before a tick of a replay in which the servo must find that the motors were cut, because it found that
-  /// in the same tick of the recorded run.
+  /// [rt] Called before a tick of a replay. It makes the servo find in this tick that the motors were cut, as it did in
+  /// the same tick of the recorded run. @param after [s] how long the servo was stuck
   void cutAsThen(CutFound when, double after) noexcept HSP_RT;
 
   const hdv_info& info() const { return device_->info(); }
@@ -183,13 +183,13 @@ class Arm {
   hdv_command command_{};
   hsp_status read_status_ = HSP_OK, write_status_ = HSP_OK;
   std::atomic<const char*> trouble_{nullptr};
-  bool well_ = false;  // the device had no trouble in this tick
+  bool well_ = false;  // true if the device had no trouble in this tick
   double calm_ = 0;    // [s] time for which the device has had no trouble, and was at rest or without force
   Eigen::Vector3d calm_at_ = Eigen::Vector3d::Zero();
   uint64_t last_sequence_ = 0;
   Nanoseconds fresh_at_ = 0;
   double fresh_after_ = 0;  // [s] time between the last two new samples
-  bool fresh_ = false;      // the sample of this tick is new
+  bool fresh_ = false;      // true if the sample of this tick is new
   bool watches_jumps_ = false, tip_known_ = false;
   double fastest_ = 0;        // [m/s] a larger speed between two samples is a jump; 0: unbounded
   double sample_period_ = 0;  // [s] time between two samples of the arm; 0: unknown

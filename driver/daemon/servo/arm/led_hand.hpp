@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The hand of a simulated arm, led by a program: the program sets the place where the hand wants to be, and the hand's
-/// own mass, spring and damper move it there.
+/// The hand of a simulated arm, led by a program. The program sets the position to which the hand wants to go, and the
+/// simulated hand moves there by its own mass, spring and damper.
 #pragma once
 #include <Eigen/Geometry>
 

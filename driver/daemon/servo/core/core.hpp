@@ -60,11 +60,11 @@ struct ModelState {
   hsp_status failed_status = HSP_OK;  ///< the first status that step() returned and that the ABI does not allow
   Pull pull;  ///< the pull for which it was silenced; if there is none, the largest jump of its force
   Guard guard;
-  ClaimBounds claims;         ///< how fast its force may change
+  ClaimBounds claims;         ///< bounds on the change of its force
   bool overran = false;       ///< its last step took too long, and was counted against it (Guard::strike())
   bool overran_then = false;  ///< replay: it overran in this tick of the recorded run
   uint64_t step_ns = 0;       ///< time of the last step; 0 if not measured
-  bool cpu_timed = false;     ///< step_ns is CPU time of the thread, without interruptions
+  bool cpu_timed = false;     ///< true: step_ns is CPU time of the thread, without interruptions
   // Its accuracy: reduced while ticks take too long, see load_shedding.hpp.
   uint32_t level = 0, coarsest = 0;  ///< Accuracy level now, and the coarsest one so far
   uint64_t finer_ns = 0;             ///< time of a step before the level was last lowered
@@ -78,7 +78,7 @@ struct CoreSettings {
   uint64_t budget_ns = 0;       ///< time for all shapes of a tick together; 0: no limit
   double max_probe_speed = 20;  ///< [m/s] a faster probe is treated as a jump
   uint32_t spare_models = 0;    ///< empty places for models that are added during the run
-  bool measure = false;         ///< measure the time of each step
+  bool measure = false;         ///< true: the time of each step is measured
   /// [ns] if > 0, the cost of a step is this value times the number of its evaluations, not its measured time
   double evaluation_ns = 0;
   /// for old recordings: torques are not bounded, nor is the step after a parameter was set
@@ -195,7 +195,7 @@ class Core {
   // The answer that is being judged. It is a member, because constructing it for each answer would take as long as
   // judging it.
   ClaimStep claim_step_;
-  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();  // turn in this tick of the model being judged
+  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();  // rotation in this tick of the model that is being judged
   std::vector<Contact> contacts_;                       // [model * probe_count + probe]
   std::vector<hsp_probe> inputs_;                       // probes for the model being stepped
   std::vector<hsp_contact> outputs_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// A change that somebody asks of the running servo. Ordinary threads prepare it, a ring buffer carries it, and the
-/// servo obeys it at the start of a tick. Recordings keep orders, because they change forces.
+/// A change that the running servo makes at the start of a tick. A user or a program requests it, an ordinary thread
+/// prepares it, and a ring buffer passes it to the servo. Some orders are decisions of the servo itself. Recordings
+/// contain the orders, because orders change forces.
 #pragma once
 #include <cstdint>
 
@@ -14,8 +15,8 @@ struct ModelState;
 struct Order {
   enum class Kind : uint32_t {
     kNone,
-    kEnable,   ///< the model becomes felt: its force fades in
-    kDisable,  ///< the model becomes unfelt: its force fades out; it is still traced
+    kEnable,   ///< the force of the model fades in, so that it is felt
+    kDisable,  ///< the force of the model fades out; the model is still traced
     kMove,     ///< a kinematic model goes to a pose and stays
     kSet,      ///< sets a live parameter
     kClear,    ///< the arm's latched fault is cleared; the force ramps in

@@ -29,9 +29,11 @@ class Door {
 
   static constexpr size_t stateBytes(size_t arms) { return kStateAt + arms * kStateStride; }
 
-  /// [any] Called once at most. @param page stateBytes() bytes of zeros, valid until the loop has ended
+  /// [any] From now on, publish() writes the state of the arms to `page`. Call it at most once. @param page
+  /// stateBytes() bytes of zeros, valid until the loop has ended
   void showState(std::byte* page, uint32_t arms) noexcept;
-  /// [any] Called once at most. @param bell zeroed, valid until the loop has ended
+  /// [any] From now on, publish() and written() ring `bell`. Call it at most once. @param bell zeroed, valid until the
+  /// loop has ended
   void setBell(hapticd_bell* bell) noexcept { bell_.store(bell, std::memory_order_release); }
 
   /// [rt] Called after the arms were read: writes their state and rings the bell.

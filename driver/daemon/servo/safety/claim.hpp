@@ -28,15 +28,17 @@ struct ClaimStep {
   Eigen::Vector3d p_model = Eigen::Vector3d::Zero();   ///< [m] the probe in the frame of the model, after the step
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s] relative to the model; zero if the shape uses none
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< [m] origin of the model, after the step
-  const Eigen::Matrix3d* turn = nullptr;  ///< turn of the model since its last step; nullptr if there is none
-  /// [N] largest force that the arm lets through, 0: unknown; larger forces are reduced to it first
+  /// rotation of the model since its last step, world frame; nullptr if the model does not move
+  const Eigen::Matrix3d* turn = nullptr;
+  /// [N] largest force that the arm lets through, 0: unknown; a larger force is reduced to this value before the check
   double max_force = 0;
   uint32_t in = 0, out = 0;  ///< HSP_IN_*, HSP_OUT_*
   // Only checkTorque() uses these.
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m] torque on the probe
   /// Orientation x y z w of the probe in the world; constant if the shape does not use the orientation.
   Eigen::Vector4d orientation = Eigen::Vector4d::UnitW();
-  /// [N m] largest torque that the arm lets through, 0: unknown; larger ones are reduced to it first
+  /// [N m] largest torque that the arm lets through, 0: unknown; a larger torque is reduced to this value before the
+  /// check
   double max_torque = 0;
   bool former = false;  ///< for old recordings: kFindsAnew is not used
 };

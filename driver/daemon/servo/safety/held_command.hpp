@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How long one command may stay on after a fault, and how much force is safe for that time. A fault is found only at
-/// the next tick or the next sample, and until then the motors keep the last command.
+/// Calculates how long one command may stay on after a fault, and how much force is safe for this time. A fault is
+/// found only at the next tick or the next sample, and until then the motors keep the last command.
 #pragma once
 #include <string>
 

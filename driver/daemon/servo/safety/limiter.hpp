@@ -54,8 +54,7 @@ class Limiter {
   void watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT;
   /// [main] For recordings of old versions: a hold button that was down before the run enables forces.
   void enableByFoundPressed() { released_ = true; }
-  /// [main] Sets what the limit limits.power needs to know. @param lag [s] delay of the velocity that watchVelocity()
-  /// gets
+  /// [main] Sets two values for limits.power. @param lag [s] delay of the velocity that watchVelocity() gets
   /// @param mass [kg] of the arm at its tip, 0: unknown
   void expectMotion(double lag, double mass) { power_.expect(lag, mass); }
   /// [rt] Sets the share of the force that the age of the newest sample allows, from 1 (new) to 0 (too old). Call it
@@ -79,7 +78,7 @@ class Limiter {
   /// zero then ends at once, and a later force grows from zero.
   void sentNothing() noexcept HSP_RT;
 
-  /// [rt] Ends a fault that can end by itself, and the force ramps in again. Other faults stay.
+  /// [rt] Ends a fault that can end by itself, so that the force ramps in again. Other faults stay latched.
   void recover() noexcept HSP_RT;
 
   /// [rt] Clears a latched fault because the user asked for it. Once the force has ramped out, the force of the models
@@ -88,12 +87,14 @@ class Limiter {
 
   Fault fault() const noexcept { return fault_.get(); }          ///< [any] the latched fault, or kNone
   Fault recovered() const noexcept { return recovered_.get(); }  ///< [any] the last fault that ended by itself
-  double measured() const noexcept { return measured_; }         ///< [main] value at the fault, in its unit
-  bool enabled() const noexcept { return enabled_; }  ///< true if there is no enable switch, or it enables forces
+  /// [main] value measured at the fault, in the unit of the fault
+  double measured() const noexcept { return measured_; }
+  /// true if there is no enable switch, or if the switch enables forces
+  bool enabled() const noexcept { return enabled_; }
   /// true if the enable switch was down at the start and has not been released since
   bool foundPressed() const noexcept { return found_pressed_; }
   double rampOut() const noexcept { return limits_.ramp_out; }  ///< [s] time from full force to zero, at a planned end
-  const Clips& clips() const noexcept { return clips_; }        ///< [main] only after the run
+  const Clips& clips() const noexcept { return clips_; }        ///< [main] valid only after the run
   double maxForce() const noexcept { return max_force_; }       ///< [N] 0: no limit
   double maxTorque() const noexcept { return limits_.torque; }  ///< [N m] 0: no limit
   /// [rt] Returns the share of a full force that the ramps allow in this tick, 0 to 1. Call it after apply().

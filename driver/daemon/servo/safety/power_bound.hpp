@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Calculates the largest force along a direction that gives at most a certain power to the hand until the next
-/// command. It allows for three errors: the velocity is an estimate that lags, the hand may accelerate meanwhile, and
+/// command. It allows for three effects: the velocity is an estimate that lags, the hand may accelerate meanwhile, and
 /// the force itself accelerates the arm.
 #pragma once
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// How long a velocity estimate lags behind the hand.
+/// Calculates how long [s] a velocity estimate lags behind the hand.
 #pragma once
 #include <numbers>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The velocity of a probe, by the estimator that servo.velocity of the scene names.
+/// Estimates the velocity of a probe with the estimator that servo.velocity of the scene names.
 #pragma once
 #include <Eigen/Core>
 #include <stdexcept>
@@ -48,7 +48,7 @@ class ProbeVelocity {
     estimator_.reset();
   }
 
-  /// [rt] Returns the speed [m/s] from the last sample to this one, also at a jump.
+  /// [rt] Returns the speed [m/s] between the last two samples, even if it is that of a jump.
   double speed() const noexcept { return speed_; }
 
  private:

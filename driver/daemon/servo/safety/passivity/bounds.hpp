@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How stiff and how damped a sampled wall may be so that it is passive, and no passive hand on it can oscillate.
+/// Calculates how stiff and how damped a sampled wall may be. Within these bounds the wall is passive, so that no
+/// passive hand on it can oscillate.
 /// Colgate & Schenkel 1997: b > T/2 max over w of Re{(1 - e^(-jwT)) H(e^(jwT))} / (1 - cos wT). The wall is
 /// H(z) = z^-d (K + B (1 - z^-n) / (nT)), with stiffness K, damping B through the velocity window of n samples (Eq. 5
 /// of Thompson et al. 1999), and a delay of d samples.

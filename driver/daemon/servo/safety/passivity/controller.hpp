@@ -22,7 +22,8 @@ struct Exchange {
 };
 
 /// [any] Returns the largest damping [N s/m] that the controller may add to an arm of this mass [kg] without causing an
-/// oscillation itself, if the loop has one or two samples of delay, and with the smoothing of the controller.
+/// oscillation itself. The value allows for one or two samples of delay in the loop, and for the smoothing of the
+/// velocity.
 /// @param period [s] of the servo
 double stableDamping(double mass, double period) noexcept;
 

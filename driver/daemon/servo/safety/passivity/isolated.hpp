@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The stiffest wall that is stable for an arm that has only mass: no friction, and no hand that holds it.
+/// Calculates the stiffest wall that is stable for an arm that has only mass: it has no friction, and no hand holds it.
 #pragma once
 
 namespace hapticd::passivity {
