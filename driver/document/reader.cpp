@@ -65,9 +65,10 @@ static std::string inOtherUnits(double value, const Range& range) {
     double factor;
     double least;  ///< smallest number that people write in this unit
   };
-  static constexpr UnitSlip kSlips[] = {
-      {"m", "mm", 1e-3, 0.1}, {"rad", "degrees", M_PI / 180, 0.1}, {"s", "ms", 1e-3, 0.02}, {"s", "us", 1e-6, 1},
-      {"kg", "g", 1e-3, 0.1}, {"N", "mN", 1e-3, 1},                {"N m", "N mm", 1e-3, 0.1}};
+  static constexpr UnitSlip kSlips[] = {{"m", "mm", 1e-3, 0.1},    {"rad", "degrees", M_PI / 180, 0.1},
+                                        {"s", "ms", 1e-3, 0.02},   {"s", "us", 1e-6, 1},
+                                        {"kg", "g", 1e-3, 0.1},    {"N", "mN", 1e-3, 1},
+                                        {"N m", "N mm", 1e-3, 0.1}};
   for (const UnitSlip& slip : kSlips)
     if (const double meant = value * slip.factor; std::string_view(range.unit) == slip.unit &&
                                                   std::abs(value) >= slip.least && meant >= range.min &&
@@ -253,7 +254,8 @@ bool hasAnotherPlace(const std::string& place, const std::string& name) {
 /// Returns the key that a misspelt one means, if it is not given as well and the word has no other place; else nullptr.
 const Key* meantKey(const Node& node, const std::string& name, const Table& table) {
   const std::string meant = nearest(name, table.names());
-  if (meant.empty() || node.find(meant) != nullptr || hasAnotherPlace(belongsTo(table, name, true), name)) return nullptr;
+  if (meant.empty() || node.find(meant) != nullptr || hasAnotherPlace(belongsTo(table, name, true), name))
+    return nullptr;
   return table.find(meant);
 }
 

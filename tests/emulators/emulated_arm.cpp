@@ -14,11 +14,11 @@ namespace {
 using Eigen::Vector3d;
 using simulated::Drive;
 using simulated::Hand;
+using simulated::HandCoupling;
 using simulated::HandTarget;
 using simulated::JointSettings;
 using simulated::Plant;
 using simulated::PlantOf;
-using simulated::HandCoupling;
 
 constexpr double kWatchdog = 0.02;  ///< [s] without a command: motors off
 constexpr double kStep = 5e-4;      ///< [s] of the integration

@@ -21,7 +21,7 @@ namespace {
 
 constexpr Nanoseconds kStatusPeriod = 200'000'000;
 constexpr Nanoseconds kReadyPoll = 1'000'000;
-constexpr uint64_t kReadyTicks = 2;    ///< after this many ticks the service manager is told that the daemon is ready
+constexpr uint64_t kReadyTicks = 2;  ///< after this many ticks the service manager is told that the daemon is ready
 constexpr uint64_t kLongestRunUs = 100'000;  ///< longest CPU time without sleep [us]; a tick takes a hundredth of it
 
 std::string readyMessage(const Loop& loop) {

@@ -42,9 +42,8 @@ class Repair {
 
  private:
   void dropEmpty() {
-    report_.degenerate = std::erase_if(corners_, [](const Corners& c) {
-      return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
-    });
+    report_.degenerate =
+        std::erase_if(corners_, [](const Corners& c) { return c[0] == c[1] || c[1] == c[2] || c[2] == c[0]; });
     report_.joined = joinFreePoints(points_, corners_);
     report_.slivers = takeInSlivers(points_, corners_);
     report_.degenerate += std::erase_if(corners_, [this](const Corners& c) { return isEmptyTriangle(points_, c); });

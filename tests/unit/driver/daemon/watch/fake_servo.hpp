@@ -4,7 +4,6 @@
 
 namespace hapticd::watch {
 
-
 /// A servo whose state a test sets.
 struct FakeServo : WatchTarget {
   uint64_t tick = 0;
