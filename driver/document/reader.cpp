@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "document/reader.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -249,6 +250,14 @@ std::string hintFor(const Table& table, const std::string& name) {
   return (place.find(" " + name + " belongs ") == place.npos ? meant : "") + place;
 }
 
+/// Returns the key that an unknown one probably is, if the mapping has it not; nullptr if there is none.
+const Key* meantBy(const Table& table, const Node& mapping, const Entry& entry) {
+  if (entry.value.isNull() || belongsTo(table, entry.key.scalar, true).find(" belongs in ") != std::string::npos)
+    return nullptr;
+  const std::string meant = nearest(entry.key.scalar, table.names());
+  return meant.empty() || mapping.find(meant) != nullptr ? nullptr : table.find(meant);
+}
+
 }  // namespace
 
 void Reader::object(const Node& node, const std::string& key, const Table& table, void* object) {
@@ -256,6 +265,7 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
     problem(node, key, describe(node) + ", expected a mapping with " + listed(table.names()) + suggestMapping(node));
     return;
   }
+  std::vector<const Key*> misspelt;    // keys that are read from a misspelt one, so that all problems come at once
   const std::string* empty = nullptr;  // a key without a value: unknown keys after it probably belong under it
   for (const Entry& entry : node.entries) {
     const std::string path = joined(key, entry.key.scalar);
@@ -271,10 +281,15 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
                   (empty != nullptr ? suggestion(entry.key.scalar, table.names()) + "; indent it further than " +
                                           *empty + ", if it belongs there"
                                     : hintFor(table, entry.key.scalar)));
+      const Key* meant = empty == nullptr ? meantBy(table, node, entry) : nullptr;
+      if (meant == nullptr || std::find(misspelt.begin(), misspelt.end(), meant) != misspelt.end()) continue;
+      misspelt.push_back(meant);
+      meant->store(*this, entry.value, path, *meant, object);
     }
   }
   for (const Key& wanted : table.keys)
-    if (wanted.required && node.find(wanted.name) == nullptr)
+    if (wanted.required && node.find(wanted.name) == nullptr &&
+        std::find(misspelt.begin(), misspelt.end(), &wanted) == misspelt.end())
       problem(node, joined(key, wanted.name), std::string("missing, expected ") + wanted.expected());
 }
 

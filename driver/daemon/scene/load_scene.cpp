@@ -50,9 +50,15 @@ class SceneLoader {
     scene_.models.push_back(std::move(model));
   }
 
+  /// Returns the value of a key that was read; the model itself if the key was misspelt.
+  static const Node* nodeOf(const ModelText& text, const char* key) {
+    const Node* value = text.node->find(key);
+    return value != nullptr ? value : text.node;
+  }
+
   void checkName(const ModelText& text, const std::string& key) {
     if (text.name.empty()) return;
-    const Node* at = text.node->find("name");
+    const Node* at = nodeOf(text, "name");
     const auto [first, is_new] = names_.emplace(text.name, at->line);
     if (!is_new)
       in_.problem(*at, key + ".name",
@@ -64,7 +70,7 @@ class SceneLoader {
   /// give only one long message.
   const host::ClassInfo* pluginOf(const ModelText& text, const std::string& key) {
     if (text.plugin.empty()) return nullptr;
-    const Node* at = text.node->find("plugin");
+    const Node* at = nodeOf(text, "plugin");
     const auto [known, is_new] = plugins_.try_emplace(text.plugin);
     if (is_new) {
       known->second.line = at->line;

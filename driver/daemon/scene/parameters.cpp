@@ -81,9 +81,22 @@ void ParameterReader::read(const Node& node, const std::string& key, const std::
       readOne(entry.value, path, static_cast<uint32_t>(index));
     else if (isGroup(info_, id))
       read(entry.value, path, id);
-    else
+    else {
       unknown(entry, path, id);
+      readAsMeant(node, entry, path, id);
+    }
   }
+}
+
+void ParameterReader::readAsMeant(const Node& mapping, const Entry& entry, const std::string& key,
+                                  const std::string& id) {
+  const std::string group = id.substr(0, id.find('.') == id.npos ? 0 : id.rfind('.') + 1);
+  std::vector<std::string> ids = info_.paramIds();
+  std::erase_if(ids, [&group](const std::string& one) { return one.rfind(group, 0) != 0; });
+  const std::string meant = nearest(id, ids);
+  const int index = meant.empty() ? -1 : info_.indexOf(meant);
+  if (index < 0 || entry.value.isNull() || mapping.find(meant.substr(group.size())) != nullptr) return;
+  if (given_[static_cast<size_t>(index)] == 0) readOne(entry.value, key, static_cast<uint32_t>(index));
 }
 
 void ParameterReader::nothing(const Entry& entry, const std::string& key, uint32_t index) {
@@ -206,7 +219,11 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
     const auto number = shown ? in_->number(item, path, of_column) : std::nullopt;
     value.numbers.push_back(number.value_or(heldIn(item, of_column)));
   };
-  if (node.isScalar()) {
+  if (node.isScalar() && param.min_count > 1 && !toNumber(node.scalar)) {
+    in_->problem(node, key,
+                 describe(node) + " is not a number, expected a list of " + countText(param) +
+                     suggestList(node, param.min_count) + (param.def_text ? "; such as " + *param.def_text : ""));
+  } else if (node.isScalar()) {
     add(node, key, 0);
   } else if (node.isSequence()) {
     for (size_t i = 0; i < node.items.size(); ++i) {

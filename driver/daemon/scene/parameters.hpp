@@ -37,6 +37,8 @@ class ParameterReader {
 
  private:
   void nothing(const Entry& entry, const std::string& key, uint32_t index);
+  /// Reads the value of an unknown parameter as that of the nearest one, so that all problems come at once.
+  void readAsMeant(const Node& mapping, const Entry& entry, const std::string& key, const std::string& id);
   void unknown(const Entry& entry, const std::string& key, const std::string& id);
   bool readValue(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value);
   bool readArray(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value);
