@@ -250,6 +250,14 @@ std::string hintFor(const Table& table, const std::string& name) {
   return (place.find(" " + name + " belongs ") == place.npos ? meant : "") + place;
 }
 
+/// Returns a hint if the value of an unknown key has only keys of this table, which then stand one level too deep.
+std::string tooDeep(const Table& table, const Node& value) {
+  const bool all = value.isMap() && !value.entries.empty() &&
+                   std::all_of(value.entries.begin(), value.entries.end(),
+                               [&table](const Entry& one) { return table.find(one.key.scalar) != nullptr; });
+  return all ? "; its keys (" + value.entries[0].key.scalar + ", ...) belong one level up, without this key" : "";
+}
+
 /// Returns the key that an unknown one probably is, if the mapping has it not; nullptr if there is none.
 const Key* meantBy(const Table& table, const Node& mapping, const Entry& entry) {
   if (entry.value.isNull() || belongsTo(table, entry.key.scalar, true).find(" belongs in ") != std::string::npos)
@@ -280,7 +288,7 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
               "unknown key, expected one of " + listed(table.names(), 20) +
                   (empty != nullptr ? suggestion(entry.key.scalar, table.names()) + "; indent it further than " +
                                           *empty + ", if it belongs there"
-                                    : hintFor(table, entry.key.scalar)));
+                                    : hintFor(table, entry.key.scalar) + tooDeep(table, entry.value)));
       const Key* meant = empty == nullptr ? meantBy(table, node, entry) : nullptr;
       if (meant == nullptr || std::find(misspelt.begin(), misspelt.end(), meant) != misspelt.end()) continue;
       misspelt.push_back(meant);

@@ -50,8 +50,8 @@ document::Problems partsOf(const document::Problem& whole) {
 
 bool isTold(const document::Problems& problems, const document::Problem& one) {
   return std::any_of(problems.begin(), problems.end(), [&one](const document::Problem& told) {
-    return told.key == one.key && told.place.file == one.place.file && told.place.line == one.place.line &&
-           told.place.column == one.place.column;
+    return told.key == one.key && told.what == one.what && told.place.file == one.place.file &&
+           told.place.line == one.place.line && told.place.column == one.place.column;
   });
 }
 
