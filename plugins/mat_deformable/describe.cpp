@@ -160,8 +160,6 @@ void MatDeformable::describe(const MedialFile& file, double tick) const {
               " gives the materials of its points; this parameter is only for a medial mesh without materials (.ma)");
   if (!geometry_.ends_with(".ma") && rings_ != static_cast<int>(usual("rings")))
     writeLog(HSP_LOG_WARNING, "rings: has no effect: only a medial mesh (.ma) has rings; for a grid, set influence");
-  if (!geometry_.ends_with(".ma") && crease_ != usual("crease"))
-    writeLog(HSP_LOG_WARNING, "crease: has no effect: only a medial mesh (.ma) has branches; a grid has none");
   if (friction_static_ > 0 && friction_static_ < friction_dynamic_)
     writeLog(
         HSP_LOG_WARNING,
