@@ -69,7 +69,7 @@ TEST_F(ModelFileTest, RefusesMoreYamlThanMemoryIsGoodFor) {
 }
 
 TEST_F(ModelFileTest, SaysWhereAndWhatIsWrong) {
-  EXPECT_NE(complaintOf(with(kSquare, "[1, 0, 0]", "[1, .nan, 0]")).find(":6:40: surfaces[0].points[2][1]: expected a"),
+  EXPECT_NE(complaintOf(with(kSquare, "[1, 0, 0]", "[1, .nan, 0]")).find(":6:40: surfaces[0].points[2][1]: .nan, expected a"),
             std::string::npos)
       << complaintOf(with(kSquare, "[1, 0, 0]", "[1, .nan, 0]"));
   EXPECT_NE(complaintOf(with(kSquare, "degree: [1, 1]", "degree: [1, 99]")).find("degree[1]"), std::string::npos);
