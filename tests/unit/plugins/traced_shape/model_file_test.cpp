@@ -91,7 +91,7 @@ TEST_F(ModelFileTest, ReadsStatedEdges) {
 
 TEST_F(ModelFileTest, TakesNamesThatAreNumbersAndRefusesThoseThatAreLists) {
   EXPECT_EQ(parseModelFile(with(kSquare, "name: floor", "name: 3.5"), "t.yaml").surfaces[0].name, "3.5");
-  EXPECT_NE(complaintOf(with(kSquare, "name: floor", "name: [\"\\xff\", b]")).find("surfaces[0].name: expected a text"),
+  EXPECT_NE(complaintOf(with(kSquare, "name: floor", "name: [\"\\xff\", b]")).find("surfaces[0].name: a list of 2, expected a text"),
             std::string::npos);
   EXPECT_NE(complaintOf(with(kSquare, "name: floor", "name: \xff")).find("a byte that is not text (code 255)"),
             std::string::npos);
