@@ -19,6 +19,7 @@
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/hand_start.hpp"
 #include "diagnostics/key_place.hpp"
+#include "diagnostics/model_file_problems.hpp"
 #include "diagnostics/model_trial.hpp"
 #include "diagnostics/setting_plausibility.hpp"
 #include "diagnostics/slow_arm.hpp"
@@ -224,6 +225,7 @@ CheckResult checkOne(const std::string& file, const CheckArguments& options) {
   if (scene) addWarnings(withArm(*scene), trial, options, result);
   if (scene) addImplausible(withArm(*scene), trial.boxes, {}, result.warnings);
   placeWarnings(result.warnings);
+  separateModelFiles(result.problems);
   return result;
 }
 

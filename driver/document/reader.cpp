@@ -251,21 +251,29 @@ bool hasAnotherPlace(const std::string& place, const std::string& name) {
   return place.find(" " + name + " belongs ") != place.npos;
 }
 
-/// Returns the key that a misspelt one means, if it is not given as well and the word has no other place; else nullptr.
-const Key* meantKey(const Node& node, const std::string& name, const Table& table) {
-  const std::string meant = nearest(name, table.names());
-  if (meant.empty() || node.find(meant) != nullptr || hasAnotherPlace(belongsTo(table, name, true), name))
-    return nullptr;
-  return table.find(meant);
+/// Returns a hint if the value of an unknown key has only keys of this table, which then stand one level too deep.
+std::string tooDeep(const Table& table, const Node& value) {
+  const bool all = value.isMap() && !value.entries.empty() &&
+                   std::all_of(value.entries.begin(), value.entries.end(),
+                               [&table](const Entry& one) { return table.find(one.key.scalar) != nullptr; });
+  return all ? "; its keys (" + value.entries[0].key.scalar + ", ...) belong one level up, without this key" : "";
 }
 
-/// Returns a hint about an unknown key: how it is spelt, or where it belongs.
+/// Returns the key that a misspelt one means, if it is not given as well and the word has no other place; else nullptr.
+const Key* meantKey(const Node& node, const Entry& entry, const Table& table) {
+  const std::string& name = entry.key.scalar;
+  const std::string meant = nearest(name, table.names());
+  if (meant.empty() || entry.value.isNull() || node.find(meant) != nullptr) return nullptr;
+  return hasAnotherPlace(belongsTo(table, name, true), name) ? nullptr : table.find(meant);
+}
+
+/// Returns a hint about an unknown key: how it is spelt, or where it or its value belongs.
 /// @param empty a key without a value before it, under which it may belong; nullptr if there is none
-std::string hintAbout(const std::string& name, const Table& table, const std::string* empty) {
-  const std::string meant = suggestion(name, table.names());
+std::string hintAbout(const Entry& entry, const Table& table, const std::string* empty) {
+  const std::string &name = entry.key.scalar, meant = suggestion(name, table.names());
   if (empty != nullptr) return meant + "; indent it further than " + *empty + ", if it belongs there";
   const std::string place = belongsTo(table, name, !meant.empty());
-  return (hasAnotherPlace(place, name) ? "" : meant) + place;
+  return (hasAnotherPlace(place, name) ? "" : meant) + place + tooDeep(table, entry.value);
 }
 
 }  // namespace
@@ -275,7 +283,7 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
     problem(node, key, describe(node) + ", expected a mapping with " + listed(table.names()) + suggestMapping(node));
     return;
   }
-  std::vector<const Key*> misspelt;
+  std::vector<const Key*> misspelt;    // keys that are read from a misspelt one, so that all problems come at once
   const std::string* empty = nullptr;  // a key without a value: unknown keys after it probably belong under it
   for (const Entry& entry : node.entries) {
     const std::string path = joined(key, entry.key.scalar);
@@ -287,12 +295,12 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
         known->store(*this, entry.value, path, *known, object);
     } else {
       problem(entry.key, path,
-              "unknown key, expected one of " + listed(table.names(), 20) + hintAbout(entry.key.scalar, table, empty));
-      if (empty != nullptr || entry.value.isNull()) continue;
-      const Key* meant = meantKey(node, entry.key.scalar, table);
+              "unknown key, expected one of " + listed(table.names(), 20) + hintAbout(entry, table, empty));
+      const Key* meant = empty == nullptr ? meantKey(node, entry, table) : nullptr;
       if (meant == nullptr || meant->store == nullptr) continue;
-      meant->store(*this, entry.value, path, *meant, object);  // to find the problems in its value, too
+      if (std::find(misspelt.begin(), misspelt.end(), meant) != misspelt.end()) continue;
       misspelt.push_back(meant);
+      meant->store(*this, entry.value, path, *meant, object);
     }
   }
   for (const Key& wanted : table.keys)

@@ -251,7 +251,8 @@ constexpr Key list(const char* name, const Table& table, Range count, const char
               return in.problem(
                   node, path,
                   (node.isSequence() ? "a list of " + std::to_string(node.items.size()) : describe(node)) +
-                      ", expected " + key.expected());
+                      ", expected " + key.expected() +
+                      (node.isMap() ? "; begin each of them with \"- \", as an element of a list" : ""));
             target.reserve(node.items.size());
             for (size_t i = 0; i < node.items.size(); ++i) {
               auto& item = target.emplace_back();

@@ -8,6 +8,7 @@
 #include <map>
 #include <string_view>
 
+#include "document/suggestion.hpp"
 #include "kernels/medial/layer.hpp"
 #include "ma_file.hpp"
 #include "medial_warnings.hpp"
@@ -229,7 +230,7 @@ class Reader {
     if (json->is_number()) return std::vector<double>(total, value(*json, at, key));
     std::vector<double> all;
     if (!json->is_array() || json->size() != rows) {
-      problems_.add(at, "expected " + std::to_string(rows) + " rows, as many as points has");
+      problems_.add(at, "expected a number, or " + std::to_string(rows) + " rows, as many as points has");
       return all;
     }
     for (std::size_t i = 0; i < rows && !problems_.full(); ++i) {
@@ -273,9 +274,9 @@ class Reader {
   void checkKeys(const Json& json, const Path& at, std::initializer_list<const char*> known) {
     for (const auto& [key, item] : json.items()) {
       if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-      std::string expected;
-      for (const char* name : known) expected += (expected.empty() ? "" : ", ") + std::string(name);
-      problems_.add(below(at, key.c_str()), "unknown key, expected one of " + expected);
+      const std::vector<std::string> names(known.begin(), known.end());
+      problems_.add(below(at, key.c_str()), "unknown key, expected one of " + document::listed(names, names.size()) +
+                                                document::suggestion(key, names));
     }
   }
 

@@ -30,8 +30,7 @@ void checkFelt(double swing_rate, double rate_hz) {
 void Pendulum::activate(const hsp_activation& activation, hsp_report& report) {
   load(activation, report);
   const Eigen::Vector3d axis(axis_.data());
-  if (!(axis.norm() > 0))
-    throw std::invalid_argument("pendulum: axis: [0, 0, 0] has no direction; give one such as [0, 0, 1]");
+  if (!(axis.norm() > 0)) throw std::invalid_argument("axis: [0, 0, 0] has no direction; give one such as [0, 0, 1]");
   drawn_ = MovingFrame::of(activation.pose);
   axis_world_ = drawn_.orientation * axis.normalized();
   pivot_world_ = drawn_.position + drawn_.orientation * Eigen::Vector3d(pivot_.data());

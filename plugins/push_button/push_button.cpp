@@ -17,7 +17,7 @@ void PushButton::activate(const hsp_activation& activation, hsp_report& report) 
   load(activation, report);
   inward_ = Eigen::Vector3d(axis_.data());
   if (!(inward_.norm() > 0))
-    throw std::invalid_argument("push_button: axis: [0, 0, 0] has no direction; give one such as [0, -1, 0]");
+    throw std::invalid_argument("axis: [0, 0, 0] has no direction; give one such as [0, -1, 0]");
   inward_.normalize();
   std::vector<dynamics::DetentCurve::Knot> knots;
   for (size_t i = 0; i + 1 < detent_.size(); i += 2) knots.push_back({detent_[i], detent_[i + 1]});

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "document/correction.hpp"
 #include "document/node.hpp"
 #include "model_file.hpp"
 
@@ -65,8 +66,8 @@ bool looksLikeJson(const std::string& text) {
   return first != std::string::npos && text[first] == '{';
 }
 
-/// Returns the value at `path`; if there is none, the innermost value on this path.
-const Node& nodeAt(const Node& root, const Path& path) {
+/// Returns the value at `path`; if there is none, the innermost value on this path, and sets `is_there` to false.
+const Node& nodeAt(const Node& root, const Path& path, bool& is_there) {
   const Node* node = &root;
   for (const PathStep& step : path) {
     const Node* inner = nullptr;
@@ -75,7 +76,10 @@ const Node& nodeAt(const Node& root, const Path& path) {
     } else if (step.index < node->items.size()) {
       inner = &node->items[step.index];
     }
-    if (inner == nullptr) break;
+    if (inner == nullptr) {
+      is_there = false;
+      break;
+    }
     node = inner;
   }
   return *node;
@@ -103,17 +107,44 @@ bool Problems::full() const {
   return found_.size() >= kMostProblems;
 }
 
+namespace {
+
+/// Returns the unit of a value of a model file, by the name of its key.
+const char* unitOf(const Path& path) {
+  constexpr std::pair<const char*, const char*> kUnits[] = {{"points", "m"},    {"vertices", "m"},    {"radius", "m"},
+                                                            {"mass", "kg"},     {"stiffness", "N/m"}, {"young", "Pa"},
+                                                            {"thickness", "m"}, {"damping", "N s/m"}};
+  for (const PathStep& step : path)
+    for (const auto& [key, unit] : kUnits)
+      if (step.key == key) return unit;
+  return "";
+}
+
+/// Returns the message with what the file gives before what was expected.
+std::string withGiven(const Node& node, const Path& path, const std::string& what) {
+  if (!what.starts_with("expected ") || node.isMap() || (node.isSequence() && node.items.empty())) return what;
+  if (node.isSequence()) return "a list of " + std::to_string(node.items.size()) + ", " + what;
+  const std::string hint =
+      document::toNumber(node.scalar) && !node.quoted ? "" : document::suggestNumber(node.scalar, unitOf(path));
+  return document::describe(node) + ", " + what + hint;
+}
+
+}  // namespace
+
 document::Problems Problems::placed() const {
   document::Problems all, unread;
   // empty for JSON that the YAML reader does not accept; then there are no positions
   const auto root = document::parseText(text_, file_, unread);
   for (const Problem& problem : found_) {
     document::Place place{file_, 1, 1};
+    std::string what = problem.what;
     if (root) {
-      const Node& node = nodeAt(*root, problem.path);
+      bool is_there = true;
+      const Node& node = nodeAt(*root, problem.path, is_there);
       place.line = node.line, place.column = node.column;
+      if (is_there) what = withGiven(node, problem.path, what);
     }
-    all.push_back({place, nameOf(problem.path), problem.what});
+    all.push_back({place, nameOf(problem.path), what});
   }
   return all;
 }

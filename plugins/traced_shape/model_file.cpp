@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "document.hpp"
+#include "document/suggestion.hpp"
 #include "model_warnings.hpp"
 
 namespace hapticd {
@@ -232,9 +233,9 @@ class Reader {
   void checkKeys(const Json& json, const Path& at, std::initializer_list<const char*> known) {
     for (const auto& [key, value] : json.items()) {
       if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-      std::string expected;
-      for (const char* name : known) expected += (expected.empty() ? "" : ", ") + std::string(name);
-      problems_.add(at / key.c_str(), "unknown key, expected one of " + expected);
+      const std::vector<std::string> names(known.begin(), known.end());
+      problems_.add(at / key.c_str(), "unknown key, expected one of " + document::listed(names, names.size()) +
+                                          document::suggestion(key, names));
     }
   }
 

@@ -236,7 +236,12 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
     const auto number = shown ? in_->number(item, path, of_column) : std::nullopt;
     value.numbers.push_back(number.value_or(heldIn(item, of_column)));
   };
-  if (node.isScalar()) {
+  if (node.isScalar() && param.min_count > 1 && !toNumber(node.scalar)) {
+    const std::string hint = suggestList(node, param.min_count);
+    in_->problem(node, key,
+                 describe(node) + " is not a number, expected a list of " + countText(param) + hint +
+                     (hint.empty() && param.def_text ? "; such as " + *param.def_text : ""));
+  } else if (node.isScalar()) {
     add(node, key, 0);
   } else if (node.isSequence()) {
     for (size_t i = 0; i < node.items.size(); ++i) {

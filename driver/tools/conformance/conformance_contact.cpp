@@ -330,6 +330,7 @@ std::vector<ConformanceTest> contactTests() {
       {"deep-press", "deep below the surface the force still follows the claim", &deepPress, kFinite},
       {"drawing-where-felt", "triangles and bounds of hsp.geometry/1 are where the surface is felt", &drawingWhereFelt,
        kFinite},
+      {"bounds-where-felt", "the bounds of hsp.geometry/1 hold the surface that is felt", &boundsWhereFelt, kFinite},
   };
 }
 

@@ -110,6 +110,31 @@ std::string verdictOf(const Compared& found) {
 
 }  // namespace
 
+std::string boundsWhereFelt(const Recipe& recipe, uint64_t) {
+  constexpr double kRoom = 0.01;  // share of the diagonal: a curve may lie a little outside of the box of its drawing
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  Subject& subject = *made.subject;
+  const auto* geometry = static_cast<const hsp_ext_geometry*>(subject.extension(HSP_EXT_GEOMETRY));
+  Vector3d low = Vector3d::Zero(), high = low;
+  if (geometry == nullptr || geometry->bounds == nullptr ||
+      geometry->bounds(subject.handle(), low.data(), high.data()) != HSP_OK)
+    return "skip: it gives no bounds() (hsp.geometry/1)";
+  if (subject.moves()) return "skip: it moves, so it does not stay in its bounds";
+  const Eigen::AlignedBox3d box(low, high);
+  if (!low.allFinite() || !high.allFinite() || box.isEmpty())
+    return "warn: bounds() gives from " + text(low) + " to " + text(high) + "; expected min below max, finite";
+  const Touch touch = recipe.touch.places.empty() ? findTouch(recipe) : recipe.touch;
+  double farthest = kRoom * box.diagonal().norm();
+  const Place* outside = nullptr;
+  for (const Place& place : touch.places)
+    if (const double away = box.exteriorDistance(place.foot); away > farthest) farthest = away, outside = &place;
+  if (outside == nullptr) return "";
+  return "warn: bounds() gives from " + text(low) + " to " + text(high) + ", but the surface is felt at " +
+         text(outside->foot) + ", " + text(farthest * 1e3) +
+         " mm outside; expected a box that holds all of the model, in m, model frame";
+}
+
 std::string drawingWhereFelt(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;

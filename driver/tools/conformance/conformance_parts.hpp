@@ -84,6 +84,9 @@ std::string createDestroyLeak(const Recipe& recipe, uint64_t);
 /// "skip: WHY" if the shape draws nothing.
 std::string drawingWhereFelt(const Recipe& recipe, uint64_t);
 
+/// Returns "warn: ..." if the shape is felt outside of its bounds(), or "". Returns "skip: WHY" if it gives none.
+std::string boundsWhereFelt(const Recipe& recipe, uint64_t);
+
 /// Returns what goes wrong with eight probes, as many as a run may have, in guarded memory, or "".
 std::string eightProbes(const Recipe& recipe, uint64_t);
 

@@ -65,12 +65,22 @@ void checkSlider(const GivenModel& given) {
       given.warn({id}, "has no effect: a slider does not turn; remove it, or set joint: hinge or free");
 }
 
+/// Warns of settings of a soft body that is not felt in motion, or whose springs along the surface have a length.
+void checkSoftBody(const GivenModel& given) {
+  const std::string dynamics = given.choice("dynamics");
+  if ((dynamics == "off" || dynamics == "seen" || dynamics == "on") && given.find("contact_ratio") != nullptr)
+    given.warn({"contact_ratio"},
+               fmt::format("has no effect with dynamics: {}; remove it, or set dynamics: felt", dynamics));
+  if (given.number("shear_distance") > 0 && given.find("shear_offset") != nullptr)
+    given.warn({"shear_offset"}, "has no effect beside shear_distance; remove one of them");
+}
+
 }  // namespace
 
 void checkIdleParameters(const GivenModel& given) {
   checkChoices(given);
   checkNumbers(given);
-  for (const auto& judge : {&checkDepthScale, &checkSlider}) {
+  for (const auto& judge : {&checkDepthScale, &checkSlider, &checkSoftBody}) {
     given.begin();
     judge(given);
   }

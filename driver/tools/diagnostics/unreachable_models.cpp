@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "diagnostics/arm_reach.hpp"
@@ -71,6 +72,20 @@ double depthIn(const scene::Scene& scene, const EnclosedModel& found) {
   return contact.traced ? contact.world.depth_m : 0;
 }
 
+/// Returns how far a model stays beyond the reach of all arms, anywhere on its path [m]; 0 or less if one reaches it.
+double missedByPath(const scene::Model& model, const host::ShapeInstance& shape, const std::vector<TipReach>& tips,
+                    double room) {
+  Eigen::AlignedBox3d box;
+  if (model.path.empty() || tips.empty() || !shape.bounds(box.min().data(), box.max().data())) return 0;
+  double least = std::numeric_limits<double>::max();
+  for (const scene::PathPoint& point : model.path)
+    for (const TipReach& tip : tips) {
+      const Vector3d center = point.pose.position + point.pose.orientation * box.center();
+      least = std::min(least, (center - tip.tip).norm() - 0.5 * box.diagonal().norm() - room * tip.reach);
+    }
+  return least;
+}
+
 }  // namespace
 
 document::Problems unreachableModels(const scene::Scene& scene, const servo::World& world, servo::Core& core,
@@ -80,6 +95,11 @@ document::Problems unreachableModels(const scene::Scene& scene, const servo::Wor
   constexpr double kFar = 10;       // [m] farther positions have their own warning
   document::Problems warnings;
   for (uint32_t i = 0; i < scene.models.size(); ++i) {
+    if (const double missed = missedByPath(scene.models[i], *world.shapes()[i], tips, kRoom) - kLittle; missed > 0)
+      document::report(warnings, scene.models[i].place, fmt::format("models[{}].path", i),
+                       fmt::format("no arm reaches {} anywhere on its path: the nearest arm ends about {:.3g} m before "
+                                   "it; the path gives places in the world, in m",
+                                   scene.models[i].name, missed));
     const auto isFar = [&](const scene::Device& device) {
       return (scene.models[i].pose.position - device.mount.position).norm() > kFar;
     };

@@ -15,7 +15,8 @@ enum class Slip {
   kMillimetres,  ///< corners and bounds
   kTurned,       ///< about z instead of y
   kInsideOut,
-  kWrongIndex  ///< counted from 1
+  kWrongIndex,  ///< counted from 1
+  kOnlyBounds   ///< it draws nothing, and its bounds leave out the tube
 };
 
 constexpr double kRadius = 0.04, kTube = 0.01;
@@ -63,7 +64,7 @@ struct Ring : hapticd::Shape {
   static constexpr double unit() { return kSlip == Slip::kMillimetres ? 1000 : 1; }
 
   static hsp_status bounds(hsp_shape*, double min[3], double max[3]) {
-    const double tube = kSlip == Slip::kSmallBounds ? 0 : kTube;
+    const double tube = kSlip == Slip::kSmallBounds || kSlip == Slip::kOnlyBounds ? 0 : kTube;
     for (int i = 0; i < 3; ++i) max[i] = unit() * (kRadius + tube);
     if (kSlip != Slip::kTurned) max[1] = unit() * kTube;
     if (kSlip == Slip::kTurned) max[2] = unit() * kTube;
@@ -72,6 +73,7 @@ struct Ring : hapticd::Shape {
   }
 
   static hsp_status tessellate(hsp_shape* shape, double, hsp_mesh* mesh) {
+    if (kSlip == Slip::kOnlyBounds) return HSP_E_STATE;
     Derived& ring = self(shape);
     ring.xyz.clear(), ring.indices.clear();
     for (uint32_t i = 0; i <= kSides; ++i)
@@ -107,8 +109,9 @@ SHAPE("drawn_millimetres", DrawnMillimetres, kMillimetres)
 SHAPE("drawn_turned", DrawnTurned, kTurned)
 SHAPE("drawn_inside_out", DrawnInsideOut, kInsideOut)
 SHAPE("drawn_wrong_index", DrawnWrongIndex, kWrongIndex)
+SHAPE("only_bounds", OnlyBounds, kOnlyBounds)
 
 }  // namespace
 
 HAPTICD_SHAPES(DrawnRight, DrawnInContact, DrawnSmallBounds, DrawnMillimetres, DrawnTurned, DrawnInsideOut,
-               DrawnWrongIndex)
+               DrawnWrongIndex, OnlyBounds)

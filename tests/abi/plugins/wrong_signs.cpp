@@ -17,7 +17,9 @@ enum class Mistake {
   kNoClaim,     ///< no stiffness is claimed
   kSmallClaim,  ///< a quarter of it
   kSilent,      ///< it answers nothing at all
-  kNeverDeep    ///< its depth is never above 0
+  kNeverDeep,   ///< its depth is never above 0
+  kLeftPulls,   ///< forces are reversed on the side to -x alone
+  kUnderPulls   ///< and on the under side alone
 };
 
 struct Point {
@@ -39,6 +41,24 @@ Depth ring(const Point& p, double radius, double tube) noexcept {
   const double around = std::hypot(p.x, p.z) + 1e-300, part = radius / around;
   const Point axis{p.x * (1 - part), p.y, p.z * (1 - part)};
   return ball(axis, tube);
+}
+
+/// A box, which has six sides; its edges are sharp.
+Depth box(const Point& p, const Point& half) noexcept {
+  const double at[3] = {p.x, p.y, p.z}, most[3] = {half.x, half.y, half.z};
+  double normal[3] = {0, 0, 0}, outside = 0, nearest = -1e300;
+  int side = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double over = std::fabs(at[i]) - most[i];
+    if (over > nearest) nearest = over, side = i;
+    if (over > 0) normal[i] = std::copysign(over, at[i]), outside += over * over;
+  }
+  if (!(outside > 0)) {
+    normal[side] = std::copysign(1, at[side]);
+    return {-nearest, {normal[0], normal[1], normal[2]}};
+  }
+  const double far = std::sqrt(outside);
+  return {-far, {normal[0] / far, normal[1] / far, normal[2] / far}};
 }
 
 Depth ground(const Point& p) noexcept {
@@ -65,7 +85,9 @@ struct Touched : hapticd::Shape {
     out.depth_m = at.depth;
     double force = kMistake == Mistake::kStep || kMistake == Mistake::kSmallJump ? 2 : stiffness * at.depth;
     const bool inner = std::hypot(p.x, p.z) < 0.04;
-    if (kMistake == Mistake::kPulls || (kMistake == Mistake::kInnerPulls && inner)) force = -force;
+    if (kMistake == Mistake::kPulls || (kMistake == Mistake::kInnerPulls && inner) ||
+        (kMistake == Mistake::kLeftPulls && n[0] < -0.9) || (kMistake == Mistake::kUnderPulls && n[1] < -0.9))
+      force = -force;
     for (int i = 0; i < 3; ++i) {
       out.normal[i] = n[i];
       out.point[i] = in.position[i] + at.depth * n[i];
@@ -91,6 +113,9 @@ SHAPE("ball_pulls", BallPulls, kPulls, ball(p, 0.005))
 SHAPE("middle_ball_pulls", MiddleBallPulls, kPulls, ball(p, 0.1))
 SHAPE("large_ball_pulls", LargeBallPulls, kPulls, ball(p, 0.4))
 SHAPE("far_ball_pulls", FarBallPulls, kPulls, ball({p.x - 0.3, p.y, p.z + 0.2}, 0.03))
+SHAPE("box_right", BoxRight, kNone, box(p, {0.06, 0.03, 0.04}))
+SHAPE("box_left_pulls", BoxLeftPulls, kLeftPulls, box(p, {0.06, 0.03, 0.04}))
+SHAPE("box_under_pulls", BoxUnderPulls, kUnderPulls, box({p.x - 0.1, p.y, p.z}, {0.06, 0.03, 0.04}))
 SHAPE("floor_right", FloorRight, kNone, ground(p))
 SHAPE("floor_pulls", FloorPulls, kPulls, ground(p))
 SHAPE("ring_steps", RingSteps, kStep, ring(p, 0.04, 0.015))
@@ -113,5 +138,5 @@ struct BadId : RingRight {
 }  // namespace
 
 HAPTICD_SHAPES(BadId, RingRight, RingPulls, RingPullsInside, LargeRingPulls, BallRight, BallPulls, MiddleBallPulls,
-               LargeBallPulls, FarBallPulls, FloorRight, FloorPulls, RingSteps, RingStepsFar, RingNoContact,
-               RingNoTraced, RingNoClaim, RingSmallClaim, RingSilent, RingNeverDeep)
+               LargeBallPulls, FarBallPulls, BoxRight, BoxLeftPulls, BoxUnderPulls, FloorRight, FloorPulls, RingSteps,
+               RingStepsFar, RingNoContact, RingNoTraced, RingNoClaim, RingSmallClaim, RingSilent, RingNeverDeep)

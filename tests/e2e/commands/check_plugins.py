@@ -53,6 +53,7 @@ WRONG = {"ring_right": None, "ball_right": None, "floor_right": None, "ring_step
          "bad_id": "descriptor-complete", "ring_silent": "contact-found", "ring_never_deep": "contact-found"}
 WRONG.update({shape + "_pulls": "force-outward" for shape in ("ring", "large_ring", "ball", "middle_ball", "large_ball", "far_ball", "floor")})
 WRONG["ring_pulls_inside"] = "force-outward"
+WRONG.update({"box_right": None, "box_left_pulls": "force-outward", "box_under_pulls": "force-outward"})  # one side of six
 for shape, test in WRONG.items():
     mine = {t for p, t in failed if p == shape}
     check(f"{shape}: {test or 'passes'}", {t["plugin"] for t in tests} >= {shape} and (test in mine if test else not mine), mine)
@@ -169,6 +170,9 @@ for shape, words in DRAWN.items():
 for shape in ("drawn_right", "drawn_in_contact"):
     mine = [(t["name"], t["result"], t["why"]) for t in tests if t["plugin"] == shape and (t["result"] == "fail" or t["name"] == "drawing-where-felt")]
     check(f"{shape} passes", [m[:2] for m in mine] == [("drawing-where-felt", "pass")], mine)
+
+warned = [t["why"] for t in tests if (t["plugin"], t["name"], t["result"]) == ("only_bounds", "bounds-where-felt", "warn")]
+check("bounds that leave out what is felt are warned of, without a drawing too", warned and "mm outside" in warned[0], warned)
 
 # Parameters are checked as those of a scene, before any test runs, and all of them at once.
 NEEDY = os.path.join(BROKEN, "needy.so")

@@ -175,6 +175,10 @@ models:
     code, out, err = ask("check", write(folder, "body.yaml", body))
     for what in ("dampng", "points[0][1]", "radius[0][1]", "radius[1]", "stiffness", "mass"):
         check(f"of a model file too: {what}", what in out, out)
+    file = os.path.join(folder, "m.yaml")
+    for what in (f"{file}:5:14: medial.stiffness: the text \"soft\"", f"{file}:6:9: medial.mass: -1, expected", f"{file}:7:11: medial.dampng: unknown key",
+                 '(did you mean "damping"?)'):
+        check(f"each at its own place: {what}", any(line.startswith(what) or "did you mean" in what and what in line for line in out.splitlines()), out)
 
 
 def numbers(folder, ask):

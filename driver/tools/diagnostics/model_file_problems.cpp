@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/model_file_problems.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+namespace hapticd::diagnostics {
+namespace {
+
+constexpr std::string_view kRefused = ": cannot be set up: ";
+
+/// Reads a line such as "/models/soft.yaml:5:13: medial.stifness: unknown key". Returns nothing for any other line.
+std::optional<document::Problem> problemOf(const std::string& line) {
+  for (size_t colon = line.find(':'); colon != std::string::npos; colon = line.find(':', colon + 1)) {
+    char* end = nullptr;
+    const long row = std::strtol(line.c_str() + colon + 1, &end, 10);
+    if (row <= 0 || *end != ':') continue;
+    const char* second = end + 1;
+    const long column = std::strtol(second, &end, 10);
+    if (column <= 0 || end == second || std::string_view(end).substr(0, 2) != ": ") continue;
+    document::Problem problem{{line.substr(0, colon), static_cast<int>(row), static_cast<int>(column)}, "", end + 2};
+    const size_t key = problem.what.find(": ");
+    if (key != std::string::npos && problem.what.find(' ') > key) {
+      problem.key = problem.what.substr(0, key);
+      problem.what.erase(0, key + 2);
+    }
+    return problem;
+  }
+  return std::nullopt;
+}
+
+/// Returns the problems of a message; none if it is not a message about one file with several problems.
+document::Problems partsOf(const document::Problem& whole) {
+  const size_t begin = whole.what.find(kRefused);
+  if (begin == std::string::npos || whole.what.find('\n') == std::string::npos) return {};
+  document::Problems parts;
+  std::istringstream lines(whole.what.substr(begin + kRefused.size()));
+  for (std::string line; std::getline(lines, line);) {
+    auto part = problemOf(line);
+    if (!part || (!parts.empty() && part->place.file != parts[0].place.file)) return {};
+    parts.push_back(*std::move(part));
+  }
+  document::sortByPlace(parts);
+  return parts;
+}
+
+bool isTold(const document::Problems& problems, const document::Problem& one) {
+  return std::any_of(problems.begin(), problems.end(), [&one](const document::Problem& told) {
+    return told.key == one.key && told.what == one.what && told.place.file == one.place.file &&
+           told.place.line == one.place.line && told.place.column == one.place.column;
+  });
+}
+
+}  // namespace
+
+void separateModelFiles(document::Problems& problems) {
+  document::Problems all;
+  for (document::Problem& one : problems) {
+    document::Problems parts = partsOf(one);
+    if (parts.empty()) {
+      all.push_back(std::move(one));
+      continue;
+    }
+    one.what = one.what.substr(0, one.what.find(kRefused) + kRefused.size()) + std::to_string(parts.size()) +
+               " problems in " + parts[0].place.file + ", told at their own places";
+    all.push_back(std::move(one));
+    for (document::Problem& part : parts)
+      if (!isTold(all, part)) all.push_back(std::move(part));
+  }
+  problems = std::move(all);
+}
+
+}  // namespace hapticd::diagnostics

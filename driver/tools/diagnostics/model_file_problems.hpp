@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+/// Separates the problems of a model file, which its plugin tells in one message.
+#pragma once
+#include "document/problem.hpp"
+
+namespace hapticd::diagnostics {
+
+/// [main] Takes several problems of a model file out of the message about its model, and adds each at its own place in
+/// that file. The message then tells only how many there are.
+void separateModelFiles(document::Problems& problems);
+
+}  // namespace hapticd::diagnostics
