@@ -102,8 +102,7 @@ bool Trim::passesRight(const TrimPiece& piece, double u, double v) const noexcep
     return std::abs(chord - u) > static_cast<double>(piece.off_u) ? chord > u : crossesBeyond(piece, 1, v, u);
   }
   const double chord = piece.a[1] + (u - piece.a[0]) / way[0] * way[1];
-  const bool above =
-      std::abs(chord - v) > static_cast<double>(piece.off_v) ? chord > v : crossesBeyond(piece, 0, u, v);
+  const bool above = std::abs(chord - v) > static_cast<double>(piece.off_v) ? chord > v : crossesBeyond(piece, 0, u, v);
   return above != rises(piece);
 }
 

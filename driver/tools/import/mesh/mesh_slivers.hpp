@@ -13,8 +13,9 @@ using TriangleCorners = std::vector<std::array<std::uint32_t, 3>>;
 /// [any] Returns true if a triangle has no area: two of its corners are the same, or all three are on one line.
 bool isEmptyTriangle(const std::vector<Eigen::Vector3d>& points, const std::array<std::uint32_t, 3>& corners);
 
-/// [main] Removes triangles whose middle corner is on their longest edge, and cuts the neighbour across that edge in two
-/// at this corner. To leave such a triangle out would open the surface there. Triangles without such a neighbour stay.
+/// [main] Removes triangles whose middle corner is on their longest edge, and cuts the neighbour across that edge in
+/// two at this corner. To leave such a triangle out would open the surface there. Triangles without such a neighbour
+/// stay.
 /// @return how many were removed
 std::size_t takeInSlivers(const std::vector<Eigen::Vector3d>& points, TriangleCorners& corners);
 

@@ -90,7 +90,8 @@ class ObjReader {
 
   std::string whatIsMissing() const {
     std::string text = "has no triangles, expected lines f i j k";
-    if (free_form_) return text + "; it holds free-form surfaces: convert them to triangles in the program that wrote it";
+    if (free_form_)
+      return text + "; it holds free-form surfaces: convert them to triangles in the program that wrote it";
     if (points_.empty()) return text;
     return text + "; it holds points" + (lines_ > 0 ? " and lines" : "") + ", but no faces";
   }

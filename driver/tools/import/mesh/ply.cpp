@@ -116,7 +116,8 @@ class Reader {
   Reader(std::string_view bytes, const std::string& name) : words_(bytes), name_(name) {}
 
   Result<MeshFile> run() {
-    if (!readHeader() || !judgeHeader()) return Error{name_ + ":" + std::to_string(words_.lineNumber()) + ": " + wrong_};
+    if (!readHeader() || !judgeHeader())
+      return Error{name_ + ":" + std::to_string(words_.lineNumber()) + ": " + wrong_};
     Body body(words_.rest(), form_);
     std::size_t longer = 0;
     for (const Element& element : elements_)
@@ -125,8 +126,9 @@ class Reader {
         longer += body.passRest() ? 1 : 0;
       }
     if (longer > 0)
-      mesh_.remarks.push_back(std::to_string(longer) +
-                              " lines hold more values than the header states; the rest of these lines was passed over");
+      mesh_.remarks.push_back(
+          std::to_string(longer) +
+          " lines hold more values than the header states; the rest of these lines was passed over");
     if (mesh_.corners.empty()) return Error{name_ + ": " + whatIsMissing()};
     return std::move(mesh_);
   }

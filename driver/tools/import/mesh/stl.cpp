@@ -43,7 +43,8 @@ class TextStl {
       if (!take()) return Error{name_ + ":" + std::to_string(words_.lineNumber()) + ": " + wrong_};
     if (inside_) return Error{at(begun_) + "the file ends inside this facet: it is cut off; expected endfacet"};
     if (mesh_.corners.empty())
-      return Error{name_ + ": has no triangles, expected a text STL (solid, facet, vertex x y z) or a whole binary one"};
+      return Error{name_ +
+                   ": has no triangles, expected a text STL (solid, facet, vertex x y z) or a whole binary one"};
     if (!ended_) mesh_.remarks.emplace_back("the file does not end with endsolid, so it may be cut off");
     return std::move(mesh_);
   }
@@ -86,7 +87,8 @@ class TextStl {
   bool takePoint() {
     const auto p = nextPoint(words_);
     if (!p) return fail("expected vertex x y z, finite numbers");
-    if (!inside_) return fail("a vertex stands outside of a facet; expected facet normal x y z, outer loop, vertex x y z");
+    if (!inside_)
+      return fail("a vertex stands outside of a facet; expected facet normal x y z, outer loop, vertex x y z");
     if (count_ == 3) return fail("a facet has more than three corners; expected triangles");
     corner_[count_++] = weld_.at(*p);
     return true;
@@ -127,7 +129,8 @@ Result<MeshFile> parseStlMesh(std::string_view bytes, const std::string& name) {
   if (count > 0 && bytes.size() >= whole) return parseBinaryStl(bytes, count, name);
   if (isText(bytes)) return TextStl(bytes, name).run();
   if (bytes.size() < kStlHead)
-    return Error{name + ": has " + std::to_string(bytes.size()) + " bytes, and a binary STL has at least 84: it is "
+    return Error{name + ": has " + std::to_string(bytes.size()) +
+                 " bytes, and a binary STL has at least 84: it is "
                  "damaged, or no STL"};
   return Error{name + ": a binary STL of " + std::to_string(count) + " triangles has " + std::to_string(whole) +
                " bytes, and this file has " + std::to_string(bytes.size()) + ": it is damaged, or no STL"};

@@ -87,8 +87,7 @@ TEST(MeshImport, SaysWhereAFileIsWrong) {
   EXPECT_EQ(errorOf(parseObjMesh("v 0 0\n", "x.obj")), "x.obj:1: expected v x y z, finite numbers");
   EXPECT_EQ(errorOf(parseObjMesh("v 0 0 0\nf 1 2 3\n", "x.obj")), "x.obj:2: point '2', expected 1 to 1");
   EXPECT_EQ(errorOf(parseObjMesh("v 0 0 nan\n", "x.obj")), "x.obj:1: expected v x y z, finite numbers");
-  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 0\nf 1 2\33[2J 3\n", "x.obj")),
-            "x.obj:2: point '2?[2J', expected 1 to 1");
+  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 0\nf 1 2\33[2J 3\n", "x.obj")), "x.obj:2: point '2?[2J', expected 1 to 1");
   EXPECT_EQ(errorOf(parseMesh("\xfe\xff\0#", "x.obj")),
             "x.obj: is text in UTF-16, expected UTF-8 or ASCII: save it again with that encoding");
   EXPECT_EQ(errorOf(parseMesh("", "x.stl")), "x.stl: is empty");
@@ -163,6 +162,17 @@ double areaOf(const brep::Part& part) {
   return area;
 }
 
+TEST(MeshImport, RefusesWhatIsTooFarAway) {
+  MeshReport report;
+  const auto mesh = parseObjMesh("v 0 0 0\nv 1e200 0 0\nv 0 1e200 0\nf 1 2 3\n", "x.obj");
+  try {
+    meshPart(*mesh, {}, "x.obj", report);
+    FAIL() << "it was taken";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("a coordinate is 1e+200 m"), std::string::npos) << error.what();
+  }
+}
+
 TEST(MeshImport, CutsConcavePolygonsWithinThem) {
   const struct {
     const char* what;
@@ -188,7 +198,8 @@ TEST(MeshImport, ReadsObjAsOtherProgramsWriteIt) {
   for (char& c : mac)
     if (c == '\n') c = '\r';
   for (std::size_t at = 0; (at = windows.find('\n', at)) != std::string::npos; at += 2) windows.insert(at, 1, '\r');
-  first = std::string(kCube).substr(std::string(kCube).find("f ")) + std::string(kCube).substr(0, std::string(kCube).find("f "));
+  first = std::string(kCube).substr(std::string(kCube).find("f ")) +
+          std::string(kCube).substr(0, std::string(kCube).find("f "));
   goes_on.replace(goes_on.find("f 4 3 2 1"), 9, "f 4 3 \\\n2 1 # the bottom");
   for (const std::string& text : {mac, windows, first, goes_on, "\xef\xbb\xbf" + std::string(kCube)}) {
     const auto mesh = parseMesh(text, "x.obj");
@@ -201,7 +212,8 @@ TEST(MeshImport, ReadsObjAsOtherProgramsWriteIt) {
 }
 
 TEST(MeshImport, ReadsStlAsOtherProgramsWriteIt) {
-  const std::string facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+  const std::string facet =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
   std::string large = "SOLID x\n" + facet + "ENDSOLID\n", one_line = " solid vertex facet\n" + facet + "endsolid\n";
   for (char& c : large) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   for (std::size_t at = one_line.find('\n') + 1; (at = one_line.find('\n', at)) != std::string::npos; ++at)
@@ -222,11 +234,12 @@ TEST(MeshImport, ReadsStlAsOtherProgramsWriteIt) {
 }
 
 TEST(MeshImport, ReadsPlyAsOtherProgramsWriteIt) {
-  const std::string head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                           "property float quality\n";
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float quality\n";
   const std::string points = "0 0 0 nan\n1 0 0 1\n0 1 0 1\n0 0 1 1\n";
-  const auto longer = parsePlyMesh(head + "element face 4\nproperty list uchar int vertex_indices\nend_header\n" + points +
-                                       "3 0 2 1 9 9\n3 0 1 3 9 9\n3 1 2 3 9 9\n3 2 0 3 9 9\n",
+  const auto longer = parsePlyMesh(head + "element face 4\nproperty list uchar int vertex_indices\nend_header\n" +
+                                       points + "3 0 2 1 9 9\n3 0 1 3 9 9\n3 1 2 3 9 9\n3 2 0 3 9 9\n",
                                    "x.ply");
   ASSERT_TRUE(longer) << longer.error();
   EXPECT_EQ(longer->remarks.size(), 1u);
@@ -302,8 +315,9 @@ TEST(MeshImport, TurnsACavityWithTheShellAroundIt) {
 
 /// A cube in the notch of an L is in its box, not in it.
 TEST(MeshImport, TurnsAShellThatIsOnlyInTheBoxOfAnother) {
-  std::string text = "v 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nv 0 0 4\nv 3 0 4\nv 3 1 4\nv 1 1 4\nv 1 3 4\n"
-                     "v 0 3 4\nf 6 5 4 3 2 1\nf 7 8 9 10 11 12\n";
+  std::string text =
+      "v 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nv 0 0 4\nv 3 0 4\nv 3 1 4\nv 1 1 4\nv 1 3 4\n"
+      "v 0 3 4\nf 6 5 4 3 2 1\nf 7 8 9 10 11 12\n";
   for (int k = 1; k <= 6; ++k)
     text += "f " + std::to_string(k) + " " + std::to_string(k % 6 + 1) + " " + std::to_string(k % 6 + 7) + " " +
             std::to_string(k + 6) + "\n";
