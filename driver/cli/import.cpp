@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "cli/command.hpp"
+#include "cli/file_content.hpp"
 #include "cli/import_cad.hpp"
 #include "cli/import_mesh.hpp"
 #include "document/node.hpp"
@@ -117,11 +118,12 @@ int importModel(const ImportArguments& options) {
   if (std::filesystem::path(options.file).extension() == ".hpart")
     return fail(kBadInput, options.file + ": is a part already, as import writes it: name it in a scene (geometry: " +
                                options.file + "); hapticd part info shows what it holds");
+  if (const std::string way = otherWay(options.file); !way.empty()) return fail(kBadInput, way);
+  if (const std::string other = misnamed(options.file); !other.empty()) return fail(kBadInput, other);
   const bool from_cad = isCadFile(options.file) && !options.medial;
   if (const std::string wrong = misplaced(options, from_cad); !wrong.empty())
     return fail(kBadInput, options.file + ": " + wrong);
   if (from_cad) return importCadFile(options);
-  if (const std::string way = otherWay(options.file); !way.empty()) return fail(kBadInput, way);
   if (options.medial) return importSoftBody(options);
   if (!options.answers.empty()) {
     const auto done = calibrate({options.file, options.answers, options.dents, options.out}, catalog());

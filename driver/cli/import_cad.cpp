@@ -107,10 +107,13 @@ int importCad(const CadImport& options) {
     return fail(kBadInput, options.file + ": was not read within " + whole(options.time_s) +
                                " s, nothing was written\n  fix: for a large file, give more time: --time SECONDS");
   if (WIFSIGNALED(status))
-    return fail(kBadInput, options.file + ": Open CASCADE crashed or was stopped while reading it (" +
-                               strsignal(WTERMSIG(status)) +
-                               "), nothing was written: the file or one of its shapes is damaged\n  fix: open and save "
-                               "it in a CAD program");
+    return fail(kBadInput,
+                options.file + ": Open CASCADE crashed or was stopped while reading it (" +
+                    strsignal(WTERMSIG(status)) +
+                    "), nothing was written: the file or one of its shapes is damaged, or it needs more than " +
+                    whole(options.memory_mb) +
+                    " MB of memory\n  fix: open and save it in a CAD program, or allow more memory: "
+                    "--memory MEGABYTES");
   return WEXITSTATUS(status);
 }
 

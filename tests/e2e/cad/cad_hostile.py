@@ -57,6 +57,48 @@ refused("STEP without shapes", put("bare.step", re.sub(rb"(?s)DATA;.*ENDSEC;", b
 refused("an IGES file that is called .step", put("other.step", iges))
 refused("too little memory", put("large.step", step), "--memory", "64")
 
+
+
+def told(what, words, file, *arguments):
+    """Refused with these words."""
+    code, out, err = run("import", file, "-o", part, *arguments)
+    check(what, code == 2 and err.startswith("error: ") and file in err and words in err, f"exit {code}: {out}{err}")
+
+
+def read_with(what, words, file):
+    """Read, with these words in the report."""
+    code, out, err = run("import", file, "-o", part)
+    check(what, code == 0 and words in out, f"exit {code}: {out}{err}")
+    if os.path.exists(part):
+        os.remove(part)
+
+
+for name, content, words in (("step.stl", step, "is a STEP file, by its first bytes, and its name ends in '.stl'"),
+                             ("step.p21", step, "fix: rename it to"), ("iges.step", iges, "is an IGES file"),
+                             ("brep.iges", brep, "is a BREP file of Open CASCADE"),
+                             ("lfs.step", b"version https://git-lfs.github.com/spec/v1\noid sha256:0\n", "git lfs pull"),
+                             ("page.stl", b"<!DOCTYPE html>\n<html></html>\n", "download the file itself"),
+                             ("packed.step", b"\x1f\x8b\x08" + step[:100], "unpack it")):
+    told(f"{name} is told what it holds", words, put(name, content))
+told("a STEP file that ends too early is told so", "its last line END-ISO-10303-21; is missing", put("early.step", step[:len(step) // 2]))
+told("a damaged STEP file is told so", "it is a damaged STEP file", put("broken.step", step.replace(b"DATA;", b"DATB;", 1)))
+told("too little memory is told with the limit", "it needs more than the 64 MB", put("large.step", step), "--memory", "64")
+read_with("a mark of UTF-8 before STEP is passed over", "nothing was lost", put("mark.step", b"\xef\xbb\xbf" + step))
+read_with("an unknown prefix of a unit is told", "is the size right?", put("prefix.step", step.replace(b".MILLI.", b".MILLY.")))
+read_with("a point without its coordinates is told", "the part may have another form",
+          put("flat.step", step.replace(b"CARTESIAN_POINT('',(", b"CARTESIAN_POINT('',", 1)))
+read_with("a STEP file without a unit is told", "millimetres were assumed",
+          put("unitless.step", re.sub(rb"(?s)GLOBAL_UNIT_ASSIGNED_CONTEXT\s*\(\(.*?\)\)", b"", step)))
+read_with("the number of an IGES unit decides, not its name", "unit mm", put("named.iges", iges.replace(b"2HMM", b"2HXX")))
+code, out, err = run("import", join("cavity.brep"), "-o", part)
+check("a solid with a cavity is read without a warning", code == 0 and "faces tried" not in out, out + err)
+read_with("a solid whose faces bound no single volume is told", "of 12 faces tried", join("crossing_cavity.brep"))
+others = [name for name in os.listdir(folder) if name.startswith("apart_")]
+read_with("parts in files beside it are read", "nothing was lost", join("apart.step"))
+for name in others:
+    os.remove(join(name))
+told("a part in a file that is not there is told with that file", others[0], join("apart.step"))
+
 refused("an IGES file that ends too early", put("short.iges", iges[:int(0.9 * len(iges))]))
 for share in (0.3, 0.6, 0.9, 0.97):  # these waited for words that never came
     refused(f"a BREP file that ends after {share:.0%}", put("short.brep", brep[:int(share * len(brep))]), "--time", "20")

@@ -39,6 +39,7 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Solid.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -80,6 +81,16 @@ void brep(const TopoDS_Shape& shape, const std::string& name) {
 
 TopoDS_Shape box(double x, double y, double z, double dx, double dy, double dz) {
   return BRepPrimAPI_MakeBox(gp_Pnt(x, y, z), dx, dy, dz).Shape();
+}
+
+/// A box of 40 mm with a cavity that is a box: from x = 10 to 30, or from 30 to 60, which is half outside of it.
+TopoDS_Shape boxWithCavity(double from, double to) {
+  const BRep_Builder builder;
+  TopoDS_Solid solid;
+  builder.MakeSolid(solid);
+  builder.Add(solid, TopExp_Explorer(box(0, 0, 0, 40, 40, 40), TopAbs_SHELL).Current());
+  builder.Add(solid, TopExp_Explorer(box(from, 10, 10, to - from, 20, 20), TopAbs_SHELL).Current().Reversed());
+  return solid;
 }
 
 TopoDS_Wire loop(const Handle(Geom_Curve) & curve) {
@@ -180,6 +191,10 @@ void assembly() {
   STEPCAFControl_Writer writer;
   Interface_Static::SetCVal("write.step.unit", "MM");
   told(writer.Transfer(document) && writer.Write((folder + "/assembly.step").c_str()) == IFSelect_RetDone, "assembly");
+  STEPCAFControl_Writer apart;  // each part goes into a file of its own, whose name begins with apart_
+  told(apart.Transfer(document, STEPControl_AsIs, "apart_") &&
+           apart.Write((folder + "/apart.step").c_str()) == IFSelect_RetDone,
+       "apart");
 }
 
 }  // namespace
@@ -211,6 +226,8 @@ int main(int argc, char** argv) {
   brep(trough(), "trough");
   brep(roof(), "roof");
   brep(shellOff(), "shell_off");
+  brep(boxWithCavity(10, 30), "cavity");
+  brep(boxWithCavity(30, 60), "crossing_cavity");
   assembly();
   return failures;
 }

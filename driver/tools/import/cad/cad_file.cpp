@@ -14,7 +14,9 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
+#include <string_view>
 
 #include "cad_import/assembly.hpp"
 #include "cad_import/losses.hpp"
@@ -49,20 +51,54 @@ double millimetresIn(const std::string& unit) {
   return 1;
 }
 
+std::string noShapes(const std::vector<brep::Loss>& losses) {
+  const std::string text = "there are no shapes in it";
+  return losses.empty() ? text : text + "; " + losses.front().what + ": " + losses.front().reason;
+}
+
+constexpr std::string_view kMark = "\xef\xbb\xbf";  ///< some editors put it before UTF-8
+
+/// Reads a STEP file, also one that begins with the mark of UTF-8, which Open CASCADE refuses.
+bool parseStep(const std::string& file, bool marked, STEPCAFControl_Reader& reader) {
+  if (!marked) return reader.ReadFile(file.c_str()) == IFSelect_RetDone;
+  std::ifstream in(file, std::ios::binary);
+  in.seekg(static_cast<std::streamoff>(kMark.size()));
+  return reader.ChangeReader().ReadStream(file.c_str(), in) == IFSelect_RetDone;
+}
+
+/// Returns why Open CASCADE may have refused a STEP file. `start` is how it begins.
+std::string stepFault(const std::string& file, std::string_view start) {
+  if (start.find("ISO-10303-21") == start.npos) return "it is not a STEP file: its first line is not ISO-10303-21;";
+  constexpr std::streamoff kEnd = 4096;
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  in.seekg(std::max(std::streamoff{0}, static_cast<std::streamoff>(in.tellg()) - kEnd));
+  const std::string end((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  if (end.find("END-ISO-10303-21") == end.npos)
+    return "it is a STEP file that ends too early: its last line END-ISO-10303-21; is missing; expected a whole file";
+  return "it is a damaged STEP file: a line breaks the rules of ISO 10303-21; write the file again from its source";
+}
+
 void readStep(const std::string& file, CadFile& cad) {
   STEPCAFControl_Reader reader;
   reader.SetNameMode(true);
   reader.SetColorMode(true);
   reader.SetLayerMode(true);
-  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone)
-    throw CadError("it is not a STEP file, or it is damaged (expected ISO-10303-21 with shapes in it)");
+  std::string start(512, '\0');
+  std::ifstream(file, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (!parseStep(file, start.starts_with(kMark), reader)) throw CadError(stepFault(file, start));
   findMissingEntities(reader.ChangeReader().WS(), cad.losses);
+  findOddEntities(reader.ChangeReader().WS(), cad.remarks);
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
-  cad.unit = lengths.IsEmpty() ? "mm" : shortUnit(lengths.First().ToCString());
+  if (!lengths.IsEmpty() && !lengths.First().IsEmpty())
+    cad.unit = shortUnit(lengths.First().ToCString());
+  else if (cad.remarks.empty())
+    cad.remarks.emplace_back(kNoUnit);
   Handle(TDocStd_Document) document = newDocument();
   const Handle(Progress) progress = new Progress("reading shapes");
-  if (!reader.Transfer(document, progress->Start())) throw CadError("there are no shapes in it");
+  const bool made = reader.Transfer(document, progress->Start());
+  findMissingFiles(reader, cad.losses);
+  if (!made) throw CadError(noShapes(cad.losses));
   readTree(document, cad);
   findLostFaces(reader.ChangeReader().WS(), millimetresIn(cad.unit), cad.losses);
 }
@@ -78,6 +114,20 @@ bool endsAsIges(const std::string& file) {
   return last.size() > kSection && last[kSection] == 'T';
 }
 
+/// Reads the unit of an IGES file. Its number decides, and its name only if the number is 3.
+void readIgesUnit(const IGESData_GlobalSection& section, CadFile& cad) {
+  constexpr const char* kUnits[] = {"in", "mm", "", "ft", "mi", "m", "km", "mil", "um", "cm", "uin"};
+  const int flag = section.UnitFlag();
+  const std::string name = section.UnitName().IsNull() ? "" : shortUnit(section.UnitName()->ToCString());
+  const bool named = flag == 3 && !name.empty();
+  if (flag >= 1 && flag <= 11 && flag != 3)
+    cad.unit = kUnits[flag - 1];
+  else if (named)
+    cad.unit = name;
+  else
+    cad.remarks.emplace_back(kNoUnit);
+}
+
 void readIges(const std::string& file, CadFile& cad) {
   IGESCAFControl_Reader reader;
   reader.SetNameMode(true);
@@ -86,8 +136,7 @@ void readIges(const std::string& file, CadFile& cad) {
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) throw CadError("it is not an IGES file, or it is damaged");
   if (!endsAsIges(file)) throw CadError("it ends too early: the line of section T is missing; expected a whole file");
   const auto model = Handle(IGESData_IGESModel)::DownCast(reader.Model());
-  if (!model.IsNull() && !model->GlobalSection().UnitName().IsNull())
-    cad.unit = shortUnit(model->GlobalSection().UnitName()->ToCString());
+  if (!model.IsNull()) readIgesUnit(model->GlobalSection(), cad);
   Handle(TDocStd_Document) document = newDocument();
   const Handle(Progress) progress = new Progress("reading shapes");
   if (!reader.Transfer(document, progress->Start())) throw CadError("there are no shapes in it");
@@ -172,7 +221,7 @@ CadFile readCad(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   CadFile cad;
-  cad.unit = "mm";
+  cad.unit = "mm";  // unless the file states another
   if (ending == ".step" || ending == ".stp")
     readStep(file, cad);
   else if (ending == ".iges" || ending == ".igs")

@@ -34,7 +34,8 @@ struct CadFile {
   std::string unit;         ///< unit of length in the file, such as "mm" or "in"
   /// Colours of faces and other shapes; the key is the address of the TShape.
   std::unordered_map<const void*, std::uint32_t> colours;
-  std::vector<brep::Loss> losses;  ///< faces of the file that the reader could not make
+  std::vector<brep::Loss> losses;    ///< faces of the file that the reader could not make
+  std::vector<std::string> remarks;  ///< what may be wrong, such as a unit that had to be assumed
 };
 
 /// [main] Reads .step, .stp, .iges, .igs, .brep and .rle. @throws CadError

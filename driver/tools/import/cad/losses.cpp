@@ -7,9 +7,20 @@
 #include <Interface_EntityIterator.hxx>
 #include <Interface_Graph.hxx>
 #include <Interface_InterfaceModel.hxx>
+#include <STEPCAFControl_ExternFile.hxx>
+#include <StepBasic_NamedUnit.hxx>
 #include <StepGeom_CartesianPoint.hxx>
+#include <StepGeom_Curve.hxx>
+#include <StepGeom_Direction.hxx>
+#include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
+#include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
+#include <StepGeom_Placement.hxx>
+#include <StepGeom_Point.hxx>
+#include <StepGeom_Surface.hxx>
+#include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <StepRepr_RepresentationItem.hxx>
 #include <StepShape_FaceSurface.hxx>
+#include <StepShape_TopologicalRepresentationItem.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_Binder.hxx>
@@ -18,6 +29,8 @@
 #include <cmath>
 #include <gp_Pnt.hxx>
 #include <unordered_set>
+
+#include "kernels/brep/part_names.hpp"
 
 namespace hapticd::cad {
 namespace {
@@ -67,6 +80,20 @@ std::string nameOf(const Handle(Interface_InterfaceModel) & model, const Entity&
   return text;
 }
 
+/// Returns true for points, curves, surfaces and what is made of them, but not for texts and colours.
+bool isForm(const Entity& entity) {
+  return entity->IsKind(STANDARD_TYPE(StepGeom_Point)) || entity->IsKind(STANDARD_TYPE(StepGeom_Direction)) ||
+         entity->IsKind(STANDARD_TYPE(StepGeom_Placement)) || entity->IsKind(STANDARD_TYPE(StepGeom_Curve)) ||
+         entity->IsKind(STANDARD_TYPE(StepGeom_Surface)) ||
+         entity->IsKind(STANDARD_TYPE(StepShape_TopologicalRepresentationItem));
+}
+
+bool assignsUnits(const Entity& entity) {
+  return entity->IsKind(STANDARD_TYPE(StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext)) ||
+         entity->IsKind(STANDARD_TYPE(StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx)) ||
+         entity->IsKind(STANDARD_TYPE(StepRepr_GlobalUnitAssignedContext));
+}
+
 }  // namespace
 
 void findMissingEntities(const Handle(XSControl_WorkSession) & session, std::vector<brep::Loss>& losses) {
@@ -80,6 +107,45 @@ void findMissingEntities(const Handle(XSControl_WorkSession) & session, std::vec
     const std::string what = from < to && to != std::string::npos ? "entity " + text.substr(from, to - from) : text;
     losses.push_back({what, "other entities refer to it, but the file does not contain it", 0, brep::kNone});
   }
+}
+
+void findMissingFiles(const STEPCAFControl_Reader& reader, std::vector<brep::Loss>& losses) {
+  for (NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>::Iterator at(
+           reader.ExternFiles());
+       at.More(); at.Next()) {
+    const Handle(STEPCAFControl_ExternFile) & file = at.Value();
+    if (!file.IsNull() && file->GetLoadStatus() == IFSelect_RetDone && file->GetTransferStatus()) continue;
+    losses.push_back({"the part in the file '" + brep::plainText(at.Key().ToCString()) + "'",
+                      "that file is not there or cannot be read; put it beside this one and import again", 0,
+                      brep::kNone});
+  }
+}
+
+void findOddEntities(const Handle(XSControl_WorkSession) & session, std::vector<std::string>& remarks) {
+  constexpr std::size_t kMost = 10;
+  const Handle(Interface_InterfaceModel) model = session->Model();
+  if (model.IsNull()) return;
+  bool assigned = false;
+  std::size_t odd_shapes = 0;
+  std::string first_shape;
+  for (Standard_Integer i = 1; i <= model->NbEntities(); ++i) {
+    const Entity entity = model->Value(i);
+    assigned = assigned || assignsUnits(entity);
+    const bool unit = entity->IsKind(STANDARD_TYPE(StepBasic_NamedUnit));
+    if (!unit && !isForm(entity)) continue;
+    const Handle(Interface_Check) check = model->Check(i, Standard_True);
+    if (check.IsNull() || check->NbFails() == 0) continue;
+    const Handle(TCollection_HAsciiString) label = model->StringLabel(entity);
+    const std::string what = std::string(label.IsNull() ? "" : label->ToCString()) + " cannot be read (" +
+                             brep::plainText(check->CFail(1)) + ")";
+    if (!unit && odd_shapes++ == 0) first_shape = what;
+    if (unit && remarks.size() < kMost) remarks.push_back("unit " + what + ", so one was assumed; is the size right?");
+  }
+  if (odd_shapes > 0)
+    remarks.push_back("entity " + first_shape +
+                      (odd_shapes > 1 ? ", nor " + std::to_string(odd_shapes - 1) + " others" : "") +
+                      ": the file is damaged, and the part may have another form; compare it with the CAD program");
+  if (!assigned) remarks.emplace_back(kNoUnit);
 }
 
 void findLostFaces(const Handle(XSControl_WorkSession) & session, double to_mm, std::vector<brep::Loss>& losses) {

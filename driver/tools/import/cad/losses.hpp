@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
-/// Finds faces of a STEP or IGES file that the reader could not convert.
+/// Finds what the reader of a STEP or IGES file could not make, and what it had to assume.
 #pragma once
+#include <STEPCAFControl_Reader.hxx>
 #include <XSControl_WorkSession.hxx>
 
 #include "cad_import/cad_file.hpp"
 
 namespace hapticd::cad {
+
+inline constexpr const char* kNoUnit =
+    "the file states no unit of length that can be read: millimetres were assumed; is the size right?";
 
 /// [main] Appends a loss for each face of the file without a shape, with the reader's reason.
 /// @param to_mm millimetres per unit of the coordinates in the file
@@ -14,5 +18,12 @@ void findLostFaces(const Handle(XSControl_WorkSession) & session, double to_mm, 
 /// [main] Appends a loss for each entity that other entities of a STEP file refer to, but that the file does not
 /// contain.
 void findMissingEntities(const Handle(XSControl_WorkSession) & session, std::vector<brep::Loss>& losses);
+
+/// [main] Appends a loss for each file that a STEP file names as the place of a part, and that cannot be read.
+void findMissingFiles(const STEPCAFControl_Reader& reader, std::vector<brep::Loss>& losses);
+
+/// [main] Appends a remark for each unit of a STEP file that Open CASCADE could not read, because it then assumes one,
+/// and one for points, curves and surfaces that it could not read in full.
+void findOddEntities(const Handle(XSControl_WorkSession) & session, std::vector<std::string>& remarks);
 
 }  // namespace hapticd::cad

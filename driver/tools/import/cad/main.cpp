@@ -8,6 +8,7 @@
 #include <Message_Messenger.hxx>
 #include <Standard_ErrorHandler.hxx>
 #include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -52,6 +53,13 @@ int fail(int exit_code, const std::string& message) {
   return exit_code;
 }
 
+int failOfMemory(const Options& options) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f", options.memory_mb);
+  return fail(kBadInput, options.file + ": it needs more than the " + text +
+                             " MB of memory that are allowed\n  fix: allow more: --memory MEGABYTES");
+}
+
 int import(const Options& options) {
   const auto begun = std::chrono::steady_clock::now();
   Report report;
@@ -72,11 +80,13 @@ int guarded(const Options& options) {
   try {
     OCC_CATCH_SIGNALS
     return import(options);
+  } catch (const Standard_OutOfMemory&) {
+    return failOfMemory(options);
   } catch (const Standard_Failure& failure) {
     return fail(kBadInput, options.file + ": Open CASCADE failed: " + failure.DynamicType()->Name() + " " +
                                failure.GetMessageString());
   } catch (const std::bad_alloc&) {
-    return fail(kBadInput, options.file + ": it needs more memory than is allowed\n  fix: --memory MEGABYTES");
+    return failOfMemory(options);
   } catch (const std::exception& error) {
     return fail(kBadInput, options.file + ": " + error.what());
   }

@@ -3,12 +3,14 @@
 
 #include <BRepBuilderAPI_Transform.hxx>
 #include <Standard_Failure.hxx>
+#include <chrono>
 #include <cmath>
 #include <gp_Quaternion.hxx>
 #include <map>
 
 #include "cad_import/bodies.hpp"
 #include "cad_import/progress.hpp"
+#include "cad_import/sides_check.hpp"
 
 namespace hapticd::cad {
 namespace {
@@ -23,6 +25,7 @@ class PartBuilder {
   Part run() {
     part_.source.unit = file_.unit;
     part_.losses = file_.losses;
+    part_.warnings = file_.remarks;
     const Handle(Progress) progress = new Progress("converting");
     Message_ProgressScope scope(progress->Start(), "converting", static_cast<double>(file_.nodes.size()));
     std::vector<std::uint32_t> instance_of;
@@ -31,12 +34,11 @@ class PartBuilder {
       scope.Next();
     }
     if (part_.faces.empty())
-      throw CadError(
-          part_.losses.empty()
-              ? "there are no faces in it; expected solids, shells or faces: curves, and parts that stand in files of "
-                "their own, are not taken"
-              : "none of its faces can be kept; the first: " + part_.losses.front().what + ": " +
-                    part_.losses.front().reason);
+      throw CadError(part_.losses.empty() ? "there are no faces in it; expected solids, shells or faces: curves, "
+                                            "points and finite elements are not "
+                                            "taken"
+                                          : "none of its faces can be kept; the first: " + part_.losses.front().what +
+                                                ": " + part_.losses.front().reason);
     brep::linkCoedges(part_);
     return std::move(part_);
   }
@@ -100,9 +102,28 @@ class PartBuilder {
     BodyBuilder builder(file_.colours, name, part_);
     const std::uint32_t body = builder.add(whole, nameIndex(name), colour);
     report_.recognised += builder.recognisedFaces();
+    if (part_.bodies[body].kind == brep::BodyKind::kSolid) judgeSides(whole, name);
     if (part_.bodies[body].face_count > 0) return body;
     part_.bodies.pop_back();
     return kNone;
+  }
+
+  /// Warns of a solid whose faces do not bound one volume. All solids together get some seconds.
+  void judgeSides(const TopoDS_Shape& solid, const std::string& name) {
+    constexpr double kSeconds = 4;
+    if (sides_s_ >= kSeconds) return;
+    const auto begun = std::chrono::steady_clock::now();
+    try {
+      const SidesTried found = trySides(solid, kSeconds - sides_s_);
+      if (found.doubtful())
+        part_.warnings.push_back("'" + name + "': " + std::to_string(found.wrong) + " of " +
+                                 std::to_string(found.tried) +
+                                 " faces tried do not have the outside in front of them and the inside behind: Open "
+                                 "CASCADE may have read another part of a surface than the file means; compare the "
+                                 "part with the CAD program, and save the file again from there");
+    } catch (const Standard_Failure&) {  // the check is only a help
+    }
+    sides_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   }
 
   CadFile& file_;
@@ -110,6 +131,7 @@ class PartBuilder {
   Part part_;
   std::map<std::string, std::uint32_t> names_;
   std::map<std::pair<const void*, TopAbs_Orientation>, std::uint32_t> bodies_;
+  double sides_s_ = 0;  ///< [s] spent in judgeSides()
 };
 
 }  // namespace

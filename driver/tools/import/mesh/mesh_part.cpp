@@ -182,11 +182,26 @@ std::string where(const Vector3d& p) {
   return text + " m";
 }
 
+/// Refuses what a part file does not hold, before the squares of coordinates overflow.
+void refuseFarPoints(const MeshFile& mesh, double scale) {
+  constexpr double kFarthest = 1e6;  // [m] as in part_check.cpp
+  double farthest = 0;
+  for (const Vector3d& p : mesh.points) farthest = std::max(farthest, scale * p.lpNorm<Eigen::Infinity>());
+  if (farthest <= kFarthest) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "a coordinate is %.4g m, expected up to 1000000 m\n  fix: if the file counts millimetres, add --scale "
+                "0.001",
+                farthest);
+  throw std::invalid_argument(text);
+}
+
 }  // namespace
 
 brep::Part meshPart(const MeshFile& mesh, const MeshOptions& options, const std::string& file_name,
                     MeshReport& report) {
   report.remarks = mesh.remarks;
+  refuseFarPoints(mesh, options.scale);
   Repair repair(mesh, options.scale, report);
   repair.run();
   if (repair.corners_.empty()) throw std::invalid_argument("all triangles have zero area");

@@ -78,8 +78,9 @@ TEST(MedialFile, MaterialHasTheBoundsOfTheParameters) {
   const std::string good = std::string(kHead) + kPoints + "  radius: 0.01\n";
   EXPECT_NE(complaintOfText(good + "  stiffness: 1e9\n").find(":5:14: medial.stiffness: 1e9, expected at most 1e6 N/m"),
             std::string::npos);
-  EXPECT_NE(complaintOfText(good + "  stiffness: 1\n  mass: 1e-300\n").find(":6:9: medial.mass: 1e-300, expected 0, or 1e-9"),
-            std::string::npos);
+  EXPECT_NE(
+      complaintOfText(good + "  stiffness: 1\n  mass: 1e-300\n").find(":6:9: medial.mass: 1e-300, expected 0, or 1e-9"),
+      std::string::npos);
   EXPECT_NE(complaintOfText(good + "  stiffness: 1\n  mass: [[0, 0], [0, 1e7]]\n").find("medial.mass[1][1]"),
             std::string::npos);
   EXPECT_EQ(complaintOfText(good + "  stiffness: 1e6\n  mass: 1e-9\n"), "");

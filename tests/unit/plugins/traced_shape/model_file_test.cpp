@@ -69,8 +69,9 @@ TEST_F(ModelFileTest, RefusesMoreYamlThanMemoryIsGoodFor) {
 }
 
 TEST_F(ModelFileTest, SaysWhereAndWhatIsWrong) {
-  EXPECT_NE(complaintOf(with(kSquare, "[1, 0, 0]", "[1, .nan, 0]")).find(":6:40: surfaces[0].points[2][1]: .nan, expected a"),
-            std::string::npos)
+  EXPECT_NE(
+      complaintOf(with(kSquare, "[1, 0, 0]", "[1, .nan, 0]")).find(":6:40: surfaces[0].points[2][1]: .nan, expected a"),
+      std::string::npos)
       << complaintOf(with(kSquare, "[1, 0, 0]", "[1, .nan, 0]"));
   EXPECT_NE(complaintOf(with(kSquare, "degree: [1, 1]", "degree: [1, 99]")).find("degree[1]"), std::string::npos);
   EXPECT_NE(complaintOf(with(kSquare, "knots:", "knotz:")).find("knotz: unknown key"), std::string::npos);
@@ -91,7 +92,8 @@ TEST_F(ModelFileTest, ReadsStatedEdges) {
 
 TEST_F(ModelFileTest, TakesNamesThatAreNumbersAndRefusesThoseThatAreLists) {
   EXPECT_EQ(parseModelFile(with(kSquare, "name: floor", "name: 3.5"), "t.yaml").surfaces[0].name, "3.5");
-  EXPECT_NE(complaintOf(with(kSquare, "name: floor", "name: [\"\\xff\", b]")).find("surfaces[0].name: a list of 2, expected a text"),
+  EXPECT_NE(complaintOf(with(kSquare, "name: floor", "name: [\"\\xff\", b]"))
+                .find("surfaces[0].name: a list of 2, expected a text"),
             std::string::npos);
   EXPECT_NE(complaintOf(with(kSquare, "name: floor", "name: \xff")).find("a byte that is not text (code 255)"),
             std::string::npos);

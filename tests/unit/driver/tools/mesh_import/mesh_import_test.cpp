@@ -160,6 +160,17 @@ double areaOf(const brep::Part& part) {
   return area;
 }
 
+TEST(MeshImport, RefusesWhatIsTooFarAway) {
+  MeshReport report;
+  const auto mesh = parseObjMesh("v 0 0 0\nv 1e200 0 0\nv 0 1e200 0\nf 1 2 3\n", "x.obj");
+  try {
+    meshPart(*mesh, {}, "x.obj", report);
+    FAIL() << "it was taken";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("a coordinate is 1e+200 m"), std::string::npos) << error.what();
+  }
+}
+
 TEST(MeshImport, CutsConcavePolygonsWithinThem) {
   const struct {
     const char* what;
