@@ -7,6 +7,7 @@
 ///   bench_parts --edges FILE.hpart...     how far the force turns over smooth edges
 ///   bench_parts FILE.hpart --occt FILE.step ...     the part beside Open CASCADE on the file that it was imported from
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -272,9 +273,9 @@ void measureBeside(const Model& model, OcctPart& theirs, const char* what, const
   const Differences most = timeInTurns(model, theirs, path, tracked, our_times, their_times);
   our_times.print((std::string(what) + ", ours").c_str());
   their_times.print((std::string(what) + ", Open CASCADE").c_str());
-  std::printf(
-      "      ratio of medians %.1f, of means %.1f; ours farther by at most %.2g m, nearer by at most %.2g m\n",
-      their_times.at(0.5) / our_times.at(0.5), their_times.mean() / our_times.mean(), most.farther, most.nearer);
+  std::printf("      ratio of medians %.1f, of means %.1f; ours farther by at most %.2g m, nearer by at most %.2g m\n",
+              their_times.at(0.5) / our_times.at(0.5), their_times.mean() / our_times.mean(), most.farther,
+              most.nearer);
 }
 
 Part readFile(const char* file) {
