@@ -261,10 +261,10 @@ void Search::searchWithin(Run& run, const Whole& whole) noexcept {
 }
 
 /// Returns true if no search is needed, because the last element still has the nearest point. Every distance changes by
-/// at most the distance that the probe has moved. So the others' least distance is still bounded.
-bool Search::goesOn(const Vector3d& p, const Run& run) noexcept {
+/// at most the distance `way` [m] that the probe has moved. So the others' least distance is still bounded.
+bool Search::goesOn(const Vector3d& p, double way, const Run& run) noexcept {
   if (!last_.proved || run.first_place == kNone) return false;
-  const double others = last_.others - (p - last_p_).norm();
+  const double others = last_.others - way;
   if (!(std::sqrt(run.best.hit.d2) * (1 + kRounding) < others)) return false;
   last_.hit = run.best.hit;
   last_.others = others;
@@ -317,10 +317,11 @@ const Nearest& Search::nearest(const Vector3d& p, const SearchBudget& budget) no
   Run run;
   run.budget = budget;
   run.restarts = kMostRestarts;
-  moveNear(p);
+  const double way = (p - last_p_).norm();  // early, so that the root is ready when it is needed
+  moveNear(way);
   begin(p, run);
-  if (goesOn(p, run)) return last_;
-  if (!searchNear(p, run)) {
+  if (goesOn(p, way, run)) return last_;
+  if (!searchNear(p, way, run)) {
     searchWithin(run, [&] { searchWhole(p, run); });
     whole_nodes_ = run.best.nodes;
   }

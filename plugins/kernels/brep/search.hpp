@@ -95,9 +95,9 @@ class Search {
   };
 
   void begin(const Eigen::Vector3d& p, Run& run) noexcept;
-  bool goesOn(const Eigen::Vector3d& p, const Run& run) noexcept;
-  bool searchNear(const Eigen::Vector3d& p, Run& run) noexcept;
-  void moveNear(const Eigen::Vector3d& p) noexcept;
+  bool goesOn(const Eigen::Vector3d& p, double way, const Run& run) noexcept;
+  bool searchNear(const Eigen::Vector3d& p, double way, Run& run) noexcept;
+  void moveNear(double way) noexcept;
   template <class Near>
   bool searchNear(Near& near, const Eigen::Vector3d& p, double way, Run& run) noexcept;
   template <class Near>

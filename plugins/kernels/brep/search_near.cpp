@@ -163,9 +163,8 @@ bool Search::searchNear(Near& near, const Vector3d& p, double way, Run& run) noe
 }
 
 /// Searches only the rows around the probe. Returns true if the result is the same as from a search of the whole model.
-bool Search::searchNear(const Vector3d& p_model, Run& run) noexcept {
+bool Search::searchNear(const Vector3d& p_model, double way, Run& run) noexcept {
   if (!last_.found() || last_.exhausted) return false;
-  const double way = (p_model - last_p_).norm();
   if (model_.placements().size() > 1)
     return whole_nodes_ >= NearPlaces::kDear && run.budget.elements > NearPlaces::kMostRows &&
            searchNear(near_places_, p_model, way, run);
@@ -176,10 +175,9 @@ bool Search::searchNear(const Vector3d& p_model, Run& run) noexcept {
   return run.budget.elements > NearTriangles::kMostRows * BodyTree::kMeshRow && searchNear(nearby_, p, way, run);
 }
 
-/// Tells the gathered rows that the probe has moved to p.
-void Search::moveNear(const Vector3d& p) noexcept {
+/// Tells the gathered rows that the probe has moved by `way` [m].
+void Search::moveNear(double way) noexcept {
   if (last_.found()) {
-    const double way = (p - last_p_).norm();
     near_.go(way);
     nearby_.go(way);
     near_places_.go(way);

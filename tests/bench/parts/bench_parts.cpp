@@ -7,6 +7,7 @@
 ///   bench_parts --edges FILE.hpart...     how far the force turns over smooth edges
 ///   bench_parts FILE.hpart --occt FILE.step ...     the part beside Open CASCADE on the file that it was imported from
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
