@@ -41,8 +41,23 @@ struct AboutAxis {
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
 
+/// Moves u by whole turns into the loops of a face that winds around its axis more than once, as on a thread. Returns
+/// false if no turn of the face is there.
+bool findTurn(const FaceShape& f, double& u, double v) noexcept {
+  constexpr int kMostTurns = 256;
+  const double period = f.period[0], lo = f.trim.lo()[0], hi = f.trim.hi()[0];
+  if (!(period > 0 && hi - lo > period)) return false;
+  double turn = u - period * std::floor((u - lo) / period);
+  for (int i = 0; i < kMostTurns && turn <= hi; ++i, turn += period) {
+    if (!f.trim.inside(turn, v)) continue;
+    u = turn;
+    return true;
+  }
+  return false;
+}
+
 double take(const FaceShape& f, double u, double v, double d2, const Vector3d& point, Hit& hit) noexcept {
-  if (!f.trim.inside(u, v)) return kNothing;
+  if (!f.trim.inside(u, v) && !findTurn(f, u, v)) return kNothing;
   hit.d2 = d2;
   hit.point = point;
   hit.u = u;

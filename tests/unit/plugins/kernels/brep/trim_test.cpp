@@ -6,8 +6,10 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <random>
 
+#include "kernels/brep/feet.hpp"
 #include "sample_splines.hpp"
 
 namespace hapticd::brep {
@@ -110,6 +112,41 @@ TEST(Trim, DecidesHolesWithNearlyUprightSides) {
         const double u = i % 2 == 0 ? share(random) : left + 0.05 * (share(random) - 0.5), v = share(random);
         const bool in_hole = u > left && u < right && v > 0.13 && v < 0.77;
         ASSERT_EQ(trim.inside(u, v), !in_hole) << u << ' ' << v << ", a side at " << left;
+      }
+    }
+}
+
+/// The crest of a thread: a strip that winds nine times around its cylinder, with a pitch of 1 and a width of 0.5.
+TEST(FaceFoot, FindsEachTurnOfAFaceThatWindsAroundItsCylinder) {
+  constexpr double kTurn = 2 * std::numbers::pi, kMost = 9 * kTurn;
+  Surface cylinder;
+  cylinder.kind = SurfaceKind::kCylinder;
+  cylinder.x = {1, 0, 0};
+  cylinder.y = {0, 1, 0};
+  cylinder.z = {0, 0, samples::kMm};
+  cylinder.r[0] = 3 * samples::kMm;
+  cylinder.period[0] = kTurn;
+  Part part;
+  samples::addFace(part, cylinder, 0, {0, 0}, {kMost, 9.5});
+  samples::addLoop(part);
+  for (const Curve2& side : {samples::line2({0, 0}, {kMost, 9}), samples::line2({kMost, 9}, {0, 0.5}),
+                             samples::line2({kMost, 9.5}, {-kMost, -9}), samples::line2({0, 0.5}, {0, -0.5})}) {
+    const std::uint32_t vertex = samples::addVertex(part, {});
+    samples::addCoedge(part, samples::addEdge(part, {}, 0, 1, vertex, vertex), side, 0);
+  }
+  samples::endBody(part, BodyKind::kSheet, 0);
+  const Geometry geometry(part, spline::Form::kTable);
+  const FaceShape face = faceShape(geometry, 0);
+  for (int turn = 0; turn < 9; ++turn)
+    for (const double v : {0.25, 0.75}) {  // on the strip, and beside it
+      const double u = 1, height = turn + u / kTurn + v;
+      const Eigen::Vector3d p(4 * samples::kMm * std::cos(u), 4 * samples::kMm * std::sin(u), height * samples::kMm);
+      Hit hit;
+      hit.d2 = 1;
+      const double d2 = faceFoot(face, p, hit);
+      EXPECT_EQ(std::isfinite(d2), v < 0.5) << turn << ' ' << v;
+      if (v < 0.5) {
+        EXPECT_NEAR(hit.u, u + kTurn * turn, 1e-12);
       }
     }
 }
