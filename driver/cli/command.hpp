@@ -39,7 +39,7 @@ class SetupErrors {
   ~SetupErrors() { print(); }
   SetupErrors(const SetupErrors&) = delete;
   SetupErrors& operator=(const SetupErrors&) = delete;
-  /// [any] Returns true if this message is an error, and stores it for later.
+  /// [any] Stores this message and returns true, if it is an error and an object of this type lives.
   static bool holdsBack(int level, const std::string& who, const std::string& text);
   /// [main] Prints the kept errors; later ones are printed at once.
   static void print();

@@ -17,7 +17,7 @@ struct Check {
   uint8_t bits = 8;         ///< number of bits of the result, 1 to 64
   uint8_t word = 1;         ///< [bytes] size of the words of a sum or xor; a last word may be shorter
   bool big_endian = false;  ///< byte order of a word
-  /// a CRC that processes the lowest bit of each byte first; the bits of its result have the reverse order
+  /// true for a CRC that processes the lowest bit of each byte first; the bits of its result are then reversed too
   bool reflected = false;
   /// the checksum is the two's complement of the sum, so that the sum of all words and the checksum is zero
   bool negated = false;

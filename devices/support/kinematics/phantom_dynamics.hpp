@@ -13,7 +13,7 @@ struct PhantomInertia {
   Eigen::Vector3d be{11.09e-4, 10.06e-4, 0.591e-4};
   Eigen::Vector3d df{7.11e-4, 0.629e-4, 6.246e-4};
   double base_yy = 11.87e-4;
-  /// of the motors' rotors, multiplied by the squared gear ratios
+  /// [kg m^2] inertias of the motors' rotors at their joints, multiplied by the squared gear ratios
   Eigen::Vector3d rotor{1.08e-6 * 13.3 * 13.3, 1.08e-6 * 11.2 * 11.2, 1.08e-6 * 11.2 * 11.2};
 };
 
