@@ -184,6 +184,20 @@ void placeWarnings(document::Problems& warnings) {
   warnings = std::move(once);
 }
 
+/// Checks a file that is no scene, or one with problems: a device file, or what can be read of a scene.
+void checkTheRest(const std::string& file, const CheckArguments& options, CheckResult& result) {
+  document::Problems& found = result.problems;
+  if (!found.empty()) {
+    tryTheRest(options, result);
+    if (!options.files_only) addOfDevices(result, true);
+  }
+  const document::Problems more = tryDevice(file, catalog(), found, &result.warnings);
+  found.insert(found.end(), more.begin(), more.end());
+  for (const document::Problem& one : warnOfDevice(file, catalog(), found)) result.warnings.push_back(one);
+  if (found.empty() && !options.files_only) found = refusedAlone(file, catalog(), result.warnings);
+  document::sortByPlace(found);
+}
+
 CheckResult checkOne(const std::string& file, const CheckArguments& options) {
   std::optional<scene::Scene> scene;
   CheckResult result{file, scene::checkFile(file, catalog(), &scene), {}};
@@ -207,19 +221,7 @@ CheckResult checkOne(const std::string& file, const CheckArguments& options) {
   if (scene && !options.files_only) trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)));
   found.insert(found.end(), trial.problems.begin(), trial.problems.end());
   if (scene && !options.files_only) addRefusals(withArm(*scene), trial.needs_velocity, result);
-  if (!scene && !found.empty()) {
-    tryTheRest(options, result);
-    if (!options.files_only) addOfDevices(result, true);
-  }
-  if (!scene) {
-    const document::Problems more = tryDevice(file, catalog(), found, &result.warnings);
-    found.insert(found.end(), more.begin(), more.end());
-    for (const document::Problem& one : warnOfDevice(file, catalog(), found)) result.warnings.push_back(one);
-    if (found.empty()) {
-      if (!options.files_only) found = refusedAlone(file, catalog(), result.warnings);
-    }
-    document::sortByPlace(found);
-  }
+  if (!scene) checkTheRest(file, options, result);
   result.warnings.insert(result.warnings.end(), trial.warnings.begin(), trial.warnings.end());
   result.whole = result.whole && found.empty();
   if (scene) addWarnings(withArm(*scene), trial, options, result);

@@ -265,6 +265,28 @@ bool usableDeviceName(const std::string& name) {
   return !name.empty() && name.size() <= 40;
 }
 
+/// Prints what to do with the new file.
+void printNextSteps(const NewDeviceArguments& options, const std::string& name) {
+  const std::string twin = options.kind == "delta"
+                               ? ""  // the simulated arm does not have this mechanism
+                               : "  hapticd device twin " + name +
+                                     "                 # the same arm simulated, to try a scene without the "
+                                     "real arm\n";
+  std::printf(
+      "%s\n\nthen, step by step (driver/docs/devices.md, \"A new arm, step by step\"):\n"
+      "  hapticd check %s                       # after each change\n"
+      "  hapticd device decode %s CAPTURE       # captured bytes as joint positions\n"
+      "  hapticd device record %s               # what the arm sends, motors off\n"
+      "%s"
+      "  hapticd device calibrate %s\n"
+      "  hapticd run SCENE.yaml --device %s --view       # the arm in a page\n",
+      name.c_str(), name.c_str(), name.c_str(), name.c_str(), twin.c_str(), name.c_str(), name.c_str());
+  if (isPlanar(options))
+    std::printf(
+        "\nnote: every axis of arm.dh is parallel, so the tip stays in a plane and feels no force across it\n"
+        "  fix: if your arm is not flat, give its twists: --twists 1.5707963,0,0, or alpha in arm.dh\n");
+}
+
 int makeNew(const Command& command, NewDeviceArguments options) {
   if (!usableDeviceName(options.name))
     return fail(kBadInput,
@@ -294,24 +316,7 @@ int makeNew(const Command& command, NewDeviceArguments options) {
   if (!problems.empty())
     return fail(kFailed,
                 name + " is written, but cannot be used yet\n  fix: mend these problems, then hapticd check " + name);
-  const std::string twin = options.kind == "delta"
-                               ? ""  // the simulated arm does not have this mechanism
-                               : "  hapticd device twin " + name +
-                                     "                 # the same arm simulated, to try a scene without the "
-                                     "real arm\n";
-  std::printf(
-      "%s\n\nthen, step by step (driver/docs/devices.md, \"A new arm, step by step\"):\n"
-      "  hapticd check %s                       # after each change\n"
-      "  hapticd device decode %s CAPTURE       # captured bytes as joint positions\n"
-      "  hapticd device record %s               # what the arm sends, motors off\n"
-      "%s"
-      "  hapticd device calibrate %s\n"
-      "  hapticd run SCENE.yaml --device %s --view       # the arm in a page\n",
-      name.c_str(), name.c_str(), name.c_str(), name.c_str(), twin.c_str(), name.c_str(), name.c_str());
-  if (isPlanar(options))
-    std::printf(
-        "\nnote: every axis of arm.dh is parallel, so the tip stays in a plane and feels no force across it\n"
-        "  fix: if your arm is not flat, give its twists: --twists 1.5707963,0,0, or alpha in arm.dh\n");
+  printNextSteps(options, name);
   return kWorked;
 }
 

@@ -125,6 +125,27 @@ void nameModules(const std::string& as, host::Catalog& catalog, Reader& in) {
       one.what += ": one of " + document::listed(catalog.names(host::Kind::kDevice)) + as;
 }
 
+/// Finds the module of a device file. If its name is unknown or missing, this is reported, and the module that is
+/// probably meant is returned, to find the other problems, too. @return nullptr if there is none
+const host::ClassInfo* moduleOf(const Node& root, const DeviceText& text, Reader& in, host::Catalog& catalog) {
+  std::string unknown;
+  if (!text.module.empty()) {
+    const auto found = catalog.device(text.module);
+    if (found) return *found;
+    unknown = found.error();
+  }
+  // The parameters of a module that is not built here cannot be judged, and as those of another all would be wrong.
+  const std::string meant = host::shipsName(text.module) ? "" : suggestModule(text.module, text.parameters, catalog);
+  const std::string as = meant.empty() ? "" : "\n  the parameters are judged as those of " + meant;
+  const Node* at = root.find("module");  // missing if the key is misspelt
+  if (text.module.empty())
+    nameModules(as, catalog, in);
+  else
+    in.problem(at != nullptr ? *at : root, "module", unknown + as);
+  const auto found = meant.empty() ? Result<const host::ClassInfo*>(nullptr) : catalog.device(meant);
+  return found ? *found : nullptr;
+}
+
 }  // namespace
 
 std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceReference& reference, host::Catalog& catalog,
@@ -134,28 +155,16 @@ std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceRefer
   Device device;
   device.file = in.file();
   device.place = in.place(root);
-  device.module = text.module;
   device.name = !reference.name.empty() ? reference.name : !text.name.empty() ? text.name : in.file().stem().string();
   device.mount = reference.mount.value_or(text.mount);
   device.limits = text.limits;
   refuseNoForce(root, in);
   device.admittance = reference.admittance ? reference.admittance : text.admittance;
   if (text.hd) device.hd = readHd(*text.hd, in);
-  auto found = text.module.empty() ? Result<const host::ClassInfo*>(Error{}) : catalog.device(text.module);
-  if (!found) {
-    // The parameters of a module that is not built here cannot be judged, and as those of another all would be wrong.
-    const std::string meant = host::shipsName(text.module) ? "" : suggestModule(text.module, text.parameters, catalog);
-    const std::string as = meant.empty() ? "" : "\n  the parameters are judged as those of " + meant;
-    const Node* at = root.find("module");  // missing if the key is misspelt
-    if (text.module.empty())
-      nameModules(as, catalog, in);
-    else
-      in.problem(at != nullptr ? *at : root, "module", found.error() + as);
-    if (!meant.empty()) found = catalog.device(meant);  // to find the other problems, too
-    if (!found) return std::nullopt;
-    device.module = meant;
-  }
-  const host::ClassInfo& info = **found;
+  const host::ClassInfo* found = moduleOf(root, text, in, catalog);
+  if (found == nullptr) return std::nullopt;
+  const host::ClassInfo& info = *found;
+  device.module = info.name;
   device.library = info.file;
   if (has_hand != nullptr) *has_hand = hasHand(info);
   ParameterReader reader(in, info);
