@@ -35,6 +35,7 @@ std::string unknownCommand(const hapticd::cli::Command& app, int argc, char** ar
 /// would name the words after that option.
 std::string unknownOption(const hapticd::cli::Command& app, int argc, char** argv) {
   std::vector<hapticd::cli::Command> path{app};
+  std::string words = "hapticd";
   std::vector<std::string> names;
   const auto take = [&names](const hapticd::cli::Command& command) {
     for (const auto& option : command.options())
@@ -48,13 +49,15 @@ std::string unknownOption(const hapticd::cli::Command& app, int argc, char** arg
         if (word == "client") return "";  // what follows belongs to another program
         take(command);
         path.push_back(command);
+        words += " " + word;
         break;
       }
     const std::string name = word.substr(0, word.find('='));
     if (word.rfind("--", 0) != 0 || word == "--" || std::find(names.begin(), names.end(), name) != names.end())
       continue;
     return "there is no option " + name + hapticd::document::suggestion(name, names) +
-           (name == "--unit" ? "; --scale is metres per unit of the file: 0.001 for millimetres" : "") + "; see --help";
+           (name == "--unit" ? "; --scale is metres per unit of the file: 0.001 for millimetres" : "") + "; see " +
+           words + " --help";
   }
   return "";
 }

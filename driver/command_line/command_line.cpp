@@ -297,7 +297,9 @@ std::string unexpected(const CLI::App& app, const std::vector<std::string>& word
 std::string missing(const CLI::App& app, std::string told) {
   constexpr std::string_view kEnd = " is required";
   if (told.ends_with(kEnd)) told.resize(told.size() - kEnd.size());
-  if (told == "A subcommand" && !app.remaining().empty()) return unexpected(app, app.remaining());
+  const std::vector<std::string> rest = app.remaining();
+  const bool is_option = !rest.empty() && rest.front().size() > 1 && rest.front()[0] == '-';
+  if (is_option || (told == "A subcommand" && !rest.empty())) return unexpected(app, rest);
   if (told == "A subcommand")
     return fmt::format("no subcommand given, expected one of {}", fmt::join(subcommandNames(app), ", "));
   const auto arguments = argumentsOf(app);

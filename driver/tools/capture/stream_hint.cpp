@@ -2,7 +2,7 @@
 #include "capture/stream_hint.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <bit>
 #include <cstdio>
 #include <optional>
 #include <vector>
@@ -90,7 +90,7 @@ std::vector<Beginning> beginnings(const codec::Wire& wire, const Bytes& bytes) {
   constexpr size_t kMostBytes = 8 * 1024;
   constexpr double kSure = 8;  // [bits] one capture in 256 has as many good reports by chance
   const size_t size = wire.input.size, end = std::min(bytes.size(), kMostBytes);
-  const double bits = tellingBits(wire.input), places = std::log2(static_cast<double>(end));
+  const double bits = tellingBits(wire.input), places = static_cast<double>(std::bit_width(end));
   std::vector<Beginning> found;
   for (size_t before = 0; before < size && before + size <= end; ++before) {
     Capture later;
