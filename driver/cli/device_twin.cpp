@@ -23,8 +23,8 @@ int checkTwinFile(const std::string& file, const std::string& out) {
   if (problems.empty()) problems = diagnostics::tryDevice(out, catalog());
   printProblems(problems, stderr);
   if (!problems.empty() || !twin.device)
-    return fail(kFailed, out + " is written, but cannot be used yet\n  fix: hapticd check " + file +
-                             ", then write the twin anew");
+    return fail(kFailed, out + " is written, but cannot be used yet\n  fix: hapticd check " + file + ", then rm " +
+                             out + " and write the twin anew");
   scene::Scene alone;
   alone.devices.push_back(*twin.device);
   problems = diagnostics::refusedArms(alone, false);

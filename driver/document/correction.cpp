@@ -119,7 +119,9 @@ std::string bare(std::string_view text) {
 std::string suggestNumber(std::string_view given, std::string_view unit) {
   const std::string_view text = withoutBlanks(given);
   if (text.empty() || text.size() > kLongest) return "";
-  if (toNumber(text)) return "; write " + std::string(text) + ", without quotes or a tag";
+  if (const std::optional<double> number = toNumber(text))
+    return std::isfinite(*number) ? "; write " + std::string(text) + ", without quotes or a tag"
+                                  : "; it must be finite";
   if (const std::string minus = replaced(replaced(text, "−", "-"), "–", "-"); minus != text && toNumber(minus))
     return "; write " + minus + ", with the minus sign of the keyboard";
   if (text.size() > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X')) return "; write it as a decimal number";

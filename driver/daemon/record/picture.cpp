@@ -126,12 +126,13 @@ std::vector<Mark> faultMarks(const std::vector<Sample>& samples, const RunNotes&
 }
 
 /// Returns the smallest depth [mm] that is drawn: distances outside are drawn up to three times the largest depth.
-/// Otherwise, if the hand is far away, every contact would look flat.
+/// Otherwise, if the hand is far away, every contact would look flat. Without a contact all distances are drawn.
 double leastDepth(const std::vector<Sample>& samples) {
-  double deepest = 0.5e-3;
+  constexpr double kShallow = 0.5e-3;  // [m]
+  double deepest = 0;
   for (const Sample& s : samples)
     if (std::isfinite(s.depth_m)) deepest = std::max(deepest, s.depth_m);
-  return -3e3 * deepest;
+  return deepest > 0 ? -3e3 * std::max(deepest, kShallow) : -HUGE_VAL;
 }
 
 std::vector<Quantity> quantitiesOf(const RunReport& report, const std::vector<Sample>& samples, bool positions) {
@@ -156,6 +157,8 @@ std::vector<Quantity> quantitiesOf(const RunReport& report, const std::vector<Sa
 /// Says what a negative depth means: without this note, a curve at the bottom edge would look like a tip at rest.
 std::string distanceNote(double low, const std::vector<Sample>& samples) {
   const auto below = [low](const Sample& s) { return s.depth_m * 1e3 < low; };
+  if (std::none_of(samples.begin(), samples.end(), [](const Sample& s) { return s.depth_m > 0; }))
+    return " (no contact: distance from the nearest model)";
   if (std::none_of(samples.begin(), samples.end(), below)) return " (negative: distance from the nearest model)";
   return fmt::format(" (negative: distance; more than {:g} mm drawn at the bottom edge)", -low);
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -47,6 +48,12 @@ double as(const std::byte* from) {
   return static_cast<double>(value);
 }
 
+/// True if the bytes begin as a black box does, which keeps the newest rows in a ring.
+bool isRing(std::span<const std::byte> bytes) {
+  const auto header = at<FileHeader>(bytes, kHeaderAt);
+  return header && header->ring != 0;
+}
+
 }  // namespace
 
 const Column* RecordedStream::find(const std::string& name) const {
@@ -85,7 +92,8 @@ Result<std::unique_ptr<Recording>> Recording::open(const std::string& file) {
   std::unique_ptr<Recording> recording(new Recording);
   recording->mapped_ = memory;
   recording->mapped_bytes_ = size;
-  if (auto read = recording->read({static_cast<const std::byte*>(memory), size}); !read)
+  const std::span<const std::byte> bytes{static_cast<const std::byte*>(memory), size};
+  if (auto read = isRing(bytes) ? recording->readRing(bytes) : recording->read(bytes); !read)
     return Error{file + ": " + read.error()};
   if (!recording->closed_) recording->writer_ = writer;
   if (writer) recording->damage_.clear();  // not damaged: the writer added rows after the length was read
@@ -136,6 +144,24 @@ Result<void> Recording::read(std::span<const std::byte> bytes) {
   about_.assign(reinterpret_cast<const char*>(bytes.data() + header->about_address), about_bytes);
   if (auto blocks = readBlocks(bytes, header->blocks_address); !blocks) return blocks;
   return readColumns();
+}
+
+/// Reads a black box from a copy, because a running daemon overwrites its oldest rows meanwhile. Rows that it may have
+/// overwritten during the copy are left out.
+Result<void> Recording::readRing(std::span<const std::byte> bytes) {
+  copy_.assign(bytes.begin(), bytes.end());
+  std::atomic_thread_fence(std::memory_order_acquire);  // the number of rows is read after the rows
+  const auto later = at<FileHeader>(bytes, kHeaderAt);
+  if (auto read = this->read(copy_); !read) return read;
+  for (size_t i = 0; later && i < streams_.size(); ++i) {
+    RecordedStream& stream = streams_[i];
+    const uint64_t written = later->streams[i].rows, end = stream.first_ + stream.rows_;
+    const uint64_t kept = std::min(stream.ring_rows_ > 0 ? stream.ring_rows_ - 1 : 0, written);
+    const uint64_t first = std::min(std::max(stream.first_, written - kept), end);
+    stream.rows_ = end - first;
+    stream.first_ = first;
+  }
+  return {};
 }
 
 Result<void> Recording::readBlocks(std::span<const std::byte> bytes, uint64_t address) {

@@ -64,6 +64,7 @@ class Recording {
  private:
   Recording() = default;
   Result<void> read(std::span<const std::byte> bytes);
+  Result<void> readRing(std::span<const std::byte> bytes);
   Result<void> readBlocks(std::span<const std::byte> bytes, uint64_t address);
   void noteDamage(const RecordedStream& stream, uint64_t space, uint64_t stopped, std::span<const std::byte> bytes);
   Result<void> readColumns();
@@ -72,6 +73,8 @@ class Recording {
   std::vector<RecordedStream> streams_;
   bool closed_ = false, black_box_ = false;
   std::optional<int> writer_;
+  std::vector<std::byte>
+      copy_;  ///< of a black box, whose rows point into it; otherwise they point into the mapped file
   void* mapped_ = nullptr;
   size_t mapped_bytes_ = 0;
 };

@@ -138,6 +138,23 @@ def refused(daemon):
     check("who ends in order is told so", daemon.says(f"process {os.getpid()}", "no longer pushes on it"), daemon.told())
 
 
+def pushed_again(daemon):
+    """A push whose callback failed keeps no other one from this arm."""
+    with daemon.connect() as h:
+        h.clear()
+        with contextlib.redirect_stderr(None):
+            failed = h.push(ARM, lambda state: 1 / 0)
+            failed._thread.join(30)
+        again = h.push(ARM, lambda state: [0, 0, 1])
+        check("an arm can be pushed on again after a callback failed", until(lambda: again.answers > 0))
+        again.end()
+        try:
+            h.push(ARM, 5)
+            check("what is no function is refused", False)
+        except TypeError as error:
+            check("what is no function is refused", "got 5" in str(error), str(error))
+
+
 def raises(action, word="gone"):
     try:
         action()
@@ -250,7 +267,7 @@ def dies(daemon):
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     one = Daemon(scratch)
     try:
-        for case in (held, logged, refused, late, forgotten, many_files, dies):
+        for case in (held, logged, refused, pushed_again, late, forgotten, many_files, dies):
             case(one)
     finally:
         one.run.kill()  # also where a case did not come to its end

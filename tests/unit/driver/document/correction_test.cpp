@@ -12,6 +12,7 @@ TEST(Meant, SaysHowToWriteANumberThatWasWrittenOtherwise) {
   const char* const cases[][3] = {{"0,5", "N", "; write 0.5, with a point, not a comma"},
                                   {"1,000", "N", "; write 1000, or 1.000 with a point"},
                                   {"500", "N/m", "; write 500, without quotes or a tag"},
+                                  {".nan", "N/m", "; it must be finite"},
                                   {"5 N", "N", "; write 5, without the unit"},
                                   {"5Ns/m", "N s/m", "; write 5, without the unit"},
                                   {"40 mm", "m", "; write 0.04: 40 mm is 0.04 m"},

@@ -32,6 +32,8 @@ class ForceThread(Ending):
     no force."""
 
     def __init__(self, client: "Client", device: str, callback: Callable[[State], Optional[Force]], priority: int) -> None:
+        if not callable(callback):
+            raise TypeError(f"push() expects a function of one argument, the state of the arm, got {callback!r}")
         self._lead: ForceLead = client.lead_force(device)
         self._page: StatePage = client._state_page()
         self._bell: Bell = client._bell()
@@ -58,9 +60,17 @@ class ForceThread(Ending):
         except BaseException as error:  # noqa: B902 - printed at once, and raised in end()
             self._tell(error)
             self.error = error
+            self._release()
         finally:
             self._bell.close()
             self._page.close()
+
+    def _release(self) -> None:
+        """Ends the lead at once, so that the next push on this arm need not wait until somebody calls end()."""
+        try:
+            self._lead.end()
+        except (HapticdError, OSError):
+            pass  # the daemon has ended, which self.error tells
 
     def _tell(self, error: BaseException) -> None:
         """Prints an error at once, because the main thread may call end() only much later."""

@@ -282,6 +282,34 @@ TEST(FlightRing, NeverGivesAReaderARowThatWasOverwrittenMeanwhile) {
   EXPECT_EQ(seen + lost, kTicks);
 }
 
+TEST(FlightRing, IsReadInOrderWhileItIsOverwritten) {
+  const std::string name = temporary("live");
+  auto ring = FlightRing::create(specs(4096), about(), name);
+  ASSERT_TRUE(ring) << ring.error();
+  std::atomic<bool> ends{false};
+  std::thread writer([&] {
+    for (uint64_t tick = 0; !ends; ++tick) {
+      const Row row = rowOf(tick);
+      std::memcpy((*ring)->next(0), &row, sizeof row);
+      (*ring)->commit(0);
+    }
+  });
+  for (int i = 0; i < 200; ++i) {
+    const auto box = Recording::open(name);
+    if (!box) continue;  // no row yet
+    const RecordedStream& ticks = *(*box)->stream("ticks");
+    Row first{}, row{};
+    for (uint64_t at = 0; at < ticks.rows(); ++at) {
+      std::memcpy(&row, ticks.row(at), sizeof row);
+      if (at == 0) first = row;
+      EXPECT_EQ(row.x, first.x + 0.5 * static_cast<double>(at));
+      if (HasFailure()) break;
+    }
+  }
+  ends = true;
+  writer.join();
+}
+
 TEST(Recording, RefusesWhatIsNoneAndSaysSo) {
   const std::string name = temporary("not");
   EXPECT_FALSE(Recording::open(name));

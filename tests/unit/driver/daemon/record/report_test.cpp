@@ -360,6 +360,9 @@ TEST_F(Report, MarksWhatHappenedAndWhoseItIs) {
   for (const char* words : {"ring is silenced", ", left<", "mm drawn at the bottom edge"})
     EXPECT_NE(svg.find(words), std::string::npos) << words;
   EXPECT_EQ(svg.find("beyond the picture"), std::string::npos);
+  for (Sample& sample : samples) sample.depth_m = -0.036;
+  ASSERT_TRUE(drawRun(sample(), samples, {}, file("run.svg")));
+  EXPECT_NE(read(file("run.svg")).find("(no contact: distance from the nearest model)"), std::string::npos);
   for (Sample& sample : samples) sample.depth_m = std::nan(""), sample.model = -1;
   ASSERT_TRUE(drawRun(sample(), samples, {}, file("run.svg")));
   svg = read(file("run.svg"));
