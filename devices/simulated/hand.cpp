@@ -64,8 +64,11 @@ Hand::Hand(const HandSettings& settings, HandPath path)
   settings_.normal = unit(settings.normal, "hand.normal");
   settings_.axis = unit(settings.axis, "hand.axis");
   side_ = settings_.axis.cross(settings_.normal);
-  if (!(side_.norm() > 1e-3))
-    throw std::invalid_argument("hand.axis is parallel to hand.normal; expected two different directions");
+  if (!(side_.norm() > 1e-3)) {
+    if (settings.script == Script::kStroke || settings.script == Script::kCircle)  // the others move along the normal
+      throw std::invalid_argument("hand.axis is parallel to hand.normal; expected two different directions");
+    side_ = settings_.normal.unitOrthogonal();
+  }
   side_.normalize();
   settings_.axis = settings_.normal.cross(side_);
   guided_.position = settings_.center + settings_.radius * settings_.normal;

@@ -33,7 +33,8 @@ std::string typeText(const host::ParamInfo& p) {
     case HSP_DATA:
       return "any structure";
     case HSP_ARRAY:
-      return p.columns > 1 ? "list of rows of " + std::to_string(p.columns) : "list of numbers";
+      if (p.columns > 1 && p.max_count > p.columns) return "list of rows of " + std::to_string(p.columns);
+      return "list of numbers";
     default:
       return "";
   }

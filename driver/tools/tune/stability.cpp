@@ -175,7 +175,7 @@ std::string overheating(const std::string& device, double sustained, const std::
   return device + " gave " + text(effective) + " N (root of the mean square of the last " +
          text(std::round(static_cast<double>(forces.size()) / rate)) + " s) and sustains " + text(sustained) +
          " N: real motors would overheat; use a softer model, or limits.force: " + text(sustained) +
-         " in the scene, which they sustain";
+         " in the device file, which they sustain";
 }
 
 }  // namespace hapticd::tune

@@ -32,6 +32,7 @@ class Repair {
     edges_ = meshEdges(corners_);  // flipped triangles have other edge numbers
     countEdges();
     turnOutward();
+    report_.flipped = static_cast<std::size_t>(std::count(turned_.begin(), turned_.end(), 1));
     report_.crossings = crossingsOf(points_, corners_, shell_, report_.shells);
     dropUnusedPoints();
   }
@@ -69,6 +70,7 @@ class Repair {
   void orient() {
     const std::vector<std::uint32_t> across = pairedNeighbours(edges_, corners_.size());
     shell_.assign(corners_.size(), kNone);
+    turned_.assign(corners_.size(), 0);
     std::vector<char> flip(corners_.size(), 0);
     std::vector<std::uint32_t> members;
     for (std::uint32_t seed = 0; seed < corners_.size(); ++seed) {
@@ -102,7 +104,7 @@ class Repair {
 
   void turn(std::size_t t) {
     std::swap(corners_[t][1], corners_[t][2]);
-    ++report_.flipped;
+    turned_[t] = turned_[t] == 0 ? 1 : 0;  // one that is turned twice is as in the file
   }
 
   void countEdges() {
@@ -165,6 +167,7 @@ class Repair {
 
   MeshReport& report_;
   std::vector<std::uint32_t> shell_;  ///< shell of each triangle
+  std::vector<char> turned_;          ///< 1 for each triangle that is reversed
 };
 
 std::string counted(std::size_t count, const char* one, const char* many) {

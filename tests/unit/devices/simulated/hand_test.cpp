@@ -47,7 +47,12 @@ TEST(Hand, TremblesWithTheStrengthAsked) {
 TEST(Hand, RefusesAnAxisAlongItsNormal) {
   HandSettings settings;
   settings.axis = settings.normal;
-  EXPECT_THROW(Hand(settings, {}), std::invalid_argument);
+  for (const Script moves : {Script::kStroke, Script::kCircle}) {
+    settings.script = moves;
+    EXPECT_THROW(Hand(settings, {}), std::invalid_argument);
+  }
+  settings.script = Script::kPress;  // moves along the normal alone
+  EXPECT_NO_THROW(Hand(settings, {}));
   settings.axis.setZero();
   EXPECT_THROW(Hand(settings, {}), std::invalid_argument);
   settings = {};

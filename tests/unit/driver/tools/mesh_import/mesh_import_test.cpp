@@ -35,6 +35,16 @@ TEST(MeshImport, MakesAClosedBodyOfACube) {
   EXPECT_TRUE(linesOf(report).empty());
 }
 
+TEST(MeshImport, CountsTrianglesThatDifferFromTheFile) {
+  // Four of six triangles are the wrong way round: the majority is kept first, and the whole turned outward then.
+  const std::string pyramid =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1\nf 4 3 2 1\nf 5 2 1\nf 5 3 2\nf 5 4 3\nf 5 1 4\n";
+  MeshReport report;
+  partOf(pyramid, report);
+  EXPECT_EQ(report.flipped, 4u);
+  EXPECT_GT(report.volume, 0);
+}
+
 TEST(MeshImport, TurnsAClosedSurfaceOutward) {
   std::string inside_out = kCube;
   for (std::size_t at = inside_out.find("f "); at != std::string::npos; at = inside_out.find("f ", at + 1)) {
