@@ -63,6 +63,12 @@ class Nest {
 
   /// Returns the smallest of the larger shells that contains a shell.
   std::size_t nearestAround(std::size_t s, const std::vector<std::size_t>& outer) {
+    constexpr std::size_t kMostBoxes = 2'000'000'000;  // some seconds: all pairs of 60,000 shells
+    if (boxes_tried_ > kMostBoxes) {
+      found_.incomplete = true;
+      return kNobody;
+    }
+    boxes_tried_ += outer.size();
     for (auto it = outer.rbegin(); it != outer.rend(); ++it)
       if (boxes_[*it].contains(boxes_[s]) && contains(*it, s)) return *it;
     return kNobody;
@@ -99,7 +105,7 @@ class Nest {
   Nesting found_;
   std::vector<std::vector<std::uint32_t>> triangles_;
   std::vector<Eigen::AlignedBox3d> boxes_;
-  std::size_t tried_ = 0;
+  std::size_t tried_ = 0, boxes_tried_ = 0;
 };
 
 }  // namespace

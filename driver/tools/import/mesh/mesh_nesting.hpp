@@ -20,6 +20,7 @@ struct Shells {
 struct Nesting {
   std::vector<double> volume;     ///< [m^3] enclosed volume of each shell; negative if it faces inward
   std::vector<char> inside_out;   ///< 1 for each shell that has to be turned
+  bool incomplete = false;        ///< there were too many shells to look for cavities in all of them
   std::size_t solids_inside = 0;  ///< shells that lie inside another one and, after turning, face outward like it
 };
 

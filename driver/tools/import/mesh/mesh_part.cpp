@@ -143,6 +143,9 @@ class Repair {
     const std::vector<char> closed = closedShells();
     const Nesting nesting = nestingOf({points_, corners_, shell_, closed});
     report_.solids_inside = nesting.solids_inside;
+    if (nesting.incomplete)
+      report_.remarks.emplace_back(
+          "there are too many closed surfaces to look for cavities: small ones are felt as solid bodies");
     for (std::size_t s = 0; report_.closed && s < closed.size(); ++s)
       report_.volume += nesting.inside_out[s] != 0 ? -nesting.volume[s] : nesting.volume[s];
     for (std::size_t t = 0; t < corners_.size(); ++t)
@@ -189,7 +192,8 @@ std::string where(const Vector3d& p) {
 void refuseFarPoints(const MeshFile& mesh, double scale) {
   constexpr double kFarthest = 1e6;  // [m] as in part_check.cpp
   double farthest = 0;
-  for (const Vector3d& p : mesh.points) farthest = std::max(farthest, scale * p.lpNorm<Eigen::Infinity>());
+  for (const Corners& c : mesh.corners)  // points without a triangle are left out of the part
+    for (const std::uint32_t i : c) farthest = std::max(farthest, scale * mesh.points[i].lpNorm<Eigen::Infinity>());
   if (farthest <= kFarthest) return;
   char text[160];
   std::snprintf(text, sizeof text,

@@ -2,6 +2,7 @@
 #include "mesh_import/mesh_slivers.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -38,6 +39,18 @@ std::size_t countFree(const TriangleCorners& corners) {
     free += end - i == 1 ? 1 : 0;
   }
   return free;
+}
+
+/// Returns the median length of the edges with one triangle.
+double medianFree(const std::vector<Vector3d>& points, const std::vector<MeshEdge>& edges) {
+  std::vector<double> lengths;
+  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
+    end = endOfEdge(edges, i);
+    if (end - i == 1) lengths.push_back((points[edges[i].ends >> 32] - points[edges[i].ends & 0xffffffffu]).norm());
+  }
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
 }
 
 /// Gives points within a distance of each other the same number, by a grid of cells of that size.
@@ -105,6 +118,7 @@ std::size_t takeInSlivers(const std::vector<Vector3d>& points, TriangleCorners& 
 
 std::size_t joinFreePoints(const std::vector<Vector3d>& points, TriangleCorners& corners) {
   constexpr double kRounding = 5e-7;  // 4 steps of single precision
+  constexpr double kShare = 0.01;     // of the free edges: a part far from the origin has more digits than these
   const std::vector<MeshEdge> edges = meshEdges(corners);
   std::vector<char> free(points.size(), 0);
   std::size_t count = 0;
@@ -118,7 +132,7 @@ std::size_t joinFreePoints(const std::vector<Vector3d>& points, TriangleCorners&
   for (const Corners& c : corners)
     for (const std::uint32_t i : c) largest = std::max(largest, points[i].lpNorm<Eigen::Infinity>());
   if (count == 0 || !(largest > 0)) return 0;
-  Near near(points, kRounding * largest);
+  Near near(points, std::min(kRounding * largest, kShare * medianFree(points, edges)));
   std::vector<std::uint32_t> number(points.size());
   std::size_t joined = 0;
   for (std::uint32_t i = 0; i < points.size(); ++i) {

@@ -262,6 +262,7 @@ class Reader {
     if (index >= 0 && index < static_cast<double>(points_.size()) && index == std::floor(index)) return true;
     char text[32];
     std::snprintf(text, sizeof text, "%.9g", index);
+    if (points_.empty()) return fail("its vertex " + std::string(text) + " is not there: the file has no vertices");
     return fail("its vertex " + std::string(text) + " is out of range, expected 0 to " +
                 std::to_string(points_.size() - 1));
   }

@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
-constexpr std::size_t kMostConcave = 20'000;  ///< [corners] cutting takes the square of their number
+constexpr std::size_t kMostTests = 1'000'000'000;  ///< tests of a corner against an ear: some seconds
 
 /// Returns twice the area of a triangle, positive if it runs anticlockwise.
 double areaOf(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
@@ -31,11 +31,11 @@ class Ears {
       if (!(areaAt(i) > 0)) hollow_.push_back(i);
   }
 
-  /// Returns the triangles as indices of corners.
+  /// Returns the triangles as indices of corners; too few if that takes too long.
   Triangles run() {
     Triangles triangles;
     std::uint32_t at = 0;
-    for (std::size_t left = p_.size(); left >= 3; --left) {
+    for (std::size_t left = p_.size(); left >= 3 && tests_ < kMostTests; --left) {
       at = earFrom(at, left);
       triangles.push_back({before_[at], at, next_[at]});
       next_[before_[at]] = next_[at];
@@ -51,19 +51,20 @@ class Ears {
 
   /// Returns the first ear at or after a corner. A polygon that crosses itself may have none: then a corner on a
   /// straight line is returned, or the given one.
-  std::uint32_t earFrom(std::uint32_t from, std::size_t left) const {
+  std::uint32_t earFrom(std::uint32_t from, std::size_t left) {
     std::uint32_t straight = from;
-    for (std::uint32_t i = from; left > 0; --left, i = next_[i]) {
+    for (std::uint32_t i = from; left > 0 && tests_ < kMostTests; --left, i = next_[i]) {
       if (isEar(i)) return i;
       if (areaAt(i) == 0 && areaAt(straight) != 0) straight = i;
     }
     return straight;
   }
 
-  bool isEar(std::uint32_t i) const {
+  bool isEar(std::uint32_t i) {
     if (!(areaAt(i) > 0)) return false;
     const Vector2d &a = p_[before_[i]], &b = p_[i], &c = p_[next_[i]];
     return std::none_of(hollow_.begin(), hollow_.end(), [&](std::uint32_t k) {
+      ++tests_;
       const Vector2d& q = p_[k];  // the ends of a slit to a hole have equal points
       if (q == a || q == b || q == c) return false;
       return areaOf(a, b, q) >= 0 && areaOf(b, c, q) >= 0 && areaOf(c, a, q) >= 0;
@@ -73,6 +74,7 @@ class Ears {
   std::vector<Vector2d> p_;
   std::vector<std::uint32_t> next_, before_;
   std::vector<std::uint32_t> hollow_;  ///< corners that are not convex: only these can lie inside an ear
+  std::size_t tests_ = 0;
 };
 
 /// Returns a normal whose length is twice the area (Newell's method).
@@ -124,9 +126,9 @@ bool cutPolygon(const std::vector<Vector3d>& points, std::vector<std::uint32_t> 
   bool one_sense = true;
   for (std::size_t k = 2; k < flat.size() && one_sense; ++k) one_sense = areaOf(flat[0], flat[k - 1], flat[k]) > 0;
   if (one_sense) return fan();
-  if (polygon.size() > kMostConcave) return false;
-  for (const auto& c : Ears(std::move(flat)).run()) corners.push_back({polygon[c[0]], polygon[c[1]], polygon[c[2]]});
-  return true;
+  const Triangles cut = Ears(std::move(flat)).run();
+  for (const auto& c : cut) corners.push_back({polygon[c[0]], polygon[c[1]], polygon[c[2]]});
+  return cut.size() + 2 == polygon.size();
 }
 
 }  // namespace hapticd::importing

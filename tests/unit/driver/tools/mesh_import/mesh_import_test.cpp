@@ -290,6 +290,25 @@ TEST(MeshImport, JoinsPointsThatDifferByRounding) {
   EXPECT_FALSE(wide.closed);
 }
 
+TEST(MeshImport, KeepsTheBorderOfATerrainFarFromTheOrigin) {
+  std::string text;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      text += "v " + std::to_string(600000 + 0.2 * i) + " " + std::to_string(200000 + 0.2 * j) + " 0\n";
+  for (int i = 0; i < 5; ++i)
+    for (int j = 1; j < 6; ++j)
+      text += "f " + std::to_string(6 * i + j) + " " + std::to_string(6 * i + j + 6) + " " +
+              std::to_string(6 * i + j + 7) + " " + std::to_string(6 * i + j + 1) + "\n";
+  MeshReport report;
+  EXPECT_EQ(partOf(text, report).triangles.size(), 50u);
+  EXPECT_EQ(report.joined, 0u);
+}
+
+TEST(MeshImport, IgnoresFarPointsThatNoTriangleUses) {
+  MeshReport report;
+  EXPECT_EQ(partOf("v 1e9 0 0\n" + std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n"), report).triangles.size(), 1u);
+}
+
 /// Returns a cube of a size at a place on the diagonal, facing inward if `inward`.
 std::string cubeAt(double at, double size, int first, bool inward) {
   std::string text;
