@@ -285,14 +285,6 @@ std::string absolute(const std::string& file) {
   return std::filesystem::absolute(file).lexically_normal().string();
 }
 
-/// Returns "" for the name of a model, which has no dot. MODEL.PARAMETER is the form of other commands.
-std::string withoutDot(const std::string& word) {
-  const size_t dot = word.find('.');
-  if (dot == std::string::npos) return "";
-  return "\"" + word + "\" is not the name of a model, did you mean \"" + word.substr(0, dot) + " " +
-         word.substr(dot + 1) + "\"?";
-}
-
 void addModelRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
   const auto model = [options](Json& json) { json["model"] = options->model; };
   for (const auto& [word, doc] : {std::pair{"enable", "Enable a model; its force fades in."},
@@ -309,7 +301,7 @@ void addModelRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& o
         json["value"] = number ? Json(*number) : Json(options->value);
         if (options->consent) json["consent"] = true;
       });
-  set.addOption("model", options->model, "name of the model").required().check(withoutDot);
+  set.addOption("model", options->model, "name of the model").required();
   set.addOption("parameter", options->parameter, "a live parameter; `hapticd ctl list` shows them").required();
   set.addOption("value", options->value, "a number in the parameter's unit, or a word of a choice").required();
   set.addFlag("--consent", options->consent,
@@ -320,7 +312,7 @@ void addModelRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& o
                                    json["model"] = options->model;
                                    if (!options->parameter.empty()) json["parameter"] = options->parameter;
                                  });
-  get.addOption("model", options->model, "name of the model").required().check(withoutDot);
+  get.addOption("model", options->model, "name of the model").required();
   get.addOption("parameter", options->parameter, "name of one parameter; if it is left out, all parameters are shown");
 
   const Command move = addRequest(ctl, "move", "Move a kinematic model.", options, exit_code, [options](Json& json) {

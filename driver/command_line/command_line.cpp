@@ -320,7 +320,8 @@ std::string missing(const CLI::App& app, std::string told) {
   if (is_option || (told == "A subcommand" && !rest.empty())) return unexpected(app, rest);
   if (told == "A subcommand")
     return fmt::format("no subcommand given, expected one of {}", fmt::join(subcommandNames(app), ", "));
-  return fmt::format("{} is missing, expected `{}`", told, usageOf(app));
+  const CLI::Option* model = app.get_option_no_throw("model");
+  return fmt::format("{} is missing, expected `{}`{}", told, usageOf(app), model ? splitAtDot(factsOf(*model)) : "");
 }
 
 /// Returns the option that an error names, such as "--for" in "--for: 1 required FLOAT missing"; nothing if no command of

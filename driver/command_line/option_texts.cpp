@@ -87,6 +87,13 @@ std::string wrongCount(const OptionFacts& option, const std::string& told) {
   return expectedCount(option);
 }
 
+std::string splitAtDot(const OptionFacts& option) {
+  const std::string word = option.given.empty() ? "" : option.given.front();
+  const size_t dot = word.find('.');
+  if (dot == std::string::npos || dot == 0 || dot + 1 == word.size()) return "";
+  return "; did you mean \"" + word.substr(0, dot) + " " + word.substr(dot + 1) + "\"?";
+}
+
 std::string unreadable(const OptionFacts& option) {
   const std::string unit = unitOf(option.description), in = unit.empty() ? "" : " in" + unit;
   const char* const from = option.type.starts_with("UINT") ? " from 0" : "";
