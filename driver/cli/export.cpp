@@ -55,8 +55,7 @@ std::string fileForFolder(const record::Recording& recording, const std::filesys
   return "--csv " + name +
          " names a file, but each stream has a table of its own; expected a folder for all of them (--csv " +
          folder.stem().string() + (folder.has_extension() ? "" : "-tables") + "), or one of them: --csv " +
-         folder.stem().string() + ".csv" + " --stream STREAM, with one of " +
-         document::listed(namesOf(recording), 10);
+         folder.stem().string() + ".csv" + " --stream STREAM, with one of " + document::listed(namesOf(recording), 10);
 }
 
 /// Writes one file of one stream, or a folder with a file for each stream.
@@ -81,8 +80,9 @@ int toCsv(const record::Recording& recording, const ExportArguments& options) {
   if (const std::string wrong = one ? whyNotWritable(options.csv) : ""; !wrong.empty()) return fail(kBadInput, wrong);
   std::error_code error;
   if (!one) std::filesystem::create_directories(options.csv, error);
-  if (error) return fail(kFailed, options.csv + ": cannot be created: " + error.message() +
-                                  ", expected a folder in a folder that you may write to");
+  if (error)
+    return fail(kFailed, options.csv + ": cannot be created: " + error.message() +
+                             ", expected a folder in a folder that you may write to");
   for (const auto& [stream, file] : tables) {
     auto done = record::exportCsv(*stream, file);
     if (!done) return fail(kFailed, done.error());

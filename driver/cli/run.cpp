@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd run`: the daemon itself, in the foreground.
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <cmath>

@@ -324,8 +324,8 @@ std::string missing(const CLI::App& app, std::string told) {
   return fmt::format("{} is missing, expected `{}`{}", told, usageOf(app), model ? splitAtDot(factsOf(*model)) : "");
 }
 
-/// Returns the option that an error names, such as "--for" in "--for: 1 required FLOAT missing"; nothing if no command of
-/// this line has it.
+/// Returns the option that an error names, such as "--for" in "--for: 1 required FLOAT missing"; nothing if no command
+/// of this line has it.
 std::optional<OptionFacts> named(const CLI::App& app, const std::string& name) {
   for (const CLI::App* at = &app; at != nullptr; at = at->get_parent())
     if (const CLI::Option* option = at->get_option_no_throw(name); option != nullptr) return factsOf(*option);

@@ -34,8 +34,8 @@ std::string expectedCount(const OptionFacts& option) {
     count = "at least " + count;
   else if (option.most != option.least)
     count += " to " + std::to_string(option.most);
-  std::string text = fmt::format("{}: expected {} {}{}, got ", option.name, count, isNumber(option) ? "number" : "value",
-                                 option.most == 1 ? "" : "s");
+  std::string text = fmt::format("{}: expected {} {}{}, got ", option.name, count,
+                                 isNumber(option) ? "number" : "value", option.most == 1 ? "" : "s");
   text += option.given.empty() ? "none" : fmt::format("{}: {}", option.given.size(), fmt::join(option.given, " "));
   const bool commas = std::any_of(option.given.begin(), option.given.end(),
                                   [](const std::string& word) { return word.find(',') != std::string::npos; });

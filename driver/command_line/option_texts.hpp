@@ -29,8 +29,8 @@ std::string notWithin(const std::string& word, int low, int high, const std::str
 /// 2" and "--for: 1 required FLOAT:FLOAT in [0 - 1] missing" the form of the other messages.
 std::string wrongCount(const OptionFacts& option, const std::string& told);
 
-/// Returns "; did you mean "ball stiffness"?" if the word given to this option is such as "ball.stiffness", or "". It is
-/// for commands that want two words and got one.
+/// Returns "; did you mean "ball stiffness"?" if the word given to this option is such as "ball.stiffness", or "". It
+/// is for commands that want two words and got one.
 std::string splitAtDot(const OptionFacts& option);
 
 /// Describes the word that the option could not read. Only numbers are converted, so a number was expected.

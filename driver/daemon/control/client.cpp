@@ -57,7 +57,8 @@ Result<Client> Client::connect(const std::string& file) {
   if (fd >= 0) return Client(file, fd);
   const std::string why = errno == EAGAIN ? "the daemon is busy, and its queue is full" : std::strerror(errno);
   return Error{"no daemon answers at " + file + ": " + why + "\n  " +
-               startOrName(std::filesystem::path(file).parent_path().string()) + "; only its user and group may connect"};
+               startOrName(std::filesystem::path(file).parent_path().string()) +
+               "; only its user and group may connect"};
 }
 
 /// The kernel reports the end of the connection as soon as the daemon's end is closed, even if the daemon was killed.
