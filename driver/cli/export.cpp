@@ -49,12 +49,13 @@ std::string firstColumns(const record::RecordedStream& stream) {
 /// Returns what is wrong if the folder for all streams has the name of a file; "" if it has not.
 std::string fileForFolder(const record::Recording& recording, const std::filesystem::path& folder) {
   std::error_code none;
-  if (folder.extension() != ".csv" || std::filesystem::is_directory(folder, none)) return "";
+  const bool is_file = std::filesystem::is_regular_file(folder, none);
+  if (!is_file && (folder.extension() != ".csv" || std::filesystem::is_directory(folder, none))) return "";
   const std::string name = folder.string();
   return "--csv " + name +
          " names a file, but each stream has a table of its own; expected a folder for all of them (--csv " +
-         folder.stem().string() + "), or one of them: --csv " + name + " --stream STREAM, with one of " +
-         document::listed(namesOf(recording), 10);
+         folder.stem().string() + (folder.has_extension() ? "" : "-tables") + "), or one of them: --csv " +
+         folder.stem().string() + ".csv" + " --stream STREAM, with one of " + document::listed(namesOf(recording), 10);
 }
 
 /// Writes one file of one stream, or a folder with a file for each stream.
@@ -76,9 +77,12 @@ int toCsv(const record::Recording& recording, const ExportArguments& options) {
             whyNotWritten(file, tableKind(firstColumns(*stream)), {{options.file, "the recording"}});
         !wrong.empty())
       return fail(kBadInput, wrong);
+  if (const std::string wrong = one ? whyNotWritable(options.csv) : ""; !wrong.empty()) return fail(kBadInput, wrong);
   std::error_code error;
   if (!one) std::filesystem::create_directories(options.csv, error);
-  if (error) return fail(kFailed, options.csv + ": cannot be created: " + error.message());
+  if (error)
+    return fail(kFailed, options.csv + ": cannot be created: " + error.message() +
+                             ", expected a folder in a folder that you may write to");
   for (const auto& [stream, file] : tables) {
     auto done = record::exportCsv(*stream, file);
     if (!done) return fail(kFailed, done.error());
@@ -93,6 +97,7 @@ int exportRecording(const ExportArguments& options) {
   if (const std::string wrong = whyNotWritten(options.mcap, mcapKind(), {{options.file, "the recording"}});
       !wrong.empty())
     return fail(kBadInput, wrong);
+  if (const std::string wrong = whyNotWritable(options.mcap); !wrong.empty()) return fail(kBadInput, wrong);
   auto recording = record::Recording::open(options.file);
   if (!recording) return fail(kBadInput, recording.error());
   if (const std::string& damage = (*recording)->damage(); !damage.empty())

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli/output_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -26,6 +29,17 @@ bool isOf(const OutputKind& kind, std::string_view head) {
 }
 
 }  // namespace
+
+std::string whyNotWritable(const std::string& file) {
+  if (file.empty()) return "";
+  int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const bool made = fd >= 0;
+  // a pipe without a reader counts as not writable
+  if (!made) fd = open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+  if (made) unlink(file.c_str());
+  if (fd >= 0 && close(fd) == 0) return "";
+  return file + ": cannot be written, expected a file in a folder that you may write to";
+}
 
 const OutputKind& pictureKind() {
   static const OutputKind kind{"a picture (SVG)", {"<svg", "<?xml"}, "<svg"};

@@ -34,4 +34,8 @@ using Inputs = std::vector<std::pair<std::string, const char*>>;
 /// be written.
 std::string whyNotWritten(const std::string& out, const OutputKind& kind, const Inputs& inputs = {});
 
+/// [main] Returns why a file cannot be written; "" if it can, or if it is "". Leaves no new file behind, in case the
+/// command does not go on.
+std::string whyNotWritable(const std::string& file);
+
 }  // namespace hapticd::cli

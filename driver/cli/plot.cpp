@@ -55,6 +55,16 @@ std::optional<Columns> columnsOf(const record::RecordedStream& ticks, uint32_t a
   return all ? std::optional(c) : std::nullopt;
 }
 
+/// Returns what is wrong with the arm that was asked for, and which arms there are.
+std::string noTicksOf(uint32_t arm, const record::RecordedStream* ticks) {
+  uint32_t arms = 0;
+  while (ticks != nullptr && columnsOf(*ticks, arms)) ++arms;
+  const std::string wrong = fmt::format(": has no ticks of arm {}", arm);
+  if (arms == 0) return wrong + ", nor of any other, expected a recording of hapticd run --record, or a black box";
+  return wrong + fmt::format(", expected --arm 0{} (the recording has {} arm{})",
+                             arms == 1 ? "" : fmt::format(" to {}", arms - 1), arms, arms == 1 ? "" : "s");
+}
+
 record::Sample sampleAt(const record::RecordedStream& ticks, const Columns& c, uint64_t row) {
   record::Sample sample;
   sample.t = ticks.number(row, *c.t);
@@ -153,7 +163,7 @@ int plot(const PlotArguments& options) {
   noteOpenEnd(options.file, **recording, "drawing");
   const record::RecordedStream* ticks = (*recording)->stream("ticks");
   const auto columns = ticks != nullptr ? columnsOf(*ticks, options.arm) : std::nullopt;
-  if (!columns) return fail(kBadInput, options.file + ": has no ticks of arm " + std::to_string(options.arm));
+  if (!columns) return fail(kBadInput, options.file + noTicksOf(options.arm, ticks));
   std::vector<record::Sample> samples;
   std::vector<uint64_t> rows;
   double first = 0, last = 0;

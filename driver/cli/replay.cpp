@@ -47,16 +47,45 @@ Result<void> findLibraries(scene::Scene& scene) {
   return {};
 }
 
+constexpr const char* kForm = "expected MODEL.PARAMETER=NUMBER";
+
+/// Returns "; did you mean ball.stiffness=3?" with the first model that has the parameter of "stiffness=3"; "" if none
+/// has it.
+std::string meantModel(const scene::Scene& scene, const std::string& text) {
+  const std::string id = text.substr(0, text.find('='));
+  for (const scene::Model& model : scene.models)
+    if (auto found = catalog().shape(model.plugin); found && (*found)->indexOf(id) >= 0)
+      return "; did you mean " + model.name + "." + text + "?";
+  return "";
+}
+
+/// Returns what is wrong with a change as a text, such as "teapot.stiffness900"; "" if nothing is.
+std::string wrongForm(const scene::Scene& scene, const std::string& text) {
+  const size_t equals = text.find('='), dot = text.find('.');
+  if (equals == std::string::npos) return std::string("no value is given, ") + kForm;
+  if (dot == std::string::npos || dot > equals)
+    return std::string("no model is named, ") + kForm + meantModel(scene, text);
+  const std::string value = text.substr(equals + 1);
+  return document::toNumber(value) ? "" : "\"" + value + "\" is not a number, " + kForm;
+}
+
+std::vector<std::string> modelNames(const scene::Scene& scene) {
+  std::vector<std::string> names;
+  for (const scene::Model& model : scene.models) names.push_back(model.name);
+  return names;
+}
+
 /// Parses a change such as "teapot.stiffness=900" and applies it to a parameter of a model.
 Result<void> change(scene::Scene& scene, const std::string& text) {
+  if (const std::string wrong = wrongForm(scene, text); !wrong.empty()) return Error{"--set " + text + ": " + wrong};
   const size_t equals = text.find('='), dot = text.find('.');
-  const auto number = equals == std::string::npos ? std::nullopt : document::toNumber(text.substr(equals + 1));
-  if (dot == std::string::npos || !number || dot > equals)
-    return Error{"--set " + text + ": expected MODEL.PARAMETER=NUMBER"};
+  const auto number = document::toNumber(text.substr(equals + 1));
   const std::string name = text.substr(0, dot), id = text.substr(dot + 1, equals - dot - 1);
   const auto model =
       std::find_if(scene.models.begin(), scene.models.end(), [&](const auto& m) { return m.name == name; });
-  if (model == scene.models.end()) return Error{"--set " + text + ": the recording has no model \"" + name + "\""};
+  if (model == scene.models.end())
+    return Error{"--set " + text + ": the recording has no model \"" + name + "\", expected one of " +
+                 document::listed(modelNames(scene)) + document::suggestion(name, modelNames(scene))};
   auto found = catalog().shape(model->plugin);
   const int index = found ? (*found)->indexOf(id) : -1;
   if (index < 0)

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd run`: the daemon itself, in the foreground.
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -44,17 +43,6 @@ struct RunArguments {
 
 /// Time at which the program began, taken when its libraries were loaded.
 const Nanoseconds program_start = monotonicNow();
-
-/// Checks before the run that a file can be written. Leaves no new file behind, in case the run does not start.
-bool writable(const std::string& file) {
-  if (file.empty()) return true;
-  int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  const bool made = fd >= 0;
-  // a pipe without a reader counts as not writable
-  if (!made) fd = open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
-  if (made) unlink(file.c_str());
-  return fd >= 0 && close(fd) == 0;
-}
 
 /// Returns a file that was given for two purposes, so that one would overwrite the other; "" if all differ. Devices and
 /// pipes may be given more than once.
@@ -146,7 +134,7 @@ Result<void> showPage(const RunArguments& options, const servo::RunFiles* files,
 std::string wrongFiles(const RunArguments& options) {
   if (const std::string wrong = wrongPicture(options.picture); !wrong.empty()) return wrong;
   for (const std::string& file : {options.report, options.picture, options.record})
-    if (!writable(file)) return file + ": cannot be written, expected a file in a folder that you may write to";
+    if (const std::string wrong = whyNotWritable(file); !wrong.empty()) return wrong;
   const Inputs inputs{{options.scene, "the scene"}, {options.device, "the device file"}};
   for (const auto& [file, kind] : {std::pair(options.report, reportKind()), std::pair(options.picture, pictureKind()),
                                    std::pair(options.record, recordingKind())})

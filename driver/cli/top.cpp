@@ -325,9 +325,7 @@ bool standsStill(const status::Page& page, uint64_t tick) {
 int top(const TopArguments& options) {
   const std::string file = status::runtimeFolder(false) + "/" + options.name + ".status";
   auto opened = status::PageFile::open(file);
-  if (!opened)
-    return fail(kFailed,
-                opened.error() + "\n  fix: start a daemon with hapticd run, or name a running one with --name");
+  if (!opened) return fail(kFailed, opened.error() + "\n  " + control::startOrName(status::runtimeFolder(false)));
   const status::Page& page = std::as_const(**opened).page();
   if (!options.once) return options.json ? stream(options, page) : watch(options, page);
   if (ended(page))

@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "command_line/option_texts.hpp"
+
 namespace hapticd::command_line {
 namespace {
 
@@ -51,23 +53,15 @@ Option Option::oneValueEach() const {
 
 /// CLI::Range is not used, because it would also accept nan.
 Option Option::within(double low, double high) const {
-  const auto refuse = [=](const std::string& text) {
-    double value = 0;
-    if (!CLI::detail::lexical_cast(text, value))
-      return fmt::format("\"{}\" is not a number, expected one from {:g} to {:g}", text, low, high);
-    if (value >= low && value <= high) return std::string();
-    return fmt::format("{} is out of range, expected a number from {:g} to {:g}", text, low, high);
+  const auto refuse = [low, high, unit = unitOf(description())](const std::string& text) {
+    return notWithin(text, low, high, unit);
   };
   return Option(option_->check(CLI::Validator(refuse, fmt::format("FLOAT in [{} - {}]", low, high))));
 }
 
 Option Option::wholeWithin(int low, int high) const {
-  const auto refuse = [=](const std::string& text) {
-    int value = 0;
-    if (!CLI::detail::lexical_cast(text, value))
-      return fmt::format("\"{}\" is not a whole number, expected one from {} to {}", text, low, high);
-    if (value >= low && value <= high) return std::string();
-    return fmt::format("{} is out of range, expected a whole number from {} to {}", text, low, high);
+  const auto refuse = [low, high, unit = unitOf(description())](const std::string& text) {
+    return notWithin(text, low, high, unit);
   };
   return Option(option_->check(CLI::Validator(refuse, fmt::format("INT in [{} - {}]", low, high))));
 }
@@ -89,7 +83,10 @@ Option Option::existingFile() const {
 }
 
 Option Option::check(const std::function<std::string(const std::string&)>& wrong) const {
-  return Option(option_->check(wrong));
+  return Option(option_->check([wrong](const std::string& word) {
+    const std::string text = wrong(word);
+    return text.empty() || text.find(word) != std::string::npos ? text : text + ", got \"" + word + "\"";
+  }));
 }
 
 Option Option::needs(const Option& other) const {
@@ -263,6 +260,25 @@ std::vector<std::string> argumentsOf(const CLI::App& app) {
   return words;
 }
 
+OptionFacts factsOf(const CLI::Option& option) {
+  return {option.get_name(),
+          option.get_type_name(),
+          option.get_description(),
+          option.get_items_expected_min(),
+          option.get_items_expected_max(),
+          option.results()};
+}
+
+/// Returns how a command is called, with all that it needs, such as "hapticd ctl move MODEL --position X Y Z".
+std::string usageOf(const CLI::App& app) {
+  std::string usage = wordsOf(app);
+  for (const std::string& word : argumentsOf(app)) usage += " " + word;
+  for (const CLI::Option* option : app.get_options(nullptr))
+    if (option->get_required() && !option->get_positional())
+      usage += " " + option->get_name() + " " + placeholders(factsOf(*option));
+  return usage;
+}
+
 std::vector<std::string> subcommandNames(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* below : app.get_subcommands(nullptr)) names.push_back(below->get_name());
@@ -297,32 +313,36 @@ std::string unexpected(const CLI::App& app, const std::vector<std::string>& word
 std::string missing(const CLI::App& app, std::string told) {
   constexpr std::string_view kEnd = " is required";
   if (told.ends_with(kEnd)) told.resize(told.size() - kEnd.size());
-  const std::vector<std::string> rest = app.remaining();
+  std::vector<std::string> rest = app.remaining();
+  for (const CLI::App* at = app.get_parent(); rest.empty() && at != nullptr; at = at->get_parent())
+    rest = at->remaining();  // a command leaves to its parent what it does not know
   const bool is_option = !rest.empty() && rest.front().size() > 1 && rest.front()[0] == '-';
   if (is_option || (told == "A subcommand" && !rest.empty())) return unexpected(app, rest);
   if (told == "A subcommand")
     return fmt::format("no subcommand given, expected one of {}", fmt::join(subcommandNames(app), ", "));
-  const auto arguments = argumentsOf(app);
-  const std::string space = arguments.empty() ? "" : " ";
-  return fmt::format("{} is missing, expected `{}{}{}`", told, wordsOf(app), space, fmt::join(arguments, " "));
+  const CLI::Option* model = app.get_option_no_throw("model");
+  return fmt::format("{} is missing, expected `{}`{}", told, usageOf(app), model ? splitAtDot(factsOf(*model)) : "");
 }
 
-/// Gives CLI11's "Could not convert: value = abc" the form of the other messages. Such a message is always about a
-/// number, because only numbers are converted.
-std::string unreadable(const std::string& told) {
+/// Returns the option that an error names, such as "--for" in "--for: 1 required FLOAT missing"; nothing if no command
+/// of this line has it.
+std::optional<OptionFacts> named(const CLI::App& app, const std::string& name) {
+  for (const CLI::App* at = &app; at != nullptr; at = at->get_parent())
+    if (const CLI::Option* option = at->get_option_no_throw(name); option != nullptr) return factsOf(*option);
+  return std::nullopt;
+}
+
+/// Gives CLI11's "Could not convert: value = abc" the form of the other messages.
+std::string unreadable(const CLI::App& app, const std::string& told) {
   const size_t colon = told.find(": "), equals = told.find(" = ");
   if (colon == std::string::npos || equals == std::string::npos || equals < colon) return told;
-  const std::string name = told.substr(colon + 2, equals - colon - 2);
-  return name + ": \"" + told.substr(equals + 3) + "\" cannot be read, expected a number";
+  const auto option = named(app, told.substr(colon + 2, equals - colon - 2));
+  return option ? unreadable(*option) : told;
 }
 
-/// Gives CLI11's "--for: 1 required FLOAT:FLOAT in [0 - 1] missing" the form of the other messages.
-std::string tooFew(const std::string& told) {
-  const size_t colon = told.find(": "), type = told.find(" required "), end = told.rfind(" missing");
-  if (colon == std::string::npos || type == std::string::npos || end == std::string::npos || end < type) return told;
-  const size_t from = type + std::string_view(" required ").size();
-  const std::string count = told.substr(colon + 2, type - colon - 2), kind = told.substr(from, end - from);
-  return fmt::format("{}: {} more value{} expected ({})", told.substr(0, colon), count, count == "1" ? "" : "s", kind);
+std::string wrongCount(const CLI::App& app, const std::string& told) {
+  const auto option = named(app, told.substr(0, told.find(": ")));
+  return option ? wrongCount(*option, told) : told;
 }
 
 std::string replaced(const std::string& text, std::string_view what, std::string_view with) {
@@ -335,8 +355,8 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
   const std::string told = error.what();
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return unexpected(innermost(app), app.remaining(true));
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) return missing(innermost(app), told);
-  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return unreadable(told);
-  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) return tooFew(told);
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return unreadable(innermost(app), told);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) return wrongCount(innermost(app), told);
   if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr)
     return replaced(told, " requires ", " has no effect alone, expected also ");
   if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)

@@ -56,12 +56,9 @@ Result<Client> Client::connect(const std::string& file) {
   const int fd = connected(file);
   if (fd >= 0) return Client(file, fd);
   const std::string why = errno == EAGAIN ? "the daemon is busy, and its queue is full" : std::strerror(errno);
-  std::string names;
-  for (const std::string& name : runningDaemons(std::filesystem::path(file).parent_path().string()))
-    names += (names.empty() ? " (" : ", ") + name;
-  return Error{"no daemon answers at " + file + ": " + why +
-               "\n  fix: start one with hapticd run, or name a running one" + (names.empty() ? "" : names + ")") +
-               " with --name; only its user and group may connect"};
+  return Error{"no daemon answers at " + file + ": " + why + "\n  " +
+               startOrName(std::filesystem::path(file).parent_path().string()) +
+               "; only its user and group may connect"};
 }
 
 /// The kernel reports the end of the connection as soon as the daemon's end is closed, even if the daemon was killed.

@@ -65,4 +65,10 @@ std::vector<std::string> runningDaemons(const std::string& folder) {
   return names;
 }
 
+std::string startOrName(const std::string& folder) {
+  std::string names;
+  for (const std::string& name : runningDaemons(folder)) names += (names.empty() ? " (" : ", ") + name;
+  return "fix: start one with hapticd run, or name a running one" + (names.empty() ? "" : names + ")") + " with --name";
+}
+
 }  // namespace hapticd::control

@@ -21,4 +21,7 @@ bool wasKilled(const std::string& socket);
 /// [main] Returns the names of the living daemons whose files are in a folder, sorted.
 std::vector<std::string> runningDaemons(const std::string& folder);
 
+/// [main] Returns how to mend that no daemon runs under a name: "fix: start one ...", with the names of those that run.
+std::string startOrName(const std::string& folder);
+
 }  // namespace hapticd::control

@@ -107,6 +107,7 @@ def outputs(folder, ask):
     check("a folder that is named as a file is not made", code == 2 and "--stream STREAM, with one of ticks" in err
           and not os.path.exists(os.path.join(folder, "t.csv")), (code, out, err))
     others(folder, ask, recording, path, file)
+    of_a_recording(folder, ask, recording)
     code, out, err = ask("trace", file, "--probe", path, "--out", os.path.join(folder, "feet.csv"))
     check("a path in mm is warned of", code == 0 and "row 2 is 30 m from the world's origin" in err, err)
     whole = open(recording, "rb").read()
@@ -116,6 +117,21 @@ def outputs(folder, ask):
         check(f"{name}: a damaged recording is not the same to the last bit", code != 0 and ("lost" in err or "difference" in out), (code, out, err))
         ask_plot = ask("plot", os.path.join(folder, name), "--out", os.path.join(folder, "x.svg"))
         check(f"{name}: nor is it drawn without a word", name != "cut.h5" or "it ends at byte" in ask_plot[2] and "are lost" in ask_plot[2], ask_plot)
+
+
+def of_a_recording(folder, ask, recording):
+    """What is asked of a recording that has no such part, or is to go where nothing can be written."""
+    svg = write(folder, "rec.svg", "<svg/>")
+    for words, meant in ((("replay", recording, "--set", "part.stiffness=abc"), '"abc" is not a number, expected MODEL.PARAMETER=NUMBER'),
+                         (("replay", recording, "--set", "stiffness=3"), "no model is named, expected MODEL.PARAMETER=NUMBER; did you mean part.stiffness=3?"),
+                         (("replay", recording, "--set", "part.stiffness"), "no value is given, expected MODEL.PARAMETER=NUMBER"),
+                         (("replay", recording, "--set", "prat.stiffness=3"), 'no model "prat", expected one of part (did you mean "part"?)'),
+                         (("plot", recording, "--arm", "1"), "has no ticks of arm 1, expected --arm 0 (the recording has 1 arm)"),
+                         (("export", recording, "--csv", svg), "names a file, but each stream has a table of its own; expected a folder"),
+                         (("export", recording, "--csv", "/nonexist/x", "--stream", "ticks"), "expected a file in a folder that you may write to"),
+                         (("export", recording, "--mcap", "/nonexist/x"), "expected a file in a folder that you may write to")):
+        code, out, err = ask(*words)
+        check(f"{words[0]} {' '.join(words[2:])} is told what there is", code == 2 and meant in err, (code, out, err))
 
 
 def others(folder, ask, recording, path, file):
@@ -161,7 +177,8 @@ models:
     code, out, err = ask("check", write(folder, "empty.yaml", ""))
     check("an empty file is told what to begin with", 'a scene begins with "hapticd: 1"' in out, out)
     for wrong, meant in ((("ctl", "stopp"), 'there is no subcommand "ctl stopp"'), (("device", "lst"), '(did you mean "list"?)'),
-                         (("plugin", "chek", "x.so"), '(did you mean "check"?)')):
+                         (("plugin", "chek", "x.so"), '(did you mean "check"?)'),
+                         (("ctl", "set", "ball.stiffness", "600"), '`hapticd ctl set MODEL PARAMETER VALUE`; did you mean "ball stiffness"?')):
         code, out, err = ask(*wrong)
         check(f"{' '.join(wrong)} is told", code == 2 and meant in err, err)
     code, out, err = ask("import", "a.stl", "--unit", "mm", "-o", "x.hpart")

@@ -50,6 +50,8 @@ def aHoldIsAFault(folder, environment):
         while time.monotonic() < end and ask("ctl", "--name", "held", "hold")[0] != 0:
             time.sleep(0.2)
         time.sleep(0.3)
+        code, told = ask("top", "--name", "nobody", "--once")
+        check("top names the daemons that run, as ctl does", code == 1 and "name a running one (held) with --name" in told, told)
         code, told = ask("ctl", "--name", "held", "stop")
         check("the run that is held ends", code == 0 and run.wait(60) == 0, told)
     events = h5py.File(file)["events"][:]

@@ -11,16 +11,20 @@ namespace {
 struct Example {
   Program program{"An example.", "example"};
   Command draw = program.addSubcommand("draw", "Draw something.");
-  std::string file, colour = "red";
+  Command move = program.addSubcommand("move", "Move something.");
+  std::string file, colour = "red", name, title;
   double scale = 1;
   int copies = 1;
-  std::optional<double> angle;
-  std::vector<double> corner, weights;
+  uint32_t layer = 0;
+  std::optional<double> angle, delay;
+  std::vector<double> corner, weights, to;
   bool quiet = false;
   int calls = 0;
 
   Example() {
     program.requireSubcommand();
+    program.addOption("--name", name, "its name");
+    program.optionsMayFollowSubcommand();
     program.version("example 7");
     draw.addOption("file", file, "file to draw").required();
     draw.addOption("--colour", colour, "its colour").oneOf({"red", "blue"});
@@ -30,6 +34,13 @@ struct Example {
     draw.addOption("--corner", corner, "x y").expected(2).needs("--angle");
     draw.addOption("--weights", weights, "numbers").delimiter(',').oneValueEach();
     draw.addFlag("-q,--quiet", quiet, "say nothing").excludes("--copies");
+    draw.addOption("--delay", delay, "how long to wait [s]; default: 0").within(0, 5);
+    draw.addOption("--layer", layer, "its layer");
+    draw.addOption("--title", title, "its title").check([](const std::string& word) {
+      return word.find('/') == std::string::npos ? "" : "expected letters";
+    });
+    move.addOption("file", file, "file to move").required();
+    move.addOption("--to", to, "x y z [m], world frame").required().expected(3);
     draw.callback([this] { ++calls; });
   }
 
@@ -66,7 +77,7 @@ TEST(CommandLine, ReadsEveryKindOfValueAndRunsTheCommandOnce) {
 
 TEST(CommandLine, RefusesWhatBreaksARuleWithTheExitCodeOfBadUsage) {
   const std::vector<std::pair<std::vector<const char*>, std::string>> wrong = {
-      {{}, "error: no subcommand given, expected one of draw; see example --help"},
+      {{}, "error: no subcommand given, expected one of draw, move; see example --help"},
       {{"draw"}, "error: file is missing, expected `example draw FILE`; see example draw --help"},
       {{"draw", "a", "--colour", "green"}, "error: --colour: \"green\" is not known, expected one of red, blue"},
       {{"draw", "a", "--scale", "3"}, "error: --scale: 3 is out of range, expected a number from 0.5 to 2"},
@@ -74,7 +85,21 @@ TEST(CommandLine, RefusesWhatBreaksARuleWithTheExitCodeOfBadUsage) {
       {{"draw", "a", "--scale", "much"}, "--scale: \"much\" is not a number, expected one from 0.5 to 2"},
       {{"draw", "a", "--copies", "0"}, "--copies: 0 is out of range, expected a whole number from 1 to 9"},
       {{"draw", "a", "--copies", "1.5"}, "--copies: \"1.5\" is not a whole number, expected one from 1 to 9"},
-      {{"draw", "a", "--angle", "x"}, "error: --angle: \"x\" cannot be read, expected a number"},
+      {{"draw", "a", "--angle", "x"}, "error: --angle: \"x\" cannot be read, expected a number in rad;"},
+      {{"draw", "a", "--delay", "9"}, "error: --delay: 9 is out of range, expected a number from 0 to 5 s;"},
+      {{"draw", "a", "--delay", "1s"}, "error: --delay: \"1s\" is not a number, expected one from 0 to 5 s;"},
+      {{"draw", "a", "--layer", "-1"}, "error: --layer: -1 is out of range, expected a whole number from 0;"},
+      {{"draw", "a", "--layer", "1.5"}, "error: --layer: \"1.5\" is not a whole number, expected one from 0;"},
+      {{"draw", "a", "--layer", "up"}, "error: --layer: \"up\" cannot be read, expected a whole number from 0;"},
+      {{"draw", "a", "--layer", "5000000000"}, "5000000000 is out of range, expected a whole number nearer to 0;"},
+      {{"draw", "a", "--title", "a/b"}, "error: --title: expected letters, got \"a/b\";"},
+      {{"move", "a"}, "error: --to is missing, expected `example move FILE --to X Y Z`;"},
+      {{"move", "a", "--to", "1", "2"}, "error: --to: expected 3 numbers, got 2: 1 2;"},
+      {{"move", "a", "--to", "1", "2", "3", "4"}, "error: --to: expected 3 numbers, got 4: 1 2 3 4;"},
+      {{"move", "a", "--to", "1,2,3"}, "error: --to: expected 3 numbers, got 1: 1,2,3; separate them by spaces;"},
+      {{"move", "a", "--to", "1", "2", "c"}, "error: --to: \"c\" cannot be read, expected a number in m;"},
+      {{"move", "a", "--to"}, "error: --to: expected 3 numbers, got none;"},
+      {{"--name", "x", "drwa"}, "error: there is no subcommand \"drwa\", expected one of draw, move"},
       {{"draw", "a", "--angle"}, "error: --angle: 1 more value expected (FLOAT); see example draw --help"},
       {{"draw", "a", "b"}, "error: unexpected word \"b\": `example draw` takes only FILE and options"},
       {{"drwa"}, "error: there is no subcommand \"drwa\", expected one of draw"},
@@ -117,12 +142,12 @@ TEST(CommandLine, HelpAndVersionEndTheProgramWell) {
 
 TEST(CommandLine, TellsItsTableForManualsAndCompletions) {
   Example e;
-  ASSERT_EQ(e.program.subcommands().size(), 1u);
+  ASSERT_EQ(e.program.subcommands().size(), 2u);
   const Command draw = e.program.subcommands()[0];
   EXPECT_EQ(draw.name(), "draw");
   EXPECT_EQ(draw.description(), "Draw something.");
   const std::vector<Option> options = draw.options();
-  ASSERT_EQ(options.size(), 9u);
+  ASSERT_EQ(options.size(), 12u);
   EXPECT_TRUE(options[0].isHelp());
   EXPECT_TRUE(options[1].positional());
   EXPECT_EQ(options[1].positionalName(), "file");
