@@ -79,7 +79,7 @@ std::string dampingSign(const Recipe& recipe, uint64_t) {
   if (made.subject->moves() || (made.subject->description().flags & HSP_C_DEFORMS) != 0)
     return "skip: it moves or deforms, so its force does not depend on depth and speed alone";
   if ((made.subject->report().flags & HSP_R_VELOCITY) == 0)
-    return "skip: it does not ask for the velocity (HSP_R_VELOCITY), so it has no damping";
+    return "skip: it does not ask for the velocity (HSP_R_VELOCITY), so there is no damping to test";
   bool judged = false;
   const std::string wrong = atEachPlace(recipe, [&judged](Subject& subject, const Place& place) {
     constexpr int kMostLead = 5;  // [ticks]
