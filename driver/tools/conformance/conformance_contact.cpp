@@ -324,6 +324,7 @@ std::vector<ConformanceTest> contactTests() {
        &forceAlongNormal, kFoot},
       {"loops-give-no-energy", "a loop into the shape, along below its surface and out again gives no energy",
        &loopsGiveNoEnergy, kFinite},
+      {"damping-sign", "a damper brakes the hand: moving in it pushes no less than moving out", &dampingSign, kFinite},
       {"contact-flags", "HSP_OUT_TRACED and HSP_OUT_CONTACT agree with depth and normal", &contactFlags, kFinite},
       {"force-from-zero", "the force grows from zero where the surface is met", &noStep, kFinite},
       {"stiffness-vs-claim", "forces are no steeper than claimed", &stiffnessClaim, kFinite},

@@ -19,7 +19,10 @@ enum class Mistake {
   kSilent,      ///< it answers nothing at all
   kNeverDeep,   ///< its depth is never above 0
   kLeftPulls,   ///< forces are reversed on the side to -x alone
-  kUnderPulls   ///< and on the under side alone
+  kUnderPulls,  ///< and on the under side alone
+  kDamps,       ///< none: it damps, and pushes only
+  kDrives,      ///< the damper has the wrong sign
+  kDamperPulls  ///< the damper pulls on a quick way out, although it reports to push only
 };
 
 struct Point {
@@ -67,6 +70,8 @@ Depth ground(const Point& p) noexcept {
 
 template <class Derived, Mistake kMistake>
 struct Touched : hapticd::Shape {
+  static constexpr bool kDamper =
+      kMistake == Mistake::kDamps || kMistake == Mistake::kDrives || kMistake == Mistake::kDamperPulls;
   double stiffness = 0;
   static constexpr auto fields() {
     return std::array{hapticd::Fields<Derived>::real("stiffness", &Derived::stiffness, "N/m", 0, 5000, 500, "Spring.")};
@@ -74,6 +79,15 @@ struct Touched : hapticd::Shape {
   void activate(const hsp_activation&, hsp_report& report) {
     if (kMistake != Mistake::kNoClaim) report.max_stiffness = stiffness * (kMistake == Mistake::kSmallClaim ? 0.25 : 1);
     if (kMistake == Mistake::kSmallJump) hapticd::reportJumps(report, 0.2);
+    if (kDamper) report.flags |= HSP_R_VELOCITY;
+    if (kDamper && kMistake != Mistake::kDrives) report.flags |= HSP_R_PUSHES;
+  }
+  /// A spring, and a damper that grows with the depth. `outward` is the velocity along the normal.
+  double damped(double depth, double outward) const {
+    constexpr double kDamping = 5, kWhole = 1e-3;  // [N s/m]; [m] depth from which on it is the whole damper
+    const double brake = -kDamping * std::fmin(depth / kWhole, 1) * outward;
+    const double force = stiffness * depth + (kMistake == Mistake::kDrives ? -brake : brake);
+    return kMistake == Mistake::kDamperPulls ? force : std::fmax(force, 0);
   }
   hsp_status touch(const hsp_probe& in, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
     if ((in.flags & HSP_IN_INVALID) != 0 || kMistake == Mistake::kSilent) return HSP_OK;
@@ -84,6 +98,7 @@ struct Touched : hapticd::Shape {
     if (kMistake != Mistake::kNoTraced) out.flags = HSP_OUT_TRACED;
     out.depth_m = at.depth;
     double force = kMistake == Mistake::kStep || kMistake == Mistake::kSmallJump ? 2 : stiffness * at.depth;
+    if (kDamper) force = damped(at.depth, in.velocity[0] * n[0] + in.velocity[1] * n[1] + in.velocity[2] * n[2]);
     const bool inner = std::hypot(p.x, p.z) < 0.04;
     if (kMistake == Mistake::kPulls || (kMistake == Mistake::kInnerPulls && inner) ||
         (kMistake == Mistake::kLeftPulls && n[0] < -0.9) || (kMistake == Mistake::kUnderPulls && n[1] < -0.9))
@@ -126,6 +141,10 @@ SHAPE("ring_no_claim", RingNoClaim, kNoClaim, ring(p, 0.04, 0.015))
 SHAPE("ring_small_claim", RingSmallClaim, kSmallClaim, ring(p, 0.04, 0.015))
 SHAPE("ring_silent", RingSilent, kSilent, ring(p, 0.04, 0.015))
 SHAPE("ring_never_deep", RingNeverDeep, kNeverDeep, ring(p, 0.04, 0.015))
+SHAPE("box_damps", BoxDamps, kDamps, box(p, {0.06, 0.03, 0.04}))
+SHAPE("box_drives", BoxDrives, kDrives, box(p, {0.06, 0.03, 0.04}))
+SHAPE("ring_damps", RingDamps, kDamps, ring(p, 0.04, 0.015))
+SHAPE("ring_damper_pulls", RingDamperPulls, kDamperPulls, ring(p, 0.04, 0.015))
 
 struct BadId : RingRight {
   static constexpr hapticd::ShapeInfo kInfo{"org.example.shape.bad_id", "bad_id", "1.0.0", "MIT", "To be tested."};
@@ -139,4 +158,5 @@ struct BadId : RingRight {
 
 HAPTICD_SHAPES(BadId, RingRight, RingPulls, RingPullsInside, LargeRingPulls, BallRight, BallPulls, MiddleBallPulls,
                LargeBallPulls, FarBallPulls, BoxRight, BoxLeftPulls, BoxUnderPulls, FloorRight, FloorPulls, RingSteps,
-               RingStepsFar, RingNoContact, RingNoTraced, RingNoClaim, RingSmallClaim, RingSilent, RingNeverDeep)
+               RingStepsFar, RingNoContact, RingNoTraced, RingNoClaim, RingSmallClaim, RingSilent, RingNeverDeep, BoxDamps,
+               BoxDrives, RingDamps, RingDamperPulls)

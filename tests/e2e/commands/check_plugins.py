@@ -54,11 +54,18 @@ WRONG = {"ring_right": None, "ball_right": None, "floor_right": None, "ring_step
 WRONG.update({shape + "_pulls": "force-outward" for shape in ("ring", "large_ring", "ball", "middle_ball", "large_ball", "far_ball", "floor")})
 WRONG["ring_pulls_inside"] = "force-outward"
 WRONG.update({"box_right": None, "box_left_pulls": "force-outward", "box_under_pulls": "force-outward"})  # one side of six
+WRONG.update({"box_damps": None, "ring_damps": None, "box_drives": "damping-sign", "ring_damper_pulls": "damping-sign"})
 for shape, test in WRONG.items():
     mine = {t for p, t in failed if p == shape}
     check(f"{shape}: {test or 'passes'}", {t["plugin"] for t in tests} >= {shape} and (test in mine if test else not mine), mine)
 why = [t["why"] for t in tests if (t["plugin"], t["name"]) == ("ring_pulls", "force-outward")]
 check("the sign is named, with depth and force", all(w in why[0] for w in ("sign", "0.5 N", "depth of 1 mm", "turn the sign")), why)
+damped = {t["plugin"]: t for t in tests if t["name"] == "damping-sign"}
+check("a damper that drives is told by depth, speed and force", "at 1 mm, moving out at 0.3 m/s it pushes 2 N more than moving in: the sign of the damping is wrong"
+      in damped["box_drives"]["why"], damped["box_drives"])
+check("a damper that pulls is told how to mend it", all(w in damped["ring_damper_pulls"]["why"] for w in ("at 0.3 m/s outward it pulls with", "clamp the force at zero")),
+      damped["ring_damper_pulls"])
+check("a right damper is tested", [damped[shape]["result"] for shape in ("box_damps", "ring_damps")] == ["pass", "pass"], damped)
 for shape in ("ring_right", "ball_right", "floor_right"):
     skipped = [t["name"] for t in tests if t["plugin"] == shape and t["result"] == "skip"]
     check(f"{shape}: nothing about contact is skipped", not {"force-outward", "force-continuous", "contact-flags", "stiffness-vs-claim"} & set(skipped), skipped)
