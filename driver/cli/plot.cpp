@@ -196,7 +196,8 @@ void addPlot(const Command& app, int& exit_code) {
       "plot",
       "Draw a recording: depth, force, lateness and position over time, with faults, limits and models by name (SVG).");
   command.addOption("file", options->file, "recording or black box").required();
-  command.addOption("--out", options->out, "picture to write; default: the name of the recording and .svg, such as run.h5.svg");
+  command.addOption("--out", options->out,
+                    "picture to write; default: the name of the recording and .svg, such as run.h5.svg");
   command.addOption("--arm", options->arm, "index of the arm, from 0").wholeWithin(0, 7);
   command.addOption("--from", options->from, "start time [s]");
   command.addOption("--to", options->to, "end time [s]");
