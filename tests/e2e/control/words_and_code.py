@@ -45,7 +45,7 @@ def words(ask):
     check("list has the words of the choice, and nothing that cannot change", live["law"].get("choices") == ["linear", "hertz"] and
           set(live) == {"law", "loud", "push", "whole"}, live)
     code, out, err = ask("feature", "donut", "few")
-    check("a number that is none is told so", code == 2 and "expected a number" in err and "Could not" not in err, (code, err))
+    check("a number that is none is told so", code == 2 and "expected a whole number" in err and "Could not" not in err, (code, err))
 
 
 def builtAnew(ask, library):
