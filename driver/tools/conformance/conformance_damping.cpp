@@ -35,8 +35,7 @@ hsp_contact passed(Subject& subject, const Place& place, const Pass& pass, std::
   bool same = true;
   for (int tick = -kRest; tick <= pass.lead || (pass.speed > 0 && pass.at(tick) > 0); ++tick) {
     const Vector3d p = place.foot - place.out * pass.at(std::max(tick, 0));
-    const hsp_contact& c =
-        subject.step({p}, kConformanceDt, tick == -kRest ? uint32_t{HSP_IN_JUMP} : 0).contacts[0];
+    const hsp_contact& c = subject.step({p}, kConformanceDt, tick == -kRest ? uint32_t{HSP_IN_JUMP} : 0).contacts[0];
     if (tick <= pass.lead) same = same && (c.flags & HSP_OUT_TRACED) != 0 && Vector3d(c.normal).dot(place.out) > 0.9;
     if (tick == pass.lead && same) found = c;
     if (tick > 0 && pass.speed > 0 && pushes && pulls.empty() && servo::pullsIn(c, p))

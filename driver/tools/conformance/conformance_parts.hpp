@@ -66,8 +66,8 @@ std::string forceAlongNormal(const Recipe& recipe, uint64_t);
 /// Returns the energy that a hand gains if it goes in, along below the surface, and out again, or "" if it gains none.
 std::string loopsGiveNoEnergy(const Recipe& recipe, uint64_t);
 
-/// Returns the objection to a damper that drives the hand instead of braking it, or that pulls in a shape that reports to
-/// push only; otherwise "".
+/// Returns the objection to a damper that drives the hand instead of braking it, or that pulls in a shape that reports
+/// to push only; otherwise "".
 std::string dampingSign(const Recipe& recipe, uint64_t);
 
 /// Returns "warn: ..." if there are parameters whose units are not SI, otherwise "".

@@ -158,5 +158,5 @@ struct BadId : RingRight {
 
 HAPTICD_SHAPES(BadId, RingRight, RingPulls, RingPullsInside, LargeRingPulls, BallRight, BallPulls, MiddleBallPulls,
                LargeBallPulls, FarBallPulls, BoxRight, BoxLeftPulls, BoxUnderPulls, FloorRight, FloorPulls, RingSteps,
-               RingStepsFar, RingNoContact, RingNoTraced, RingNoClaim, RingSmallClaim, RingSilent, RingNeverDeep, BoxDamps,
-               BoxDrives, RingDamps, RingDamperPulls)
+               RingStepsFar, RingNoContact, RingNoTraced, RingNoClaim, RingSmallClaim, RingSilent, RingNeverDeep,
+               BoxDamps, BoxDrives, RingDamps, RingDamperPulls)
