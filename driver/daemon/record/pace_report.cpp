@@ -22,9 +22,8 @@ std::string slowText(const ModelReport& model, double period_us, uint64_t least_
   const uint64_t slow = above(step, period_us);
   if (slow < kFew || slow * least_part < step.total()) return "";
   const double typical = step.quantile(1 - 0.5 * static_cast<double>(slow) / static_cast<double>(step.total()));
-  return fmt::format(
-      "slow: {} took {:.2g} ms in {} ticks; the period is {:.2g} ms: find the cause with hapticd plugin check\n",
-      model.name, typical * 1e-3, slow, period_us * 1e-3);
+  return fmt::format("slow: {} took {:.2g} ms in {} ticks; the period is {:.2g} ms: find the cause with {}\n",
+                     model.name, typical * 1e-3, slow, period_us * 1e-3, checkCommand(model));
 }
 
 /// Names the model whose longest step alone delayed the loop, even if it happened only once.
@@ -39,9 +38,9 @@ std::string heldUpText(const RunReport& report, double period_us) {
   if (most <= period_us * (report.virtual_time ? kVirtual : 1)) return "";
   const std::string missed = fmt::format("{} ticks were missed, and ", report.missed_ticks);
   return fmt::format(
-      "slow: {}{} took {:.2g} ms in its longest step; the period is {:.2g} ms: hapticd plugin check shows whether it "
+      "slow: {}{} took {:.2g} ms in its longest step; the period is {:.2g} ms: {} shows whether it "
       "waits, or whether the machine was busy with something else\n",
-      report.virtual_time ? "" : missed, slowest->name, most * 1e-3, period_us * 1e-3);
+      report.virtual_time ? "" : missed, slowest->name, most * 1e-3, period_us * 1e-3, checkCommand(*slowest));
 }
 
 }  // namespace
@@ -64,8 +63,8 @@ std::string paceText(const RunReport& report, double asked_hz) {
       if (const double most = model.contact.stepUs().max(); most > period_us)
         text += fmt::format(
             "slow: {} of {} ticks took longer than the period of {:.2g} ms, and {} up to {:.2g} ms, although it "
-            "computes little: hapticd plugin check shows whether it waits\n",
-            late, all, period_us * 1e-3, model.name, most * 1e-3);
+            "computes little: {} shows whether it waits\n",
+            late, all, period_us * 1e-3, model.name, most * 1e-3, checkCommand(model));
   return text.empty() ? heldUpText(report, period_us) : text;
 }
 

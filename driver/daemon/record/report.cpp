@@ -92,8 +92,9 @@ std::string pullText(const ModelReport& model) {
   if (2 * pulls.ticks <= ticks) return "";
   return fmt::format(
       "  warning   {} pulled the hand in during {:.0f} % of its contact, with up to {:.2f} N: its force may have the "
-      "wrong sign; test it with hapticd plugin check\n",
-      model.name, 100 * static_cast<double>(pulls.ticks) / static_cast<double>(ticks), pulls.max_force);
+      "wrong sign; test it with {}\n",
+      model.name, 100 * static_cast<double>(pulls.ticks) / static_cast<double>(ticks), pulls.max_force,
+      checkCommand(model));
 }
 
 /// Returns a length [m] as text in a convenient unit.
@@ -108,8 +109,8 @@ std::string deepText(const ModelReport& model) {
   if (!(deepest > kDeep)) return "";
   return fmt::format(
       "  warning   {} reports a depth of {:.3g} m, deeper than an arm reaches: depth_m must be in m (if it is in mm, "
-      "the depth was {:.3g} m); test it with hapticd plugin check\n",
-      model.name, deepest, deepest * 1e-3);
+      "the depth was {:.3g} m); test it with {}\n",
+      model.name, deepest, deepest * 1e-3, checkCommand(model));
 }
 
 /// Warns of a model that does more work on the hand than the hand did on it, and so pushes the hand. Small differences
@@ -120,8 +121,8 @@ std::string energyText(const ModelReport& model) {
   if (model.moves || !(net > std::max(kTold, kShare * model.taken_j))) return "";
   return fmt::format(
       "  warning   {} gave the hand {:.3g} mJ more than it took ({:.3g} mJ): a surface must not give "
-      "back more work than was done on it; find the cause with hapticd plugin check\n",
-      model.name, net * 1e3, model.taken_j * 1e3);
+      "back more work than was done on it; find the cause with {}\n",
+      model.name, net * 1e3, model.taken_j * 1e3, checkCommand(model));
 }
 
 std::string modelText(const ModelReport& model, const RunReport& report) {
@@ -223,6 +224,10 @@ std::string clientText(const ClientReport& client, double answer_time) {
 }
 
 }  // namespace
+
+std::string checkCommand(const ModelReport& model) {
+  return "hapticd plugin check" + (model.library.empty() ? "" : " " + model.library);
+}
 
 Result<void> writeJson(const RunReport& report, const std::string& file) {
   Json json = {{"ticks", report.ticks},

@@ -28,6 +28,7 @@ struct ModelReport {
   double given_j = 0, taken_j = 0;  ///< [J] work of its forces on the hands; work of the hands against them
   bool moves = false;  ///< true if its plugin moves it, so that it can give energy to the hand without a fault
   std::vector<ArmContact> arms{};  ///< contact of each arm, if there are several arms
+  std::string library{};           ///< file of the plugin; empty if it is not known
 };
 
 /// Counts the ticks in which limits reduced the force of one device.
@@ -67,6 +68,9 @@ struct RunReport {
 
 /// [main] Writes the report as JSON, completely or not at all.
 Result<void> writeJson(const RunReport& report, const std::string& file);
+
+/// Returns the command that tests the plugin of a model, as a person types it.
+std::string checkCommand(const ModelReport& model);
 
 /// [main] Returns the report as text for a terminal.
 std::string summary(const RunReport& report);

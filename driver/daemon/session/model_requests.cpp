@@ -168,7 +168,7 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
   for (size_t i = 0; i < models.size(); ++i) {
     const uint32_t place = empty[i];
     prepared_.push_back(std::make_unique<ModelState>(Core::stateOf(*shapes[i], models[i])));
-    runner_.nameModel(place, models[i].name, models[i].plugin);
+    runner_.nameModel(place, models[i].name, models[i].plugin, models[i].library.string());
     Order order;
     order.kind = Order::Kind::kAdopt;
     order.target = place;
@@ -297,7 +297,7 @@ void RequestHandler::sweep() {
   uint32_t place = 0;
   while (runner_.world().core().takeReleased(place)) {
     runner_.world().destroy(place);
-    runner_.nameModel(place, "", "");
+    runner_.nameModel(place, "", "", "");
   }
 }
 

@@ -260,8 +260,8 @@ std::vector<std::string> Runner::enterRealTime() const {
   return refused;
 }
 
-void Runner::nameModel(uint32_t place, const std::string& name, const std::string& plugin) {
-  telemetry_->name(place, name, plugin);
+void Runner::nameModel(uint32_t place, const std::string& name, const std::string& plugin, const std::string& library) {
+  telemetry_->name(place, name, plugin, library);
   event_log_->name(place, name);
   if (telemetry_->statusWriter() != nullptr) telemetry_->statusWriter()->name(place, name, plugin);
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "host/built_in.hpp"
+
 namespace hapticd::servo {
 
 Telemetry::Telemetry(const scene::Scene& scene, double rate, uint32_t places)
@@ -16,9 +18,11 @@ Telemetry::Telemetry(const scene::Scene& scene, double rate, uint32_t places)
   for (const scene::Model& model : scene.models) {
     names_.push_back(model.name);
     plugins_.push_back(model.plugin);
+    libraries_.push_back(model.library.string());
   }
   names_.resize(models_.size());
   plugins_.resize(models_.size());
+  libraries_.resize(models_.size());
   work_.resize(models_.size() * scene.devices.size());
   if (scene.devices.size() < 2) return;
   for (const scene::Device& device : scene.devices) devices_.push_back(device.name);
@@ -32,8 +36,11 @@ std::vector<record::ArmContact> Telemetry::armsOf(size_t place) const {
 }
 
 record::ModelReport Telemetry::reportOf(size_t place) const {
-  record::ModelReport report{
-      .name = names_[place], .plugin = plugins_[place], .contact = models_[place], .arms = armsOf(place)};
+  record::ModelReport report{.name = names_[place],
+                             .plugin = plugins_[place],
+                             .contact = models_[place],
+                             .arms = armsOf(place),
+                             .library = host::findBuiltIn(libraries_[place]) == nullptr ? libraries_[place] : ""};
   for (size_t i = 0; i < stops_.size(); ++i) {
     report.given_j += work_[place * stops_.size() + i].given();
     report.taken_j += work_[place * stops_.size() + i].taken();
@@ -46,7 +53,7 @@ void Telemetry::attach(std::unique_ptr<Flight> flight) {
   rows_ = {};
 }
 
-void Telemetry::name(uint32_t place, const std::string& name, const std::string& plugin) {
+void Telemetry::name(uint32_t place, const std::string& name, const std::string& plugin, const std::string& library) {
   if (!names_[place].empty()) {
     if (left_.size() == kMostLeft) left_.erase(left_.begin());
     left_.push_back(reportOf(place));
@@ -56,6 +63,7 @@ void Telemetry::name(uint32_t place, const std::string& name, const std::string&
   for (size_t i = 0; i < devices_.size(); ++i) by_arm_[place * devices_.size() + i] = {};
   names_[place] = name;
   plugins_[place] = plugin;
+  libraries_[place] = library;
 }
 
 void Telemetry::tick(double t, double dt, Nanoseconds late, const TickDuration& spent, const Core& core,

@@ -43,7 +43,7 @@ class Telemetry final : public TickLog {
 
   /// [main] Called before the servo adopts a model into an empty place. The counts of the newest kMostLeft models that
   /// have left stay in the report.
-  void name(uint32_t place, const std::string& name, const std::string& plugin);
+  void name(uint32_t place, const std::string& name, const std::string& plugin, const std::string& library);
 
   /// [main] From now on stores every tick, with all inputs and outputs, in this black box, instead of a short
   /// BlackBoxRow.
@@ -109,7 +109,7 @@ class Telemetry final : public TickLog {
   void recordModels(double dt, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms,
                     BlackBoxRow& row) noexcept HSP_RT;
 
-  std::vector<std::string> names_, plugins_;
+  std::vector<std::string> names_, plugins_, libraries_;
   std::vector<record::ModelReport> left_;  ///< reports of models that have left
   std::vector<record::ClientReport> clients_;
   double rate_, simulated_seconds_ = 0;

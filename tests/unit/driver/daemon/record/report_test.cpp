@@ -279,6 +279,9 @@ TEST_F(Report, TellsPeopleOfAModelThatDrivesTheHand) {
   report.models[0].given_j = work.given(), report.models[0].taken_j = work.taken();
   EXPECT_NE(summary(report).find("warning   ball gave the hand 5 mJ more than it took (6.25 mJ)"), std::string::npos)
       << summary(report);
+  report.models[0].library = "my-plugins/ball.so";
+  EXPECT_NE(summary(report).find("find the cause with hapticd plugin check my-plugins/ball.so\n"), std::string::npos)
+      << summary(report);
   report.models[0].moves = true;  // it may have had that
   EXPECT_EQ(summary(report).find("gave the hand"), std::string::npos);
   report.models[0].moves = false, report.models[0].given_j = 0.0063, report.models[0].taken_j = 0.00625;
