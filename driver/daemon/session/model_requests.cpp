@@ -86,6 +86,7 @@ Result<scene::Scene> RequestHandler::loadOwn(const control::Peer& peer) {
 /// Loads a scene that a program sent. The daemon may read the files of its own arms for it, because the scene must name
 /// these arms, but shows nothing of their content. A scene that names no arm has the default one, which ships.
 Result<scene::Scene> RequestHandler::loadPassed(const control::Peer& peer, const std::string& file) {
+  if (!passed_) return Error{"no files were passed with the request"};
   std::vector<std::string> own;
   if (const auto usual = host::shippedFile(scene::kDefaultDevice)) own.push_back(usual->string());
   for (const scene::Device& device : runner_.scene().devices) {

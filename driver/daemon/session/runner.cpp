@@ -256,7 +256,7 @@ std::vector<std::string> Runner::enterRealTime() const {
       refused.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " + code.message());
   if (const auto code = os::setFifo(options_.priority))
     refused.push_back(noFifo(options_.priority, code, !onlySimulated()));
-  (void)os::limitRealTimeRun(kLongestRunUs);  // if this fails, the limit is lower already
+  [[maybe_unused]] const auto limited = os::limitRealTimeRun(kLongestRunUs);  // if this fails, it is lower already
   return refused;
 }
 

@@ -80,7 +80,7 @@ std::string dampingSign(const Recipe& recipe, uint64_t) {
   if ((made.subject->report().flags & HSP_R_VELOCITY) == 0)
     return "skip: it does not ask for the velocity (HSP_R_VELOCITY), so there is no damping to test";
   bool judged = false;
-  const std::string wrong = atEachPlace(recipe, [&judged](Subject& subject, const Place& place) {
+  std::string wrong = atEachPlace(recipe, [&judged](Subject& subject, const Place& place) {
     constexpr int kMostLead = 5;  // [ticks]
     const double shallow = pressDepth(subject), deep = std::min(3 * shallow, deepestPress(subject));
     for (const double depth : {shallow, deep})
