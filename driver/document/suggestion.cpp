@@ -9,10 +9,6 @@
 
 namespace hapticd::document {
 
-size_t editDistance(std::string_view a, std::string_view b) {
-  return hapticd::editDistance(a, b);
-}
-
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   return nearestWord(word, candidates);
 }

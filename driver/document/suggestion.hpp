@@ -7,9 +7,6 @@
 
 namespace hapticd::document {
 
-/// [any] Returns the number of edits (insert, delete, replace, swap of neighbours) between two words, ignoring case.
-size_t editDistance(std::string_view a, std::string_view b);
-
 /// [any] Returns the candidate nearest to `word`, or "" if none is near enough.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
