@@ -5,8 +5,10 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <cstdlib>
 #include <ctime>
 #include <string>
@@ -108,6 +110,27 @@ struct Slow : hapticd::Shape {
   static hsp_status bounds(hsp_shape*, double*, double*) { return HSP_E_UNSUPPORTED; }
 };
 
+/// Overwrites what the C library keeps about a block that was freed, so that a later malloc() of anyone aborts.
+class TornBlock {
+ public:
+  /// Three blocks that lie side by side: the one between them stays a block of its own when it is freed.
+  void prepare() {
+    for (auto& block : blocks_) block = static_cast<size_t*>(std::malloc(kBytes));
+    for (size_t i = 0; i + 2 < blocks_.size(); ++i)
+      if (blocks_[i + 1] - blocks_[i] == kApart && blocks_[i + 2] - blocks_[i + 1] == kApart) torn_ = blocks_[i + 1];
+  }
+  void tear() {
+    std::free(torn_);
+    torn_[-1] = ~size_t{0};  // its size
+  }
+
+ private:
+  static constexpr size_t kBytes = 4000;  // too large for the lists that malloc() does not check
+  static constexpr ptrdiff_t kApart = (kBytes + 2 * sizeof(size_t)) / sizeof(size_t);
+  std::array<size_t*, 64> blocks_{};
+  size_t* torn_ = nullptr;
+};
+
 /// Crashes in one of its functions; or answers surfaces that it does not have.
 struct Broken : hapticd::Shape {
   int where, surfaces, steps = 0;
@@ -129,6 +152,7 @@ struct Broken : hapticd::Shape {
   void activate(const hsp_activation&, hsp_report&) {
     if (is("set_up")) crash();
     if (is("set_up_exit")) _exit(0);
+    if (is("tears")) memory_.prepare();
     for (volatile int turns = 0; is("set_up_loop");) turns = turns + 1;
     if (is("thread"))
       std::thread([] {
@@ -141,7 +165,7 @@ struct Broken : hapticd::Shape {
   }
   hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
     out.force[1] = 0.5;
-    if (is("tears")) (&out)[1].force[0] = 1e3;  // behind its record: what the allocator keeps there
+    if (is("tears") && ++steps == 400) memory_.tear();
     return is("reset") && ++steps > 400 ? HSP_E_NUMERIC : HSP_OK;
   }
   const void* extension(const char* name) {
@@ -174,6 +198,7 @@ struct Broken : hapticd::Shape {
   }
   static hsp_status end(hsp_shape*, uint32_t, uint32_t) noexcept { return HSP_OK; }
   hsp_ext_surfaces surfaces_{};
+  TornBlock memory_;
 };
 
 }  // namespace
