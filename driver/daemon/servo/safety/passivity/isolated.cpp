@@ -17,24 +17,27 @@ bool comesToRest(double k, double b, int n) noexcept {
   past.fill(1);
   double x = 1, v = 0;
   std::array<double, 4> swing{};
-  const int quarter = 200 * (n + 4);
-  for (int i = 0; i < 4 * quarter; ++i) {
-    double& oldest = past[static_cast<size_t>(i % n)];
-    const double force = -k * x - b * (x - oldest) / n;
-    oldest = x;
-    x += v + force / 2;
-    v += force;
-    double& largest = swing[static_cast<size_t>(i / quarter)];
-    largest = std::max(largest, std::abs(x) + std::abs(v));
-    if (!(largest < 1e9)) return false;
+  int oldest_at = 0;
+  for (double& largest : swing) {
+    for (int i = 0; i < 200 * (n + 4); ++i) {
+      double& oldest = past[static_cast<size_t>(oldest_at)];
+      oldest_at = oldest_at + 1 < n ? oldest_at + 1 : 0;
+      const double force = -k * x - b * (x - oldest) / n;
+      oldest = x;
+      x += v + force / 2;
+      v += force;
+      largest = std::max(largest, std::abs(x) + std::abs(v));
+      if (!(largest < 1e9)) return false;
+    }
   }
   return swing[3] < swing[1];
 }
 
-/// Finds the largest stable k for a damping b by bisection: below it every k is stable, and above it none is.
+/// Finds the largest stable k for a damping b by bisection: below it every k is stable, and above it none is. Whatever
+/// b is, k n^(3/2) stays below 1.3.
 double largestStiffness(double b, int n) noexcept {
-  constexpr int kHalvings = 18;
-  double low = 0, high = 1;
+  constexpr int kHalvings = 12;  // to 0.1 % of the largest k, which is enough for a warning
+  double low = 0, high = 1.5 / (n * std::sqrt(n));
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = (low + high) / 2;
     (comesToRest(middle, b, n) ? low : high) = middle;
@@ -51,14 +54,17 @@ bool stableAlone(double mass, double stiffness, double damping, int n, double pe
 double maxStiffnessAlone(double mass, int n, double period) noexcept {
   const int window = std::clamp(n, 1, kLongestWindow);
   constexpr double kGolden = 0.6180339887498949;
-  constexpr int kSteps = 22;
+  constexpr int kSteps = 14;
   double low = 0, high = 1.5 / std::sqrt(window);
-  for (int i = 0; i < kSteps; ++i) {
-    const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-    if (largestStiffness(a, window) > largestStiffness(b, window)) {
-      high = b;
+  double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
+  double stiffness_left = largestStiffness(left, window), stiffness_right = largestStiffness(right, window);
+  for (int i = 0; i < kSteps; ++i) {          // golden-section search: each step simulates one new damping
+    if (stiffness_left >= stiffness_right) {  // both are 0 where the damping alone is unstable
+      high = right, right = left, stiffness_right = stiffness_left;
+      stiffness_left = largestStiffness(left = high - kGolden * (high - low), window);
     } else {
-      low = a;
+      low = left, left = right, stiffness_left = stiffness_right;
+      stiffness_right = largestStiffness(right = low + kGolden * (high - low), window);
     }
   }
   return largestStiffness((low + high) / 2, window) * mass / (period * period);
