@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Prints a number for what the mathematics of arms and shapes give, to the last bit: built in several ways, it must be
-/// the same. Compiled by the script same_bits, not by the build.
+/// the same. The build compiles it with the libraries that ship, and the script same_bits in other ways.
 #include <Eigen/Geometry>
 #include <bit>
 #include <cmath>
