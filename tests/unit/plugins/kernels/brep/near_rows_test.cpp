@@ -77,7 +77,7 @@ Part scattered(std::mt19937& random) {
 }
 
 /// Seen from as far as a metre and as near as a nanometre.
-TEST(RowSlab, BoundsNoTriangleFromAbove) {
+TEST(RowDisc, BoundsNoTriangleFromAbove) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> share(-1, 1), exponent(-9, 0);
   const Model model(scattered(random));
@@ -86,9 +86,9 @@ TEST(RowSlab, BoundsNoTriangleFromAbove) {
   for (std::int32_t n = 0; n < static_cast<std::int32_t>(body.tree.nodeCount()); ++n)
     for (std::size_t i = 0; i < 4; ++i) {
       if (body.tree.node(n).child[i] >= 0) continue;
-      const RowSlab& slab = body.slabs[static_cast<std::size_t>(body.tree.node(n).row[i])];
-      FourSlabs four = emptyFour(slab);
-      for (int lane = 0; lane < 4; ++lane) put(slab, lane, four);
+      const RowDisc& disc = body.discs[static_cast<std::size_t>(body.tree.node(n).row[i])];
+      FourDiscs four = emptyFour(disc);
+      for (int lane = 0; lane < 4; ++lane) put(disc, lane, four);
       const ElementRow row = BoxTree::rowOf(body.tree.node(n).child[i]);
       for (int k = 0; k < 40; ++k) {
         const std::uint32_t corner = model.part().triangles[body.elements[row.first].index()].corner[k % 3u];
@@ -98,7 +98,7 @@ TEST(RowSlab, BoundsNoTriangleFromAbove) {
         for (std::uint32_t e = row.first; e < row.first + row.count; ++e)
           truth = std::min(truth, distanceTo(model.part(), body.elements[e].index(), p));
         const BoxProbe probe(body.tree, p);
-        const auto bound = static_cast<double>(rowDistance(slab, probe));
+        const auto bound = static_cast<double>(rowDistance(disc, probe));
         ASSERT_LE(bound, truth * truth) << p.transpose();
         ASSERT_LE(static_cast<double>(rowDistances(four, probe)[k % 4]), truth * truth) << p.transpose();
         close += bound > 0.25 * truth * truth;

@@ -67,7 +67,7 @@ bool footFrom(const Model& model, Leaf leaf, const Array2d& uv, const Vector3d& 
   leaf.borders = 0;
   const LeafStart start{uv, {FeetOfLeaf::kOne}, false};
   return leafFoot(model.geometry(), leaf, model.face(leaf.face), model.part().faces[leaf.face].surface, p, start, hit)
-      .alone;
+      .proved;
 }
 
 /// Whether a foot lies inside the leaf; a narrow valley that only looks like one on the grid leads to the border.
@@ -83,27 +83,27 @@ bool hasFootInside(const Model& model, const Leaf& leaf, const LeafGrid& grid, c
 }
 
 /// A leaf that is passed over after one evaluation is farther than the limit.
-void lookFromAfar(const Model& model, Leaf leaf, const Vector3d& p, const LeafSight& sight, const LeafGrid& grid,
+void lookFromAfar(const Model& model, Leaf leaf, const Vector3d& p, const LeafFeet& feet, const LeafGrid& grid,
                   LeafTally& tally) {
   leaf.borders = 0;
   for (const double share : {0.5, 0.9, 0.99, 1.0, 1.01}) {
-    LeafStart start{footNear(leaf.bow, leaf.middle(), leaf.bow.local(p)), sight, false};
+    LeafStart start{footNear(leaf.curvature, leaf.middle(), leaf.curvature.local(p)), feet, false};
     start.limit2 = share * grid.least();
     Hit hit;
     const std::uint32_t surface = model.part().faces[leaf.face].surface;
-    const PieceAnswer answer = leafFoot(model.geometry(), leaf, model.face(leaf.face), surface, p, start, hit);
+    const NewtonResult answer = leafFoot(model.geometry(), leaf, model.face(leaf.face), surface, p, start, hit);
     if (answer.evaluations > 1 || hit.d2 < 1e300) continue;
     ++tally.passed_over;
-    EXPECT_LE(answer.region2, grid.least() * (1 + 1e-9)) << p.transpose();
-    EXPECT_GT(answer.region2, start.limit2) << p.transpose();
+    EXPECT_LE(answer.untrimmed2, grid.least() * (1 + 1e-9)) << p.transpose();
+    EXPECT_GT(answer.untrimmed2, start.limit2) << p.transpose();
   }
 }
 
 void lookAtLeaf(const Model& model, const Leaf& leaf, const Vector3d& p, LeafGrid& grid, LeafTally& tally) {
-  const Vector3d q = leaf.bow.local(p);
+  const Vector3d q = leaf.curvature.local(p);
   grid.lookFrom(p);
-  const LeafSight sight = feetSeenFrom(leaf.bow, q);
-  switch (sight.feet) {
+  const LeafFeet feet = countFeet(leaf.curvature, q);
+  switch (feet.number) {
     case FeetOfLeaf::kNowhere:
       ++tally.nowhere;
       EXPECT_FALSE(hasFootInside(model, leaf, grid, p)) << p.transpose();
@@ -111,9 +111,9 @@ void lookAtLeaf(const Model& model, const Leaf& leaf, const Vector3d& p, LeafGri
     case FeetOfLeaf::kOne: {
       ++tally.one;
       Hit hit;
-      const bool arrived = footFrom(model, leaf, footNear(leaf.bow, leaf.middle(), q), p, hit);
+      const bool arrived = footFrom(model, leaf, footNear(leaf.curvature, leaf.middle(), q), p, hit);
       EXPECT_TRUE(!arrived || hit.d2 <= grid.least() * (1 + 1e-9) + 1e-18) << p.transpose();
-      lookFromAfar(model, leaf, p, sight, grid, tally);
+      lookFromAfar(model, leaf, p, feet, grid, tally);
       break;
     }
     default:
@@ -132,10 +132,10 @@ void expectTrueOf(const std::string& file) {
     for (const double away : {1e-4, 1e-3, 1e-2, 0.1})  // of the probe from the middle of the leaf
       for (int k = 0; k < 6; ++k) {
         const Vector3d aside(normal(random), normal(random), normal(random));
-        const Vector3d p = k < 3
-                               ? Vector3d(leaf.bow.center + away * aside)
-                               : Vector3d(leaf.bow.center + away * normal(random) * leaf.bow.frame.row(2).transpose() +
-                                          0.1 * away * aside);
+        const Vector3d p =
+            k < 3 ? Vector3d(leaf.curvature.center + away * aside)
+                  : Vector3d(leaf.curvature.center + away * normal(random) * leaf.curvature.frame.row(2).transpose() +
+                             0.1 * away * aside);
         lookAtLeaf(model, leaf, p, grid, tally);
       }
   }
@@ -149,13 +149,13 @@ void expectTrueOf(const std::string& file) {
   EXPECT_LT(tally.unknown, 0.5 * all);  // near poles, and at centres of curvature
 }
 
-TEST(LeafBow, OfTheTeapot) {
+TEST(LeafCurvature, OfTheTeapot) {
   expectTrueOf("teapot.yaml");
 }
-TEST(LeafBow, OfTheGoblet) {
+TEST(LeafCurvature, OfTheGoblet) {
   expectTrueOf("goblet.yaml");
 }
-TEST(LeafBow, OfTheTorus) {
+TEST(LeafCurvature, OfTheTorus) {
   expectTrueOf("torus.yaml");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/brep/guised_edges.hpp"
+#include "kernels/brep/recognised_edges.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,13 +36,13 @@ spline::SurfaceData wall(double bulge) {
   return data;
 }
 
-TEST(GuisedEdges, AreTheLinesAndCirclesTheyAreInTruth) {
+TEST(RecognisedEdges, AreTheLinesAndCirclesTheyAreInTruth) {
   const Part part = samples::sheetOf({wall(0)});
   const Geometry geometry(part, spline::Form::kNet);
   int circles = 0, lines = 0;
   spline::CurvePoint C;
   for (const Edge& edge : part.edges) {
-    const auto made = unguised(geometry, edge);
+    const auto made = recogniseEdge(geometry, edge);
     ASSERT_TRUE(made);
     ++(made->is_circle ? circles : lines);
     EXPECT_NEAR(made->shape.t1, made->is_circle ? 1.5 * std::numbers::pi : kHeight, 1e-12);
@@ -59,12 +59,12 @@ TEST(GuisedEdges, AreTheLinesAndCirclesTheyAreInTruth) {
   EXPECT_EQ(lines, 2);
 }
 
-TEST(GuisedEdges, AreNotTakenForMoreThanTheyAre) {
+TEST(RecognisedEdges, AreNotTakenForMoreThanTheyAre) {
   const Part part = samples::sheetOf({wall(1e-9)});  // bulges by some tenths of a nanometre
   const Geometry geometry(part, spline::Form::kNet);
   int lines = 0;
   for (const Edge& edge : part.edges)
-    if (const auto made = unguised(geometry, edge)) lines += !made->is_circle;
+    if (const auto made = recogniseEdge(geometry, edge)) lines += !made->is_circle;
   EXPECT_EQ(lines, 2);
 }
 
@@ -85,7 +85,7 @@ int minima(const Geometry& geometry, const BoxedPiece& made, std::uint32_t curve
   return count + (sign < 0 ? 1 : 0);
 }
 
-TEST(PieceBow, PromisesNoFewerFeetThanThereAre) {
+TEST(PieceCurvature, PromisesNoFewerFeetThanThereAre) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   for (const double bulge : {1e-9, 1e-4, -5e-4}) {
@@ -99,7 +99,7 @@ TEST(PieceBow, PromisesNoFewerFeetThanThereAre) {
         for (int i = 0; i < 500; ++i, ++all) {
           const double far = std::pow(10.0, -3 + i % 4);
           const Vector3d p = far * Vector3d(normal(random), normal(random), i % 2 * normal(random));
-          const FeetOfPiece feet = feetSeenFrom(made.piece.shape, p);
+          const FeetOfPiece feet = countFeet(made.piece.curvature, p);
           int inner = 0;
           const int count = minima(geometry, made, part.edges[e].curve, p, inner);
           wrong += (feet == FeetOfPiece::kOne && count != 1) || (feet == FeetOfPiece::kAtAnEnd && inner != 0);
@@ -114,7 +114,7 @@ TEST(PieceBow, PromisesNoFewerFeetThanThereAre) {
 
 /// Pieces of such splines were not proved from beyond their centres of curvature: every tick then looked at all that
 /// is no farther than their boxes, and told of a degraded foot.
-TEST(GuisedEdges, AreProvedFromAfarWithFewFeet) {
+TEST(RecognisedEdges, AreProvedFromAfarWithFewFeet) {
   std::ifstream in(HAPTICD_SOURCE_DIR "/config/models/as1.hpart", std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   for (const char* instance : {"", "l-bracket-assembly_1", "plate_1", "rod-assembly_1"}) {
