@@ -55,7 +55,8 @@ struct FaceShape {
   double rise = 1;        ///< for a cone, dz/ds along the slant line
   /// On a plane: parameters per metre. On other surfaces per_y is v per metre of z, or per metre of the slant line.
   double per_x = 1, per_y = 1;
-  /// -1 if the face lies where the radius is negative (far nappe of a cone, inside of a spindle torus).
+  /// -1 if the face lies where the radius of the surface is negative (the far nappe of a cone, the inner part of a
+  /// spindle torus), else 1.
   double nappe = 1;
   double outward = 1;  ///< +1 or -1: outward normal relative to the radial direction, or to x cross y for planes
   Eigen::Array2d middle{0, 0};  ///< middle of [lo, hi] of the face
@@ -80,7 +81,8 @@ struct Leaf {
   float curvature_front = 0;  ///< [1/m] largest curvature toward the outward normal; 0 if it never curves that way
   float curvature_back = 0;   ///< the same toward the other side
   std::uint32_t face = 0;
-  /// Bit 2 axis (lo) or 2 axis + 1 (hi) is set if the surface, or the box of its loops, ends on that side.
+  /// Bit 2 * axis is set if the surface, or the box of its loops, ends on the low side of that axis; bit 2 * axis + 1
+  /// if it ends on the high side.
   std::uint32_t borders = 0;
   LeafCurvature curvature;
 

@@ -31,7 +31,8 @@ struct LeafCurvature {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
   Eigen::Array2d along[2]{{0, 0}, {0, 0}};  ///< [1/m] change of (u, v) per metre along direction 1 and 2
   double principal[2]{0, 0};                ///< [1/m] the two principal curvatures in the middle
-  /// [m] height along the normal of the point o (see above) for direction i; NaN if it is unknown.
+  /// [m] height of the point o (see above) along the normal, for direction i: the centre of curvature, or 0 if the leaf
+  /// is nearly straight in that direction. NaN if the leaf was not measured; then the number of feet is unknown.
   double focus[2]{kUnknown, kUnknown};
   Term slope[2];        ///< bounds of (S - o) S_i
   Term second[2];       ///< bounds of S_i S_i + (S - o) S_ii
@@ -45,10 +46,10 @@ struct LeafCurvature {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// [main] Measures the piece of a surface between two corners of a parameter rectangle. The result is unknown (see
+/// [main] Measures the piece of a surface between two corners of a parameter rectangle. Nothing is measured (see
 /// `focus`) if the surface is not regular in the middle, and for offsets, whose second derivatives are not exact.
 /// @param ends Leaf::borders @param hull becomes a box that encloses the piece, in the frame of its middle; it stays
-/// unchanged if the result is unknown
+/// unchanged if nothing is measured
 LeafCurvature leafCurvature(const Geometry& geometry, std::uint32_t surface, const Eigen::Array2d& lo,
                             const Eigen::Array2d& hi, std::uint32_t ends, OrientedBox& hull);
 
@@ -58,7 +59,7 @@ enum class FeetOfLeaf : std::uint8_t {
   kUnknown
 };
 
-/// How many feet a probe has on a leaf, as far as this is known.
+/// How many feet a probe has on a leaf, as far as the bounds show it.
 struct LeafFeet {
   FeetOfLeaf number = FeetOfLeaf::kUnknown;
   /// For kOne: lower bound of the second derivative of half the squared distance, in any direction.

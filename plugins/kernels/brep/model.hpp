@@ -20,8 +20,8 @@ namespace hapticd::brep {
 
 struct ModelOptions {
   spline::Form form = spline::Form::kTable;  ///< how spline surfaces and edges are stored
-  /// Name of one instance or assembly, or its path "assembly/sub/part"; empty for the whole part. It keeps its pose in
-  /// the part.
+  /// Name of one instance or assembly, or its path "assembly/sub/part"; empty for the whole part. The instance keeps
+  /// the pose that it has in the part.
   std::string instance;
 };
 
@@ -49,7 +49,8 @@ struct CornerNormal {
 /// The elements of one body.
 struct BodyTree {
   static constexpr std::int32_t kNoRoot = -1;  ///< root of a face without elements
-  /// Triangles in one row; testing the disc around two triangles is cheaper than testing one triangle.
+  /// Triangles in one row. One disc around two triangles is used, because the distance to a disc costs less than that
+  /// to a triangle.
   static constexpr int kMeshRow = 2;
 
   BoxTree tree;
@@ -57,7 +58,8 @@ struct BodyTree {
   std::vector<RowBox> rows;       ///< box of each row, indexed by row number; empty for meshes
   std::vector<RowDisc> discs;     ///< disc of each row, indexed by row number; empty except for meshes
 
-  /// [rt] Prefetches the memory of a child of a node that will be examined soon.
+  /// [rt] Prefetches a child of a node that will be examined soon. @param row number of the row, for a child that is a
+  /// row
   void fetchAhead(std::int32_t child, std::int32_t row) const noexcept {
     const auto at = static_cast<std::size_t>(row);
     if (child >= 0) {

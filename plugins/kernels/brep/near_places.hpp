@@ -15,8 +15,8 @@ class NearPlaces {
   static constexpr int kMostPlaces = 4;
   static constexpr int kMostRows = kMostPlaces * NearElements::kMostRows;
   using Limits = ElementLimits;
-  /// Nodes of the tree: if a search of the whole model examines fewer nodes than this, gathering elements would cost
-  /// more than it saves.
+  /// If a search of the whole model examines fewer nodes of its trees than this, gathering elements would cost more
+  /// than it saves.
   static constexpr int kFewestNodes = 24;
 
   /// The elements near the probe in one placement.

@@ -10,8 +10,8 @@
 
 namespace hapticd::brep {
 
-/// Limits for bodies of faces and edges: how many rows are collected and examined in one tick. Examining a spline leaf
-/// is expensive.
+/// Limits for bodies of faces and edges: how many rows are gathered and examined in one tick. They are low, because the
+/// foot on a spline leaf costs several evaluations.
 struct ElementLimits {
   using Shape = RowBox;
   static constexpr int kMostFours = 8;         ///< most groups of four rows
@@ -23,7 +23,7 @@ struct ElementLimits {
   /// Measured distances are kept, because they bound a row more closely than its shape does.
   static constexpr bool kLearns = true;
 };
-/// The same limits for meshes: examining a triangle is cheap.
+/// The same limits for meshes. They are higher, because the foot on a triangle costs little.
 struct TriangleLimits {
   using Shape = RowDisc;
   static constexpr int kMostFours = 24, kMostCandidates = 96, kMostNodes = 128, kFew = 16, kMany = 32;
@@ -84,7 +84,7 @@ class NearRows {
   void add(const Shape& shape, std::int32_t child) noexcept;
 
   std::array<Four, Limits::kMostFours> fours_;
-  std::array<Float4, Limits::kMostFours> known_{};  ///< [m] measured distance, plus moved_ at that time
+  std::array<Float4, Limits::kMostFours> known_{};  ///< [m] measured distance, plus the value of moved_ at that time
   std::array<std::int32_t, kMostRows> children_{};
   Eigen::Vector3d center_{0, 0, 0};
   double beyond_ = -1;

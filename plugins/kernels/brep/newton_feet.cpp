@@ -18,8 +18,8 @@ constexpr int kMostSteps = 16;
 /// [m] A Newton step shorter than this ends the search. The remaining error is the square of the step times the
 /// curvature, which is negligible.
 constexpr double kShortStep = 1e-8;
-/// If the determinant of the Hessian is below this share of the product of its diagonal, the first-order (Gauss-Newton)
-/// step is used instead.
+/// If the determinant of the Hessian is below this share of the product of its diagonal, the quadratic model is not
+/// convex enough, and the first-order (Gauss-Newton) step is used instead.
 constexpr double kFlattest = 1e-5;
 
 /// The squared distance to the probe and its derivatives at one point of a leaf.
@@ -110,8 +110,8 @@ bool pressesOutward(const Leaf& leaf, const LeafState& s, const Array2d& uv) noe
   return false;
 }
 
-/// Replaces `hit` by the foot after the last step from s, if this foot is nearer and inside the trim. Returns its
-/// squared distance.
+/// Replaces `hit` by the foot after the last step from s, if this foot is nearer. Returns its squared distance, or
+/// infinity if it is outside the trim or refused. `untrimmed2` is lowered to its squared distance in any case.
 double take(const LeafTask& task, const FaceShape& face, const LeafState& s, const Vector2d& d, double offset,
             double& untrimmed2, Hit& hit) noexcept {
   const Array2d uv = (s.uv + d.array()).max(task.leaf.lo).min(task.leaf.hi);

@@ -6,13 +6,13 @@
 
 namespace hapticd::brep {
 
-/// What a search learns by examining a leaf or a piece of a curve.
+/// The result of Newton's method on a leaf or on a piece of a curve.
 struct NewtonResult {
-  /// [m^2] squared distance of the nearest foot found, even if `hit` was nearer.
+  /// [m^2] squared distance of the nearest foot found, even if `hit` was nearer; infinite if no foot counts.
   double d2 = std::numeric_limits<double>::infinity();
-  /// [m^2] leaves only: the same, including feet that are refused (see leafFoot()).
+  /// [m^2] leaves only: the same, including feet outside the trim and feet that are refused (see leafFoot()).
   double untrimmed2 = std::numeric_limits<double>::infinity();
-  bool proved = true;  ///< true if no other point of the element can be nearer than d2 and untrimmed2
+  bool proved = true;  ///< certainly no other point of the element is nearer than d2 and untrimmed2
   int evaluations = 0;
   int starts = 1;  ///< starts of Newton's method
 };

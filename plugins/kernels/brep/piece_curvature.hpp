@@ -8,7 +8,8 @@
 
 namespace hapticd::brep {
 
-/// Factor by which a quantity between samples of a curve or surface may be larger than at the samples.
+/// Safety factor: a quantity that is sampled on a curve or surface is assumed to be larger between the samples by at
+/// most this factor.
 inline constexpr double kBetweenSamples = 1.5;
 
 /// Curvature vectors K and unit tangents T of a piece. C is a point of the piece. Along the arc, half of the squared
@@ -37,7 +38,7 @@ enum class FeetOfPiece : std::uint8_t {
 };
 
 /// [rt] Returns a lower bound, over the piece, of the second derivative of half the squared distance to p along the
-/// arc. If it is not above 0, nothing follows from it.
+/// arc. If it is above 0, p has one foot on the piece; otherwise the number of feet is not known from it.
 double leastSecondDerivative(const PieceCurvature& piece, const Eigen::Vector3d& p) noexcept;
 
 /// [any] Returns how many feet p has on the piece.

@@ -154,10 +154,11 @@ class FaceCutter {
     leaves_.push_back(made);
   }
 
-  /// Returns the axis along which a leaf bends so unevenly that its LeafCurvature says little near the centres of
-  /// curvature, or -1 if there is none.
+  /// Returns the axis along which the curvature of a leaf varies so much that the bounds in LeafCurvature are too wide
+  /// to count the feet of a probe near the centres of curvature. Returns -1 if there is none.
   static int roughAxis(const Leaf& leaf) {
-    // variation of the second derivative of half the squared distance, which is 1 on the surface
+    // largest variation of the second derivative of half the squared distance; the derivative itself is 1 on the
+    // surface
     constexpr double kRough = 0.2;
     int axis = -1;
     double worst = kRough;

@@ -14,8 +14,8 @@ using spline::CurvePoint;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kOff = 5e-13;  ///< [m] greatest deviation of the points from the shape
-/// Samples per knot span. The squared distance of a rational cubic from a centre has degree 6. So if it is right at
-/// more than 6 points of a span, it is right between them too.
+/// Samples per knot span. The numerator of the squared distance from a point to a rational cubic is a polynomial of
+/// degree 6. So if the distance is right at more than 6 points of a span, it is right in the whole span.
 constexpr int kInSpan = 9;
 
 struct Samples {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Recognised edges: splines that are really lines or circles, as many CAD programs write them. Their foot has a closed
+/// Recognised edges: edges that the file stores as splines, but that are lines or circles to rounding. Many CAD
+/// programs write them so (CAD systems call this step canonical recognition). The foot on a line or circle has a closed
 /// form, which is the nearest point for every probe. The faces beside such an edge still need the parameter of the
 /// spline.
 #pragma once

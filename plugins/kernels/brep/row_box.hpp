@@ -11,8 +11,8 @@
 
 namespace hapticd::brep {
 
-/// A box in a frame of its own, in double precision. A shape that bends like an arc about a line along axis 1 is
-/// thinner than its box. So the shape is also bounded by two cylinders about that line.
+/// A box in a frame of its own, in double precision. If the shape is an arc about a line parallel to axis 1, it fills
+/// only a thin part of its box. So the shape is also bounded by two cylinders about that line.
 struct OrientedBox {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: unit axes at right angles
   Eigen::AlignedBox3d box;                              ///< the box in the coordinates frame * x

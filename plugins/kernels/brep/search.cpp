@@ -87,7 +87,8 @@ double Search::evaluateLeaf(Element element, const Vector3d& p, Examination& exa
   return answer.d2;
 }
 
-/// Returns a lower bound of the squared distance to an element. `hit` is replaced if the element is nearer.
+/// Computes the foot on an element. Returns a lower bound of the squared distance [m^2]. `hit` is replaced if the foot
+/// is nearer.
 double Search::evaluate(Element element, const Vector3d& p, Examination& examination, Hit& hit) const noexcept {
   const std::uint32_t i = element.index();
   switch (element.kind()) {
@@ -134,8 +135,8 @@ bool Search::isAsNear(Element element, const Vector3d& p, double d2) const noexc
   return hit.d2 == d2;
 }
 
-/// Returns the lower bound, found by an examination, of the squared distance to the whole element, including the places
-/// outside its trim.
+/// Returns the lower bound [m^2] that an examination has found for the squared distance to the whole element, including
+/// its points outside the trim.
 double Search::lowerBoundOf(double d2, const Examination& examination) noexcept {
   if (examination.least2 >= 0) return examination.least2;
   return examination.proved && d2 < kInfinity ? d2 : 0;
@@ -248,8 +249,9 @@ void Search::searchWhole(const Vector3d& p, Run& run) noexcept {
     searchPlaces(p, run);
 }
 
-/// Searches within run.limit2, and again without this limit if nothing was found. The last foot may now be missing in a
-/// gap between a face and its edge.
+/// Searches within run.limit2, and again without this limit if nothing was found. That happens if the foot leaves a
+/// face through a gap, within the tolerance of the file, between the face and its edge: the edge may be farther away
+/// than the last point.
 template <class Whole>
 void Search::searchWithin(Run& run, const Whole& whole) noexcept {
   const Run start = run;
@@ -260,8 +262,9 @@ void Search::searchWithin(Run& run, const Whole& whole) noexcept {
   whole();
 }
 
-/// Returns true if no search is needed, because the last element still has the nearest point. Every distance changes by
-/// at most the distance `way` [m] that the probe has moved. So the others' least distance is still bounded.
+/// Returns true if no search is needed, because the last element still has the nearest point; last_ is then the result
+/// of this tick. Every distance changes by at most the distance `way` [m] that the probe has moved. So a lower bound of
+/// the distance to all other elements is still known.
 bool Search::reuseLast(const Vector3d& p, double way, const Run& run) noexcept {
   if (!last_.proved || run.first_place == kNone) return false;
   const double others = last_.others - way;
@@ -296,8 +299,9 @@ void Search::begin(const Vector3d& p, Run& run) noexcept {
 
 void Search::finish(Run& run) noexcept {
   Nearest& best = run.best;
-  // A face whose foot is outside its trim was counted only by its edges. If the best hit is on an edge, the foot of
-  // such a face may enter its trim at any moment, so nothing is known of the others.
+  // A face whose foot is outside its trim has no distance of its own in `others2`; only its edges have. If the best hit
+  // is on an edge, the foot of such a face may enter its trim as soon as the probe moves. So no bound of the other
+  // elements is known for the next tick.
   const ElementKind kind = best.hit.element.kind();
   const bool is_edge = kind != ElementKind::kFace && kind != ElementKind::kLeaf && kind != ElementKind::kTriangle;
   best.others = is_edge ? 0 : std::sqrt(std::min(run.others2, run.open2));
@@ -317,7 +321,7 @@ const Nearest& Search::nearest(const Vector3d& p, const SearchBudget& budget) no
   Run run;
   run.budget = budget;
   run.restarts = kMostRestarts;
-  const double way = (p - last_p_).norm();  // early, so that the root is ready when it is needed
+  const double way = (p - last_p_).norm();  // computed first, because a square root takes long
   moveNear(way);
   begin(p, run);
   if (reuseLast(p, way, run)) return last_;

@@ -23,7 +23,7 @@ struct SearchBudget {
 
 /// The result of a search.
 struct Nearest {
-  Hit hit;                      ///< nearest point, in the frame of the body
+  Hit hit;                      ///< nearest point, in the frame of its body
   std::uint32_t place = kNone;  ///< index in Model::placements(); kNone if nothing was found
   /// [m] Lower bound of the distance from the probe to every other element.
   double others = 0;
@@ -77,12 +77,12 @@ class Search {
     /// or is not certain. If this is below best.hit.d2, the best foot is not proved to be the nearest.
     double open2 = std::numeric_limits<double>::infinity();
     bool tied = false;  ///< another element is as near as the best one, and neither of them is `first`
-    int restarts = 0;   ///< number of further leaves on which Newton's method may start from several places
+    int restarts = 0;   ///< number of leaves left on which Newton's method may start from several places
 
     /// [m^2] An element that is farther than this cannot be the nearest.
     double within2() const noexcept { return std::min(best.hit.d2, limit2); }
   };
-  /// One examination of an element.
+  /// The examination of one element: how Newton's method starts, and what it found out ("out").
   struct Examination {
     const Hit* start = nullptr;  ///< the last foot on the element; null if there is none
     LeafFeet feet;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The search for a probe that is tracked: only a few of the rows that an earlier tick gathered around it are examined.
+/// The search for a probe that is followed from tick to tick: it examines only some of the rows that an earlier tick
+/// gathered around the probe.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -176,7 +177,7 @@ bool Search::searchNear(const Vector3d& p_model, double way, Run& run) noexcept 
          searchNear(near_triangles_, p, way, run);
 }
 
-/// Tells the gathered rows that the probe has moved by `way` [m].
+/// Tells the gathered rows that the probe has moved by `way` [m], or forgets them if the last search found nothing.
 void Search::moveNear(double way) noexcept {
   if (last_.found()) {
     near_elements_.probeMoved(way);
