@@ -62,7 +62,7 @@ void findRange(const TopoDS_Face& face, brep::Face& record) {
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const double lo = record.lo[axis], hi = record.hi[axis];
     if (!(std::abs(lo) < Precision::Infinite() / 2 && std::abs(hi) < Precision::Infinite() / 2))
-      throw Unkept("it has no end: nothing bounds its surface");
+      throw Unkept("its surface is infinite, and no loop bounds it");
     if (!(lo < hi)) throw Unkept("it has no area");
   }
 }
@@ -136,7 +136,7 @@ void BodyBuilder::addCoedge(const TopoDS_Face& face, const TopoDS_Edge& edge) {
     ShapeFix_Edge().FixAddPCurve(edge, face, BRep_Tool::IsClosed(edge, face), Precision::Confusion());
     curve = BRep_Tool::CurveOnSurface(edge, face, t0, t1);
   }
-  if (curve.IsNull()) throw Unkept("one of its edges has no curve in its parameters");
+  if (curve.IsNull()) throw Unkept("one of its edges has no curve in the parameter plane of the face");
   brep::Coedge record;
   record.edge = edgeOf(edge);
   record.face = sizeOf(part_.faces);
@@ -147,7 +147,7 @@ void BodyBuilder::addCoedge(const TopoDS_Face& face, const TopoDS_Edge& edge) {
   if (!(record.t0 < record.t1)) throw Unkept("one of its edges has no length");
   const double wide = 1e-9 * (record.t1 - record.t0);
   if (std::abs(record.t0 - t0) > wide || std::abs(record.t1 - t1) > wide)
-    throw Unkept("an edge and its curve in the face's parameters have different ranges");
+    throw Unkept("an edge and its curve in the parameter plane of the face have different parameter ranges");
   if (unfolding_) {
     if (pole) throw Unkept("it has a pole");
     double c0 = 0, c1 = 0;
@@ -290,10 +290,11 @@ std::uint32_t BodyBuilder::add(const TopoDS_Shape& shape, std::uint32_t name, st
               : shell                  ? brep::BodyKind::kShell
                                        : brep::BodyKind::kSheet;
   if (solid && body.flags == 0 && part_.losses.size() == losses)
-    part_.warnings.push_back("'" + name_ + "' is called a solid, but has edges with one face alone: taken as a shell");
+    part_.warnings.push_back("'" + name_ +
+                             "' is stored as a solid, but some of its edges bound only one face: taken as a shell");
   if (body.flags != 0 && body.kind == brep::BodyKind::kSolid && isInsideOut(shape)) {
     for (std::uint32_t f = 0; f < body.face_count; ++f) part_.faces[body.first_face + f].flags ^= brep::kReversed;
-    part_.warnings.push_back("'" + name_ + "' was inside out: its faces were turned");
+    part_.warnings.push_back("'" + name_ + "' was inside out: its faces were reversed");
   }
   part_.bodies.push_back(body);
   return sizeOf(part_.bodies) - 1;
