@@ -30,8 +30,8 @@ std::string nameOf(const TDF_Label& label) {
   Standard_PCharacter at = text.data();
   wide.ToUTF8CString(at);
   text.resize(text.find('\0'));
-  if (text.rfind("=>[", 0) == 0) return "";  // Open CASCADE's name for a reference that has no name
-  // and its names for shapes that have none
+  if (text.rfind("=>[", 0) == 0) return "";  // Open CASCADE gives this name to references that have none
+  // Open CASCADE gives these names to shapes that have none.
   for (const char* kind : {"COMPOUND", "COMPSOLID", "SOLID", "SHELL", "FACE"})
     if (text == kind) return "";
   return brep::plainText(std::move(text));

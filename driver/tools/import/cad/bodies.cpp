@@ -77,7 +77,7 @@ BodyBuilder::Sizes BodyBuilder::sizes() const {
           part_.edges.size(),    part_.coedges.size(), part_.loops.size(),   part_.faces.size(), part_.losses.size()};
 }
 
-/// Removes the records of a face that could not be kept.
+/// Removes the records that were added since `to` was taken, for a face that could not be kept.
 void BodyBuilder::cutBack(const Sizes& to) {
   cut(part_.surfaces, to.surfaces), cut(part_.curves3, to.curves3), cut(part_.curves2, to.curves2);
   cut(part_.reals, to.reals), cut(part_.vertices, to.vertices), cut(part_.edges, to.edges);
@@ -175,7 +175,7 @@ void BodyBuilder::addLoop(const TopoDS_Face& face, const TopoDS_Shape& wire, con
     const bool pole = BRep_Tool::Degenerated(edge);
     if (pole && flat) continue;  // a plane has no poles
     if (!pole) BRep_Tool::Range(edge, t0, t1);
-    if (!pole && !(t0 < t1)) continue;  // the edge is a point, which its neighbours contain as well
+    if (!pole && !(t0 < t1)) continue;  // the edge is a single point, which is an end of its neighbours
     addCoedge(face, edge);
   }
   loop.count = sizeOf(part_.coedges) - loop.first;

@@ -80,7 +80,8 @@ std::string nameOf(const Handle(Interface_InterfaceModel) & model, const Entity&
   return text;
 }
 
-/// Returns true for points, curves, surfaces and what is made of them, but not for texts and colours.
+/// Returns true for entities that carry geometry or topology (points, curves, surfaces, edges, faces), and false for
+/// others such as texts and colours.
 bool isForm(const Entity& entity) {
   return entity->IsKind(STANDARD_TYPE(StepGeom_Point)) || entity->IsKind(STANDARD_TYPE(StepGeom_Direction)) ||
          entity->IsKind(STANDARD_TYPE(StepGeom_Placement)) || entity->IsKind(STANDARD_TYPE(StepGeom_Curve)) ||

@@ -109,7 +109,8 @@ class PartBuilder {
     return kNone;
   }
 
-  /// Warns of a solid whose faces do not bound one volume. All solids together get some seconds.
+  /// Warns of a solid whose faces do not bound one volume. All solids together get at most kSeconds, because the test
+  /// is slow for large solids.
   void judgeSides(const TopoDS_Shape& solid, const std::string& name) {
     constexpr double kSeconds = 4;
     if (sides_s_ >= kSeconds) return;
@@ -122,7 +123,7 @@ class PartBuilder {
                                  " faces tried do not have the outside in front of them and the inside behind: Open "
                                  "CASCADE may have read another part of a surface than the file means; compare the "
                                  "part with the CAD program, and save the file again from there");
-    } catch (const Standard_Failure&) {  // the check is only a help
+    } catch (const Standard_Failure&) {  // the part is good without this test
     }
     sides_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   }

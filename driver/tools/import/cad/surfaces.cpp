@@ -34,7 +34,8 @@ Vector plain(const gp_XYZ& v) {
   return {v.X(), v.Y(), v.Z()};
 }
 
-/// Makes a cylinder, cone, sphere or torus with the given axes. `along` is in metres per unit of v.
+/// Makes a cylinder, cone, sphere or torus with the given axes. @param along [m] length of the axis z, which is the
+/// length of one unit of v
 Surface framed(SurfaceKind kind, const gp_Ax3& axes, double along, double r0, double r1) {
   Surface s;
   s.kind = kind;
