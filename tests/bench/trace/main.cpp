@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// bench_trace: figures to read, not a test, as Markdown. Run it on an idle machine; compare ratios, not absolute
-/// times.
+/// bench_trace: measures the time of tracing and prints tables in Markdown. It is not a test. Run it on an idle
+/// machine, and compare ratios rather than absolute times.
 #include <cstdio>
 #include <cstring>
 #include <fstream>
