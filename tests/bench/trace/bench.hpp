@@ -30,7 +30,7 @@ struct Path {
 /// Number of ticks of the walk in all tables.
 inline constexpr int kTicks = 4000;
 inline constexpr double kStep = 0.3e-3;   ///< [m] motion per tick: 0.3 m/s at 1 kHz
-inline constexpr double kDepth = 2.5e-3;  ///< [m] to either side
+inline constexpr double kDepth = 2.5e-3;  ///< [m] greatest distance from the surface, on both sides
 /// Returns a path that moves along the surface by `step` [m] per tick, up to `depth` [m] away from it on both sides.
 Path contactPath(const spline::SurfaceData& data, double step, double depth, int ticks);
 
