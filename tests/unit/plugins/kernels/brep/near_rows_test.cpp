@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The discs about rows of triangles, and ticks that look at the rows about the probe alone.
+/// Tests the discs around rows of triangles, and ticks that examine only the gathered rows around the probe.
 #include "kernels/brep/near_rows.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// One mesh of the given corners.
+/// Returns a part with one mesh. @param corners point indices of each triangle
 Part meshOf(std::vector<Vector> points, const std::vector<std::array<std::uint32_t, 3>>& corners) {
   Part part;
   part.points = std::move(points);
@@ -36,7 +36,7 @@ Part meshOf(std::vector<Vector> points, const std::vector<std::array<std::uint32
   return part;
 }
 
-/// A sheet of 100 mm with waves of `height` and 2 n^2 triangles.
+/// Returns a wavy sheet of 100 mm x 100 mm with 2 n^2 triangles. @param height [m] amplitude of the waves
 Part sheet(std::uint32_t n, double height) {
   std::vector<Vector> points;
   std::vector<std::array<std::uint32_t, 3>> corners;
@@ -59,7 +59,7 @@ double distanceTo(const Part& part, std::uint32_t triangle, const Vector3d& p) {
   return (triangleFoot(p, vec(part.points[c[0]]), vec(part.points[c[1]]), vec(part.points[c[2]])).point - p).norm();
 }
 
-/// Triangles of any size and shape, needles and points among them.
+/// Returns triangles of many sizes and shapes. Some are needles, and some are single points.
 Part scattered(std::mt19937& random) {
   std::uniform_real_distribution<double> share(-1, 1), exponent(-9, 0);
   std::vector<Vector> points;
@@ -76,7 +76,7 @@ Part scattered(std::mt19937& random) {
   return meshOf(std::move(points), corners);
 }
 
-/// Seen from as far as a metre and as near as a nanometre.
+/// The probes are at distances from a nanometre to a metre.
 TEST(RowDisc, BoundsNoTriangleFromAbove) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> share(-1, 1), exponent(-9, 0);
@@ -107,7 +107,8 @@ TEST(RowDisc, BoundsNoTriangleFromAbove) {
   EXPECT_GT(close, 20000);
 }
 
-/// Walks at several speeds, with rests and jumps, beside a search that has no budget for rows about the probe.
+/// Walks at several speeds, with rests and jumps, and compares with a search whose budget is too small for gathered
+/// rows. @param spares true to check that gathering saves nodes
 void walkBeside(const Model& model, unsigned seed, bool spares) {
   const SearchBudget whole{2048, NearTriangles::kMostRows * BodyTree::kMeshRow};
   Search near(model), all(model);
@@ -140,10 +141,10 @@ void walkBeside(const Model& model, unsigned seed, bool spares) {
 
 TEST(NearRows, ChangeNoBitOfAnyAnswer) {
   walkBeside(Model(sheet(150, 0.004)), 1, true);
-  walkBeside(Model(sheet(60, 0)), 2, false);  // flat: many triangles are just as near
+  walkBeside(Model(sheet(60, 0)), 2, false);  // flat, so that many triangles are equally near
 }
 
-/// Beside a corner of a cube three faces of two triangles each are just as near.
+/// Near a corner of a cube, six triangles on three faces are equally near.
 TEST(NearRows, KeepTheOrderOfPreferenceAtACube) {
   std::vector<Vector> points;
   for (int i = 0; i < 8; ++i) points.push_back({0.05 * (i & 1), 0.05 * (i >> 1 & 1), 0.05 * (i >> 2 & 1)});

@@ -51,7 +51,7 @@ TEST(PartFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(back.source.unit, "mm");
 }
 
-/// Names come from foreign files and go to terminals.
+/// Names come from the files of other programs and are shown in terminals.
 TEST(PartFile, ControlCharactersOfNamesBecomeSpaces) {
   Part part = samples::cappedCylinder(10, 20);
   part.names = {"a\x1b[2Jb\n\x7f",
@@ -83,7 +83,7 @@ TEST(PartFile, CutAnywhereIsAnErrorAndNothingWorse) {
     EXPECT_NE(errorOf([&] { readPart(bytesOf(file).first(length), "x"); }), "") << length;
 }
 
-/// What checkPart() says once a sample was spoilt.
+/// Returns the error of checkPart() for a sample after `spoil` has changed it; "" if there is none.
 std::string spoilt(const std::function<void(Part&)>& spoil) {
   Part part = samples::cappedCylinder(10, 20);
   spoil(part);
@@ -114,7 +114,7 @@ TEST(PartCheck, NamesTheRecordThatBreaksARule) {
             "bodies: together they have 2 faces, but the part has 3; each must belong to exactly one body");
 }
 
-/// Whatever single word of a record is spoilt: the reader answers, with an error or a part that passes the check again.
+/// Spoils single words of all records. The reader must either report an error or return a part that passes the check.
 TEST(PartCheck, SurvivesAnyWordOfARecordSpoilt) {
   std::mt19937 random(1);
   const Part good = samples::cappedCylinder(10, 20);

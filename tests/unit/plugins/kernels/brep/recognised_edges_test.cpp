@@ -19,7 +19,8 @@ using Eigen::Vector3d;
 
 constexpr double kRadius = 0.005, kHeight = 0.02;
 
-/// Three quarters of a cylinder's wall as a rational spline: arcs below and above, lines beside.
+/// Returns three quarters of a cylinder's wall as a rational spline. Its edges are two arcs and two lines. @param bulge
+/// [m] makes the arcs deviate from circles
 spline::SurfaceData wall(double bulge) {
   spline::SurfaceData data;
   data.degree = {2, 1};
@@ -46,7 +47,7 @@ TEST(RecognisedEdges, AreTheLinesAndCirclesTheyAreInTruth) {
     ASSERT_TRUE(made);
     ++(made->is_circle ? circles : lines);
     EXPECT_NEAR(made->shape.t1, made->is_circle ? 1.5 * std::numbers::pi : kHeight, 1e-12);
-    for (int i = 0; i <= 1000; ++i) {  // its parameter comes back
+    for (int i = 0; i <= 1000; ++i) {  // parameterAt() must return the parameter of each point
       const double t = edge.t0 + (edge.t1 - edge.t0) * i / 1000;
       geometry.curve(edge.curve, t, C);
       const Vector3d w = C.C - made->shape.o;
@@ -60,7 +61,7 @@ TEST(RecognisedEdges, AreTheLinesAndCirclesTheyAreInTruth) {
 }
 
 TEST(RecognisedEdges, AreNotTakenForMoreThanTheyAre) {
-  const Part part = samples::sheetOf({wall(1e-9)});  // bulges by some tenths of a nanometre
+  const Part part = samples::sheetOf({wall(1e-9)});  // the arcs deviate from circles by some tenths of a nanometre
   const Geometry geometry(part, spline::Form::kNet);
   int lines = 0;
   for (const Edge& edge : part.edges)
@@ -68,7 +69,8 @@ TEST(RecognisedEdges, AreNotTakenForMoreThanTheyAre) {
   EXPECT_EQ(lines, 2);
 }
 
-/// Minima of the distance from p along a piece, its ends included; `inner`: those that are no end.
+/// Returns the number of minima of the distance from p along a piece, including its ends. @param inner becomes the
+/// number without the ends
 int minima(const Geometry& geometry, const BoxedPiece& made, std::uint32_t curve, const Vector3d& p, int& inner) {
   constexpr int kSamples = 400;
   spline::CurvePoint C;
@@ -77,7 +79,7 @@ int minima(const Geometry& geometry, const BoxedPiece& made, std::uint32_t curve
   for (int i = 0; i <= kSamples; ++i) {
     const double t0 = made.piece.t0, range = made.piece.t1 - t0;
     geometry.curve(curve, t0 + range * std::min(static_cast<double>(i) / kSamples, 1 - 1e-9),
-                   C);  // a knot is the next span's
+                   C);  // at a knot, derivatives are evaluated in the span to its right
     const int now = (C.C - p).dot(C.C1) > 0 ? 1 : -1;
     if (sign < 0 && now > 0) ++count, inner += i > 0;
     sign = now;
@@ -112,8 +114,9 @@ TEST(PieceCurvature, PromisesNoFewerFeetThanThereAre) {
   }
 }
 
-/// Pieces of such splines were not proved from beyond their centres of curvature: every tick then looked at all that
-/// is no farther than their boxes, and told of a degraded foot.
+/// Regression: the foot on a piece of such a spline was not proved if the probe was beyond the centre of curvature.
+/// Each tick then examined all elements that are not farther than the boxes of the pieces, and returned a degraded
+/// foot.
 TEST(RecognisedEdges, AreProvedFromAfarWithFewFeet) {
   std::ifstream in(HAPTICD_SOURCE_DIR "/config/models/as1.hpart", std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
