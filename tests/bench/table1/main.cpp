@@ -20,9 +20,9 @@ using namespace hapticd::table1;
 constexpr const char* kUsage =
     "Usage: table1 [--seconds S] [--seed N] [--check] [--write]\n\n"
     "Runs the evaluation of Thompson et al. (1999) again with a simulated hand and prints its table.\n"
-    "  --seconds S  of simulated time a row; without it 60, as the goals need\n"
-    "  --seed N     of the hand's tremor\n"
-    "  --check      exit code 1 where a goal is missed\n"
+    "  --seconds S  simulated time of each row [s]; 60 by default, as the goals need\n"
+    "  --seed N     seed of the variation of the push\n"
+    "  --check      end with exit code 1 if a goal is missed\n"
     "  --write      overwrite driver/docs/reports/table1.md and its pictures\n\n"
     "Exit code 2: bad usage.\n"
     "Example: table1 --check\n";
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   if (!understood(argc, argv)) {
-    fmt::print(stderr, "error: not an option, or one without its value\n{}", kUsage);
+    fmt::print(stderr, "error: an argument is not an option, or an option has no value\n{}", kUsage);
     return 2;
   }
   try {

@@ -61,11 +61,12 @@ void printUsage(std::FILE* to) {
   std::fprintf(to,
                "Usage: bench_trace [PART...]\n"
                "       bench_trace --write\n\n"
-               "Prints what tracing costs on this machine, as Markdown: all parts, or those named of\n ");
+               "Measures the time of tracing on this machine and prints tables in Markdown: all parts, or those that "
+               "are named, of\n ");
   for (const Part& part : kParts) std::fprintf(to, " %s", part.name);
   std::fprintf(to,
-               ".\n  --write    all parts, over driver/docs/reports/bench_trace.md\n\n"
-               "Run it on an idle machine; all of it takes minutes. Exit code 2: bad usage.\n"
+               ".\n  --write    measure all parts and overwrite driver/docs/reports/bench_trace.md\n\n"
+               "Run it on an idle machine; all parts together take minutes. Exit code 2: bad usage.\n"
                "Example: bench_trace tick\n");
 }
 
