@@ -274,8 +274,8 @@ LeafFeet countFeet(const LeafCurvature& curvature, const Vector3d& q) noexcept {
 }
 
 Array2d footNear(const LeafCurvature& curvature, const Array2d& middle, const Vector3d& q) noexcept {
-  constexpr double kLeastSecond =
-      0.2;  // below this second derivative, the step of the quadratic model would be too long
+  // below this second derivative, the step of the quadratic model would be too long
+  constexpr double kLeastSecond = 0.2;
   Array2d uv = middle;
   for (int i = 0; i < 2; ++i) {
     const double second = 1 - q[2] * curvature.principal[i];
