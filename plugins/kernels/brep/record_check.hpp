@@ -30,9 +30,9 @@ struct RecordCheck {
   }
   /// Checks that a kind is one of 0 to `last`.
   template <class Kind>
-  void kind_in(Kind kind, Kind last) const {
+  void kind_in(Kind value, Kind last) const {
     const auto text = [](Kind k) { return std::to_string(static_cast<std::uint32_t>(k)); };
-    if (kind > last) fail("kind " + text(kind) + ", expected 0 to " + text(last));
+    if (value > last) fail("kind " + text(value) + ", expected 0 to " + text(last));
   }
   /// Checks that an index is below `count`.
   void index_in(std::uint32_t value, std::size_t count, const char* what) const {
