@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Any bytes as Bezier patches.
+/// Fuzzes the reader of Bezier patches (.bpt).
 #include "import/bezier_import.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

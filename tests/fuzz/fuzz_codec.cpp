@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// A million mutated reports through every shipped codec: decoder, framer and session must stay finite and in bounds.
-/// Usage: fuzz_codec [REPORTS]. Not a coverage-guided fuzzer: the formats are flat, and it must run in every build.
+/// Sends a million mutated reports through every shipped codec. The results of decoder, framer and session must stay
+/// finite and within bounds. Usage: fuzz_codec [REPORTS]. It is not guided by coverage, because the formats are flat
+/// and it must run in every build.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -15,10 +16,10 @@ namespace {
 
 using hapticd::Nanoseconds;
 
-/// Bytes that are nearly a report: right ones with some changed, cut, or drawn out.
+/// Returns bytes that are nearly a report: a valid report with some bytes changed, cut off or added.
 std::vector<uint8_t> mutated(hapticd::codec::Report report, uint32_t sequence, std::mt19937_64& random) {
   using hapticd::codec::Role;
-  for (hapticd::codec::Field& field : report.fields) {  // as the arm would write it: positions are what it knows
+  for (hapticd::codec::Field& field : report.fields) {  // the arm writes positions, which encode() takes as torques
     if (field.role == Role::kPosition) field.role = Role::kTorque;
     if (field.role == Role::kCalibrated || field.role == Role::kButton) field.role = Role::kEnable;
   }
@@ -37,7 +38,8 @@ std::vector<uint8_t> mutated(hapticd::codec::Report report, uint32_t sequence, s
   return bytes;
 }
 
-/// @return 0 if all went well
+/// Sends `reports` mutated reports to a session. Returns 0 if all results are valid. @param must_take true if at least
+/// one report must be accepted
 int run(const std::string& name, const hapticd::codec::Wire& wire, size_t joints, long reports, bool must_take) {
   hapticd::wire_arm::SessionSettings settings;
   settings.joints = joints;
@@ -70,7 +72,7 @@ int run(const std::string& name, const hapticd::codec::Wire& wire, size_t joints
   return must_take && good == 0 ? 1 : 0;
 }
 
-/// Descriptions with some characters changed: each is read or refused, and what is read is safe to run.
+/// Changes some characters of a wire format. The reader must refuse it, or it must be safe to run.
 int runBroken(std::string text, size_t joints, std::mt19937_64& random, long reports) {
   static const char kLetters[] = "0123456789-{}[]\",:iuf.eE ";
   for (auto changes = 1 + random() % 4; changes > 0; --changes)
@@ -82,7 +84,7 @@ int runBroken(std::string text, size_t joints, std::mt19937_64& random, long rep
   }
 }
 
-/// Formats that nobody has: any widths, offsets, orders, checksums, escapes.
+/// Runs random wire formats, with all widths, offsets, byte orders, checksums and escapes.
 int runRandom(long formats) {
   std::mt19937_64 random(11);
   int failed = 0;

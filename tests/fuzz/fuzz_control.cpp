@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Any bytes as a request to the control socket.
+/// Fuzzes the requests to the control socket.
 #include "control/request.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Any bytes as a model file of a soft body, YAML or JSON, a grid or a mesh: read, built, searched, pressed and drawn.
+/// Fuzzes model files of soft bodies (YAML or JSON, grids or meshes): reads, builds, searches, presses and draws them.
 
 #include "mat_deformable/medial_file.hpp"
 #include "mat_deformable/soft_body.hpp"
@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const MedialFile file = parseMedialFile({reinterpret_cast<const char*>(data), size}, "fuzz.yaml", {});
     pressABody(file.grid ? *makeSoftBody(*file.grid, {}) : *makeSoftBody(*file.mesh, {}), size);
   } catch (const ModelFileError&) {
-  } catch (const std::invalid_argument&) {  // what the plugin reports of a body that cannot be
+  } catch (const std::invalid_argument&) {  // the plugin's error for a body that is impossible
   }
   return 0;
 }

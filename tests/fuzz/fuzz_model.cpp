@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Any bytes as a model file of surfaces, YAML or JSON: read, sewn, searched, traced and drawn.
+/// Fuzzes model files of surfaces (YAML or JSON): reads, sews, searches, traces and draws them.
 #include <cmath>
 
 #include "kernels/trace/tracer.hpp"
@@ -42,7 +42,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     follow(model, {0.01, -0.02, 0.03}, {1e9, 0, 0});
     tessellate(model, 0.01 * model.bounds().diagonal().norm() + 1e-6);
   } catch (const ModelFileError&) {
-  } catch (const std::invalid_argument&) {  // what the plugin reports of a model that cannot be traced
+  } catch (const std::invalid_argument&) {  // the plugin's error for a model that cannot be traced
   }
   return 0;
 }

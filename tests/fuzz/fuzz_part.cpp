@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Part files: any bytes through the reader, and parts with spoilt words (which no checksum stands before) through the
-/// checks, the model and some ticks. What passes the checks must give finite answers in bounded time.
+/// Fuzzes part files: any bytes go through the reader. Parts with spoilt words, past the checksum of a file, go through
+/// the checks, the model and some ticks. A part that passes the checks must give finite answers in bounded time.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -29,7 +29,8 @@ const std::vector<Part>& samples() {
   return parts;
 }
 
-/// Six bytes an edit: section, place, what is written there.
+/// Returns a sample part with spoilt words. Each change takes six bytes of the input: section, place and four bytes to
+/// write there.
 Part spoilt(std::span<const std::uint8_t> input) {
   Part part = samples()[input[0] % samples().size()];
   for (std::size_t at = 1; at + 6 <= input.size(); at += 6) {

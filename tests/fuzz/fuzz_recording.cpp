@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Any bytes as a recording: every number of what it claims to hold is read.
+/// Fuzzes recordings: reads every number that a recording claims to hold.
 
 #include "record/recording.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the plugin does with a soft body, for the fuzzers of its files.
+/// Uses a soft body as the plugin does, for the fuzzers of its files.
 #pragma once
 #include <cmath>
 
@@ -8,8 +8,9 @@
 
 namespace hapticd {
 
-/// Traps where the answer is one that no arm should get.
-/// @param size of the input: drawing takes ten times as long as all else, so one size in sixteen is drawn
+/// Traps if a result must not reach an arm.
+/// @param size size of the input; drawing takes ten times as long as the rest, so the body is drawn only for one size
+/// in sixteen
 inline void pressABody(SoftBody& body, size_t size) {
   using Eigen::Vector3d;
   constexpr double kDt = 1e-3;

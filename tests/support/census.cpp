@@ -31,10 +31,11 @@ struct Entry {
   std::string function;  ///< "object function"
 };
 
-std::vector<Entry> entries;  // by address; neither grows nor shrinks while breakpoints are set
+std::vector<Entry> entries;  // sorted by address; its size does not change while breakpoints are set
 struct sigaction before{};
 
-/// Puts the byte back and goes on there. Runs nothing that may hold a breakpoint.
+/// Handles a breakpoint: restores the byte and continues there. It must not call functions that may have a breakpoint
+/// themselves.
 void onBreakpoint(int, siginfo_t*, void* context) {
   auto& at = static_cast<ucontext_t*>(context)->uc_mcontext.gregs[REG_RIP];
   auto* const reached = reinterpret_cast<uint8_t*>(at - 1);
@@ -43,7 +44,7 @@ void onBreakpoint(int, siginfo_t*, void* context) {
     const size_t middle = (low + high) / 2;
     (entries[middle].address <= reached ? low : high) = middle;
   }
-  if (entries[low].address != reached) _exit(70);  // somebody else's breakpoint
+  if (entries[low].address != reached) _exit(70);  // a breakpoint that this program did not set
   *reached = entries[low].first;
   entries[low].entered = true;
   at -= 1;
@@ -57,7 +58,7 @@ std::string demangled(const char* name) {
   return result;
 }
 
-/// Functions of namespace hapticd in a loaded ELF file, those with internal linkage too.
+/// Adds the functions of namespace hapticd in a loaded ELF file, including those with internal linkage.
 void addFunctions(const std::string& file, uintptr_t base) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat facts{};
@@ -96,7 +97,7 @@ void makeWritable(uintptr_t base, const dl_phdr_info& info, bool writable) {
   }
 }
 
-/// The program and what it loaded of ours.
+/// True for this program (which has no name here) and for the project's own libraries.
 bool ours(const std::string& file) {
   return file.empty() || file.find("/hapticd/") != std::string::npos;
 }

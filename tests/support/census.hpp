@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-/// Which functions a piece of work runs: a breakpoint at the entry of each, taken away when it is reached. So a test
-/// can prove that something is not computed, in the very code that ships, without a clock.
+/// Finds out which functions a piece of work enters: it sets a breakpoint at the entry of each function and removes it
+/// when it is reached. So a test can prove, without a clock, that the code that ships does not compute something.
 #pragma once
 #include <set>
 #include <string>
 
 namespace hapticd::test {
 
-/// Where it cannot look (another processor, a sanitizer), kPossible is false and everything is empty.
+/// The functions that were entered. On processors other than x86-64, and with a sanitizer, this is not possible: then
+/// kPossible is false and the set is empty.
 class Census {
  public:
 #if defined(__x86_64__) && !defined(HAPTICD_SANITIZED)
@@ -16,7 +17,8 @@ class Census {
   static constexpr bool kPossible = false;
 #endif
 
-  /// Runs the work in this thread and notes the functions of namespace hapticd that it enters, inlined ones excepted.
+  /// Runs the work in this thread, and records the functions of namespace hapticd that it enters. Inlined functions are
+  /// not seen.
   template <class Work>
   static Census of(Work&& work) {
     begin();
@@ -24,9 +26,10 @@ class Census {
     return end();
   }
 
-  /// A function of an object (part of its file name) was entered that has `part` in its name.
+  /// True if a function with `part` in its name was entered. @param object part of the file name of the program or
+  /// library that contains the function
   bool ran(const std::string& object, const std::string& part) const { return !text(object, part).empty(); }
-  /// For messages: "object function", a line each.
+  /// Returns the functions for messages, one line "object function" each.
   std::string text(const std::string& object = "", const std::string& part = "") const;
 
  private:

@@ -1,4 +1,4 @@
-"""What the scripts share that meet the program as a user does."""
+"""Functions that the end-to-end tests share. These tests use the program as a user does."""
 import os
 import re
 import resource
@@ -6,12 +6,12 @@ import subprocess
 import sys
 import time
 
-LONG = "HAPTICD_LONG" in os.environ  # tests/run long: all of a sweep, not the part that stands for it
+LONG = "HAPTICD_LONG" in os.environ  # set by `tests/run long`: cover all of a sweep, and not only a representative part
 failures = 0
 
 
 def check(name, holds, told=""):
-    """A line a check; what was told is shown where it fails."""
+    """Prints one line for a check. If it fails, the line also has `told`."""
     global failures
     failures += not holds
     print(f"{'ok' if holds else 'FAILED':6} {name}{'' if holds else ': ' + str(told)}", flush=True)
@@ -19,12 +19,12 @@ def check(name, holds, told=""):
 
 
 def finish():
-    """The exit code says whether all held."""
+    """Ends the test. The exit code is 0 if no check failed, else 1."""
     sys.exit(1 if failures else 0)
 
 
 def until(predicate, seconds=20):
-    """True once it holds; False: it did not in time."""
+    """Waits until the predicate is true. Returns False if it did not become true in time."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         if predicate():
@@ -34,7 +34,7 @@ def until(predicate, seconds=20):
 
 
 def refused(action, word):
-    """The daemon refuses it with a code, and a text that has the word. The package hapticd must be found."""
+    """True if the daemon refuses the action with a code and with a text that contains `word`. Needs the Python package hapticd."""
     import hapticd
     try:
         action()
@@ -44,14 +44,15 @@ def refused(action, word):
 
 
 def can_lock_memory():
-    """True if a run can lock its memory, so that its ticks fault no page: a right that few containers give."""
+    """True if a run may lock its memory, so that its ticks cause no page faults. Few containers give this right."""
     capabilities = int(re.search(r"CapEff:\s*(\w+)", open("/proc/self/status").read())[1], 16)
     cap_ipc_lock = 14
     return capabilities >> cap_ipc_lock & 1 == 1 or resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] == resource.RLIM_INFINITY
 
 
 def program(path, environment=None, timeout=120, together=False):
-    """A function that runs the program with its arguments: exit code, standard output and error, or both in one text."""
+    """Returns a function that runs the program with the given arguments. It returns the exit code, standard output and standard error;
+    with `together` the exit code and both outputs as one text."""
     def run(*arguments):
         done = subprocess.run([path, *arguments], env=environment, capture_output=True, text=True, timeout=timeout)
         if together:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Wire formats at random, for property tests and the fuzzer.
+/// Random wire formats, for property tests and the fuzzer.
 #pragma once
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -13,8 +13,8 @@
 
 namespace hapticd::codec {
 
-/// A wire format at random, as a device file would give it. The same fields are a report out and a report in: what the
-/// arm writes is what it would read.
+/// A random wire format, as a device file would give it. The output report has the same fields as the input report, so
+/// a report that was written can be read again.
 class RandomWire {
  public:
   explicit RandomWire(uint64_t seed) : random_(seed) {
@@ -39,7 +39,7 @@ class RandomWire {
     return readWire(text_, joints_);
   }
 
-  /// A value that the field of a joint can hold exactly.
+  /// Returns a random value that the field of a joint can hold exactly.
   double valueFor(const Field& field) {
     double raw = 0;
     if (field.type == Type::kFloat) {
@@ -63,9 +63,11 @@ class RandomWire {
   size_t pick(size_t count) { return random_() % count; }
   void skip(size_t bits) { at_ += bits; }
 
-  /// Where the next field stands: by its bit, or by its byte where it begins one. Big endian counts as it does.
+  /// Returns the place of the next field, given by its first bit, or by its byte if it begins one. In big-endian fields
+  /// bits are counted from the highest bit of a byte.
   Json place(size_t bits, const char* order) {
-    if (at_ % 8 != 0 && order != last_order_) at_ = (at_ + 7) / 8 * 8;  // the two ways to count bits share no byte
+    // two fields with different byte orders never share a byte
+    if (at_ % 8 != 0 && order != last_order_) at_ = (at_ + 7) / 8 * 8;
     last_order_ = order;
     Json field{{"endian", order}};
     if (at_ % 8 == 0 || pick(2) == 0) {
@@ -87,7 +89,7 @@ class RandomWire {
     Json field = place(bits, order());
     const double scale = pick(2) == 0 ? 1.0 : 0.25;
     field.update({{"is", "torque"}, {"joint", joint}, {"type", type}, {"scale", scale}});
-    // A torque has both signs; with more bits the sum would be rounded.
+    // The offset gives an unsigned field both signs. With more than 24 bits the sum would be rounded.
     if (type[0] == 'u' && bits <= 24) field["offset"] = -std::ldexp(scale, static_cast<int>(bits) - 1);
     fields_.push_back(field);
   }

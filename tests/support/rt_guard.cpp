@@ -8,7 +8,7 @@
 #include <cstddef>
 
 namespace {
-// Initial-exec: reading them never allocates, not even the first time in a thread.
+// With the TLS model initial-exec, reading these variables never allocates, not even the first time in a thread.
 __thread bool in_rt __attribute__((tls_model("initial-exec"))) = false;
 __thread hapticd::test::RtViolations seen __attribute__((tls_model("initial-exec"))) = {};
 
@@ -18,7 +18,8 @@ void countAllocation() noexcept {
 
 using LockFunction = int (*)(pthread_mutex_t*);
 
-/// The C library's own lock. dlsym() may allocate, so it is looked up once, before any test runs.
+/// Returns the C library's own pthread_mutex_lock(). dlsym() may allocate, so it is looked up once, before any test
+/// runs.
 LockFunction realLock() noexcept {
   static const auto found = reinterpret_cast<LockFunction>(dlsym(RTLD_NEXT, "pthread_mutex_lock"));
   return found;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-/// Proves that code is fit for the servo thread: inside an RtScope every allocation and lock of this thread is counted.
-/// Link hapticd_rt_guard; it replaces malloc and its kind, and pthread_mutex_lock, in the test program.
+/// Checks that code may run in the servo thread: an RtScope counts every allocation, release and lock of its thread.
+/// Link hapticd_rt_guard to use it. It replaces malloc() and its relatives, and pthread_mutex_lock(), in the test
+/// program.
 #pragma once
 #include <cstdint>
 #include <ostream>
 
 namespace hapticd::test {
 
-/// What a thread did inside its RtScope that it must not do in the servo thread.
+/// What a thread has done inside its RtScope that is forbidden in the servo thread.
 struct RtViolations {
   uint64_t allocations = 0, releases = 0, locks = 0;
   bool operator==(const RtViolations&) const = default;
@@ -18,7 +19,7 @@ inline std::ostream& operator<<(std::ostream& out, const RtViolations& v) {
   return out << v.allocations << " allocations, " << v.releases << " releases, " << v.locks << " locks";
 }
 
-/// While one lives, this thread counts. One at a time a thread.
+/// While this object lives, the calls of its thread are counted. A thread may have only one at a time.
 ///   { const RtScope scope; shape.step(step); EXPECT_EQ(scope.violations(), RtViolations{}); }
 class RtScope {
  public:

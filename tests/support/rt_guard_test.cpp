@@ -14,7 +14,7 @@
 namespace hapticd::test {
 namespace {
 
-/// Keeps the compiler from dropping an allocation that nobody looks at.
+/// Keeps the compiler from removing an allocation that nothing uses.
 void use(const void* block) {
   asm volatile("" : : "r"(block) : "memory");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// How much of a sweep a test does: a part that stands for the whole, or in `tests/run long` the whole.
+/// How much of a sweep a test covers: a representative part or, in `tests/run long`, all of it.
 #pragma once
 #include <cstdlib>
 

@@ -44,7 +44,7 @@ inline int sortChildren(const BoxNode& node, const Float4& bounds, double limit,
 inline bool rowIsFarther(const BodyTree& body, std::int32_t row, const BoxProbe& probe, double limit, double& bound,
                          double& beyond) noexcept {
   const auto at = static_cast<std::size_t>(row);
-  const float row_bound = body.slabs.empty() ? rowDistance(body.rows[at], probe) : rowDistance(body.slabs[at], probe);
+  const float row_bound = body.discs.empty() ? rowDistance(body.rows[at], probe) : rowDistance(body.discs[at], probe);
   bound = std::max(bound, static_cast<double>(row_bound));
   if (!(bound > limit)) return false;
   beyond = std::min(beyond, bound);

@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 /// the force is nearly zero there.
 constexpr double kTouching = 1e-7;
 
-/// The outward direction around a nearest point.
+/// The outward normal at a nearest point, and what kind of point it is.
 struct Around {
   Vector3d normal{0, 0, 1};  ///< outward normal; on edges and corners the pseudonormal (Baerentzen & Aanaes 2005)
   Vector3d felt{0, 0, 0};    ///< interpolated normal of a smoothed mesh, or 0

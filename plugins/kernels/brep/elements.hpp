@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "kernels/brep/leaf_bow.hpp"
-#include "kernels/brep/piece_bow.hpp"
+#include "kernels/brep/leaf_curvature.hpp"
+#include "kernels/brep/piece_curvature.hpp"
 #include "kernels/brep/trim.hpp"
 
 namespace hapticd::brep {
@@ -55,7 +55,8 @@ struct FaceShape {
   double rise = 1;        ///< for a cone, dz/ds along the slant line
   /// On a plane: parameters per metre. On other surfaces per_y is v per metre of z, or per metre of the slant line.
   double per_x = 1, per_y = 1;
-  /// -1 if the face lies where the radius is negative (far nappe of a cone, inside of a spindle torus).
+  /// -1 if the face lies where the radius of the surface is negative (the far nappe of a cone, the inner part of a
+  /// spindle torus), else 1.
   double nappe = 1;
   double outward = 1;  ///< +1 or -1: outward normal relative to the radial direction, or to x cross y for planes
   Eigen::Array2d middle{0, 0};  ///< middle of [lo, hi] of the face
@@ -70,19 +71,20 @@ struct EdgeShape {
   Eigen::Vector3d o{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0};
   double t0 = 0, t1 = 0;
   double size = 1;  ///< line: [m] per unit of t; circle: [m] radius
-  /// Index for Model::guised() if the curve in the file is a spline, else kNone.
-  std::uint32_t guise = std::numeric_limits<std::uint32_t>::max();
+  /// Index for Model::recognised() if the curve in the file is a spline, else kNone.
+  std::uint32_t recognised = std::numeric_limits<std::uint32_t>::max();
 };
 
 /// A piece of a face without a closed-form foot, flat enough that Newton's method converges directly to its foot.
 struct Leaf {
-  Eigen::Array2d lo, hi;  ///< range of (u, v)
-  float bend_front = 0;   ///< [1/m] largest curvature toward the outward normal; 0 if it never curves that way
-  float bend_back = 0;    ///< the same toward the other side
+  Eigen::Array2d lo, hi;      ///< range of (u, v)
+  float curvature_front = 0;  ///< [1/m] largest curvature toward the outward normal; 0 if it never curves that way
+  float curvature_back = 0;   ///< the same toward the other side
   std::uint32_t face = 0;
-  /// Bit 2 axis (lo) or 2 axis + 1 (hi) is set if the surface, or the box of its loops, ends on that side.
+  /// Bit 2 * axis is set if the surface, or the box of its loops, ends on the low side of that axis; bit 2 * axis + 1
+  /// if it ends on the high side.
   std::uint32_t borders = 0;
-  LeafBow bow;
+  LeafCurvature curvature;
 
   Eigen::Array2d middle() const noexcept { return 0.5 * (lo + hi); }
 };
@@ -90,10 +92,10 @@ struct Leaf {
 /// A piece of an edge that is an ellipse or a spline.
 struct CurvePiece {
   double t0 = 0, t1 = 0;
-  double bend = 0;  ///< [1/m] largest curvature
+  double most_curvature = 0;  ///< [1/m] largest curvature
   std::uint32_t edge = 0;
   std::uint32_t ends = 0;  ///< bit 0 is set if t0 is the t0 of the edge, bit 1 if t1 is its t1
-  PieceBow shape{};
+  PieceCurvature curvature{};
 };
 
 }  // namespace hapticd::brep

@@ -41,8 +41,8 @@ struct AboutAxis {
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
 
-/// Moves u by whole turns into the loops of a face that winds around its axis more than once, as on a thread. Returns
-/// false if no turn of the face is there.
+/// Moves u by whole turns until (u, v) is inside the loops of a face that winds around its axis more than once, such as
+/// a thread. Returns false if it is inside for none of these u.
 bool findTurn(const FaceShape& f, double& u, double v) noexcept {
   constexpr int kMostTurns = 256;
   const double period = f.period[0], lo = f.trim.lo()[0], hi = f.trim.hi()[0];
@@ -92,7 +92,7 @@ double coneFoot(const FaceShape& f, const Vector3d& p, Hit& hit) noexcept {
 }
 
 double sphereFoot(const FaceShape& f, const Vector3d& p, Hit& hit) noexcept {
-  // at the pole itself the half-open test of the trim would say outside
+  // the trim test is half-open: at the pole itself it would say "outside"
   constexpr double kPole = std::numbers::pi / 2 - 1e-12;
   const AboutAxis at(f, p);
   const double length = std::sqrt(at.radius * at.radius + at.height * at.height), d = length - f.r0;

@@ -42,7 +42,7 @@ class Geometry {
   /// [any] Point and first derivative of a curve in a parameter plane.
   PlanePoint planeCurve(std::uint32_t index, double t) const noexcept;
   /// [any] Returns Su x Sv of a face's surface with length 1; it may point inward. If the tangents vanish there,
-  /// returns the normal a little nearer to the middle of the face, or 0 if the tangents vanish there too.
+  /// returns the normal at a point nearer to the middle of the face, or 0 if the tangents vanish there too.
   Eigen::Vector3d normal(const Face& face, const Eigen::Vector2d& uv) const noexcept;
 
   /// [any] The index must be that of a surface or curve of kind kSpline.

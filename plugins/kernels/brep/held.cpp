@@ -55,8 +55,9 @@ void takeNearer(const Hit& hit, Hit& best) noexcept {
   if (hit.d2 < best.d2) best = hit;
 }
 
-/// Examines the triangles around a corner, beginning beyond edge k of `first`. @param after the next edge to cross is
-/// the edge that follows the crossed one in its triangle (1) or precedes it (0), which sets the sense of turning
+/// Examines the triangles around a corner, beginning beyond edge k of `first`. @param after which edge is crossed next:
+/// 1 for the edge that follows the crossed edge in its triangle, 0 for the edge before it. This gives the sense of
+/// rotation about the corner
 void turnAbout(const Part& part, std::uint32_t first, std::uint32_t k, std::uint32_t after, const Vector3d& p,
                Hit& best) noexcept {
   constexpr int kMostAround = 64;
@@ -141,7 +142,7 @@ Followed Tracer::slideOver(std::uint32_t edge, double t, double side, const Vect
   const Coedge* own = nullptr;
   for (std::uint32_t c = part.edges[edge].first_coedge; c != kNone; c = part.coedges[c].next)
     if (part.coedges[c].face == held_.face) own = &part.coedges[c];
-  if (own == nullptr) return Followed::kOn;  // the edge ends at the same vertex, but does not belong to the held face
+  if (own == nullptr) return Followed::kOn;  // an edge at the same vertex that does not bound the held face
   const Vector3d r = model().placements()[held_.place].toBody(p) - held_.hit.point;
   const Vector3d here = coedgeNormal(geometry, *own, t);
   const Vector3d out = outOf(geometry, *own, t, here);
@@ -185,8 +186,8 @@ Followed Tracer::followTriangles(double side, const Vector3d& p_model) noexcept 
   return Followed::kOn;
 }
 
-/// Goes along the path of the probe in steps that are no longer than the distance to the nearest face, so that it finds
-/// the first face on the path.
+/// Finds the first face on the path of the probe by sphere tracing (Hart 1996): it goes along the path in steps that
+/// are no longer than the distance to the nearest face.
 bool Tracer::enter(const Vector3d& from, const Vector3d& p, Sides sides, double& side) noexcept {
   constexpr int kMostSteps = 64;
   constexpr double kMet = 1e-8;  // [m] a face that is nearer than this has been reached

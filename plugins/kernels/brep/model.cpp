@@ -33,10 +33,10 @@ class ModelBuilder {
     shapeFacesAndEdges();
     model_.bodies_.resize(part_.bodies.size());
     model_.face_roots_.assign(part_.faces.size(), BodyTree::kNoRoot);
-    for (std::uint32_t b = 0; b < part_.bodies.size(); ++b) plantTree(b);
+    for (std::uint32_t b = 0; b < part_.bodies.size(); ++b) buildTree(b);
     placeBodies();
     warn();
-    forgetNumbers();
+    dropSplineNumbers();
   }
 
  private:
@@ -50,10 +50,10 @@ class ModelBuilder {
       const Edge& edge = part_.edges[e];
       if (edge.curve != kNone && part_.curves3[edge.curve].kind <= CurveKind::kCircle)
         model_.edges_[e] = edgeShape(part_, edge);
-      if (auto made = unguised(*model_.geometry_, edge)) {
-        made->shape.guise = static_cast<std::uint32_t>(model_.guised_.size());
+      if (auto made = recogniseEdge(*model_.geometry_, edge)) {
+        made->shape.recognised = static_cast<std::uint32_t>(model_.recognised_.size());
         model_.edges_[e] = made->shape;
-        model_.guised_.push_back(std::move(*made));
+        model_.recognised_.push_back(std::move(*made));
       }
     }
   }
@@ -81,25 +81,25 @@ class ModelBuilder {
           "the part has more than 536,870,911 elements of one kind, expected fewer (use a simpler part)");
   }
 
-  void add(ElementKind kind, std::size_t index, const AlignedBox3d& box, const TurnedBox& turned) {
+  void add(ElementKind kind, std::size_t index, const AlignedBox3d& box, const OrientedBox& oriented) {
     checkIndex(index);
     elements_.emplace_back(kind, static_cast<std::uint32_t>(index));
-    const AlignedBox3d both = box.intersection(turned.upright());
+    const AlignedBox3d both = box.intersection(oriented.axisAligned());
     boxes_.push_back(both.isEmpty() ? box : both);
-    turned_.push_back(turned);
+    oriented_.push_back(oriented);
   }
 
   void addFace(std::uint32_t f) {
     constexpr std::size_t kMostLeaves = 20'000'000;
     if (isAnalytic(part_.surfaces[part_.faces[f].surface]))
-      return add(ElementKind::kFace, f, faceBox(model_.face(f)), turnedFaceBox(model_.face(f)));
+      return add(ElementKind::kFace, f, faceBox(model_.face(f)), orientedFaceBox(model_.face(f)));
     std::vector<BoxedLeaf> leaves;
     cutFace(*model_.geometry_, f, model_.face(f), leaves);
     if (model_.leaves_.size() + leaves.size() > kMostLeaves)
       throw std::invalid_argument(
           "the curved faces need more than 20,000,000 flat pieces, expected fewer (use a simpler part)");
     for (const BoxedLeaf& made : leaves) {
-      add(ElementKind::kLeaf, model_.leaves_.size(), made.box, made.turned);
+      add(ElementKind::kLeaf, model_.leaves_.size(), made.box, made.oriented);
       model_.leaves_.push_back(made.leaf);
     }
   }
@@ -112,31 +112,31 @@ class ModelBuilder {
       return add(ElementKind::kPole, e, point, {Eigen::Matrix3d::Identity(), point});
     }
     const CurveKind kind = part_.curves3[edge.curve].kind;
-    const std::uint32_t guise = model_.edge(e).guise;
-    if (kind <= CurveKind::kCircle || guise != kNone) {
-      const bool circle = guise != kNone ? model_.guised(guise).is_circle : kind == CurveKind::kCircle;
+    const std::uint32_t recognised = model_.edge(e).recognised;
+    if (kind <= CurveKind::kCircle || recognised != kNone) {
+      const bool circle = recognised != kNone ? model_.recognised(recognised).is_circle : kind == CurveKind::kCircle;
       return add(circle ? ElementKind::kCircle : ElementKind::kLine, e, edgeBox(model_.edge(e), circle),
-                 turnedEdgeBox(model_.edge(e), circle));
+                 orientedEdgeBox(model_.edge(e), circle));
     }
     std::vector<BoxedPiece> pieces;
     cutEdge(*model_.geometry_, e, pieces);
     for (const BoxedPiece& made : pieces) {
-      add(ElementKind::kPiece, model_.pieces_.size(), made.box, made.turned);
+      add(ElementKind::kPiece, model_.pieces_.size(), made.box, made.oriented);
       model_.pieces_.push_back(made.piece);
     }
   }
 
-  void plantTree(std::uint32_t b) {
+  void buildTree(std::uint32_t b) {
     const Body& body = part_.bodies[b];
     elements_.clear();
     boxes_.clear();
-    turned_.clear();
+    oriented_.clear();
     BodyTree& made = model_.bodies_[b];
-    if (body.kind == BodyKind::kMesh) return plantMesh(body, made);
+    if (body.kind == BodyKind::kMesh) return buildMeshTree(body, made);
     for (std::uint32_t i = 0; i < body.face_count; ++i) addFace(body.first_face + i);
     for (std::uint32_t i = 0; i < body.edge_count; ++i) addEdge(body.first_edge + i);
     arrange(made);
-    plantFaceTrees(body, made);
+    addFaceTrees(body, made);
     made.tree.forgetOrder();
   }
 
@@ -147,7 +147,7 @@ class ModelBuilder {
     for (const std::uint32_t i : body.tree.order()) body.elements.push_back(elements_[i]);
     body.rows.resize(elements_.size());
     forEachRow(body, [&](std::size_t number, const ElementRow& row) {
-      body.rows[number] = rowBox(turned_[body.tree.order()[row.first]], body.tree);
+      body.rows[number] = rowBox(oriented_[body.tree.order()[row.first]], body.tree);
     });
   }
 
@@ -192,7 +192,7 @@ class ModelBuilder {
   }
 
   /// Adds a tree over each face and its edges, because a held contact asks for the nearest point of a single face.
-  void plantFaceTrees(const Body& body, BodyTree& made) {
+  void addFaceTrees(const Body& body, BodyTree& made) {
     std::vector<std::vector<std::uint32_t>> of_faces(body.face_count);
     for (std::uint32_t i = 0; i < elements_.size(); ++i)
       forEachFaceOf(elements_[i], [&](std::uint32_t face) {
@@ -211,7 +211,7 @@ class ModelBuilder {
     }
   }
 
-  void plantMesh(const Body& body, BodyTree& made) {
+  void buildMeshTree(const Body& body, BodyTree& made) {
     checkIndex(std::size_t{body.first_triangle} + body.triangle_count);
     for (std::uint32_t i = 0; i < body.triangle_count; ++i) {
       AlignedBox3d box;
@@ -224,11 +224,11 @@ class ModelBuilder {
     for (const std::uint32_t i : made.tree.order())
       made.elements.emplace_back(ElementKind::kTriangle, body.first_triangle + i);
     made.tree.forgetOrder();
-    made.slabs.resize(static_cast<std::size_t>(made.tree.rowCount()));
+    made.discs.resize(static_cast<std::size_t>(made.tree.rowCount()));
     forEachRow(made, [&](std::size_t number, const ElementRow& row) {
       std::array<std::uint32_t, BoxTree::kMaxRow> triangles{};
       for (std::size_t k = 0; k < row.count; ++k) triangles[k] = made.elements[row.first + k].index();
-      made.slabs[number] = rowSlab(part_, std::span(triangles).first(row.count), made.tree);
+      made.discs[number] = rowDisc(part_, std::span(triangles).first(row.count), made.tree);
     });
   }
 
@@ -249,7 +249,7 @@ class ModelBuilder {
 
   /// Keeps only the numbers of splines in parameter planes, which are evaluated from there. The geometry has copied
   /// those of surfaces and edges.
-  void forgetNumbers() {
+  void dropSplineNumbers() {
     std::vector<double> kept;
     for (const bool counting : {true, false}) {
       std::size_t size = 0;
@@ -297,7 +297,7 @@ class ModelBuilder {
   const ModelOptions& options_;
   std::vector<Element> elements_;  ///< elements of the body whose tree is being built
   std::vector<AlignedBox3d> boxes_;
-  std::vector<TurnedBox> turned_;  ///< tighter boxes around the same elements
+  std::vector<OrientedBox> oriented_;  ///< tighter boxes around the same elements
 };
 
 Model::Model(Part part, const ModelOptions& options) : part_(std::move(part)) {
@@ -315,7 +315,7 @@ std::size_t Model::bytes() const noexcept {
   add(face_roots_);
   for (const BodyTree& tree : bodies_) {
     sum += sizeof tree + tree.tree.bytes();
-    add(tree.elements), add(tree.rows), add(tree.slabs);
+    add(tree.elements), add(tree.rows), add(tree.discs);
   }
   return sum + placement_tree_.bytes();
 }

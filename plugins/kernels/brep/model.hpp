@@ -12,16 +12,16 @@
 
 #include "kernels/brep/box_tree.hpp"
 #include "kernels/brep/elements.hpp"
-#include "kernels/brep/guised_edges.hpp"
+#include "kernels/brep/recognised_edges.hpp"
 #include "kernels/brep/row_box.hpp"
-#include "kernels/brep/row_slab.hpp"
+#include "kernels/brep/row_disc.hpp"
 
 namespace hapticd::brep {
 
 struct ModelOptions {
   spline::Form form = spline::Form::kTable;  ///< how spline surfaces and edges are stored
-  /// Name of one instance or assembly, or its path "assembly/sub/part"; empty for the whole part. It keeps its pose in
-  /// the part.
+  /// Name of one instance or assembly, or its path "assembly/sub/part"; empty for the whole part. The instance keeps
+  /// the pose that it has in the part.
   std::string instance;
 };
 
@@ -49,15 +49,17 @@ struct CornerNormal {
 /// The elements of one body.
 struct BodyTree {
   static constexpr std::int32_t kNoRoot = -1;  ///< root of a face without elements
-  /// Triangles in one row; testing the disc around two triangles is cheaper than testing one triangle.
+  /// Triangles in one row. One disc around two triangles is used, because the distance to a disc costs less than that
+  /// to a triangle.
   static constexpr int kMeshRow = 2;
 
   BoxTree tree;
   std::vector<Element> elements;  ///< elements in the order of the tree
   std::vector<RowBox> rows;       ///< box of each row, indexed by row number; empty for meshes
-  std::vector<RowSlab> slabs;     ///< disc of each row, indexed by row number; empty except for meshes
+  std::vector<RowDisc> discs;     ///< disc of each row, indexed by row number; empty except for meshes
 
-  /// [rt] Prefetches the memory of a child of a node that will be examined soon.
+  /// [rt] Prefetches a child of a node that will be examined soon. @param row number of the row, for a child that is a
+  /// row
   void fetchAhead(std::int32_t child, std::int32_t row) const noexcept {
     const auto at = static_cast<std::size_t>(row);
     if (child >= 0) {
@@ -67,14 +69,14 @@ struct BodyTree {
       __builtin_prefetch(&rows[at].center);
       __builtin_prefetch(&rows[at].outer);
     } else {
-      __builtin_prefetch(&slabs[at]);
+      __builtin_prefetch(&discs[at]);
     }
   }
 
   template <class Shape>
   const std::vector<Shape>& shapes() const noexcept {
-    if constexpr (std::is_same_v<Shape, RowSlab>)
-      return slabs;
+    if constexpr (std::is_same_v<Shape, RowDisc>)
+      return discs;
     else
       return rows;
   }
@@ -95,8 +97,8 @@ class Model {
   const Geometry& geometry() const noexcept { return *geometry_; }
   const FaceShape& face(std::uint32_t index) const noexcept { return faces_[index]; }
   const EdgeShape& edge(std::uint32_t index) const noexcept { return edges_[index]; }
-  /// [any] @param index EdgeShape::guise, which must not be kNone
-  const GuisedEdge& guised(std::uint32_t index) const noexcept { return guised_[index]; }
+  /// [any] @param index EdgeShape::recognised, which must not be kNone
+  const RecognisedEdge& recognised(std::uint32_t index) const noexcept { return recognised_[index]; }
   const Leaf& leaf(std::uint32_t index) const noexcept { return leaves_[index]; }
   const CurvePiece& piece(std::uint32_t index) const noexcept { return pieces_[index]; }
   std::size_t leafCount() const noexcept { return leaves_.size(); }
@@ -141,7 +143,7 @@ class Model {
   std::unique_ptr<Geometry> geometry_;
   std::vector<FaceShape> faces_;
   std::vector<EdgeShape> edges_;
-  std::vector<GuisedEdge> guised_;
+  std::vector<RecognisedEdge> recognised_;
   std::vector<Leaf> leaves_;
   std::vector<CurvePiece> pieces_;
   std::vector<CornerNormal> vertex_normals_, point_normals_;

@@ -20,7 +20,7 @@ bool NearPlaces::add(const Model& model, std::uint32_t place, const Vector3d& p,
   const Placement& at = model.placements()[place];
   const BodyTree& body = model.body(at.body);
   if (body.tree.empty()) return true;
-  if (count_ == kMostPlaces || !body.slabs.empty()) return false;
+  if (count_ == kMostPlaces || !body.discs.empty()) return false;
   Near& near = places_[static_cast<std::size_t>(count_)];
   near.place = place;
   const Vector3d p_body = at.toBody(p);

@@ -15,9 +15,9 @@ class NearPlaces {
   static constexpr int kMostPlaces = 4;
   static constexpr int kMostRows = kMostPlaces * NearElements::kMostRows;
   using Limits = ElementLimits;
-  /// Nodes of the tree: if a search of the whole model examines fewer nodes than this, gathering elements would cost
-  /// more than it saves.
-  static constexpr int kDear = 24;
+  /// If a search of the whole model examines fewer nodes of its trees than this, gathering elements would cost more
+  /// than it saves.
+  static constexpr int kFewestNodes = 24;
 
   /// The elements near the probe in one placement.
   struct Near {
@@ -29,8 +29,8 @@ class NearPlaces {
   /// nothing is known, if there are too many placements or elements near p, or if one of the bodies is a mesh.
   bool gather(const Model& model, const Eigen::Vector3d& p, double reach) noexcept;
   /// [rt] Tells that the probe has moved by this distance [m].
-  void go(double way) noexcept {
-    for (int i = 0; i < count_; ++i) places_[static_cast<std::size_t>(i)].elements.go(way);
+  void probeMoved(double way) noexcept {
+    for (int i = 0; i < count_; ++i) places_[static_cast<std::size_t>(i)].elements.probeMoved(way);
   }
   /// [rt] Forgets the collected elements; beyond() is then below 0.
   void forget() noexcept { count_ = 0, beyond_ = -1; }

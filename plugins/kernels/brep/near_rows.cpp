@@ -59,7 +59,7 @@ bool NearRows<Choice>::gather(const BodyTree& body, const Eigen::Vector3d& p, do
   rows_ = 0;
   center_ = p;
   beyond_ = -1;
-  gone_ = 0;
+  moved_ = 0;
   if (!(reach2 < beyond2) || !collect(body, p, reach2, beyond2)) return false;
   const auto begin = candidates_.begin(), end = begin + candidate_count_;
   auto last = end;

@@ -10,8 +10,8 @@
 
 namespace hapticd::brep {
 
-/// Limits for bodies of faces and edges: how many rows are collected and examined in one tick. Examining a spline leaf
-/// is expensive.
+/// Limits for bodies of faces and edges: how many rows are gathered and examined in one tick. They are low, because the
+/// foot on a spline leaf costs several evaluations.
 struct ElementLimits {
   using Shape = RowBox;
   static constexpr int kMostFours = 8;         ///< most groups of four rows
@@ -23,9 +23,9 @@ struct ElementLimits {
   /// Measured distances are kept, because they bound a row more closely than its shape does.
   static constexpr bool kLearns = true;
 };
-/// The same limits for meshes: examining a triangle is cheap.
+/// The same limits for meshes. They are higher, because the foot on a triangle costs little.
 struct TriangleLimits {
-  using Shape = RowSlab;
+  using Shape = RowDisc;
   static constexpr int kMostFours = 24, kMostCandidates = 96, kMostNodes = 128, kFew = 16, kMany = 32;
   static constexpr double kWorthIt = 4;
   static constexpr bool kLearns = false;
@@ -47,7 +47,7 @@ class NearRows {
   /// the nearest ones. Returns false, and then nothing is known, if the search exceeds kMostNodes or kMostCandidates.
   bool gather(const BodyTree& body, const Eigen::Vector3d& p, double reach) noexcept;
   /// [rt] Tells that the probe has moved by this distance [m].
-  void go(double way) noexcept { gone_ += way; }
+  void probeMoved(double way) noexcept { moved_ += way; }
   /// [rt] Forgets the rows; beyond() is then below 0.
   void forget() noexcept { beyond_ = -1; }
   /// [rt] Returns a lower bound of the distance [m] from p to every element of the other rows. If it is below 0,
@@ -57,7 +57,7 @@ class NearRows {
   void learn(int four, int lane, double distance2) noexcept {
     if constexpr (!Limits::kLearns) return;
     constexpr double kRoundedDown = 1 - 1e-6;
-    known_[static_cast<std::size_t>(four)][lane] = static_cast<float>((std::sqrt(distance2) + gone_) * kRoundedDown);
+    known_[static_cast<std::size_t>(four)][lane] = static_cast<float>((std::sqrt(distance2) + moved_) * kRoundedDown);
   }
 
   int rows() const noexcept { return rows_; }
@@ -67,7 +67,7 @@ class NearRows {
     constexpr Float4 kZero{};
     const Float4 boxes = rowDistances(fours_[static_cast<std::size_t>(four)], probe);
     if constexpr (!Limits::kLearns) return boxes;
-    const Float4 left = known_[static_cast<std::size_t>(four)] - static_cast<float>(gone_ * (1 + 1e-6));
+    const Float4 left = known_[static_cast<std::size_t>(four)] - static_cast<float>(moved_ * (1 + 1e-6));
     const Float4 known = (left > kZero ? left : kZero) * (left > kZero ? left : kZero) * kRowShare;
     return boxes > known ? boxes : known;
   }
@@ -84,11 +84,11 @@ class NearRows {
   void add(const Shape& shape, std::int32_t child) noexcept;
 
   std::array<Four, Limits::kMostFours> fours_;
-  std::array<Float4, Limits::kMostFours> known_{};  ///< [m] measured distance, plus gone_ at that time
+  std::array<Float4, Limits::kMostFours> known_{};  ///< [m] measured distance, plus the value of moved_ at that time
   std::array<std::int32_t, kMostRows> children_{};
   Eigen::Vector3d center_{0, 0, 0};
   double beyond_ = -1;
-  double gone_ = 0;  ///< [m] distance moved by the probe since the rows were gathered
+  double moved_ = 0;  ///< [m] distance moved by the probe since the rows were gathered
   int rows_ = 0;
   std::array<Candidate, Limits::kMostCandidates> candidates_;
   int candidate_count_ = 0;

@@ -18,8 +18,8 @@ constexpr int kMostSteps = 16;
 /// [m] A Newton step shorter than this ends the search. The remaining error is the square of the step times the
 /// curvature, which is negligible.
 constexpr double kShortStep = 1e-8;
-/// If the determinant of the Hessian is below this share of the product of its diagonal, the first-order (Gauss-Newton)
-/// step is used instead.
+/// If the determinant of the Hessian is below this share of the product of its diagonal, the quadratic model is not
+/// convex enough, and the first-order (Gauss-Newton) step is used instead.
 constexpr double kFlattest = 1e-5;
 
 /// The squared distance to the probe and its derivatives at one point of a leaf.
@@ -110,10 +110,10 @@ bool pressesOutward(const Leaf& leaf, const LeafState& s, const Array2d& uv) noe
   return false;
 }
 
-/// Replaces `hit` by the foot after the last step from s, if this foot is nearer and inside the trim. Returns its
-/// squared distance.
+/// Replaces `hit` by the foot after the last step from s, if this foot is nearer. Returns its squared distance, or
+/// infinity if it is outside the trim or refused. `untrimmed2` is lowered to its squared distance in any case.
 double take(const LeafTask& task, const FaceShape& face, const LeafState& s, const Vector2d& d, double offset,
-            double& region2, Hit& hit) noexcept {
+            double& untrimmed2, Hit& hit) noexcept {
   const Array2d uv = (s.uv + d.array()).max(task.leaf.lo).min(task.leaf.hi);
   Vector3d point = s.E.S + d[0] * s.E.Su + d[1] * s.E.Sv +
                    0.5 * (d[0] * d[0] * s.E.Suu + 2 * d[0] * d[1] * s.E.Suv + d[1] * d[1] * s.E.Svv);
@@ -122,7 +122,7 @@ double take(const LeafTask& task, const FaceShape& face, const LeafState& s, con
     point += offset * Su.cross(Sv).normalized();
   }
   const double d2 = (point - task.p).squaredNorm();
-  region2 = std::min(region2, d2);
+  untrimmed2 = std::min(untrimmed2, d2);
   if (pressesOutward(task.leaf, s, uv) || !face.trim.inside(uv[0], uv[1]))
     return std::numeric_limits<double>::infinity();
   if (!(d2 < hit.d2)) return d2;
@@ -136,53 +136,53 @@ double take(const LeafTask& task, const FaceShape& face, const LeafState& s, con
 /// True if the probe is nearer to its foot than every centre of curvature of the leaf on the probe's side.
 bool isWithinFocus(const Leaf& leaf, const FaceShape& face, const LeafState& s, double offset) noexcept {
   const double side = -face.outward * s.r.dot(s.E.Su.cross(s.E.Sv));
-  return (std::sqrt(s.f) + offset) * static_cast<double>(side > 0 ? leaf.bend_front : leaf.bend_back) < 1;
+  return (std::sqrt(s.f) + offset) * static_cast<double>(side > 0 ? leaf.curvature_front : leaf.curvature_back) < 1;
 }
 
 /// Returns a lower bound of the squared distance to a leaf on which the probe has one foot. It follows from the slope
-/// at s and `least_bend`, the least second derivative. A slope that rises inward from a border of the leaf is left out,
-/// because the distance can only grow along it.
-double leastFrom(const LeafTask& task, const LeafState& s, double least_bend) noexcept {
+/// at s and `least_second`, the least second derivative. A slope that rises inward from a border of the leaf is left
+/// out, because the distance can only grow along it.
+double lowerBoundFrom(const LeafTask& task, const LeafState& s, double least_second) noexcept {
   Vector2d slope(s.r.dot(s.E.Su), s.r.dot(s.E.Sv));
   for (int axis = 0; axis < 2; ++axis)
     if ((s.uv[axis] <= task.leaf.lo[axis] && slope[axis] > 0) || (s.uv[axis] >= task.leaf.hi[axis] && slope[axis] < 0))
       slope[axis] = 0;
   double square = 0;
-  for (const Array2d& along : task.leaf.bow.along) {
+  for (const Array2d& along : task.leaf.curvature.along) {
     const double one = along[0] * slope[0] + along[1] * slope[1];
     square += one * one;
   }
-  return s.f * (1 - 1e-9) - square * (1 + 1e-9) / least_bend;
+  return s.f * (1 - 1e-9) - square * (1 + 1e-9) / least_second;
 }
 
 }  // namespace
 
-PieceAnswer leafFoot(const Geometry& geometry, const Leaf& leaf, const FaceShape& face, std::uint32_t surface,
-                     const Vector3d& p, const LeafStart& start, Hit& hit) noexcept {
+NewtonResult leafFoot(const Geometry& geometry, const Leaf& leaf, const FaceShape& face, std::uint32_t surface,
+                      const Vector3d& p, const LeafStart& start, Hit& hit) noexcept {
   const Surface& shape = geometry.part().surfaces[surface];
   const bool is_offset = shape.kind == SurfaceKind::kOffset;
   const double offset = is_offset ? shape.r[0] : 0;
   LeafTask task{geometry, leaf, is_offset ? shape.basis : surface, p};
   LeafState s;
   task.at(start.uv.max(leaf.lo).min(leaf.hi), s);
-  PieceAnswer answer;
-  if (start.sight.least_bend > 0 && s.f > start.limit2)
-    if (const double least = leastFrom(task, s, start.sight.least_bend); least > start.limit2) {
-      answer.d2 = answer.region2 = least;
+  NewtonResult answer;
+  if (start.feet.least_second > 0 && s.f > start.limit2)
+    if (const double least = lowerBoundFrom(task, s, start.feet.least_second); least > start.limit2) {
+      answer.d2 = answer.untrimmed2 = least;
       answer.evaluations = task.evaluations;
       return answer;
     }
   Vector2d d = descend(task, s);
-  answer.d2 = take(task, face, s, d, offset, answer.region2, hit);
-  answer.alone =
-      task.arrived && (start.sight.feet != FeetOfLeaf::kUnknown || isWithinFocus(leaf, face, s, std::abs(offset)));
+  answer.d2 = take(task, face, s, d, offset, answer.untrimmed2, hit);
+  answer.proved =
+      task.arrived && (start.feet.number != FeetOfLeaf::kUnknown || isWithinFocus(leaf, face, s, std::abs(offset)));
   // If the probe is beyond a centre of curvature, there may be several feet. So the search also starts near the
   // corners.
-  for (int corner = 0; corner < 4 && !answer.alone && start.elsewhere; ++corner) {
+  for (int corner = 0; corner < 4 && !answer.proved && start.elsewhere; ++corner) {
     const Array2d share(corner % 2 == 0 ? 0.1 : 0.9, corner < 2 ? 0.1 : 0.9);
     task.at(leaf.lo + share * (leaf.hi - leaf.lo), s);
     d = descend(task, s);
-    answer.d2 = std::min(answer.d2, take(task, face, s, d, offset, answer.region2, hit));
+    answer.d2 = std::min(answer.d2, take(task, face, s, d, offset, answer.untrimmed2, hit));
     ++answer.starts;
   }
   answer.evaluations = task.evaluations;
@@ -254,32 +254,33 @@ double take(const CurveTask& task, const CurveState& s, double d, Hit& hit) noex
 
 /// Returns a lower bound of the squared distance to a piece if its second derivative is positive everywhere along the
 /// piece, else 0.
-double leastFrom(const CurveTask& task, const CurveState& s) noexcept {
-  const double bend = leastBendSeenFrom(task.piece.shape, task.p);
+double lowerBoundFrom(const CurveTask& task, const CurveState& s) noexcept {
+  const double second = leastSecondDerivative(task.piece.curvature, task.p);
   const double speed2 = s.C.C1.squaredNorm(), slope = s.r.dot(s.C.C1);
-  if (!(bend > 0) || !(speed2 > 0)) return 0;
+  if (!(second > 0) || !(speed2 > 0)) return 0;
   if ((s.t <= task.piece.t0 && slope > 0) || (s.t >= task.piece.t1 && slope < 0)) return s.f * (1 - 1e-9);
-  return s.f * (1 - 1e-9) - slope * slope * (1 + 1e-9) / (speed2 * bend);
+  return s.f * (1 - 1e-9) - slope * slope * (1 + 1e-9) / (speed2 * second);
 }
 
 }  // namespace
 
-PieceAnswer pieceFoot(const Geometry& geometry, const CurvePiece& piece, const Vector3d& p, double t, double limit2,
-                      Hit& hit) noexcept {
+NewtonResult pieceFoot(const Geometry& geometry, const CurvePiece& piece, const Vector3d& p, double t, double limit2,
+                       Hit& hit) noexcept {
   CurveTask task{geometry, piece, geometry.part().edges[piece.edge].curve, p};
   CurveState s;
   task.at(std::clamp(t, piece.t0, piece.t1), s);
-  PieceAnswer answer;
+  NewtonResult answer;
   if (s.f > limit2)
-    if (const double least = leastFrom(task, s); least > limit2) {
+    if (const double least = lowerBoundFrom(task, s); least > limit2) {
       answer.d2 = least;
       return answer;
     }
   double d = task.descend(s);
   answer.d2 = take(task, s, d, hit);
   // If the probe is beyond a centre of curvature, there may be several feet, or only the ends may be minima.
-  const FeetOfPiece feet = std::sqrt(s.f) * piece.bend < 1 ? FeetOfPiece::kOne : feetSeenFrom(piece.shape, p);
-  answer.alone = feet != FeetOfPiece::kUnknown;
+  const FeetOfPiece feet =
+      std::sqrt(s.f) * piece.most_curvature < 1 ? FeetOfPiece::kOne : countFeet(piece.curvature, p);
+  answer.proved = feet != FeetOfPiece::kUnknown;
   if (feet != FeetOfPiece::kOne)
     for (const double share : {0.02, 0.98}) {
       task.at(piece.t0 + share * (piece.t1 - piece.t0), s);

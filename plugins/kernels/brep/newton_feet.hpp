@@ -6,13 +6,13 @@
 
 namespace hapticd::brep {
 
-/// What a search learns by examining a leaf or a piece of a curve.
-struct PieceAnswer {
-  /// [m^2] squared distance of the nearest foot found, even if `hit` was nearer.
+/// The result of Newton's method on a leaf or on a piece of a curve.
+struct NewtonResult {
+  /// [m^2] squared distance of the nearest foot found, even if `hit` was nearer; infinite if no foot counts.
   double d2 = std::numeric_limits<double>::infinity();
-  /// [m^2] leaves only: the same, including feet that are refused (see leafFoot()).
-  double region2 = std::numeric_limits<double>::infinity();
-  bool alone = true;  ///< true if no other point of the element can be nearer than d2 and region2
+  /// [m^2] leaves only: the same, including feet outside the trim and feet that are refused (see leafFoot()).
+  double untrimmed2 = std::numeric_limits<double>::infinity();
+  bool proved = true;  ///< certainly no other point of the element is nearer than d2 and untrimmed2
   int evaluations = 0;
   int starts = 1;  ///< starts of Newton's method
 };
@@ -20,7 +20,7 @@ struct PieceAnswer {
 /// How to search for a foot on a leaf.
 struct LeafStart {
   Eigen::Array2d uv;
-  LeafSight sight;        ///< how many feet the probe has on the leaf
+  LeafFeet feet;          ///< how many feet the probe has on the leaf
   bool elsewhere = true;  ///< start near the corners too if there may be several feet
   /// [m^2] if the leaf is farther than this, a lower bound is enough.
   double limit2 = std::numeric_limits<double>::infinity();
@@ -28,12 +28,12 @@ struct LeafStart {
 
 /// [rt] Finds the foot of p on a leaf. A foot at a border of the surface, or of the box of the loops, is refused if the
 /// distance would still decrease beyond the border, because the edge there gives a more exact point.
-PieceAnswer leafFoot(const Geometry& geometry, const Leaf& leaf, const FaceShape& face, std::uint32_t surface,
-                     const Eigen::Vector3d& p, const LeafStart& start, Hit& hit) noexcept;
+NewtonResult leafFoot(const Geometry& geometry, const Leaf& leaf, const FaceShape& face, std::uint32_t surface,
+                      const Eigen::Vector3d& p, const LeafStart& start, Hit& hit) noexcept;
 
 /// [rt] Finds the foot of p on a piece of a curve, starting at t. @param limit2 [m^2] if the piece is farther than
 /// this, a lower bound is enough
-PieceAnswer pieceFoot(const Geometry& geometry, const CurvePiece& piece, const Eigen::Vector3d& p, double t,
-                      double limit2, Hit& hit) noexcept;
+NewtonResult pieceFoot(const Geometry& geometry, const CurvePiece& piece, const Eigen::Vector3d& p, double t,
+                       double limit2, Hit& hit) noexcept;
 
 }  // namespace hapticd::brep

@@ -88,14 +88,14 @@ AlignedBox3d faceBox(const FaceShape& f, const Matrix3d& frame) {
   return rounded(least, most);
 }
 
-TurnedBox turnedFaceBox(const FaceShape& f) {
+OrientedBox orientedFaceBox(const FaceShape& f) {
   const double middle = 0.5 * (f.trim.lo()[0] + f.trim.hi()[0]);
-  TurnedBox turned;
-  turned.frame = f.kind == SurfaceKind::kPlane ? frameOf(f.x, f.y)
-                                               : frameOf(std::cos(middle) * f.x + std::sin(middle) * f.y,
-                                                         std::cos(middle) * f.y - std::sin(middle) * f.x);
-  turned.box = faceBox(f, turned.frame);
-  return turned;
+  OrientedBox oriented;
+  oriented.frame = f.kind == SurfaceKind::kPlane ? frameOf(f.x, f.y)
+                                                 : frameOf(std::cos(middle) * f.x + std::sin(middle) * f.y,
+                                                           std::cos(middle) * f.y - std::sin(middle) * f.x);
+  oriented.box = faceBox(f, oriented.frame);
+  return oriented;
 }
 
 AlignedBox3d edgeBox(const EdgeShape& e, bool circle, const Matrix3d& frame) {
@@ -115,14 +115,14 @@ AlignedBox3d edgeBox(const EdgeShape& e, bool circle, const Matrix3d& frame) {
   return rounded(least, most);
 }
 
-TurnedBox turnedEdgeBox(const EdgeShape& e, bool circle) {
+OrientedBox orientedEdgeBox(const EdgeShape& e, bool circle) {
   const double middle = 0.5 * (e.t0 + e.t1);
-  TurnedBox turned;
-  turned.frame =
+  OrientedBox oriented;
+  oriented.frame =
       circle ? frameOf(std::cos(middle) * e.x + std::sin(middle) * e.y, std::cos(middle) * e.y - std::sin(middle) * e.x)
              : frameOf(e.x, e.x.unitOrthogonal());
-  turned.box = edgeBox(e, circle, turned.frame);
-  return turned;
+  oriented.box = edgeBox(e, circle, oriented.frame);
+  return oriented;
 }
 
 }  // namespace hapticd::brep

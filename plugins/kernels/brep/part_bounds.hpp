@@ -10,12 +10,12 @@ namespace hapticd::brep {
 /// the box are along the rows of `frame`.
 Eigen::AlignedBox3d faceBox(const FaceShape& face, const Eigen::Matrix3d& frame = Eigen::Matrix3d::Identity());
 /// [main] Returns a box that encloses the face, with the axes of the face's middle.
-TurnedBox turnedFaceBox(const FaceShape& face);
+OrientedBox orientedFaceBox(const FaceShape& face);
 
 /// [main] Returns a box that encloses a straight or circular edge, along the rows of `frame`.
 Eigen::AlignedBox3d edgeBox(const EdgeShape& edge, bool circle,
                             const Eigen::Matrix3d& frame = Eigen::Matrix3d::Identity());
 /// [main] Returns a box that encloses the edge, with the axes of the edge's middle.
-TurnedBox turnedEdgeBox(const EdgeShape& edge, bool circle);
+OrientedBox orientedEdgeBox(const EdgeShape& edge, bool circle);
 
 }  // namespace hapticd::brep

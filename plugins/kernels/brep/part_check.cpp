@@ -2,9 +2,9 @@
 #include "kernels/brep/part_check.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <span>
 
+#include "kernels/brep/record_check.hpp"
 #include "kernels/brep/spline_check.hpp"
 
 namespace hapticd::brep {
@@ -13,12 +13,6 @@ namespace {
 constexpr double kSquare = 1e-9;  // tolerance of cosines that must be 0 and of lengths that must be 1
 
 constexpr double kMostTurn = 2 * 3.14159265358979 * (1 + 1e-9), kFarthestAngle = 1000;  // [rad]
-
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
 
 double dot(const Vector& a, const Vector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -36,53 +30,6 @@ void heldOnce(std::uint64_t held, std::size_t all, const char* what) {
   throw PartError("bodies: together they have " + std::to_string(held) + " " + what + ", but the part has " +
                   std::to_string(all) + "; each must belong to exactly one body");
 }
-
-/// The record that is being checked, for messages.
-struct Where {
-  const char* kind;
-  std::size_t index;
-  [[noreturn]] void fail(const std::string& why) const {
-    throw PartError(std::string(kind) + " " + std::to_string(index) + ": " + why);
-  }
-  void need(bool good, const char* why) const {
-    if (!good) fail(why);
-  }
-  /// Checks that an index is below `count`.
-  void index_in(std::uint32_t value, std::size_t count, const char* what) const {
-    if (value >= count)
-      fail(std::string(what) + " " + std::to_string(value) + ", but the index must be below " + std::to_string(count));
-  }
-  void index_or_none(std::uint32_t value, std::size_t count, const char* what) const {
-    if (value != kNone) index_in(value, count, what);
-  }
-  /// Checks a range of records inside an array.
-  void range_in(std::uint64_t first, std::uint64_t length, std::size_t count, const char* what) const {
-    if (first > count || length > count - first)
-      fail(std::string(what) + " " + std::to_string(first) + " to " + std::to_string(first + length) +
-           ", but there are only " + std::to_string(count));
-  }
-  template <std::size_t n>
-  void finite(const std::array<double, n>& values, double most, const char* what) const {
-    for (double value : values)
-      if (!(std::abs(value) <= most))
-        fail(std::string(what) + " is " + number(value) + ", expected a finite number up to " + number(most));
-  }
-  void positive(double value, const char* what) const {
-    if (!(value > 0 && value <= kFarthestPart)) fail(std::string(what) + " is " + number(value) + ", expected above 0");
-  }
-  void tolerance(double value) const {
-    if (!(value >= 0 && value <= kFarthestPart)) fail("tolerance is " + number(value) + ", expected 0 or more");
-  }
-  void flags_in(std::uint32_t flags, std::uint32_t known) const {
-    if ((flags & ~known) != 0)
-      fail("flags " + std::to_string(flags) + " have unknown bits, expected only bits of " + std::to_string(known));
-  }
-  void ascending(double lo, double hi, const char* what) const {
-    if (!(lo < hi && std::abs(lo) <= kWidestParameter && std::abs(hi) <= kWidestParameter))
-      fail(std::string(what) + " from " + number(lo) + " to " + number(hi) +
-           ", expected finite numbers, the second greater than the first");
-  }
-};
 
 class Checker {
  public:
@@ -107,7 +54,7 @@ class Checker {
  private:
   template <class Record>
   void each(const char* kind, const std::vector<Record>& records,
-            void (Checker::*check)(const Where&, const Record&) const) const {
+            void (Checker::*check)(const RecordCheck&, const Record&) const) const {
     if (records.size() >= kNone)
       throw PartError(std::string(kind) + ": too many records, expected fewer than 4294967295");
     for (std::size_t i = 0; i < records.size(); ++i) (this->*check)({kind, i}, records[i]);
@@ -115,16 +62,16 @@ class Checker {
 
   void header() const {
     if (!(part_.tolerance >= 0 && part_.tolerance <= kFarthestPart))
-      throw PartError("tolerance is " + number(part_.tolerance) + ", expected 0 or more");
+      throw PartError("tolerance is " + numberText(part_.tolerance) + " m, expected 0 to " + numberText(kFarthestPart));
     if (part_.instances.empty()) throw PartError("the part has no instances, expected at least one");
     for (const Loss& loss : part_.losses)
       if (!(loss.size >= 0 && std::isfinite(loss.size)))
-        throw PartError("a loss has size " + number(loss.size) + ", expected 0 or more");
+        throw PartError("the loss of " + loss.what + " has size " + numberText(loss.size) + " m, expected 0 or more");
   }
 
-  void name(const Where& at, std::uint32_t index) const { at.index_or_none(index, part_.names.size(), "name"); }
+  void name(const RecordCheck& at, std::uint32_t index) const { at.index_or_none(index, part_.names.size(), "name"); }
 
-  void surface(const Where& at, const Surface& s) const {
+  void surface(const RecordCheck& at, const Surface& s) const {
     at.flags_in(s.flags, kRational | kClosedU | kClosedV);
     for (const Vector* v : {&s.o, &s.x, &s.y, &s.z}) at.finite(*v, kFarthestPart, "an axis");
     at.finite(s.r, kFarthestPart, "a radius");
@@ -147,17 +94,17 @@ class Checker {
     }
   }
 
-  static void unit(const Where& at, const Vector& axis, const char* what) {
+  static void unit(const RecordCheck& at, const Vector& axis, const char* what) {
     if (!(std::abs(norm(axis) - 1) <= kSquare))
-      at.fail(std::string(what) + " is " + number(norm(axis)) + " long, expected 1");
+      at.fail(std::string(what) + " is " + numberText(norm(axis)) + " long, expected 1");
   }
 
-  static void square(const Where& at, const Vector& a, const Vector& b, double most) {
+  static void square(const RecordCheck& at, const Vector& a, const Vector& b, double most) {
     at.need(std::abs(dot(a, b)) <= most * norm(a) * norm(b), "two axes are not at right angles");
   }
 
-  static void analytic(const Where& at, const Surface& s) {
-    at.need(s.kind <= SurfaceKind::kTorus, "unknown kind, expected 0 to 8");
+  static void analytic(const RecordCheck& at, const Surface& s) {
+    at.kind_in(s.kind, SurfaceKind::kOffset);
     if (s.kind == SurfaceKind::kPlane) {
       at.positive(norm(s.x), "the length of x");
       at.positive(norm(s.y), "the length of y");
@@ -177,7 +124,7 @@ class Checker {
     if (s.kind == SurfaceKind::kTorus) at.positive(s.r[1], "r1");
   }
 
-  void splineSurface(const Where& at, const Surface& s) const {
+  void splineSurface(const RecordCheck& at, const Surface& s) const {
     std::uint64_t place = s.data;
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const std::uint64_t length = std::uint64_t{s.count[axis]} + s.degree[axis] + 1;
@@ -194,9 +141,10 @@ class Checker {
   }
 
   /// Checks control points of `dimension` coordinates, and the weights after them.
-  void net(const Where& at, std::uint64_t place, std::uint64_t points, std::uint64_t dimension, bool rational,
+  void net(const RecordCheck& at, std::uint64_t place, std::uint64_t points, std::uint64_t dimension, bool rational,
            double farthest) const {
-    if (points > part_.reals.size()) at.fail("it has more control points than the part has numbers");
+    if (points > part_.reals.size())
+      at.fail("it has more control points than the part has numbers; the file may be damaged");
     at.range_in(place, points * (dimension + (rational ? 1 : 0)), part_.reals.size(), "points");
     for (double value : real(place, points * dimension))
       at.finite(std::array{value}, farthest, "a coordinate of a control point");
@@ -206,8 +154,8 @@ class Checker {
   }
 
   template <class Curve>
-  void curve(const Where& at, const Curve& c, std::uint64_t dimension, double farthest) const {
-    at.need(c.kind <= CurveKind::kSpline, "unknown kind, expected 0 to 3");
+  void curve(const RecordCheck& at, const Curve& c, std::uint64_t dimension, double farthest) const {
+    at.kind_in(c.kind, CurveKind::kSpline);
     at.flags_in(c.flags, kRational);
     for (const auto* v : {&c.o, &c.x, &c.y}) at.finite(*v, farthest, "an axis");
     if (c.kind != CurveKind::kSpline) return;
@@ -218,7 +166,7 @@ class Checker {
     net(at, c.data + length, c.count, dimension, (c.flags & kRational) != 0, farthest);
   }
 
-  void curve3(const Where& at, const Curve3& c) const {
+  void curve3(const RecordCheck& at, const Curve3& c) const {
     curve(at, c, 3, kFarthestPart);
     if (c.kind == CurveKind::kLine || c.kind == CurveKind::kSpline)
       return at.need(c.kind == CurveKind::kSpline || norm(c.x) > 0, "x is 0, expected a direction");
@@ -230,7 +178,7 @@ class Checker {
               "x and y of a circle differ in length, expected the radius for both");
   }
 
-  void curve2(const Where& at, const Curve2& c) const {
+  void curve2(const RecordCheck& at, const Curve2& c) const {
     curve(at, c, 2, kWidestParameter);
     if (c.kind == CurveKind::kSpline) return;
     at.need(c.x[0] != 0 || c.x[1] != 0, "x is 0, expected a direction");
@@ -238,13 +186,13 @@ class Checker {
       at.need(c.x[0] * c.y[1] != c.x[1] * c.y[0], "x and y are parallel, expected two directions");
   }
 
-  void vertex(const Where& at, const Vertex& v) const {
+  void vertex(const RecordCheck& at, const Vertex& v) const {
     at.finite(v.point, kFarthestPart, "a coordinate");
     at.tolerance(v.tolerance);
   }
 
-  void edge(const Where& at, const Edge& e) const {
-    at.need(e.kind <= EdgeKind::kPole, "unknown kind, expected 0 to 7");
+  void edge(const RecordCheck& at, const Edge& e) const {
+    at.kind_in(e.kind, EdgeKind::kPole);
     at.index_or_none(e.first_vertex, part_.vertices.size(), "vertex");
     at.index_or_none(e.last_vertex, part_.vertices.size(), "vertex");
     at.finite(std::array{e.angle}, 7, "the angle");
@@ -255,13 +203,15 @@ class Checker {
       const CurveKind kind = part_.curves3[e.curve].kind;
       if (kind == CurveKind::kCircle || kind == CurveKind::kEllipse)
         at.need(e.t1 - e.t0 <= kMostTurn && std::abs(e.t0) <= kFarthestAngle,
-                "its angles span more than one turn of the circle or ellipse, or are beyond 1000 rad");
+                "t0 and t1 span more than one turn of the circle or ellipse, or are beyond 1000 rad; expected at most "
+                "one turn");
     }
     std::uint32_t coedge = e.first_coedge, met = 0;
     for (; coedge != kNone && met <= e.coedge_count; ++met) {
       at.index_in(coedge, part_.coedges.size(), "coedge");
       if (part_.coedges[coedge].edge != at.index)
-        at.fail("coedge " + std::to_string(coedge) + " belongs to another edge");
+        at.fail("coedge " + std::to_string(coedge) + " belongs to edge " + std::to_string(part_.coedges[coedge].edge) +
+                ", expected a coedge of this edge");
       coedge = part_.coedges[coedge].next;
     }
     if (met != e.coedge_count)
@@ -269,7 +219,7 @@ class Checker {
               std::to_string(e.coedge_count) + " coedges that coedge_count gives");
   }
 
-  void coedge(const Where& at, const Coedge& c) const {
+  void coedge(const RecordCheck& at, const Coedge& c) const {
     at.index_in(c.edge, part_.edges.size(), "edge");
     at.index_in(c.face, part_.faces.size(), "face");
     at.index_in(c.pcurve, part_.curves2.size(), "pcurve");
@@ -284,7 +234,7 @@ class Checker {
             "its t0 and t1 differ from those of its edge, expected the same values");
   }
 
-  void loop(const Where& at, const Loop& l) const {
+  void loop(const RecordCheck& at, const Loop& l) const {
     at.range_in(l.first, l.count, part_.coedges.size(), "coedges");
     at.need(l.count > 0, "no coedges, expected at least one");
     const std::uint32_t face = part_.coedges[l.first].face;
@@ -292,7 +242,7 @@ class Checker {
       at.need(part_.coedges[l.first + i].face == face, "its coedges belong to different faces, expected one face");
   }
 
-  void face(const Where& at, const Face& f) const {
+  void face(const RecordCheck& at, const Face& f) const {
     at.index_in(f.surface, part_.surfaces.size(), "surface");
     at.index_in(f.body, part_.bodies.size(), "body");
     at.range_in(f.first_loop, f.loop_count, part_.loops.size(), "loops");
@@ -303,11 +253,11 @@ class Checker {
     at.ascending(f.lo[1], f.hi[1], "v");
     for (std::uint32_t i = 0; i < f.loop_count; ++i)
       at.need(part_.coedges[part_.loops[f.first_loop + i].first].face == at.index,
-              "one of its loops belongs to another face");
+              "one of its loops has coedges of another face, expected only coedges of this face");
   }
 
-  void body(const Where& at, const Body& b) const {
-    at.need(b.kind <= BodyKind::kMesh, "unknown kind, expected 0 to 3");
+  void body(const RecordCheck& at, const Body& b) const {
+    at.kind_in(b.kind, BodyKind::kMesh);
     at.flags_in(b.flags, kClosed);
     name(at, b.name);
     at.range_in(b.first_face, b.face_count, part_.faces.size(), "faces");
@@ -315,19 +265,20 @@ class Checker {
     at.range_in(b.first_vertex, b.vertex_count, part_.vertices.size(), "vertices");
     at.range_in(b.first_point, b.point_count, part_.points.size(), "points");
     at.range_in(b.first_triangle, b.triangle_count, part_.triangles.size(), "triangles");
-    at.need(b.smooth_angle >= 0 && b.smooth_angle <= 3.2, "smooth_angle is outside 0 to pi rad");
+    if (!(b.smooth_angle >= 0 && b.smooth_angle <= 3.2))
+      at.fail("smooth_angle is " + numberText(b.smooth_angle) + " rad, expected 0 to pi");
     if (b.kind == BodyKind::kMesh) at.need(b.face_count == 0, "a mesh has faces, expected only triangles");
     if (b.kind != BodyKind::kMesh)
       at.need(b.triangle_count == 0, "it has triangles but is not a mesh, expected triangles only in meshes");
     for (std::uint32_t i = 0; i < b.triangle_count; ++i)
       for (std::uint32_t corner : part_.triangles[b.first_triangle + i].corner)
         if (corner - b.first_point >= b.point_count)  // unsigned, so an index below first_point is found too
-          Where{"triangle", b.first_triangle + i}.fail(
+          RecordCheck{"triangle", b.first_triangle + i}.fail(
               "corner " + std::to_string(corner) +
               " is not one of the points of the triangle's own body (import the part again)");
   }
 
-  void instance(const Where& at, const Instance& i) const {
+  void instance(const RecordCheck& at, const Instance& i) const {
     at.index_or_none(i.body, part_.bodies.size(), "body");
     name(at, i.name);
     if (i.parent != kNone) {
@@ -346,9 +297,9 @@ class Checker {
             "the pose mirrors, expected a rotation (store a mirrored body as a separate body)");
   }
 
-  void point(const Where& at, const Point& p) const { at.finite(p, kFarthestPart, "a coordinate"); }
+  void point(const RecordCheck& at, const Point& p) const { at.finite(p, kFarthestPart, "a coordinate"); }
 
-  void triangle(const Where& at, const Triangle& t) const {
+  void triangle(const RecordCheck& at, const Triangle& t) const {
     for (std::uint32_t corner : t.corner) at.index_in(corner, part_.points.size(), "corner");
     for (std::uint32_t k = 0; k < 3; ++k) {
       if (t.across[k] == kNone) continue;
@@ -373,7 +324,8 @@ class Checker {
       triangles += body.triangle_count;
       for (std::uint32_t i = 0; i < body.face_count; ++i)
         if (part_.faces[body.first_face + i].body != b)
-          Where{"body", b}.fail("face " + std::to_string(body.first_face + i) + " belongs to another body");
+          RecordCheck{"body", b}.fail("face " + std::to_string(body.first_face + i) + " belongs to body " +
+                                      std::to_string(part_.faces[body.first_face + i].body) + ", expected this body");
     }
     heldOnce(faces, part_.faces.size(), "faces");
     heldOnce(triangles, part_.triangles.size(), "triangles");

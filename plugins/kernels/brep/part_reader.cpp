@@ -108,7 +108,7 @@ void readRecords(const Section& section, std::span<const std::byte> data, std::v
     throw PartError("section " + section.name + ": records of " + std::to_string(section.record) +
                     " bytes, expected at most " + std::to_string(sizeof(Record)) +
                     "; a newer hapticd wrote this file: import the part again with this one");
-  // no version wrote such short records, and they would need much more memory than the file is long
+  // No version wrote records as short as this. A file could otherwise demand much more memory than its own size.
   if (2 * section.record < sizeof(Record))
     throw PartError("section " + section.name + ": records of " + std::to_string(section.record) + " bytes, expected " +
                     std::to_string(sizeof(Record)));

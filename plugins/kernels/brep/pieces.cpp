@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "kernels/brep/piece_bow.hpp"
+#include "kernels/brep/piece_curvature.hpp"
 #include "kernels/spline/refinement.hpp"
 #include "kernels/trace/box_tree.hpp"
 
@@ -140,10 +140,10 @@ class FaceCutter {
       if (lo[axis] <= first[axis]) leaf.borders |= 1u << (2 * axis);
       if (hi[axis] >= last[axis]) leaf.borders |= 2u << (2 * axis);
     }
-    measureBend(leaf);
+    measureCurvature(leaf);
     made.box = box;
-    made.turned.box = box;
-    leaf.bow = leafBowOf(geometry_, face_.surface, leaf.lo, leaf.hi, leaf.borders, made.turned);
+    made.oriented.box = box;
+    leaf.curvature = leafCurvature(geometry_, face_.surface, leaf.lo, leaf.hi, leaf.borders, made.oriented);
     if (const int axis = halvings < kMostHalvings ? roughAxis(leaf) : -1; axis >= 0) {
       Array2d end = hi, begin = lo;
       end[axis] = begin[axis] = 0.5 * (lo[axis] + hi[axis]);
@@ -154,24 +154,25 @@ class FaceCutter {
     leaves_.push_back(made);
   }
 
-  /// Returns the axis along which a leaf bends so unevenly that its LeafBow says little near the centres of curvature,
-  /// or -1 if there is none.
+  /// Returns the axis along which the curvature of a leaf varies so much that the bounds in LeafCurvature are too wide
+  /// to count the feet of a probe near the centres of curvature. Returns -1 if there is none.
   static int roughAxis(const Leaf& leaf) {
-    // variation of the second derivative of half the squared distance, which is 1 on the surface
+    // largest variation of the second derivative of half the squared distance; the derivative itself is 1 on the
+    // surface
     constexpr double kRough = 0.2;
     int axis = -1;
     double worst = kRough;
     for (int i = 0; i < 2; ++i) {
-      const double spread = static_cast<double>(leaf.bow.bend[i].high) - leaf.bow.bend[i].low;
-      if (!(leaf.bow.focus[i] != 0 && spread > worst)) continue;
+      const double spread = static_cast<double>(leaf.curvature.second[i].high) - leaf.curvature.second[i].low;
+      if (!(leaf.curvature.focus[i] != 0 && spread > worst)) continue;
       worst = spread;
-      const Array2d run = leaf.bow.along[i].abs() / (leaf.hi - leaf.lo);
+      const Array2d run = leaf.curvature.along[i].abs() / (leaf.hi - leaf.lo);
       axis = run[0] > run[1] ? 0 : 1;
     }
     return axis;
   }
 
-  void measureBend(Leaf& leaf) const {
+  void measureCurvature(Leaf& leaf) const {
     constexpr int kSamples = 4;
     double front = 0, back = 0;
     SurfacePoint E;
@@ -184,8 +185,8 @@ class FaceCutter {
         front = std::max(front, shape_.outward > 0 ? most : -least);
         back = std::max(back, shape_.outward > 0 ? -least : most);
       }
-    leaf.bend_front = static_cast<float>(kBetweenSamples * front);
-    leaf.bend_back = static_cast<float>(kBetweenSamples * back);
+    leaf.curvature_front = static_cast<float>(kBetweenSamples * front);
+    leaf.curvature_back = static_cast<float>(kBetweenSamples * back);
   }
 
   const Geometry& geometry_;
@@ -237,60 +238,60 @@ class EdgeCutter {
     const double end = t1 - 1e-9 * (t1 - t0);  // at a knot, derivatives are evaluated in the span to its right
     CurvePoint C;
     Vector3d first = Vector3d::Zero();
-    double turn = 0, bend = 0;
+    double turn = 0, curvature = 0;
     for (int i = 0; i <= kSamples; ++i) {
       geometry_.curve(edge_.curve, std::min(t0 + (t1 - t0) * i / kSamples, end), C);
       const double speed = C.C1.norm();
       if (!(speed > 0)) continue;
       if (first.isZero(0)) first = C.C1;
       turn = std::max(turn, std::atan2(C.C1.cross(first).norm(), C.C1.dot(first)));
-      bend = std::max(bend, C.C1.cross(C.C2).norm() / (speed * speed * speed));
+      curvature = std::max(curvature, C.C1.cross(C.C2).norm() / (speed * speed * speed));
     }
     if (turn > kLeafTurn && depth < kDeepest) {
       halve(t0, 0.5 * (t0 + t1), depth + 1);
       halve(0.5 * (t0 + t1), t1, depth + 1);
       return;
     }
-    add(t0, t1, kBetweenSamples * bend);
+    add(t0, t1, kBetweenSamples * curvature);
   }
 
-  void add(double t0, double t1, double bend) {
+  void add(double t0, double t1, double most_curvature) {
     BoxedPiece made;
-    made.piece = {t0, t1, bend, edge_index_, (t0 <= edge_.t0 ? 1u : 0u) | (t1 >= edge_.t1 ? 2u : 0u), {}};
-    made.piece.shape = bowOf(geometry_, edge_.curve, t0, t1);
-    const PieceBow& bow = made.piece.shape;
-    if (bow.along.squaredNorm() > 0.5) {  // otherwise the derivative of the curve is 0 in the middle
-      made.turned.frame.row(0) = bow.along;
-      made.turned.frame.row(1) = bow.across;
-      made.turned.frame.row(2) = bow.along.cross(bow.across);
-      bendAbout(bow.centre, t0, t1, made.turned);
+    made.piece = {t0, t1, most_curvature, edge_index_, (t0 <= edge_.t0 ? 1u : 0u) | (t1 >= edge_.t1 ? 2u : 0u), {}};
+    made.piece.curvature = pieceCurvature(geometry_, edge_.curve, t0, t1);
+    const PieceCurvature& along = made.piece.curvature;
+    if (along.tangent.squaredNorm() > 0.5) {  // otherwise the derivative of the curve is 0 in the middle
+      made.oriented.frame.row(0) = along.tangent;
+      made.oriented.frame.row(1) = along.binormal;
+      made.oriented.frame.row(2) = along.tangent.cross(along.binormal);
+      addCylinders(along.centre, t0, t1, made.oriented);
     }
     if (curve_.kind == CurveKind::kSpline) {
       netBoxes(t0, t1, made);
     } else {
       made.box = arcBox(curve_, t0, t1, Matrix3d::Identity());
-      made.turned.box = arcBox(curve_, t0, t1, made.turned.frame);
+      made.oriented.box = arcBox(curve_, t0, t1, made.oriented.frame);
     }
     pieces_.push_back(made);
   }
 
-  /// Sets the cylinders of `turned` about the centre of curvature in the middle of the piece.
-  void bendAbout(const Vector3d& centre, double t0, double t1, TurnedBox& turned) const {
+  /// Sets the cylinders of `oriented` about the centre of curvature in the middle of the piece.
+  void addCylinders(const Vector3d& centre, double t0, double t1, OrientedBox& oriented) const {
     constexpr int kSamples = 8;
-    const Vector3d middle = turned.frame * centre;
+    const Vector3d middle = oriented.frame * centre;
     const double step = (t1 - t0) / kSamples, end = t1 - 1e-9 * (t1 - t0);
     double inner = std::numeric_limits<double>::infinity(), outer = 0, sag = 0;
     CurvePoint C;
     for (int i = 0; i <= kSamples; ++i) {
       geometry_.curve(edge_.curve, std::min(t0 + step * i, end), C);
-      const Vector3d q = turned.frame * C.C - middle;
+      const Vector3d q = oriented.frame * C.C - middle;
       inner = std::min(inner, std::hypot(q[0], q[2]));
       outer = std::max(outer, std::hypot(q[0], q[2]));
       sag = std::max(sag, kBetweenSamples / 8 * step * step * C.C2.norm());
     }
-    turned.focus = {middle[0], middle[2]};
-    turned.inner = std::max(0.0, inner - sag);
-    turned.outer = outer + sag;
+    oriented.focus = {middle[0], middle[2]};
+    oriented.inner = std::max(0.0, inner - sag);
+    oriented.outer = outer + sag;
   }
 
   /// Sets the boxes of a piece of a spline from its control points, whose hull contains the piece.
@@ -299,7 +300,7 @@ class EdgeCutter {
     const auto domain = data.domain();
     for (const Vector3d& point : spline::cut(data, std::max(t0, domain[0]), std::min(t1, domain[1])).points) {
       made.box.extend(point);
-      made.turned.box.extend(made.turned.frame * point);
+      made.oriented.box.extend(made.oriented.frame * point);
     }
   }
 

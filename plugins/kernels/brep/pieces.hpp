@@ -12,12 +12,12 @@ namespace hapticd::brep {
 struct BoxedLeaf {
   Leaf leaf;
   Eigen::AlignedBox3d box;
-  TurnedBox turned;
+  OrientedBox oriented;
 };
 struct BoxedPiece {
   CurvePiece piece;
   Eigen::AlignedBox3d box;
-  TurnedBox turned;
+  OrientedBox oriented;
 };
 
 /// [main] Adds the leaves of a spline, extrusion, revolution or offset face to `leaves`, without those that lie wholly

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Selects the bodies of a part that are traced, and their poses.
+/// Selects the bodies of a part that are traced, with their poses.
 #pragma once
 #include <string>
 #include <vector>

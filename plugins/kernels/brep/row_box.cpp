@@ -6,33 +6,33 @@ namespace hapticd::brep {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-AlignedBox3d TurnedBox::upright() const {
+AlignedBox3d OrientedBox::axisAligned() const {
   const Vector3d center = frame.transpose() * box.center();
   const Vector3d half = frame.cwiseAbs().transpose() * (0.5 * box.sizes());
   const Vector3d rounding = Vector3d::Constant(1e-14 * (center.cwiseAbs() + half).maxCoeff());
   return {center - half - rounding, center + half + rounding};
 }
 
-RowBox rowBox(const TurnedBox& turned, const BoxTree& tree) {
-  const Vector3d center = turned.frame.transpose() * turned.box.center() - tree.origin();
-  const Vector3d half = 0.5 * turned.box.sizes();
+RowBox rowBox(const OrientedBox& oriented, const BoxTree& tree) {
+  const Vector3d center = oriented.frame.transpose() * oriented.box.center() - tree.origin();
+  const Vector3d half = 0.5 * oriented.box.sizes();
   RowBox row;
   for (int i = 0; i < 3; ++i) {
     row.center[i] = static_cast<float>(center[i]);
-    for (int k = 0; k < 3; ++k) row.axis[i][k] = static_cast<float>(turned.frame(i, k));
+    for (int k = 0; k < 3; ++k) row.axis[i][k] = static_cast<float>(oriented.frame(i, k));
     // The rounding of an axis adds a share of the other two half sizes. The tree's margin covers the rounding of the
     // center and of the probe.
     row.half[i] = static_cast<float>(half[i] * (1 + 1e-6) + 1e-6 * half.sum() + tree.margin());
   }
   // ratio of radius to half size; above it the shape is so flat that cylinders bound it no better than the box
   constexpr double kLeastRadii = 30;
-  if (!(turned.outer < kLeastRadii * half.maxCoeff())) return row;
-  const Vector3d middle = turned.box.center();
-  row.focus[0] = static_cast<float>(turned.focus[0] - middle[0]);
-  row.focus[1] = static_cast<float>(turned.focus[1] - middle[2]);
-  const double room = 2e-6 * (turned.outer + half.sum()) + 2 * tree.margin();
-  row.inner = static_cast<float>(turned.inner * (1 - 1e-6) - room);
-  row.outer = static_cast<float>(turned.outer * (1 + 1e-6) + room);
+  if (!(oriented.outer < kLeastRadii * half.maxCoeff())) return row;
+  const Vector3d middle = oriented.box.center();
+  row.focus[0] = static_cast<float>(oriented.focus[0] - middle[0]);
+  row.focus[1] = static_cast<float>(oriented.focus[1] - middle[2]);
+  const double room = 2e-6 * (oriented.outer + half.sum()) + 2 * tree.margin();
+  row.inner = static_cast<float>(oriented.inner * (1 - 1e-6) - room);
+  row.outer = static_cast<float>(oriented.outer * (1 + 1e-6) + room);
   return row;
 }
 

@@ -11,9 +11,9 @@
 
 namespace hapticd::brep {
 
-/// A box in a frame of its own, in double precision. A shape that bends like an arc about a line along axis 1 is
-/// thinner than its box. So the shape is also bounded by two cylinders about that line.
-struct TurnedBox {
+/// A box in a frame of its own, in double precision. If the shape is an arc about a line parallel to axis 1, it fills
+/// only a thin part of its box. So the shape is also bounded by two cylinders about that line.
+struct OrientedBox {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: unit axes at right angles
   Eigen::AlignedBox3d box;                              ///< the box in the coordinates frame * x
   Eigen::Vector2d focus{0, 0};                          ///< position of the line, along axes 0 and 2
@@ -21,10 +21,10 @@ struct TurnedBox {
   double outer = std::numeric_limits<double>::infinity();
 
   /// [main] Returns the upright box around this box.
-  Eigen::AlignedBox3d upright() const;
+  Eigen::AlignedBox3d axisAligned() const;
 };
 
-/// A TurnedBox as a search uses it: in single precision, in the coordinates of its tree's nodes [m].
+/// A OrientedBox as a search uses it: in single precision, in the coordinates of its tree's nodes [m].
 struct RowBox {
   float center[3]{}, axis[3][3]{};
   float half[3]{};   ///< half size along each axis
@@ -62,7 +62,7 @@ inline void put(const RowBox& box, int lane, FourRowBoxes& to) noexcept {
 }
 
 /// [main] Rounds a box to single precision. The result encloses the box.
-RowBox rowBox(const TurnedBox& turned, const BoxTree& tree);
+RowBox rowBox(const OrientedBox& oriented, const BoxTree& tree);
 
 /// Safety factor of the bounds: rounding of the axes and of the vector to the probe changes a bound by less than 1e-5
 /// of it.

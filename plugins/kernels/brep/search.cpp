@@ -59,36 +59,37 @@ double Nearest::distance() const noexcept {
 
 Search::Search(const Model& model) : model_(model) {}
 
-/// Finds the foot on a line or a circle. If the edge is guised (a spline in the file), the parameter in `hit` is
+/// Finds the foot on a line or a circle. If the edge is recognised (a spline in the file), the parameter in `hit` is
 /// converted to that of the spline, which the faces beside the edge use.
 double Search::edgeFoot(Element element, const Vector3d& p, Hit& hit) const noexcept {
   const EdgeShape& edge = model_.edge(element.index());
   const double before = hit.d2;
   const double d2 = element.kind() == ElementKind::kLine ? lineFoot(edge, p, hit) : circleFoot(edge, p, hit);
-  if (edge.guise != kNone && hit.d2 < before)
-    hit.u = parameterAt(model_.geometry(), model_.guised(edge.guise), hit.u, hit.point);
+  if (edge.recognised != kNone && hit.d2 < before)
+    hit.u = parameterAt(model_.geometry(), model_.recognised(edge.recognised), hit.u, hit.point);
   return d2;
 }
 
-/// Finds the foot on a leaf. If the last foot is known, Newton's method starts there. Then mayHold() was not called, so
-/// feetSeenFrom() is called here.
-double Search::leafOf(Element element, const Vector3d& p, Look& look, Hit& hit) const noexcept {
+/// Finds the foot on a leaf. If the last foot is known, Newton's method starts there. Then mayHaveFoot() was not
+/// called, so countFeet() is called here.
+double Search::evaluateLeaf(Element element, const Vector3d& p, Examination& examination, Hit& hit) const noexcept {
   const Leaf& leaf = model_.leaf(element.index());
-  LeafStart start{look.uv, look.sight, look.elsewhere, look.limit2};
-  if (look.start != nullptr) {
-    start.uv = Eigen::Array2d(look.start->u, look.start->v);
-    start.sight = feetSeenFrom(leaf.bow, leaf.bow.local(p));
+  LeafStart start{examination.uv, examination.feet, examination.elsewhere, examination.limit2};
+  if (examination.start != nullptr) {
+    start.uv = Eigen::Array2d(examination.start->u, examination.start->v);
+    start.feet = countFeet(leaf.curvature, leaf.curvature.local(p));
   }
   const std::uint32_t surface = model_.part().faces[leaf.face].surface;
-  const PieceAnswer answer = leafFoot(model_.geometry(), leaf, model_.face(leaf.face), surface, p, start, hit);
-  look.alone = answer.alone;
-  look.starts = answer.starts;
-  look.least2 = answer.alone && start.sight.feet != FeetOfLeaf::kNowhere ? answer.region2 : 0;
+  const NewtonResult answer = leafFoot(model_.geometry(), leaf, model_.face(leaf.face), surface, p, start, hit);
+  examination.proved = answer.proved;
+  examination.starts = answer.starts;
+  examination.least2 = answer.proved && start.feet.number != FeetOfLeaf::kNowhere ? answer.untrimmed2 : 0;
   return answer.d2;
 }
 
-/// Returns a lower bound of the squared distance to an element. `hit` is replaced if the element is nearer.
-double Search::evaluate(Element element, const Vector3d& p, Look& look, Hit& hit) const noexcept {
+/// Computes the foot on an element. Returns a lower bound of the squared distance [m^2]. `hit` is replaced if the foot
+/// is nearer.
+double Search::evaluate(Element element, const Vector3d& p, Examination& examination, Hit& hit) const noexcept {
   const std::uint32_t i = element.index();
   switch (element.kind()) {
     case ElementKind::kFace:
@@ -97,12 +98,12 @@ double Search::evaluate(Element element, const Vector3d& p, Look& look, Hit& hit
     case ElementKind::kCircle:
       return edgeFoot(element, p, hit);
     case ElementKind::kLeaf:
-      return leafOf(element, p, look, hit);
+      return evaluateLeaf(element, p, examination, hit);
     case ElementKind::kPiece: {
       const CurvePiece& piece = model_.piece(i);
-      const double t = look.start != nullptr ? look.start->u : 0.5 * (piece.t0 + piece.t1);
-      const PieceAnswer answer = pieceFoot(model_.geometry(), piece, p, t, look.limit2, hit);
-      look.alone = answer.alone;
+      const double t = examination.start != nullptr ? examination.start->u : 0.5 * (piece.t0 + piece.t1);
+      const NewtonResult answer = pieceFoot(model_.geometry(), piece, p, t, examination.limit2, hit);
+      examination.proved = answer.proved;
       return answer.d2;
     }
     case ElementKind::kPole:
@@ -116,12 +117,12 @@ double Search::evaluate(Element element, const Vector3d& p, Look& look, Hit& hit
 
 /// Returns false if a leaf certainly has no foot, so that it cannot have the nearest point. Otherwise sets the start
 /// for Newton's method.
-bool Search::mayHold(Element element, const Vector3d& p, Look& look) const noexcept {
+bool Search::mayHaveFoot(Element element, const Vector3d& p, Examination& examination) const noexcept {
   const Leaf& leaf = model_.leaf(element.index());
-  const Vector3d q = leaf.bow.local(p);
-  look.sight = feetSeenFrom(leaf.bow, q);
-  if (look.sight.feet == FeetOfLeaf::kNowhere) return false;
-  look.uv = footNear(leaf.bow, leaf.middle(), q);
+  const Vector3d q = leaf.curvature.local(p);
+  examination.feet = countFeet(leaf.curvature, q);
+  if (examination.feet.number == FeetOfLeaf::kNowhere) return false;
+  examination.uv = footNear(leaf.curvature, leaf.middle(), q);
   return true;
 }
 
@@ -134,29 +135,29 @@ bool Search::isAsNear(Element element, const Vector3d& p, double d2) const noexc
   return hit.d2 == d2;
 }
 
-/// Returns the lower bound, found by an examination, of the squared distance to the whole element, including the places
-/// outside its trim.
-double Search::leastOf(double d2, const Look& look) noexcept {
-  if (look.least2 >= 0) return look.least2;
-  return look.alone && d2 < kInfinity ? d2 : 0;
+/// Returns the lower bound [m^2] that an examination has found for the squared distance to the whole element, including
+/// its points outside the trim.
+double Search::lowerBoundOf(double d2, const Examination& examination) noexcept {
+  if (examination.least2 >= 0) return examination.least2;
+  return examination.proved && d2 < kInfinity ? d2 : 0;
 }
 
 /// Examines one element. @param bound2 [m^2] bound of the element's box. Returns a lower bound of the squared distance
 /// to the whole element.
-double Search::look(std::uint32_t place, Element element, const Vector3d& p, double bound2, Run& run) noexcept {
+double Search::examine(std::uint32_t place, Element element, const Vector3d& p, double bound2, Run& run) noexcept {
   Nearest& best = run.best;
   const double before = best.hit.d2;
-  Look look;
-  look.elsewhere = run.restarts > 0;
-  look.limit2 = run.within2();
-  if (element.kind() == ElementKind::kLeaf && !mayHold(element, p, look)) {
+  Examination examination;
+  examination.elsewhere = run.restarts > 0;
+  examination.limit2 = run.within2();
+  if (element.kind() == ElementKind::kLeaf && !mayHaveFoot(element, p, examination)) {
     run.others2 = std::min(run.others2, bound2);
     return bound2;
   }
   ++best.elements;
-  const double d2 = evaluate(element, p, look, best.hit);
-  if (!look.alone) run.open2 = std::min(run.open2, bound2);
-  if (look.starts > 1) --run.restarts;
+  const double d2 = evaluate(element, p, examination, best.hit);
+  if (!examination.proved) run.open2 = std::min(run.open2, bound2);
+  if (examination.starts > 1) --run.restarts;
   if (best.hit.d2 < before) {
     run.others2 = std::min(run.others2, before);
     run.tied = false;
@@ -167,7 +168,7 @@ double Search::look(std::uint32_t place, Element element, const Vector3d& p, dou
       run.tied = run.tied || isAsNear(element, p, before);
     run.others2 = std::min(run.others2, d2);
   }
-  return leastOf(d2, look);
+  return lowerBoundOf(d2, examination);
 }
 
 void Search::searchTree(const BodyTree& body, std::int32_t root, std::uint32_t place, const Vector3d& p,
@@ -196,7 +197,7 @@ void Search::searchTree(const BodyTree& body, std::int32_t root, std::uint32_t p
       if (rowIsFarther(body, entry.row, probe, run.within2(), bound, run.others2)) continue;
       const ElementRow row = BoxTree::rowOf(entry.child);
       for (std::uint32_t i = row.first; i < row.first + row.count; ++i)
-        if (const Element element = body.elements[i]; !(element == first)) look(place, element, p, bound, run);
+        if (const Element element = body.elements[i]; !(element == first)) examine(place, element, p, bound, run);
       continue;
     }
     ++best.nodes;
@@ -248,8 +249,9 @@ void Search::searchWhole(const Vector3d& p, Run& run) noexcept {
     searchPlaces(p, run);
 }
 
-/// Searches within run.limit2, and again without this limit if nothing was found. The last foot may now be missing in a
-/// gap between a face and its edge.
+/// Searches within run.limit2, and again without this limit if nothing was found. That happens if the foot leaves a
+/// face through a gap, within the tolerance of the file, between the face and its edge: the edge may be farther away
+/// than the last point.
 template <class Whole>
 void Search::searchWithin(Run& run, const Whole& whole) noexcept {
   const Run start = run;
@@ -260,9 +262,10 @@ void Search::searchWithin(Run& run, const Whole& whole) noexcept {
   whole();
 }
 
-/// Returns true if no search is needed, because the last element still has the nearest point. Every distance changes by
-/// at most the distance `way` [m] that the probe has moved. So the others' least distance is still bounded.
-bool Search::goesOn(const Vector3d& p, double way, const Run& run) noexcept {
+/// Returns true if no search is needed, because the last element still has the nearest point; last_ is then the result
+/// of this tick. Every distance changes by at most the distance `way` [m] that the probe has moved. So a lower bound of
+/// the distance to all other elements is still known.
+bool Search::reuseLast(const Vector3d& p, double way, const Run& run) noexcept {
   if (!last_.proved || run.first_place == kNone) return false;
   const double others = last_.others - way;
   if (!(std::sqrt(run.best.hit.d2) * (1 + kRounding) < others)) return false;
@@ -278,26 +281,27 @@ bool Search::goesOn(const Vector3d& p, double way, const Run& run) noexcept {
 /// but the last point is still a point of the part and limits the search.
 void Search::begin(const Vector3d& p, Run& run) noexcept {
   if (!last_.found()) return;
-  Look look;
-  look.start = &last_.hit;
+  Examination examination;
+  examination.start = &last_.hit;
   const Vector3d p_body = model_.placements()[last_.place].toBody(p);
   run.limit2 = limitOf(p_body, last_.hit);
-  const double d2 = evaluate(last_.hit.element, p_body, look, run.best.hit);
+  const double d2 = evaluate(last_.hit.element, p_body, examination, run.best.hit);
   run.best.elements = 1;
   if (run.best.hit.d2 < kInfinity) {
     run.best.hit.element = last_.hit.element;
     run.best.place = last_.place;
   }
-  if (!look.alone) return;
+  if (!examination.proved) return;
   run.first = last_.hit.element;
   run.first_place = last_.place;
-  run.first_least2 = leastOf(d2, look);
+  run.first_least2 = lowerBoundOf(d2, examination);
 }
 
 void Search::finish(Run& run) noexcept {
   Nearest& best = run.best;
-  // A face whose foot is outside its trim was counted only by its edges. If the best hit is on an edge, the foot of
-  // such a face may enter its trim at any moment, so nothing is known of the others.
+  // A face whose foot is outside its trim has no distance of its own in `others2`; only its edges have. If the best hit
+  // is on an edge, the foot of such a face may enter its trim as soon as the probe moves. So no bound of the other
+  // elements is known for the next tick.
   const ElementKind kind = best.hit.element.kind();
   const bool is_edge = kind != ElementKind::kFace && kind != ElementKind::kLeaf && kind != ElementKind::kTriangle;
   best.others = is_edge ? 0 : std::sqrt(std::min(run.others2, run.open2));
@@ -307,9 +311,9 @@ void Search::finish(Run& run) noexcept {
 Hit Search::refine(std::uint32_t place, const Hit& last, const Vector3d& p) noexcept {
   Hit hit = last;
   hit.d2 = kInfinity;
-  Look look;
-  look.start = &last;
-  evaluate(last.element, model_.placements()[place].toBody(p), look, hit);
+  Examination examination;
+  examination.start = &last;
+  evaluate(last.element, model_.placements()[place].toBody(p), examination, hit);
   return hit;
 }
 
@@ -317,10 +321,10 @@ const Nearest& Search::nearest(const Vector3d& p, const SearchBudget& budget) no
   Run run;
   run.budget = budget;
   run.restarts = kMostRestarts;
-  const double way = (p - last_p_).norm();  // early, so that the root is ready when it is needed
+  const double way = (p - last_p_).norm();  // computed first, because a square root takes long
   moveNear(way);
   begin(p, run);
-  if (goesOn(p, way, run)) return last_;
+  if (reuseLast(p, way, run)) return last_;
   if (!searchNear(p, way, run)) {
     searchWithin(run, [&] { searchWhole(p, run); });
     whole_nodes_ = run.best.nodes;
@@ -338,10 +342,10 @@ Nearest Search::nearestOf(std::uint32_t place, std::uint32_t face, const Vector3
   run.restarts = kMostRestarts;
   const Vector3d p_body = model_.placements()[place].toBody(p);
   if (start.element.kind() != ElementKind::kNothing) {
-    Look look;
-    look.start = &start;
+    Examination examination;
+    examination.start = &start;
     run.limit2 = limitOf(p_body, start);
-    evaluate(start.element, p_body, look, run.best.hit);
+    evaluate(start.element, p_body, examination, run.best.hit);
     if (run.best.hit.d2 < kInfinity) {
       run.best.hit.element = start.element;
       run.best.place = place;

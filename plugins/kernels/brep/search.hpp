@@ -23,7 +23,7 @@ struct SearchBudget {
 
 /// The result of a search.
 struct Nearest {
-  Hit hit;                      ///< nearest point, in the frame of the body
+  Hit hit;                      ///< nearest point, in the frame of its body
   std::uint32_t place = kNone;  ///< index in Model::placements(); kNone if nothing was found
   /// [m] Lower bound of the distance from the probe to every other element.
   double others = 0;
@@ -69,7 +69,7 @@ class Search {
     SearchBudget budget;
     Element first;                      ///< the element that was examined before all others
     std::uint32_t first_place = kNone;  ///< placement of `first`
-    double first_least2 = 0;            ///< result of leastOf() for `first`
+    double first_least2 = 0;            ///< result of lowerBoundOf() for `first`
     /// [m^2] squared distance to a known point of the part: the nearest point is not farther.
     double limit2 = std::numeric_limits<double>::infinity();
     double others2 = std::numeric_limits<double>::infinity();  ///< [m^2] least bound of all elements except the best
@@ -77,25 +77,25 @@ class Search {
     /// or is not certain. If this is below best.hit.d2, the best foot is not proved to be the nearest.
     double open2 = std::numeric_limits<double>::infinity();
     bool tied = false;  ///< another element is as near as the best one, and neither of them is `first`
-    int restarts = 0;   ///< number of further leaves on which Newton's method may start from several places
+    int restarts = 0;   ///< number of leaves left on which Newton's method may start from several places
 
     /// [m^2] An element that is farther than this cannot be the nearest.
     double within2() const noexcept { return std::min(best.hit.d2, limit2); }
   };
-  /// One examination of an element.
-  struct Look {
+  /// The examination of one element: how Newton's method starts, and what it found out ("out").
+  struct Examination {
     const Hit* start = nullptr;  ///< the last foot on the element; null if there is none
-    LeafSight sight;
+    LeafFeet feet;
     Eigen::Array2d uv{0, 0};                                  ///< leaves: (u, v) where Newton's method starts
     bool elsewhere = true;                                    ///< LeafStart::elsewhere
     double limit2 = std::numeric_limits<double>::infinity();  ///< LeafStart::limit2
-    bool alone = true;   ///< out: the element certainly has no nearer point than the one found
-    int starts = 1;      ///< out: PieceAnswer::starts
-    double least2 = -1;  ///< out: leaves only, the result of leastOf()
+    bool proved = true;  ///< out: the element certainly has no nearer point than the one found
+    int starts = 1;      ///< out: NewtonResult::starts
+    double least2 = -1;  ///< out: leaves only, the result of lowerBoundOf()
   };
 
   void begin(const Eigen::Vector3d& p, Run& run) noexcept;
-  bool goesOn(const Eigen::Vector3d& p, double way, const Run& run) noexcept;
+  bool reuseLast(const Eigen::Vector3d& p, double way, const Run& run) noexcept;
   bool searchNear(const Eigen::Vector3d& p, double way, Run& run) noexcept;
   void moveNear(double way) noexcept;
   template <class Near>
@@ -103,34 +103,34 @@ class Search {
   template <class Near>
   bool gatherNear(Near& near, const Eigen::Vector3d& p, double way, double distance) noexcept;
   template <class Near>
-  void lookAtRows(Near& near, std::uint32_t place, const Eigen::Vector3d& p, Run& run) noexcept;
+  void examineRows(Near& near, std::uint32_t place, const Eigen::Vector3d& p, Run& run) noexcept;
   template <class Near>
-  void lookAtAll(Near& near, const Eigen::Vector3d& p, Run& run) noexcept;
+  void examineAll(Near& near, const Eigen::Vector3d& p, Run& run) noexcept;
   template <class Near>
-  bool lookAtNear(Near& near, const Eigen::Vector3d& p, Run& run) noexcept;
+  bool examineNear(Near& near, const Eigen::Vector3d& p, Run& run) noexcept;
   void searchTree(const BodyTree& body, std::int32_t root, std::uint32_t place, const Eigen::Vector3d& p,
                   Run& run) noexcept;
   void searchWhole(const Eigen::Vector3d& p, Run& run) noexcept;
   void searchPlaces(const Eigen::Vector3d& p, Run& run) noexcept;
   template <class Whole>
   static void searchWithin(Run& run, const Whole& whole) noexcept;
-  double look(std::uint32_t place, Element element, const Eigen::Vector3d& p, double bound2, Run& run) noexcept;
+  double examine(std::uint32_t place, Element element, const Eigen::Vector3d& p, double bound2, Run& run) noexcept;
   bool isAsNear(Element element, const Eigen::Vector3d& p, double d2) const noexcept;
-  static double leastOf(double d2, const Look& look) noexcept;
+  static double lowerBoundOf(double d2, const Examination& examination) noexcept;
   double edgeFoot(Element element, const Eigen::Vector3d& p, Hit& hit) const noexcept;
-  bool mayHold(Element element, const Eigen::Vector3d& p, Look& look) const noexcept;
-  double evaluate(Element element, const Eigen::Vector3d& p, Look& look, Hit& hit) const noexcept;
-  double leafOf(Element element, const Eigen::Vector3d& p, Look& look, Hit& hit) const noexcept;
+  bool mayHaveFoot(Element element, const Eigen::Vector3d& p, Examination& examination) const noexcept;
+  double evaluate(Element element, const Eigen::Vector3d& p, Examination& examination, Hit& hit) const noexcept;
+  double evaluateLeaf(Element element, const Eigen::Vector3d& p, Examination& examination, Hit& hit) const noexcept;
   static void finish(Run& run) noexcept;
 
   const Model& model_;
   Nearest last_;
   Eigen::Vector3d last_p_{0, 0, 0};
-  NearElements near_;       ///< used if the model is one body of faces, in the frame of the body
-  NearTriangles nearby_;    ///< used if the model is one mesh, in its frame
-  NearPlaces near_places_;  ///< used if there are several placements, in the frame of the model
-  int whole_nodes_ = 0;     ///< nodes that the last search of the whole model examined
-  double reach_ = 0;        ///< [m] gathered rows may be farther than the nearest point by this
+  NearElements near_elements_;    ///< used if the model is one body of faces, in the frame of the body
+  NearTriangles near_triangles_;  ///< used if the model is one mesh, in its frame
+  NearPlaces near_places_;        ///< used if there are several placements, in the frame of the model
+  int whole_nodes_ = 0;           ///< nodes that the last search of the whole model examined
+  double reach_ = 0;              ///< [m] gathered rows may be farther than the nearest point by this
 };
 
 }  // namespace hapticd::brep

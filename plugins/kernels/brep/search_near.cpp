@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The search for a probe that is tracked: only a few of the rows that an earlier tick gathered around it are examined.
+/// The search for a probe that is followed from tick to tick: it examines only some of the rows that an earlier tick
+/// gathered around the probe.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -97,28 +98,28 @@ bool Search::gatherNear(Near& near, const Vector3d& p, double way, double distan
 
 /// Examines the rows of one placement around the probe, the nearest one first.
 template <class Near>
-void Search::lookAtRows(Near& near, std::uint32_t place, const Vector3d& p, Run& run) noexcept {
+void Search::examineRows(Near& near, std::uint32_t place, const Vector3d& p, Run& run) noexcept {
   const BodyTree& body = model_.body(model_.placements()[place].body);
   const Element first = run.first_place == place ? run.first : Element();
-  const auto lookAtRow = [&](int four, int lane, double bound) {
+  const auto examineRow = [&](int four, int lane, double bound) {
     const ElementRow row = near.row(four, lane);
     double known = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = row.first; i < row.first + row.count; ++i)
-      known =
-          std::min(known, body.elements[i] == first ? run.first_least2 : look(place, body.elements[i], p, bound, run));
+      known = std::min(known,
+                       body.elements[i] == first ? run.first_least2 : examine(place, body.elements[i], p, bound, run));
     near.learn(four, lane, known);
   };
   RowBounds<Near> bounds(near, BoxProbe(body.tree, p));
   run.best.nodes += near.fours();
   if (const int at = bounds.takeNearest(); bounds.taken() <= run.within2())
-    lookAtRow(at / 4, at % 4, bounds.taken());
+    examineRow(at / 4, at % 4, bounds.taken());
   else
     run.others2 = std::min(run.others2, bounds.taken());
   for (int k = 0; k < near.fours(); ++k) {
     if (!bounds.anyWithin(k, run.within2())) continue;
     for (int lane = 0; lane < 4; ++lane)
       if (const double bound = bounds.at(k, lane); bound <= run.within2()) {
-        lookAtRow(k, lane, bound);
+        examineRow(k, lane, bound);
         bounds.take(k, lane);
       }
   }
@@ -126,23 +127,23 @@ void Search::lookAtRows(Near& near, std::uint32_t place, const Vector3d& p, Run&
 }
 
 template <class Near>
-void Search::lookAtAll(Near& near, const Vector3d& p, Run& run) noexcept {
-  lookAtRows(near, 0, p, run);
+void Search::examineAll(Near& near, const Vector3d& p, Run& run) noexcept {
+  examineRows(near, 0, p, run);
 }
 
 /// The placement of the last point is examined first, because the nearest point is most likely there.
 template <>
-void Search::lookAtAll(NearPlaces& near, const Vector3d& p, Run& run) noexcept {
+void Search::examineAll(NearPlaces& near, const Vector3d& p, Run& run) noexcept {
   for (const bool again : {false, true})
     for (int i = 0; i < near.count(); ++i)
       if (const std::uint32_t place = near[i].place; (place == last_.place) != again)
-        lookAtRows(near[i].elements, place, model_.placements()[place].toBody(p), run);
+        examineRows(near[i].elements, place, model_.placements()[place].toBody(p), run);
 }
 
 /// Examines the gathered rows. Returns false if another element may be nearer, or equally near.
 template <class Near>
-bool Search::lookAtNear(Near& near, const Vector3d& p, Run& run) noexcept {
-  lookAtAll(near, p, run);
+bool Search::examineNear(Near& near, const Vector3d& p, Run& run) noexcept {
+  examineAll(near, p, run);
   const double beyond = near.beyond(p);
   if (run.tied || run.restarts <= 0 || !(run.best.hit.d2 <= run.limit2)) return false;
   if (!(std::sqrt(run.best.hit.d2) * (1 + kRounding) < beyond)) return false;
@@ -154,10 +155,10 @@ template <class Near>
 bool Search::searchNear(Near& near, const Vector3d& p, double way, Run& run) noexcept {
   const Run start = run;
   if (last_.distance() < near.beyond(p)) {
-    if (lookAtNear(near, p, run)) return true;
+    if (examineNear(near, p, run)) return true;
     run = start;
   }
-  if (gatherNear(near, p, way, std::sqrt(run.within2())) && lookAtNear(near, p, run)) return true;
+  if (gatherNear(near, p, way, std::sqrt(run.within2())) && examineNear(near, p, run)) return true;
   run = start;
   return false;
 }
@@ -166,24 +167,25 @@ bool Search::searchNear(Near& near, const Vector3d& p, double way, Run& run) noe
 bool Search::searchNear(const Vector3d& p_model, double way, Run& run) noexcept {
   if (!last_.found() || last_.exhausted) return false;
   if (model_.placements().size() > 1)
-    return whole_nodes_ >= NearPlaces::kDear && run.budget.elements > NearPlaces::kMostRows &&
+    return whole_nodes_ >= NearPlaces::kFewestNodes && run.budget.elements > NearPlaces::kMostRows &&
            searchNear(near_places_, p_model, way, run);
   const Placement& place = model_.placements()[0];
   const Vector3d p = place.toBody(p_model);
-  if (model_.body(place.body).slabs.empty())
-    return run.budget.elements > NearElements::kMostRows && searchNear(near_, p, way, run);
-  return run.budget.elements > NearTriangles::kMostRows * BodyTree::kMeshRow && searchNear(nearby_, p, way, run);
+  if (model_.body(place.body).discs.empty())
+    return run.budget.elements > NearElements::kMostRows && searchNear(near_elements_, p, way, run);
+  return run.budget.elements > NearTriangles::kMostRows * BodyTree::kMeshRow &&
+         searchNear(near_triangles_, p, way, run);
 }
 
-/// Tells the gathered rows that the probe has moved by `way` [m].
+/// Tells the gathered rows that the probe has moved by `way` [m], or forgets them if the last search found nothing.
 void Search::moveNear(double way) noexcept {
   if (last_.found()) {
-    near_.go(way);
-    nearby_.go(way);
-    near_places_.go(way);
+    near_elements_.probeMoved(way);
+    near_triangles_.probeMoved(way);
+    near_places_.probeMoved(way);
   } else {
-    near_.forget();
-    nearby_.forget();
+    near_elements_.forget();
+    near_triangles_.forget();
     near_places_.forget();
   }
 }

@@ -127,8 +127,8 @@ class VertexSums {
     if (std::isfinite(angle)) sums_[vertex] += angle * n;
   }
 
-  /// Adds the normals around a pole, where they turn: those along the collapsed side of the face, with equal weights,
-  /// add up to a normal along the axis.
+  /// Adds the normals around a pole, where each meridian has its own normal. The normals along the collapsed side of
+  /// the face are added with equal weights, so that their sum is along the axis.
   void addPole(const Coedge& c, std::uint32_t vertex) {
     constexpr int kRays = 16;
     for (int i = 0; i < kRays; ++i)

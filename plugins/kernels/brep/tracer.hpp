@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Traces one probe over a part: outside the part it gives the nearest foot, inside it gives the foot of the held
+/// Traces one probe over a part. Outside the part the result is the nearest foot, in contact it is the foot of the held
 /// contact. Each probe needs its own Tracer; all can share the Model.
 #pragma once
 #include <Eigen/Core>

@@ -56,8 +56,9 @@ double Trim::crossing(const TrimPiece& piece, int axis, double at) const noexcep
                     std::max(piece.a[1 - axis], piece.b[1 - axis]));
 }
 
-/// True if the other coordinate of that crossing is greater than `than`. This coordinate lies between its values at the
-/// ends of the bracket, so a few points of the curve are usually enough.
+/// True if a piece crosses the line `axis` = at where its other coordinate is greater than `than`. The piece is
+/// monotone, so this coordinate lies between its values at the ends of the bracket, and a few points of the curve are
+/// usually enough.
 bool Trim::crossesBeyond(const TrimPiece& piece, int axis, double at, double than) const noexcept {
   if (piece.kind == TrimPiece::Kind::kCircle) return crossing(piece, axis, at) > than;
   constexpr int kMostSteps = 60;
@@ -89,8 +90,8 @@ bool Trim::crossesBeyond(const TrimPiece& piece, int axis, double at, double tha
 }
 
 /// True if a piece passes to the right of a point in its box. Both directions of crossing are decided by this one
-/// answer. If each were computed along its own axis, then for a piece that is nearly parallel to an axis rounding could
-/// give two answers that contradict each other, and a whole row of a cell would change sides.
+/// answer. If each were computed along its own axis, then rounding could give two contradicting answers for a piece
+/// that is nearly parallel to an axis. All points of the cell at that u or v would then be on the wrong side.
 bool Trim::passesRight(const TrimPiece& piece, double u, double v) const noexcept {
   const Eigen::Vector2d way = piece.b - piece.a;
   if (piece.kind == TrimPiece::Kind::kLine) {

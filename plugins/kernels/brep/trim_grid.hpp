@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The reference points of the cells of a trim's grid. The builder and Trim::inside() must compute them with the same
-/// result, bit for bit.
+/// The reference points of the cells of a trim's grid: for each cell it is stored whether this point is inside the
+/// loops. The builder and Trim::inside() must compute the points with the same result, bit for bit.
 #pragma once
 #include <cstdint>
 

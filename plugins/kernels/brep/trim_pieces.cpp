@@ -134,10 +134,10 @@ class Cutter {
     found.push_back(b);
   }
 
-  /// True if a piece is near its chord, seen along u and along v, so that few points of the face lie between them. The
-  /// deviation is compared with the piece, or with the face if the piece is narrow. Otherwise halving might never end:
-  /// near the turns of a curve, or if the piece runs along u or v except for rounding, each half deviates as much
-  /// relative to its size as the whole.
+  /// True if a piece is near its chord along u and along v. Then only few points of the face lie between the two, and
+  /// the chord alone decides for all others. The deviation is compared with the size of the piece or, if the piece is
+  /// narrow, with that of the face. Otherwise halving might never end: where u or v turns back, or where a piece is
+  /// parallel to u or v except for rounding, each half deviates as much relative to its size as the whole.
   bool isNear(const Vector2d& off, const Vector2d& way) const {
     constexpr double kNear = 0.05, kNarrow = 1e-4;  // relative to the piece, and to the face
     for (int axis = 0; axis < 2; ++axis) {

@@ -26,8 +26,8 @@ struct Start {
 };
 using Starts = std::array<Start, kColdStarts>;
 
-/// Keeps the best samples, best first. Of two neighbouring samples it keeps only the better one. Otherwise a wide
-/// valley of the distance could take all places, although a narrow valley is the deepest.
+/// Keeps the best samples, best first. Of two neighbouring samples it keeps only the better one. Otherwise the samples
+/// of one wide valley of the distance could fill the list, and a narrow valley that is deeper would be missed.
 void offer(Start start, Starts& starts) noexcept {
   std::size_t place = 0;
   while (place < starts.size() && starts[place].value <= start.value) {

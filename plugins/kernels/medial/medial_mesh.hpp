@@ -15,7 +15,7 @@
 
 namespace hapticd::medial {
 
-/// A medial mesh as it stands in a file; indices count from 0.
+/// A medial mesh as in a file; indices count from 0.
 struct MeshData {
   std::vector<Sphere> vertices;
   std::vector<std::array<int, 2>> edges;

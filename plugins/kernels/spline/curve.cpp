@@ -11,7 +11,8 @@
 namespace hapticd::spline {
 namespace {
 
-/// True if a span is so narrow beside its parameters that a parameter relative to the middle of the span loses digits.
+/// True if a span is so narrow, compared with the size of its parameters, that a parameter relative to the middle of
+/// the span loses digits.
 bool hasNarrowSpan(const Axis& axis) {
   constexpr double kNarrow = 1e-6;
   return std::any_of(axis.cells().begin(), axis.cells().end(), [](const Cell& cell) {

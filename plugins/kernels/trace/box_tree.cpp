@@ -92,8 +92,9 @@ double turn(const Piece& piece, int axis) {
   return std::min(widest, 2.0);
 }
 
-/// Returns an estimate [rad] of the largest angle between `normal` and the normals of a nearly flat piece: the largest
-/// angle over the meshes of its control net, plus a quarter, plus 0.02 rad. Returns pi if a mesh has no normal.
+/// Returns an estimate [rad] of the largest angle between `normal` and the normals of a nearly flat piece: 1.25 times
+/// the largest angle over the quadrilaterals of its control net, plus 0.02 rad. Returns pi if a quadrilateral has no
+/// normal.
 double turnOfNormal(const Piece& piece, const Vector3d& normal) {
   constexpr double kMore = 1.25, kLeast = 0.02;
   double widest = 0;
@@ -130,8 +131,8 @@ void addLeaves(const Piece& piece, int patch, double flat, int halvings, std::ve
       leaf.radius = std::max(leaf.radius, (piece.point(i, j) - leaf.center).norm());
   const Vector3d normal = piece.mean(0).cross(piece.mean(1));
   const double sine = normal.norm();
-  // The tangents stay in cones about their means. The nearer the two means are to parallel, the more the normal can
-  // turn.
+  // The tangents along u and along v stay in cones about their means. The smaller the angle between the two means, the
+  // more the normal can turn; this is why the cone is divided by its sine.
   if (sine > 0) leaf.normal = normal / sine;
   leaf.cone = sine > 0 ? (std::acos(1 - turn_u) + std::acos(1 - turn_v)) / sine : std::numbers::pi;
   if (sine > 0) leaf.cone = std::min(leaf.cone, turnOfNormal(piece, leaf.normal));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The Faces of contact::ContactState for a traced model or one of its parts, at the probe's position in this tick.
+/// Gives contact::ContactState access to a traced model, or to one of its parts, at the probe's position in this tick.
 #pragma once
 #include "kernels/trace/tracer.hpp"
 

@@ -15,8 +15,9 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Least value of 1 + depth * curvature, the curvature of the distance function, for a pure Newton step. Below it the
-/// probe is near a centre of curvature and the step would be noise.
+/// Least value of 1 + depth * curvature at which a pure Newton step is made. This value is the second derivative of
+/// half the squared distance, per metre of surface. Below it the probe is near a centre of curvature, and the step
+/// would be mostly rounding error.
 constexpr double kMinCurvature = 1e-3;
 /// If one tangent is shorter than this share of the other, or they are this close to parallel, they do not span a
 /// plane: the point is a pole or a cusp.
@@ -26,7 +27,7 @@ constexpr double kFlatTangent = 1e-12;
 struct QuadraticModel {
   Vector2d g;            ///< gradient
   Matrix2d H;            ///< positive definite
-  Vector2d sided{0, 0};  ///< true curvature along a side v = const, and u = const; 0 if it is not reliable
+  Vector2d sided{0, 0};  ///< second derivatives of f along a side v = const, and u = const; 0 if not reliable
   /// True if the true Hessian has a negative eigenvalue, so that this point is not a foot even if the gradient is 0.
   bool saddle = false;
   Vector2d escape{0, 0};  ///< direction of negative curvature, unit length in space
@@ -59,8 +60,8 @@ Matrix2d damped(const spline::SurfacePoint& E) noexcept {
   return G;
 }
 
-/// Returns the curvature of the distance function along a side, or 0 if it is not reliable. It may be reliable even if
-/// the Hessian of the surface is not.
+/// Returns the second derivative of f along a side, or 0 if it is not reliable. It may be reliable even if the Hessian
+/// over both parameters is not.
 double sidedCurvature(const Vector3d& S1, double bend) noexcept {
   const double first_order = S1.squaredNorm();
   return first_order + bend > kMinCurvature * first_order ? first_order + bend : 0;

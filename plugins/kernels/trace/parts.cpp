@@ -133,7 +133,7 @@ class Grouping {
   }
 
   static constexpr double kFar = 2;  // in diagonals of the shell's box; a farther shell is treated as a dipole
-  static constexpr std::size_t kDipoles = 16;  // so many dipoles or boxes take as long as one solid angle
+  static constexpr std::size_t kDipoles = 16;  // the number of dipoles or boxes that take as long as one solid angle
   const std::vector<Sketch>& shells_;
   std::vector<Part> parts_;
   std::size_t work_ = 0;

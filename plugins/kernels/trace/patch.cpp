@@ -6,7 +6,7 @@
 namespace hapticd::trace {
 
 Eigen::Vector3d Patch::normalAt(const Eigen::Array2d& uv) const noexcept {
-  // least |Su x Sv| relative to the largest |Su| |Sv| of the patch; below it the direction is noise
+  // least |Su x Sv| relative to the largest |Su| |Sv| of the patch; below it the direction is mostly rounding error
   constexpr double kVanishing = 1e-9;
   constexpr int kNudges = 4;
   const Eigen::Array2d middle = 0.5 * (lo + hi);

@@ -14,7 +14,7 @@ constexpr double kFarthest = 1e150;  ///< [m] squares of larger coordinates over
 /// [m] a neighbour that the host did not activate is dropped beyond this distance.
 constexpr double kNeighbourReach = 0.15;
 
-/// Returns a foot without a place. The attributes keep it out of the code of the usual tick.
+/// Returns a foot that has only a status. The attributes keep this function out of the code path of the usual tick.
 [[gnu::cold, gnu::noinline]] Foot nothing(FootStatus status) noexcept {
   Foot foot;
   foot.status = status;
@@ -138,7 +138,7 @@ Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
   const int budget = std::max(options.max_evaluations, 1);
   budget_ = budget;
   if (nearest_ >= 0) [[likely]]
-    // this takes longest and depends on nothing below, so the processor does the rest in parallel
+    // This takes longest and depends on nothing below. It comes first, so that the processor does the rest in parallel.
     locate(nearest_, p, options);
   const Vector3d last = has_last_ ? last_p_ : p;
   if (has_last_) tracks_.gone((p - last).norm());
@@ -158,8 +158,8 @@ Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
   return settle(p, last, options, budget);
 }
 
-/// Computes the foot of a tick that needs more than step() does. It is a separate function, so that the compiler can
-/// build the foot in the caller's place.
+/// Computes the foot of a tick that needs more than the usual work of step(). It is a separate function, so that the
+/// compiler constructs the Foot directly in the caller's memory and copies nothing.
 Foot Tracer::settle(const Vector3d& p, const Vector3d& last, const TraceOptions& options, int budget) noexcept {
   Foot foot;
   if (options.unite && model_.partCount() > 1) {

@@ -8,9 +8,9 @@ namespace {
 
 using Eigen::Array2d;
 
-/// [m] The distance in a record is that of the probe when the search began. The first record after clear() may be
-/// 10 ms old, and a probe at 2 m/s moves by this distance in that time. For later records the path of the probe since
-/// the results of the search before is used, because they are newer than these.
+/// [m] The distance in a record was true when its search began, and the probe has moved since. For the first record
+/// after clear(), the probe is assumed to have moved by at most this distance: 10 ms at 2 m/s. For later records, the
+/// path since the previous results arrived is used, see noteSearch().
 constexpr double kWayOfOldRecord = 0.02;
 /// If the (u, v) of a record and of a followed foot differ by less than this share of the range, Newton's method leads
 /// from the record to that foot.
@@ -78,8 +78,8 @@ void Tracks::restart(int patch, const Array2d& uv) noexcept {
   set(patch, uv, way_);
 }
 
-/// Records that this tick brings results of a search. They may be spread over two ticks. So only the results of the
-/// search before the last one are certainly older than the start of the newest search.
+/// Records that this tick brings results of a search. `way_told_before_` becomes the length of the probe's path at the
+/// tick in which the previous results arrived. The search of the new results is assumed to have begun after that tick.
 void Tracks::noteSearch() noexcept {
   if (told_ == tick_) return;
   told_before_ = told_;

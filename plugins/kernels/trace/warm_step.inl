@@ -221,9 +221,9 @@ WarmStepResult warmStep(const double* p, double tolerance2, double* uv, double* 
   keep(F, state);
   store2(uv, target);
   const V2 there = target + next.d;
-  // Newton's method squares the error. After this step, about length * (length / last length)^2 remains of the error
-  // that grows with the distance, and last correction * (length / last length)^2 of the rest. A tenth of the tolerance
-  // is allowed.
+  // Newton's method squares the error, so the ratio of the last two steps shows how much of the error remains: about
+  // length * (length / last length)^2 of the part that grows with the probe's distance, and about last correction *
+  // (length / last length)^2 of the rest. Together these may be a tenth of the tolerance.
   const double now = next.length2, last = step.length2, enough = tolerance2;
   const double missed = bent ? bend2 : now;
   state.calm2 = 100 * missed * missed * missed <= enough * last * last ? 4 * last : 0;

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""A block of tissue with a hidden lump, pressed by a flat tip here and there: CalculiX in three dimensions.
+"""Computes with CalculiX, in three dimensions, how stiff a block of tissue with a hidden lump is under a flat tip at several places.
 
-Usage: block.py OUT.csv     x, stiffness with the lump, stiffness without it; half of the block, cut through the lump.
+Usage: block.py OUT.csv     writes x, stiffness with the lump, stiffness without it. By symmetry only half of the block is
+computed; the cut goes through the lump.
 """
 import csv
 import math
@@ -12,7 +13,7 @@ import sys
 import tempfile
 
 EDGE, TIP = 2.5e-3, 5e-3
-CELLS = (34, 14, 8)          # of half a block of 85 x 70 x 20 mm
+CELLS = (34, 14, 8)          # elements of half a block of 85 x 70 x 20 mm
 LOW = (-0.03, 0.0, 0.0)
 LUMP, RADIUS = (0.0, 0.0, 0.011), 0.0055
 YOUNG, LUMP_YOUNG, POISSON = 1e4, 1e5, 0.45
@@ -22,7 +23,7 @@ PLACES = [5e-3 * i for i in range(7)]
 def deck(path, lump):
     number = {}
 
-    def node(i, j, k):  # in half edges
+    def node(i, j, k):  # i, j, k count half edges of an element
         return number.setdefault((i, j, k), len(number) + 1)
 
     order = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2), (1, 0, 0), (2, 1, 0),
@@ -54,7 +55,7 @@ def deck(path, lump):
         for i, tip in enumerate(tips):
             out.write(f"*NSET,NSET=TIP{i}\n" + "".join(f"{n}\n" for n in tip))
         out.write("*BOUNDARY\nFIXED,1,3\nCUT,2\n")
-        for i in range(len(tips)):  # each step begins anew
+        for i in range(len(tips)):  # each step starts from the undeformed block
             out.write("*STEP\n*STATIC\n*BOUNDARY,OP=NEW\nFIXED,1,3\nCUT,2\n"
                       f"TIP{i},3,3,{-1e-4}\n*NODE PRINT,NSET=TIP{i},TOTALS=ONLY\nRF\n*END STEP\n")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A layer that is pressed far: the linear spring of a medial body beside finite elements of rubber, and a closed form.
+"""Compares a deep press on a layer: the linear spring of a medial body, finite elements of rubber, and a closed form.
 
 Usage: large_strain.py HAPTICD     prints the section of soft_methods.md; needs calculix-ccx, a minute
 """
@@ -12,13 +12,13 @@ import tempfile
 import solid
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..")
-THICK = 0.02  # m, of soft-plate.yaml
-STIFFNESS = 200  # N/m, of soft-plate.yaml
-FOLDED = 0.1  # difference of two meshes from which one has folded at the edge of the tip
+THICK = 0.02  # [m] thickness of soft-plate.yaml
+STIFFNESS = 200  # [N/m] stiffness of soft-plate.yaml
+FOLDED = 0.1  # relative difference of two meshes above which one of them has folded at the edge of the tip
 
 
 def pressed(hapticd, depths):
-    """[N] the force of the plate at these depths, by `hapticd trace`."""
+    """Returns (depth [m], force [N]) of the plate near these depths, by `hapticd trace`."""
     with tempfile.TemporaryDirectory() as folder:
         scene, probe, out = (os.path.join(folder, name) for name in ("scene.yaml", "probe.csv", "out.csv"))
         with open(scene, "w", encoding="utf-8") as file:
@@ -34,13 +34,13 @@ def pressed(hapticd, depths):
 
 
 def rubber(strain):
-    """Force over that of the linear law, of an incompressible neo-Hookean block that slides at both faces."""
+    """Returns the force of an incompressible neo-Hookean block that slides at both faces, divided by that of the linear law."""
     stretch = 1 - strain
     return (stretch ** -2 - stretch) / (3 * strain)
 
 
 def at(dent, r):
-    """The dent at r, between nodes."""
+    """Returns the dent at r, interpolated between nodes."""
     for (a, x), (b, y) in zip(dent, dent[1:]):
         if a <= r <= b and b > a:
             return x + (y - x) * (r - a) / (b - a)
@@ -48,7 +48,7 @@ def at(dent, r):
 
 
 def elements(depths, coarse):
-    """Of a flat tip on the layer, at each depth: force over that of the linear solution, the dent, seconds, megabytes."""
+    """Returns for a flat tip on the layer, at each depth: force divided by that of the linear solution, the dent, seconds, megabytes."""
     found = []
     with tempfile.TemporaryDirectory() as folder:
         layer = solid.layer(coarse=coarse)

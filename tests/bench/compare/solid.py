@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Axisymmetric elastic solids through CalculiX (ccx, from Debian's calculix-ccx): how their surface yields to a press.
+"""Computes with CalculiX (ccx, from Debian's calculix-ccx) how the surface of axisymmetric elastic solids yields to a press.
 
-CalculiX is a program that this bench starts; nothing of it is linked or shipped. The input deck is ours.
+This bench only starts the program CalculiX with an input file of its own; nothing of CalculiX is linked or shipped.
 """
 import math
 import os
@@ -10,11 +10,11 @@ import resource
 import subprocess
 import time
 
-WHOLE = 180  # ccx turns an axisymmetric element into a wedge of two degrees
+WHOLE = 180  # ccx makes an axisymmetric element a wedge of two degrees, so forces of a whole turn are 180 times larger
 
 
 def graded(places, counts):
-    """Coordinates with so many intervals between each place and the next."""
+    """Returns coordinates with counts[i] equal intervals between places[i] and places[i + 1]."""
     out = [places[0]]
     for a, b, n in zip(places, places[1:], counts):
         out += [a + (b - a) * (i + 1) / n for i in range(n)]
@@ -22,7 +22,7 @@ def graded(places, counts):
 
 
 class Solid:
-    """Quadrilaterals of eight nodes over a grid of rows and columns, mapped to (r, z) by `at`."""
+    """A grid of quadrilaterals with eight nodes. `at` maps a point of the grid to (r, z)."""
 
     def __init__(self, name, columns, rows, at, young, poisson):
         self.name, self.poisson = name, poisson
@@ -46,16 +46,16 @@ class Solid:
         return [i + 1 for i, place in enumerate(self.nodes) if holds(*place)]
 
     def material(self, young, rubber):
-        """Lines of a linear material, or of neo-Hookean rubber with the same constants at small strain."""
+        """Returns the input lines of a linear material, or of neo-Hookean rubber that has the same constants at small strain."""
         if not rubber:
             return f"*ELASTIC\n{young},{self.poisson}\n"
         shear, bulk = young / 2 / (1 + self.poisson), young / 3 / (1 - 2 * self.poisson)
         return f"*HYPERELASTIC,NEO HOOKE\n{shear / 2:.10g},{2 / bulk:.10g}\n"
 
     def solve(self, folder, fixed, presses, told, rubber=False):
-        """Displacements (r, z) [m] of the nodes `told` for each of `presses`, a list of (node, force along z [N]) or of
-        (node, displacement along z [m], True); and the total force along z [N] on nodes that were displaced. `rubber`:
-        large strain, each press going on from the one before."""
+        """Returns the displacements (r, z) [m] of the nodes `told` for each of `presses`, a list of (node, force along z [N]) or of
+        (node, displacement along z [m], True); and the total force along z [N] on nodes that were displaced. With
+        `rubber` the strain is large, and each press continues from the one before."""
         path = os.path.join(folder, self.name)
         listed = lambda nodes: "".join(f"{n}\n" for n in nodes)
         moved = sorted({p[0] for press in presses for p in press if len(p) > 2})
@@ -101,15 +101,15 @@ class Solid:
         return yields, totals
 
 
-TIP = 5e-3  # [m] radius of the flat tip and of the round one
+TIP = 5e-3  # [m] radius of the flat tip and of the round tip
 
 
 def layer(thickness=0.02, young=1e4, poisson=0.45, lump=None, coarse=0):
-    """A layer on something rigid; `lump`: (height of its centre, radius, Young's modulus). `coarse`: elements under the tip."""
+    """Returns a layer on a rigid base. `lump` is (height of its centre, radius, Young's modulus); `coarse` is the number of elements under the tip."""
     inside = lambda r, z: lump is not None and math.hypot(r, z - lump[0]) < lump[1]
     columns = graded([0, 0.8 * TIP, TIP, 1.2 * TIP, 2 * TIP, 0.08], [5, 5, 5, 5, 12])
     rows = graded([0, thickness - 2.5 * TIP, thickness - 0.5 * TIP, thickness - 0.1 * TIP, thickness], [5, 12, 4, 4])
-    if coarse:  # no small elements at the edge of the tip: they fold when it goes deep
+    if coarse:  # no small elements at the edge of the tip, because they would fold in a deep press
         columns = graded([0, TIP, 2 * TIP, 0.08], [coarse, coarse, 8])
         rows = graded([0, thickness - 2 * TIP, thickness], [3, coarse + 2])
     solid = Solid("layer" if lump is None else "lump", columns, rows, lambda x, y: (x, y),
@@ -118,11 +118,11 @@ def layer(thickness=0.02, young=1e4, poisson=0.45, lump=None, coarse=0):
 
 
 def ball(radius=0.025, foot=0.012, young=1e4, poisson=0.45):
-    """A ball that stands on a bonded foot of so many metres; its surface from the pole to the equator."""
-    columns = graded([0.04, 1.0], [18])  # a pinhole in the middle, where elements would have no width
+    """Returns a ball that is bonded to a rigid base within the radius `foot` [m], and the nodes of its surface above 0.3 radii."""
+    columns = graded([0.04, 1.0], [18])  # leaves a small hole in the middle, because elements there would have no width
     rows = graded([-1, -0.9, 0.9, 0.97, 1], [4, 16, 4, 4])
 
-    def at(x, y):  # concentric arcs: the boundary of the unit half-square goes to the half-circle
+    def at(x, y):  # concentric arcs: maps the boundary of a half-square to a half-circle
         angle = y * math.pi / 2
         return radius * x * math.cos(angle), radius * (x * math.sin(angle))
 
@@ -133,7 +133,7 @@ def ball(radius=0.025, foot=0.012, young=1e4, poisson=0.45):
 
 
 def flat(solid, fixed, surface, folder, depth=1e-4):
-    """Stiffness [N/m] under a flat frictionless tip, and the dent: (r, share of the depth) of the surface."""
+    """Returns the stiffness [N/m] under a flat frictionless tip, and the dent as (r, share of the depth) of the surface."""
     under = [n for n in surface if solid.nodes[n - 1][0] <= TIP + 1e-9]
     yields, totals = solid.solve(folder, fixed, [[(n, -depth, True) for n in under]], surface)
     dent = sorted((solid.nodes[n - 1][0], -u[1] / depth) for n, u in zip(surface, yields[0]))
@@ -141,7 +141,7 @@ def flat(solid, fixed, surface, folder, depth=1e-4):
 
 
 def far(solid, fixed, surface, folder, depths):
-    """Force [N] of a flat frictionless tip that goes deep into rubber, and the dents as in flat(), at each depth."""
+    """Returns, at each depth, the force [N] of a flat frictionless tip that goes deep into rubber, and the dent as in flat()."""
     under = [n for n in surface if solid.nodes[n - 1][0] <= TIP + 1e-9]
     yields, totals = solid.solve(folder, fixed, [[(n, -depth, True) for n in under] for depth in depths], surface, rubber=True)
     dents = [sorted((solid.nodes[n - 1][0] + u[0], -u[1] / depth) for n, u in zip(surface, at))

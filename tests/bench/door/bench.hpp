@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// What the bench of the door prints.
+/// The two parts of the door's bench. Each prints its results.
 #pragma once
 
 namespace hapticd::bench {
 
-void costs();    ///< nanoseconds a tick of leads, pushes, states and bells
-void network();  ///< the force that a model led through a bad network puts on a hand
+void costs();    ///< time per tick [ns] that leads, pushes, states and bells take
+void network();  ///< steps of the force on a hand if the lead of a model comes through a bad network
 
 }  // namespace hapticd::bench

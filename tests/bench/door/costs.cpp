@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Costs on one thread, with warm caches: what the processor does, not what another core's cache line adds.
+/// Measures everything in one thread with warm caches. So the times contain the work of the processor, but not the
+/// transfer of cache lines from another core.
 #include <cstdio>
 
 #include "base/clock.hpp"
@@ -15,7 +16,7 @@ namespace {
 constexpr int kTicks = 2'000'000;
 constexpr double kPeriod = 1e-3;  // [s]
 
-/// Nanoseconds a call, less those of an empty loop with the same preparation.
+/// Prints the time per call [ns], less that of a loop that only makes the same preparation.
 template <class Prepare, class Call>
 void cost(const char* what, Prepare&& prepare, Call&& call) {
   double spent[2] = {};

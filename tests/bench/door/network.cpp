@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// A leader behind a bad network moves a wall of 800 N/m under a hand that rests: 5 cm at 0.5 Hz, records 60 times a
-/// second, a fifth of them lost, up to 50 ms late and so out of order. The step of the force from one tick to the next,
-/// beyond that of the true motion, is what the hand feels as roughness.
+/// A leader moves a wall of 800 N/m under a resting hand: by 5 cm at 0.5 Hz. It sends 60 records per second through a
+/// bad network, which loses a fifth of them and delays each by up to 50 ms, so that their order changes. The hand feels
+/// roughness if the force steps more from tick to tick than the true motion would make it step.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The kernel alone, for sizes that no scene may have: the host's search is limited to 1 km.
+/// Traces with the kernel alone, for sizes that a scene cannot have, because the host's search is limited to 1 km.
 
 #include "extreme_case.hpp"
 #include "kernels/trace/tracer.hpp"

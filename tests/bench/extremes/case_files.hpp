@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A case as files that a user would write, and tables that the program wrote.
+/// Writes a case as the files that a user would write, and reads the tables that the program writes.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -10,17 +10,18 @@
 
 namespace hapticd::extremes {
 
-/// A folder with model.json, scene.yaml and probe.csv of a case, which goes with the object.
+/// A folder with model.json, scene.yaml and probe.csv of a case. The destructor deletes the folder.
 class CaseFiles {
  public:
-  /// @param device file of an arm in the same folder that the scene names; "": none  @throws std::exception
+  /// @param device device file in the same folder, which the scene names; "" if the scene has no arm @throws
+  /// std::exception
   explicit CaseFiles(const Case& c, const std::string& device = "");
   ~CaseFiles();
   CaseFiles(const CaseFiles&) = delete;
   CaseFiles& operator=(const CaseFiles&) = delete;
   std::filesystem::path operator/(const char* name) const { return path_ / name; }
 
-  /// Runs a command of the shell in the folder. @throws std::exception with what it said where it fails
+  /// Runs a shell command in the folder. @throws std::exception with the output of the command if it fails
   void run(const std::string& command) const;
 
  private:
@@ -32,9 +33,9 @@ class Table {
  public:
   explicit Table(const std::filesystem::path& file);
   std::size_t rows() const { return rows_.size(); }
-  /// Not-a-number where a cell holds none. @throws std::out_of_range: there is no such column
+  /// Returns the number in a cell, or NaN if the cell is empty. @throws std::out_of_range if there is no such column
   double at(std::size_t row, const char* column) const { return rows_[row].at(columns_.at(column)); }
-  /// The foot, its normal and the evaluations of a row of `hapticd trace` or of the table of contacts.
+  /// Returns foot, normal and evaluations in a row that `hapticd trace` wrote, or in a row of the table of contacts.
   Answer answer(std::size_t row) const;
 
  private:

@@ -18,7 +18,8 @@ using Truth = std::function<double(const Vector3d&)>;
 constexpr double kTurn = 2 * std::numbers::pi;
 const double kRoot = std::sqrt(0.5);
 
-/// A profile of (radius, height), weighted, turned about y: exact circles of nine points.
+/// Returns the surface of revolution of a profile about y. A point of the profile is (radius, height, weight). The
+/// circles are exact: each is a rational quadratic with nine control points.
 SurfaceData revolved(const std::vector<Vector3d>& profile, const std::vector<double>& knots, const Vector3d& at) {
   const double circle[9][3] = {{1, 0, 1},       {1, 1, kRoot}, {0, 1, 1},      {-1, 1, kRoot}, {-1, 0, 1},
                                {-1, -1, kRoot}, {0, -1, 1},    {1, -1, kRoot}, {1, 0, 1}};
@@ -45,7 +46,7 @@ SurfaceData torus(double big, double small) {
   return revolved(profile, {0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4}, Vector3d::Zero());
 }
 
-/// A flat patch of 0.1 m in the plane z = 0.
+/// Returns a flat patch of 0.1 m x 0.1 m in the plane z = 0.
 SurfaceData flat(int degree, int count, std::function<double(int, int)> weight = {}) {
   SurfaceData data;
   data.degree = {degree, degree};
@@ -83,7 +84,8 @@ double torusTruth(const Vector3d& p) {
   return std::abs(std::hypot(std::hypot(p.x(), p.z()) - 0.05, p.y()) - 0.02);
 }
 
-/// Round a sphere over its poles, `speed` along the path, at `reach` from the centre.
+/// Returns a path that circles a sphere at `reach` [m] from its centre and at `speed` [m/s], and passes near both
+/// poles.
 std::function<Vector3d(double)> round(double reach, double speed, const Vector3d& at = Vector3d::Zero()) {
   return [=](double t) {
     const double a = speed * t / reach;
@@ -96,7 +98,7 @@ void addSizes(std::vector<Case>& cases) {
     char name[64];
     std::snprintf(name, sizeof name, "sphere of radius %g m, inside at 0.9 R", r);
     Case c = make(name, sphere(r), 2000, 1000, round(0.9 * r, 2 * r), sphereTruth(r));
-    c.allowed = std::max(1e-6 * r, 1e-9);  // the tolerance of the tracer
+    c.allowed = std::max(1e-6 * r, 1e-9);  // 1e-9 m is the tolerance of the tracer
     cases.push_back(c);
   }
   const Vector3d far(1e6, -1e6, 1e6);

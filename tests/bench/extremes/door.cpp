@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A case as a user would trace it: with `hapticd trace`, or in a session that is recorded.
+/// Traces a case as a user would: with `hapticd trace`, or in a session that is recorded.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -27,7 +27,7 @@ std::vector<Answer> traceInSession(const Case& c, const fs::path& hapticd, const
   const CaseFiles files(c, "arm.yaml");
   std::ofstream(files / "arm.yaml") << "hapticd-device: 1\nmodule: walker\nparameters: {path: probe.csv}\n";
   const double seconds = static_cast<double>(c.probe.size() + 2) / c.rate;
-  // A sample that is no number is a fault, which the exit code of the run tells; the tracing goes on behind it.
+  // A sample that is not finite is a fault. The run then ends with exit code 1, but tracing goes on after that sample.
   const bool faulty = std::any_of(c.probe.begin(), c.probe.end(), [](const Vector3d& p) { return !p.allFinite(); });
   files.run(
       fmt::format("export HAPTICD_PLUGIN_PATH='{0}'; '{1}' run scene.yaml --virtual-time --for {2} --record run.h5; "
@@ -39,7 +39,8 @@ std::vector<Answer> traceInSession(const Case& c, const fs::path& hapticd, const
   for (std::size_t i = 0, contact = 0; i < ticks.rows(); ++i) {
     while (contact < contacts.rows() && contacts.at(contact, "tick") < ticks.at(i, "tick")) ++contact;
     const auto sample =
-        static_cast<std::size_t>(ticks.at(i, "arm0_sequence")) - 1;  // the walker counts its path's rows
+        // the arm numbers its samples by the rows of the path
+        static_cast<std::size_t>(ticks.at(i, "arm0_sequence")) - 1;
     const bool known = contact < contacts.rows() && contacts.at(contact, "tick") == ticks.at(i, "tick");
     if (sample >= c.probe.size() || !known) continue;
     answers[sample] = contacts.answer(contact);

@@ -17,45 +17,50 @@ struct Case {
   std::vector<spline::SurfaceData> surfaces;
   double rate = 1000;  ///< [Hz]
   bool started = false;
-  double start_u = 0, start_v = 0;     ///< parameters of the first foot, where they are given
-  std::vector<Eigen::Vector3d> probe;  ///< a point a tick
-  std::vector<double> distance;        ///< [m] true one; not-a-number where there is none
-  double allowed = 1e-4;               ///< [m] a foot farther than this from the best one is wrong
-  bool bifurcation = false;            ///< the nearest point truly jumps: 5 ms to recover
-  bool walk = false;                   ///< through solids: the truth is the nearest of all surfaces, so nothing is held
-  bool alone = false;                  ///< beyond what scenes may hold: traced by the kernel alone
-  int direct_steps = 0;                ///< steps a tick of the paper's method; 0: Newton
+  double start_u = 0, start_v = 0;     ///< parameters of the first foot, if `started`
+  std::vector<Eigen::Vector3d> probe;  ///< [m] position of the probe in each tick
+  std::vector<double> distance;        ///< [m] true distance in each tick; NaN if it is unknown
+  /// [m] a foot is wrong if it is farther from the probe than the nearest point by more
+  double allowed = 1e-4;
+  bool bifurcation = false;  ///< the true nearest point jumps; the tracer may need 5 ms to follow
+  /// the path runs through solids, and the truth is the nearest of all surfaces: no contact is held
+  bool walk = false;
+  bool alone = false;    ///< sizes that a scene cannot have: traced with the kernel alone
+  int direct_steps = 0;  ///< steps per tick of direct parametric tracing; 0 for Newton's method
 };
 
-/// The same in another place: turned and shifted at random.
+/// Returns the same case in another place: surfaces and path are rotated and shifted at random.
 Case moved(const Case& c, std::mt19937& random);
 
-/// What a tracer answered in one tick.
+/// The result of a tracer in one tick.
 struct Answer {
   Eigen::Vector3d point{0, 0, 0}, normal{0, 0, 0};
   bool traced = false;
   int evaluations = 0;
 };
 
-/// The answers of `hapticd trace`. @param hapticd the program @throws std::exception
+/// Returns the answers of `hapticd trace`. @param hapticd path of the program @throws std::exception
 std::vector<Answer> traceThroughDoor(const Case& c, const std::filesystem::path& hapticd);
-/// The answers that a session recorded, in virtual time and over an arm that follows the path to the last bit; what it
-/// recorded must replay. @param modules folder of the test arm `walker` @throws std::exception
+/// Runs a session in virtual time with an arm that follows the path to the last bit, and returns the answers in its
+/// recording. The recording must also pass a replay. @param modules folder of the test arm `walker` @throws
+/// std::exception
 std::vector<Answer> traceInSession(const Case& c, const std::filesystem::path& hapticd,
                                    const std::filesystem::path& modules);
-/// The answers of the kernel, with a search beside it as in a session.
+/// Returns the answers of the kernel alone. A search runs every few ticks, as in a session.
 std::vector<Answer> traceAlone(const Case& c);
 
 /// Reads one file, see tests/cases/extremes/README.md. @throws std::exception
 Case readCase(const std::filesystem::path& file);
 
-/// Cases with closed forms: sizes from subnormal to 1e59 m, weights, knots, degenerate patches, speeds and rates.
+/// Returns cases whose true distance has a closed form. They vary size (from subnormal numbers to 1e59 m), weights,
+/// knots, degenerate patches, speeds and rates.
 std::vector<Case> closedForms();
 
-/// Walks over the models of config/models; the truth is the global search.
+/// Returns walks over the models in config/models. The true distance comes from the global search.
 std::vector<Case> modelWalks();
 
-/// Random walks near random patches; the truth is the global search. `ticks` in all.
+/// Returns random walks near random patches. The true distance comes from the global search. @param ticks number of
+/// ticks of all walks together
 std::vector<Case> randomWalks(int ticks);
 
 }  // namespace hapticd::extremes

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// Traces extreme surfaces and probe paths with `hapticd trace`, and prints what came of each. The cases of a folder
-/// are traced where they are, and in 3 rigid motions (12 under HAPTICD_LONG), and the same in sessions that are
-/// recorded and replayed. Exit code 1 if any case is not ok.
+/// Traces extreme surfaces and probe paths with `hapticd trace`, and prints for each case how far its feet are from the
+/// true nearest points. Each case of a folder is traced as it is, in 3 rigid motions (12 under HAPTICD_LONG), and in
+/// sessions that are recorded and replayed. The exit code is 1 if any case is not ok.
 ///   extremes HAPTICD [--random TICKS] [--sessions MOTIONS] [FOLDER...]
-/// Without a folder: tests/cases/extremes, closed forms, walks. --sessions: rigid motions of each case in sessions.
+/// If no folder is given, it traces tests/cases/extremes, the closed forms and the walks. --sessions gives the number
+/// of rigid motions of each case that are traced in sessions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,23 +25,25 @@ using hapticd::extremes::Answer;
 using hapticd::extremes::Case;
 namespace fs = std::filesystem;
 
-constexpr double kRecovery = 0.005;  // [s] after a true bifurcation
+constexpr double kRecovery = 0.005;  // [s] time that a tracer may need after the true nearest point has jumped
 constexpr int kMostEvaluations = 12;
 constexpr int kDefaultRandomTicks = 50'000;
 const int kMotions = hapticd::support::kLong ? 12 : 3;
 
 fs::path hapticd_program;
-int session_motions = 1;  // of each case, in sessions; a test has less time than a report
+// rigid motions of each case in sessions; few by default, because a test has less time than a report
+int session_motions = 1;
 
 struct Outcome {
   double worst_excess = 0;  // [m]
   int bad_ticks = 0, longest_bad = 0;
   int worst_evaluations = 0;
-  bool poisoned = false;  // a good sample without a finite foot
-  bool lost = false;      // wrong in the last tick
+  bool poisoned = false;  // a finite sample has no finite foot
+  bool lost = false;      // the foot is still wrong at the end, and not only just after a jump
 
   bool ok(const Case& c) const {
-    if (c.direct_steps > 0) return !poisoned && worst_evaluations <= kMostEvaluations;  // the method may lose its way
+    // direct parametric tracing may lose the nearest foot
+    if (c.direct_steps > 0) return !poisoned && worst_evaluations <= kMostEvaluations;
     const double allowed = c.bifurcation ? kRecovery * c.rate : 0;
     return !poisoned && !lost && worst_evaluations <= kMostEvaluations && longest_bad <= allowed;
   }
@@ -54,7 +57,7 @@ struct Outcome {
   }
 };
 
-/// The ways in which a case is traced.
+/// Traces a case without a session.
 std::vector<Answer> byTrace(const Case& c) {
   return c.alone ? traceAlone(c) : traceThroughDoor(c, hapticd_program);
 }
@@ -73,7 +76,7 @@ Outcome run(const Case& c, std::vector<Answer> (*trace)(const Case&) = byTrace) 
     const double excess = (c.probe[i] - answer.point).stableNorm() - c.distance[i];
     out.poisoned = out.poisoned || !answer.traced || !std::isfinite(excess) || !answer.normal.allFinite();
     out.worst_excess = std::max(out.worst_excess, excess);
-    // 1e300 m away, a metre is less than rounding.
+    // At 1e300 m, the rounding error of a distance is far more than a metre.
     const bool wrong = !(excess <= std::max(c.allowed, 1e-12 * c.distance[i]));
     bad = wrong ? bad + 1 : 0;
     out.bad_ticks += wrong ? 1 : 0;
@@ -83,7 +86,7 @@ Outcome run(const Case& c, std::vector<Answer> (*trace)(const Case&) = byTrace) 
   return out;
 }
 
-/// Rigid motions of a case together.
+/// Traces rigid motions of a case, and returns the worst results of all.
 Outcome runMoved(const Case& c, int motions, std::vector<Answer> (*trace)(const Case&) = byTrace) {
   std::mt19937 random(16);
   Outcome all;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Walks of a hand over whole models, with edges, seams, poles and medial axes on its way.
+/// Walks of a hand over whole models. They cross edges, seams, poles and medial axes.
 #include <algorithm>
 #include <random>
 
@@ -22,7 +22,7 @@ Vector3d startOn(const trace::Model& model) {
   return E.S;
 }
 
-/// The nearest foot with all the evaluations it wants, from nothing but a search.
+/// Returns the nearest foot, found without memory from the results of a search and with as many evaluations as needed.
 trace::Foot footAnew(trace::Tracer& tracer, const trace::Found& found, const Vector3d& p) {
   trace::TraceOptions thorough;
   thorough.unite = false;

@@ -23,7 +23,8 @@ Eigen::Vector3d vectorOf(const Json& value) {
   return {coordinate(0), coordinate(1), coordinate(2)};
 }
 
-/// Paths on which the nearest point truly jumps: two feet are equally near, and the tracked one becomes the worse.
+/// True for paths on which the true nearest point jumps: two feet become equally near, and then the foot that is
+/// followed is no longer the nearest.
 bool isBifurcation(const std::string& name) {
   for (const char* word : {"through cylinder axis", "centre", "concave"})
     if (name.find(word) != std::string::npos) return true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The test arm `walker`: three sliding joints that follow a path to the last bit, a row a tick, whatever pushes. With
-/// it a session traces what `hapticd trace` is given as a probe path.
+/// The test arm `walker`: three sliding joints that follow a path to the last bit, one row per tick, whatever force
+/// acts. With it a session traces exactly the probe path that `hapticd trace` is given.
 #include <algorithm>
 #include <array>
 #include <fstream>

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""How well `limits.power` and `limits.impulse` hold at the product's door: a sphere, a simulated Premium with exact
-encoders, and random hands. Prints, for each kind of hand and rate, the worst power of a tick and of 10 ms, and the worst
-impulse of 0.1 s, over their limits.
+"""Measures how well the shipped program keeps `limits.power` and `limits.impulse`, with a sphere, a simulated Premium with
+exact encoders, and random hands. Prints for each kind of hand and each rate the worst power of a tick and of 10 ms, and the
+worst impulse of 0.1 s, divided by their limits.
 
-usage: power_and_impulse.py HAPTICD SOURCE [COUNT [SEED]]      COUNT hands of each kind at each rate; 8 unless it says so
-Hands: `calm` moves by sines of at most 5 Hz, `quick` of at most 12 Hz (and both stop at 5 cm), `jumping` wants to be
-elsewhere within a tick, which no person can.
+usage: power_and_impulse.py HAPTICD SOURCE [COUNT [SEED]]      COUNT hands of each kind at each rate (default 8)
+Hands: `calm` moves by sines of at most 5 Hz, `quick` of at most 12 Hz (and both stop at 5 cm), the target of
+`jumping` jumps within a tick, as no person could.
 """
 import csv
 import math
@@ -26,7 +26,7 @@ HANDS = {"calm": (20, 5), "quick": (100, 12), "jumping": None}  # m/s^2 and Hz
 
 
 def sines(chance, acceleration, fastest):
-    """Positions of a hand, each ms."""
+    """Yields the target of a hand for each millisecond, as a sum of sines."""
     parts = [(chance.uniform(0.5, fastest), chance.uniform(0, 2 * math.pi), chance.random()) for _ in range(5)]
     size = acceleration / sum(w * (2 * math.pi * f) ** 2 for f, _, w in parts)
     sizes = [size * chance.uniform(0.3, 1) for _ in range(3)]
@@ -37,7 +37,7 @@ def sines(chance, acceleration, fastest):
 
 
 def jumps(chance):
-    """Targets that jump by centimetres."""
+    """Yields targets that jump by centimetres."""
     t, place = 0, (0, 0, 0.05)
     while t < SECONDS:
         yield (t, *place)
@@ -60,7 +60,7 @@ def write(folder, chance, hand, rate, limit):
 
 
 def ticks(folder):
-    """Forces as sent [N] and places of the tip [m], a row a tick."""
+    """Returns the forces as sent [N] and the positions of the tip [m], one row per tick."""
     for command in (["run", "scene.yaml", "--virtual-time", "--for", str(SECONDS), "--record", "run.h5"], ["export", "run.h5", "--csv", "."]):
         done = subprocess.run([HAPTICD, *command], cwd=folder, capture_output=True, text=True)
         if done.returncode != 0:
@@ -71,7 +71,7 @@ def ticks(folder):
 
 
 def play(hand, rate, number):
-    """Ratios to the limit: power of a tick and of 10 ms, impulse of 0.1 s; 0 for what was not limited."""
+    """Returns power of a tick, power of 10 ms and impulse of 0.1 s, divided by their limit; 0 for what was not limited."""
     chance = random.Random(f"{SEED} {hand} {rate} {number}")
     most = chance.choice([0.05, 0.1, 0.3])
     kind = "power" if number % 2 else "impulse"

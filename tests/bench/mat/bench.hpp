@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Figures of the soft bodies: tables of text, and how times are taken.
+/// The tables of bench_mat, as Markdown text, and functions that measure times.
 #pragma once
 #include <algorithm>
 #include <chrono>
@@ -8,24 +8,26 @@
 
 namespace hapticd::bench_mat {
 
-/// The paper's table of six scenes, and more bodies than it had. Markdown.
+/// Returns the table of the paper's six scenes, and of a scene with more bodies than the paper had.
 std::string gardenTable();
-/// Ticks of its last scene, 35 bodies: one is touched, or all have been and still move. Prints the median time; what it
-/// costs whatever else the machine does is counted by tests/bench/mat/instructions.
+/// Runs ticks of the paper's last scene, with 35 bodies, and prints the median time. The probe strokes one body; if
+/// `awake`, all bodies were poked before and still move. tests/bench/mat/instructions counts the instructions, which do
+/// not depend on the load of the machine.
 void strokeGarden(const char* dynamics, bool awake, int ticks);
-/// Searches on ten skeletons against brute force. Markdown.
+/// Returns a table of searches on ten skeletons, compared with brute force.
 std::string skeletonTable();
-/// Accuracy against speed, a table a knob. Markdown.
+/// Returns one table per knob: accuracy against speed.
 std::string knobTables();
-/// Medial meshes: a cone, a slab, bodies of up to 10,000 slabs. Markdown.
+/// Returns the tables of medial meshes: one cone, one slab, and bodies of up to 10,000 slabs.
 std::string meshTables();
-/// Volume with and without keeping it. Markdown.
+/// Returns the table of the volume of pressed bodies, with and without VolumeKeeper.
 std::string volumeTable();
 
-/// Felt surfaces: moduli beside the continuous tissue, and the stiffest that an arm bears. Markdown.
+/// Returns the tables of felt surfaces: the moduli compared with those of continuous tissue, and the largest stiffness
+/// that an arm can render.
 std::string feltTables();
 
-/// Median time [s] of `batches` batches of calls `work(i)`, per call.
+/// Returns the time per call [s] of `work(i)`: the median of `batches` batches of `calls` calls each.
 template <class Work>
 double medianTime(int batches, int calls, Work&& work) {
   std::vector<double> times;
@@ -39,7 +41,8 @@ double medianTime(int batches, int calls, Work&& work) {
   return times[static_cast<std::size_t>(batches / 2)];
 }
 
-/// Least time [s] of `batches` batches of calls `work(i)`, per call: for work so short that any disturbance shows.
+/// Returns the time per call [s] of `work(i)`: the least of `batches` batches. It is meant for work so short that every
+/// interruption would show in the median.
 template <class Work>
 double leastTime(int batches, int calls, Work&& work) {
   double least = 1e300;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Felt surfaces: how near the sampled tissue is to the continuous one, and how stiff it may be on an arm.
+/// Measures felt surfaces: how near the sampled tissue is to continuous tissue, and how stiff it may be on an arm.
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -17,7 +17,9 @@ using medial::SurfaceElement;
 using medial::Tissue;
 
 constexpr double kRates[] = {1000, 2000, 4000};
-constexpr double kLoses = 8;         ///< times the stiffness: the measurement's bias over its amplitude, less a margin
+/// multiple of the stiffness: with more, the measuring probe would lose contact (mean depth over amplitude, less a
+/// margin)
+constexpr double kLoses = 8;
 constexpr double kArmDamping = 0.1;  ///< [N s/m]
 
 struct Named {
@@ -53,12 +55,13 @@ std::string moduli() {
   return text + "\n";
 }
 
-/// A hand and an arm at the surface: a mass on a spring.
+/// Hand and arm at the surface, as a damped mass on a spring [kg, N s/m, N/m].
 struct Load {
   double mass = 0.075, damping = kArmDamping, spring = 0;
 };
 
-/// The loop from tick to tick while they touch: probe q, its speed, the surface's x, v, y, and q a tick ago.
+/// Returns the spectral radius of the sampled loop in contact, over one tick. The state is: position q and speed of the
+/// probe; x, v and y of the surface; q one tick ago.
 double spectralRadius(const SurfaceElement& e, const Load& load, double dt) {
   using Matrix = Eigen::Matrix<double, 6, 6>;
   const medial::ViscoelasticStep s = medial::viscoelasticStep(e, dt);
@@ -67,7 +70,7 @@ double spectralRadius(const SurfaceElement& e, const Load& load, double dt) {
   rates.row(1) << -load.spring / load.mass, -load.damping / load.mass, 1 / load.mass;
   const Eigen::Matrix3d held = (rates * dt).exp();
   const double half = 0.5 * e.contact;
-  Eigen::Matrix<double, 1, 6> mean;  // the contact's force over the tick that ends now
+  Eigen::Matrix<double, 1, 6> mean;  // mean force of the contact over the tick that ends now
   mean << half, 0, -half * (1 + s.xx), -half * s.xv, -half * s.xy, half;
   mean /= 1 + half * s.xf;
   Matrix now = Matrix::Zero();
@@ -84,7 +87,8 @@ double spectralRadius(const SurfaceElement& e, const Load& load, double dt) {
   return now.eigenvalues().cwiseAbs().maxCoeff();
 }
 
-/// The element of a tissue as stiff as `contact` [N/m] in its contact spring, with the same times.
+/// Returns the element of a tissue that is scaled so that its contact spring has the stiffness `contact` [N/m]. Its
+/// time constants stay the same.
 SurfaceElement scaled(const Tissue& tissue, double contact, double dt) {
   const double by = contact / medial::elementOf(tissue, medial::test::kRatio).contact;
   Tissue stiff = tissue;
@@ -92,7 +96,8 @@ SurfaceElement scaled(const Tissue& tissue, double contact, double dt) {
   return medial::dampedForTick(medial::elementOf(stiff, medial::test::kRatio), dt);
 }
 
-/// [N/m] the stiffest contact spring below which no load of these grows; from there a scan finds none worse.
+/// Returns the stiffness [N/m] of the contact spring up to which the loop is stable with each of the loads, by a scan
+/// in steps of 2 %.
 double stiffest(const Tissue& tissue, const std::vector<Load>& loads, double dt) {
   double least = 1e6;
   for (const Load& load : loads) {
@@ -105,7 +110,7 @@ double stiffest(const Tissue& tissue, const std::vector<Load>& loads, double dt)
   return least;
 }
 
-/// [N/m] the stiffest contact spring that is passive on the arm, whoever holds it.
+/// Returns the largest stiffness [N/m] of the contact spring that is passive on the arm, whatever hand holds it.
 double passiveUpTo(const Tissue& tissue, double dt) {
   double low = 1, high = 1e6;
   while (high > 1.001 * low) {
@@ -115,7 +120,7 @@ double passiveUpTo(const Tissue& tissue, double dt) {
   return low;
 }
 
-/// Hands of mass and spring without friction, over the frequencies at which sampling meets them.
+/// Returns hands of mass and spring without friction, with natural frequencies up to half the sampling rate.
 std::vector<Load> worstHands(double dt) {
   std::vector<Load> all;
   for (const double weight : {1e-2, 1e-1, 1.0, 10.0, 100.0})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The paper's Table 1: scenes of 1 to 35 bodies, through the whole servo core.
+/// Measures the scenes of the paper's Table 1, with 1 to 35 bodies, in the whole servo core.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 namespace fs = std::filesystem;
 
-constexpr std::size_t kThirtyFive = 5;  ///< row with so many bodies
+constexpr std::size_t kThirtyFive = 5;  ///< index of the row with 35 bodies
 
 struct Kind {
   int rows, columns, count;
@@ -25,10 +25,10 @@ struct Kind {
 struct Row {
   std::vector<Kind> kinds;
   std::string paper_preprocessing, paper_memory;
-  double paper_us;  ///< rate and share of the time in the haptics loop, together
+  double paper_us;  ///< [us] time per tick in the haptics loop, from the rate and the share of run time in the paper
 };
 
-/// As many bodies and points as the paper's rows have; what its bodies looked like is not known.
+/// Returns scenes with as many bodies and points as the paper's rows. The shapes of the paper's bodies are not known.
 std::vector<Row> rows() {
   return {{{{7, 7, 1}}, "2 s", "400 KB", 204},
           {{{7, 15, 1}}, "3 s", "1.0 MB", 266},
@@ -71,7 +71,8 @@ void writeModel(const medial::BodyData& data, const fs::path& file) {
       points, radius, data.stiffness[0], data.damping[0], data.mass[0]);
 }
 
-/// On a square of `side` bodies a row: body 0 is in its corner, with as many neighbours in every scene.
+/// Returns the place of a body in a square grid with `side` bodies per row. Body 0 is in a corner, so that it has
+/// equally many neighbours in every scene.
 Vector3d placeOf(int body, int side) {
   return {.07 * (body % side - side / 2), .07 * (body / side - side / 2), 0};
 }
@@ -83,7 +84,7 @@ int sideOf(const Row& row) {
 }
 
 struct Setting {
-  const char* radius;  ///< of activation [m]
+  const char* radius;  ///< activation radius [m]
   const char* dynamics;
 };
 
@@ -107,7 +108,7 @@ std::unique_ptr<servo::World> build(const Row& row, const Setting& setting, cons
       folder, seconds);
 }
 
-/// Median time of a tick alone [us], while the probe strokes body 0, 3 mm deep, at 0.1 m/s.
+/// Returns the median time [us] of a tick while the probe strokes body 0 at 0.1 m/s and 3 mm deep.
 double stroke(Hand& hand, int side, int ticks) {
   return hand
       .ticks(ticks,
@@ -117,14 +118,15 @@ double stroke(Hand& hand, int side, int ticks) {
       .at(.5);
 }
 
-/// Pokes every body deeply, at all parts of it.
+/// Presses every body deeply at all of its parts, so that all nodes move.
 void wakeAll(Hand& hand, int side, int bodies) {
   for (int body = 0; body < bodies; ++body)
     for (int i = 0; i < 81; ++i)
       hand.tick(placeOf(body, side) + Vector3d(.015 * (i % 9 - 4) / 4, .015 * (i / 9 - 4) / 4, .004));
 }
 
-/// Times of a tick [us] with all bodies followed, however far, and with all of them awake.
+/// Returns the times of a tick [us] when all bodies are traced, however far away, and when in addition all of them are
+/// awake.
 std::string wide(const Row& row, const char* dynamics, const fs::path& folder) {
   int bodies = 0;
   for (const Kind& kind : row.kinds) bodies += kind.count;

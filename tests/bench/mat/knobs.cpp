@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Accuracy against speed, a table a knob.
+/// Measures accuracy against speed, with one table per knob.
 #include <fmt/format.h>
 
 #include "bench.hpp"
@@ -15,7 +15,7 @@ using medial::Envelope;
 using medial::Skeleton;
 using medial::SkeletonFoot;
 
-/// A stroke over a domed body with varying radii, 4 mm deep.
+/// A stroke over a domed body with varying radii, 4 mm deep, with the true foot at each point.
 struct Stroke {
   Skeleton skeleton;
   std::vector<Vector3d> path;
@@ -99,7 +99,7 @@ std::string searchKnobs() {
                             double(stroke.skeleton.bytes()) / 1024, double(small.skeleton.bytes()) / 1024);
 }
 
-constexpr double kFineChord = 2e-5;  ///< [m] of the contour that others are compared with
+constexpr double kFineChord = 2e-5;  ///< [m] chord error of the contour with which others are compared
 constexpr double kPressed = .004;    ///< [m]
 
 std::vector<float> shown(const medial::MovingMesh& contour, const medial::Nodes& body) {
@@ -113,14 +113,14 @@ Vector3d placeIn(const std::vector<float>& xyz, std::size_t i) {
   return Eigen::Map<const Eigen::Vector3f>(xyz.data() + 3 * i).cast<double>();
 }
 
-/// The greatest distance of two pictures of one mesh [m].
+/// Returns the greatest distance [m] between corresponding vertices of two states of one mesh.
 double farthest(const std::vector<float>& a, const std::vector<float>& b) {
   double most = 0;
   for (std::size_t i = 0; 3 * i < a.size(); ++i) most = std::max(most, (placeIn(a, i) - placeIn(b, i)).norm());
   return most;
 }
 
-/// The greatest jump of a control point while a press slides over the body, over its depth.
+/// Returns the greatest jump of a control point while a press slides over the body, divided by the depth of the press.
 double greatestJump(medial::Deformation& body) {
   std::vector<Eigen::Vector4d> before, now;
   double jump = 0;
@@ -176,8 +176,9 @@ std::string influenceKnob() {
   return text + "\n";
 }
 
-/// The greatest distance [m] of a picture's triangles, at their middles and those of their sides, from a fine picture:
-/// along the fine one's normal at its vertex that is nearest.
+/// Returns the greatest distance [m] of the triangles of a coarse mesh from a fine mesh. Samples are the middles of the
+/// triangles and of two of their sides. The distance is measured from the nearest vertex of the fine mesh, along the
+/// normal there.
 double displayError(const medial::MovingMesh& coarse, const std::vector<float>& xyz, const medial::MovingMesh& fine,
                     const std::vector<float>& truth) {
   const std::vector<float> normals = fine.normalsOf(truth);

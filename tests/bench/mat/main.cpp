@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// bench_mat: what soft bodies cost and how exact they are. Prints the tables, or those that are named (knobs, scenes,
-/// meshes, felt, volume, searches); with --write, writes driver/docs/reports/bench_mat.md. `bench_mat ticks
+/// bench_mat: measures the time and the accuracy of soft bodies. It prints all tables, or those that are named (knobs,
+/// scenes, meshes, felt, volume, searches). With --write it writes driver/docs/reports/bench_mat.md. `bench_mat ticks
 /// seen|felt|off one|awake COUNT` runs ticks of 35 bodies.
 #include <fmt/format.h>
 
@@ -38,7 +38,8 @@ int main(int argc, char** argv) {
       const bool wanted = argc < 2 || write || std::find(argv + 1, argv + argc, std::string(name)) != argv + argc;
       if (!wanted) continue;
       std::string made = make();
-      made.insert(made.find("\n\n") + 2, fmt::format("`bench_mat {}` makes this part.\n\n", name));  // after its title
+      // placed after the title
+      made.insert(made.find("\n\n") + 2, fmt::format("`bench_mat {}` makes this part.\n\n", name));
       fmt::print("{}", made);
       std::fflush(stdout);
       text += made;

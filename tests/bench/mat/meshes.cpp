@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Medial meshes: what a cone and a slab cost, and a whole tick on bodies of many of them.
+/// Measures medial meshes: the time for one cone, for one slab, and for a whole tick on bodies of many of them.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -20,7 +20,8 @@ using Eigen::Vector3d;
 using medial::MedialMesh;
 namespace fs = std::filesystem;
 
-/// A closed sheet bent to a torus of 60 mm and 25 mm, radius 4 to 6 mm: 2 n^2 slabs.
+/// Returns a closed sheet of 2 n^2 slabs, bent to a torus with the radii 60 mm and 25 mm. The radii of its spheres are
+/// 4 to 6 mm.
 medial::MeshData torusOf(int n) {
   medial::MeshData mesh;
   for (int i = 0; i < n; ++i)
@@ -37,7 +38,7 @@ medial::MeshData torusOf(int n) {
   return mesh;
 }
 
-/// A curled rope of n cones.
+/// Returns a coiled rope of n cones.
 medial::MeshData ropeOf(int n) {
   medial::MeshData mesh;
   for (int i = 0; i <= n; ++i) {
@@ -48,7 +49,7 @@ medial::MeshData ropeOf(int n) {
   return mesh;
 }
 
-/// Where a stroke on the torus is after k ticks, 2 mm deep, 0.1 m/s.
+/// Returns the position of the probe after k ticks of a stroke on the torus, 2 mm deep and at 0.1 m/s.
 Vector3d strokeAt(int k) {
   const double a = .0009 * k, b = .0007 * k, r = .06 + (.025 + .003) * std::cos(b);
   return {r * std::cos(a), r * std::sin(a), (.025 + .003) * std::sin(b)};
@@ -132,7 +133,7 @@ std::string tickLine(int n, const char* setting, const fs::path& folder) {
                      ticks.at(1));
 }
 
-/// Two fingers and a stem, as soft-branch has them.
+/// Returns a body of two fingers and a stem, like that of the scene soft-branch.
 medial::MeshBodyData branches() {
   medial::MeshBodyData data;
   data.mesh.vertices.push_back({{0, 0, 0}, .01});
@@ -150,7 +151,8 @@ medial::MeshBodyData branches() {
   return data;
 }
 
-/// What the crease costs and does in the crotch: without it the force turns at once.
+/// Measures the cost and the effect of the knob `crease` where branches meet. Without it the direction of the force
+/// jumps there.
 std::string creaseTable() {
   const medial::MeshBody body(branches(), {});
   std::string text =
@@ -176,7 +178,8 @@ std::string creaseTable() {
   return text + "\n";
 }
 
-/// What a contact moves with so many rings, and how its motion jumps where the contact slides from slab to slab.
+/// Measures, for each number of rings, how many vertices a contact moves, and how far they jump while the contact
+/// slides from slab to slab.
 std::string ringsTable() {
   medial::MeshBodyData data;
   data.mesh = torusOf(22);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A scene in the whole servo core, ticked by a probe that is put anywhere.
+/// Runs a scene in the whole servo core with a probe that can be placed anywhere.
 #pragma once
 #include <Eigen/Core>
 #include <filesystem>
@@ -13,14 +13,15 @@
 
 namespace hapticd::bench_mat {
 
-/// Builds the world of a scene text whose files stand in `folder`; `seconds` is the time it took, without reading YAML.
+/// Builds the world of a scene text. @param folder folder of the files that the scene names @param seconds becomes the
+/// time it took, without the reading of YAML
 std::unique_ptr<servo::World> buildWorld(const std::string& scene, const std::filesystem::path& folder,
                                          double& seconds);
 
 /// Times of ticks [us].
 struct Ticks {
   std::vector<double> times;
-  double at(double quantile);  ///< 0 to 1
+  double at(double quantile);  ///< quantile from 0 to 1
 };
 
 class Hand {
@@ -31,7 +32,8 @@ class Hand {
     prepare(at);
     run();
   }
-  /// Times of ticks alone, while the probe is where `path(tick)` says.
+  /// Returns the times of `count` ticks while the probe moves along `path(tick)`. The time of its preparation is not
+  /// included.
   Ticks ticks(int count, const std::function<Eigen::Vector3d(int)>& path);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Volume of pressed bodies, with and without keeping it.
+/// Measures the volume of pressed bodies, with and without VolumeKeeper.
 #include "kernels/medial/volume.hpp"
 
 #include <fmt/format.h>

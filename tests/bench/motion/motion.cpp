@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// bench_motion: CPU time of one tick of each thing that moves, without the tracing of its surfaces. Figures to read,
-/// not a test; the goal is below 1 us each.
+/// bench_motion: measures the processor time of one tick of each kind of motion, without the tracing of surfaces. It is
+/// not a test. The goal is less than 1 us for each.
 #include <benchmark/benchmark.h>
 
 #include "kernels/contact/friction.hpp"
@@ -31,7 +31,7 @@ RigidBody bodyOf(Joint joint, double angular_damping, const Vector3d& rate) {
   return body;
 }
 
-/// Contacts that the body keeps meeting: the probes go with it.
+/// A body with several contacts that last, because the probes move with the body.
 void pressed(benchmark::State& state, Joint joint) {
   RigidBody body = bodyOf(joint, 0.01, {0.3, 1, 0.2});
   const auto count = static_cast<size_t>(state.range(0));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Two engines on the same untrimmed NURBS model: the tracer with its search beside the servo (kernels/trace), and one
-/// bounded search in every tick (kernels/brep), which takes each surface for a face with edges of its own.
+/// Compares two engines on the same untrimmed NURBS model: the tracer of kernels/trace, whose search runs beside the
+/// servo, and the bounded search of kernels/brep, which runs in every tick and treats each surface as a face with its
+/// own edges.
 ///   bench_engines MODEL.yaml...
 #include <algorithm>
 #include <chrono>
@@ -32,7 +33,7 @@ struct Times {
   }
 };
 
-/// Strokes over the surface from 3 mm outside to 1 mm inside.
+/// Returns strokes over the surface, at heights from 1 mm inside to 3 mm outside. @param step [m] motion per tick
 std::vector<Vector3d> strokes(const brep::Model& model, double step, int count) {
   brep::Search guide(model);
   std::mt19937 random(3);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Nearest points of parts: time, work and memory, on walks over the surface and on cold queries; for meshes beside
-/// other libraries in the same run.
+/// Measures time, work and memory of nearest points on parts, for walks over the surface and for cold queries (single
+/// points, without memory of the last). Meshes are compared with other libraries in the same run.
 ///   bench_parts FILE.hpart...     without a file: parts made here, and bumpy balls of 100,000 and 1,000,000 triangles
 ///   bench_parts --balls           the balls alone
 ///   bench_parts --four FILE.hpart an assembly of four of them
@@ -48,7 +48,8 @@ struct Times {
   }
 };
 
-/// Returns the median of measurements of nothing [ns]. Every measured time contains as much.
+/// Returns the median time [ns] of a measurement with nothing to measure. Every measured time contains this cost of the
+/// clock.
 double clockAlone() {
   constexpr int kReadings = 100001;
   static const double median = [] {
@@ -63,14 +64,14 @@ double clockAlone() {
   return median;
 }
 
-/// Returns how many times longer `theirs` takes than `ours` [ns], with the clock's share taken from both. An answer
-/// that takes no longer than the clock alone counts as 1 ns.
+/// Returns the ratio theirs / ours of two measured times [ns], after the cost of the clock is subtracted from both. A
+/// time of at most this cost counts as 1 ns.
 double ratioWithoutClock(double theirs, double ours) {
   constexpr double kLeast = 1;
   return std::max(theirs - clockAlone(), kLeast) / std::max(ours - clockAlone(), kLeast);
 }
 
-/// A ball of 50 mm with bumps, closed, of about `triangles`.
+/// Returns a closed ball with a radius of 50 mm and with bumps. @param triangles approximate number of triangles
 Part bumpyBall(int triangles) {
   Part part;
   const int n = static_cast<int>(std::sqrt(triangles / 4.0)), m = 2 * n;
@@ -108,7 +109,8 @@ Part bumpyBall(int triangles) {
   return part;
 }
 
-/// Walks of `step` metres a tick over the surface, 1 mm outside to 0.5 mm inside, that begin at random places.
+/// Returns walks over the surface that begin at random places, at heights from 1 mm inside to 0.5 mm outside. @param
+/// step [m] motion per tick
 std::vector<Vector3d> strokes(const Model& model, double step, int count) {
   brep::Tracer guide(model);
   std::mt19937 random(3);
@@ -131,7 +133,8 @@ std::vector<Vector3d> strokes(const Model& model, double step, int count) {
   return path;
 }
 
-/// Of each tick the shortest of five rounds: the same work is done in each, and a busy machine only adds to it.
+/// Prints the times of the ticks of a walk. The time of a tick is the shortest of five rounds: each round does the same
+/// work, and other load of the machine only makes it longer.
 void measureWalks(const Model& model, const char* what, const std::vector<Vector3d>& path) {
   constexpr int kRounds = 5;
   brep::Search search(model);
@@ -171,8 +174,9 @@ void measureContact(const Model& model, const std::vector<Vector3d>& path) {
       static_cast<unsigned long long>(tracer.counts().held), static_cast<unsigned long long>(tracer.counts().degraded));
 }
 
-/// Strokes of one speed and rate: ours and a peer in turns of one stroke each, so that a busy machine is the same for
-/// both. The peer knows what it can use of the tick before: the nearest point is no farther than that one is now.
+/// Compares this kernel with a peer on strokes of one speed and rate. The two take turns after each stroke, so that
+/// other load of the machine affects both alike. The peer may use its result of the last tick: the distance to that
+/// point is an upper bound of the new distance.
 void measureStrokes(const Model& model, Peer& peer, double speed, double rate, int count) {
   constexpr std::size_t kStroke = 1000;
   const auto path = strokes(model, speed / rate, count);
@@ -232,9 +236,10 @@ struct Differences {
   double nearer = 0, farther = 0;
 };
 
-/// Asks both for the nearest points of a path, in turns of kBlock points each, so that a busy machine is the same for
-/// both. The time of a point is the mean of its block: of one point alone the clock would be a third of our time, and
-/// it would begin with the caches and branch predictors that the other has left.
+/// Finds the nearest points of a path with both libraries. They take turns after kBlock points, so that other load of
+/// the machine affects both alike. The time of a point is the mean over its block. If each point were timed alone, the
+/// clock would take a third of our time, and each library would begin with caches and branch predictors that the other
+/// has filled.
 Differences timeInTurns(const Model& model, OcctPart& theirs, const std::vector<Vector3d>& path, bool tracked,
                         Times& our_times, Times& their_times) {
   constexpr std::size_t kBlock = 16;
@@ -287,7 +292,7 @@ Part readFile(const char* file) {
   return part;
 }
 
-/// Four of the part's last instance, turned and run into each other.
+/// Returns the part with four copies of its last instance, rotated and shifted so that they overlap.
 Part fourOf(Part part) {
   const double c = std::cos(0.3), s = std::sin(0.3);
   for (int k = 1; k < 4; ++k) {

@@ -17,19 +17,21 @@ namespace {
 using brep::Model;
 using Eigen::Vector3d;
 
-constexpr double kPress = 1e-4;  ///< [m] of the probe below the surface
-constexpr double kAside = 2e-6;  ///< [m] from the edge to where a stroke begins and ends
-constexpr int kTicks = 400;      ///< of 10 nm: the turn of a curved face is far less than that of a bent edge
+constexpr double kPress = 1e-4;  ///< [m] depth of the probe below the surface
+constexpr double kAside = 2e-6;  ///< [m] distance from the edge at which a stroke begins and ends
+/// ticks of 10 nm each; so short that a curved face turns the force far less than an edge does
+constexpr int kTicks = 400;
 
-/// A place on a smooth edge between two faces, and the dihedral angle right there.
+/// A point of a smooth edge between two faces, with the dihedral angle at this point.
 struct Crossing {
   Vector3d point, normal, across;
   double dihedral;
-  double gap;   ///< [m] between the edge and the curves of the two faces there: what the file leaves open
-  double bend;  ///< [1/m] by which the more curved face bends toward the probe
+  double gap;   ///< [m] largest distance between the edge and the pcurves of the two faces at this point
+  double bend;  ///< [1/m] curvature toward the probe of the more curved face
 
-  /// What may be felt at the depth h: the normals' angle, seen from that much nearer to the centre of curvature; and
-  /// where one face ends higher than the other by the gap, its edge stays nearest for sqrt(2 gap h).
+  /// Returns the step [rad] of the force's direction that is allowed at the depth h = kPress. It has two parts. The
+  /// angle between the normals is enlarged because the probe is nearer to the centre of curvature than the surface is.
+  /// If the gap makes one face end higher than the other, its edge remains the nearest point for about sqrt(2 gap h).
   double allowed() const {
     const double nearer = 1 - std::max(bend, 0.0) * kPress;
     return (nearer > 0 ? dihedral / nearer : 4) + std::sqrt(2 * gap / kPress) + gap / kPress;
@@ -47,7 +49,7 @@ spline::SurfacePoint pointOf(const Model& model, const brep::Coedge& coedge, dou
   return at;
 }
 
-/// [1/m] largest curvature of a face away from its outward normal.
+/// Returns the largest curvature [1/m] of a face away from its outward normal.
 double bendInward(const spline::SurfacePoint& at, const Vector3d& normal) {
   Eigen::Matrix2d first, second;
   const double f = at.Su.dot(at.Sv), m = -normal.dot(at.Suv);
@@ -80,8 +82,8 @@ std::optional<Crossing> crossingAt(const Model& model, const brep::Placement& pl
                   bend};
 }
 
-/// What the largest step of a stroke has over the steps beside it, which are the turn of the faces. Below 0: the probe
-/// did not stay on the two faces.
+/// Returns by how much [rad] the largest step of a stroke exceeds the steps before and after it, which come from the
+/// curvature of the faces. Returns -1 if the foot left the two faces.
 double stepOver(brep::Tracer& tracer, const Crossing& at) {
   const auto probe = [&](double height, double aside) {
     return Vector3d(at.point + height * at.normal + aside * at.across);

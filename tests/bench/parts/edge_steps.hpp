@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// How far the force's direction turns where a probe slides over the smooth edges of a part.
+/// Measures how far the direction of the force turns when a probe slides over the smooth edges of a part.
 #pragma once
 #include "kernels/brep/model.hpp"
 
 namespace hapticd::bench {
 
-/// Prints the largest steps beside the edges' dihedral angles.
+/// Prints the largest steps of the direction, compared with the dihedral angles of the edges.
 void measureEdgeSteps(const brep::Model& model);
 
 }  // namespace hapticd::bench

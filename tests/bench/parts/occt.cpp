@@ -34,7 +34,7 @@ std::unique_ptr<OcctPart> readOcctPart(const std::string&) {
 
 namespace {
 
-constexpr double kMetres = 1e-3;  ///< Open CASCADE's millimetres
+constexpr double kMetres = 1e-3;  ///< metres per millimetre, the unit of Open CASCADE
 
 struct Face {
   BRepAdaptor_Surface surface;
@@ -96,7 +96,8 @@ class Prepared final : public OcctPart {
     edges_.push_back(std::move(made));
   }
 
-  /// [mm] to its feet inside the loops; the edges tell of the others.
+  /// Returns the distance [mm] to the nearest foot inside the loops of a face. Other points of the face are on its
+  /// edges.
   static double toFace(Face& face, const gp_Pnt& p) {
     double best = 1e100;
     face.nearest.Perform(p);

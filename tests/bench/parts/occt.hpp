@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Open CASCADE's nearest point of a CAD file, prepared as well as it can be: an extrema object and a trim classifier
-/// for each face and an extrema object for each edge, made once; boxes leave out what is farther.
+/// Finds nearest points of a CAD file with Open CASCADE, prepared as well as possible. Each face has an extrema object
+/// and a trim classifier, and each edge an extrema object, made once. Faces and edges whose boxes are too far away are
+/// skipped.
 #pragma once
 #include <Eigen/Core>
 #include <memory>
@@ -11,11 +12,12 @@ namespace hapticd::bench {
 class OcctPart {
  public:
   virtual ~OcctPart() = default;
-  /// Distance [m] from p to the faces. `bound` [m]: it is known to be no larger.
+  /// Returns the distance [m] from p to the part. @param bound [m] known upper bound of the distance
   virtual double distance(const Eigen::Vector3d& p, double bound) = 0;
 };
 
-/// Of one body in the file's own frame (.step or .brep); null where this program was built without Open CASCADE.
+/// Reads a file (.step or .brep) with one body, in the frame of the file. Returns null if this program was built
+/// without Open CASCADE.
 std::unique_ptr<OcctPart> readOcctPart(const std::string& file);
 
 }  // namespace hapticd::bench

@@ -25,7 +25,7 @@ using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 using Eigen::Vector3d;
 
 #ifdef HAVE_EMBREE
-/// Of a triangle to a point, in single precision (Ericson, Real-Time Collision Detection, 5.1.5).
+/// Returns the point of a triangle nearest to p, in single precision (Ericson, Real-Time Collision Detection, 5.1.5).
 Eigen::Vector3f nearestOfTriangle(const Eigen::Vector3f& p, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
                                   const Eigen::Vector3f& c) {
   const Eigen::Vector3f ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
@@ -40,11 +40,12 @@ Eigen::Vector3f nearestOfTriangle(const Eigen::Vector3f& p, const Eigen::Vector3
   return a + (vb * ab + vc * ac) / (va + vb + vc);
 }
 
-/// Point queries. Embree keeps its vertices and boxes in single precision and leaves the triangles to the caller, who
-/// has no better corners than those: all is in single precision.
+/// Embree's point query. Embree stores vertices and boxes in single precision and leaves the distance to a triangle to
+/// the caller. The caller uses the stored corners, so that all of it is in single precision.
 class Embree final : public Peer {
  public:
-  /// @param bounded true to give it the bound that the tick before proves; false for a plain query, as Embree documents
+  /// @param bounded true to limit a query to the upper bound that the last tick gives; false for a plain query, as in
+  /// Embree's documentation
   Embree(const Points& points, const Triangles& triangles, bool bounded) : triangles_(triangles), bounded_(bounded) {
     device_ = rtcNewDevice(nullptr);
     scene_ = rtcNewScene(device_);
@@ -100,7 +101,7 @@ class Embree final : public Peer {
   }
   const Triangles& triangles_;
   const bool bounded_;
-  const float* corners_ = nullptr;  ///< of the geometry's buffer
+  const float* corners_ = nullptr;  ///< corners in the buffer of the geometry
   RTCDevice device_;
   RTCScene scene_;
   Eigen::Vector3f p_, near_;
@@ -109,7 +110,7 @@ class Embree final : public Peer {
 #endif
 
 #ifdef HAVE_FCL
-/// Distance of a mesh and a tiny sphere.
+/// fcl's distance between the mesh and a tiny sphere at the probe.
 class Fcl final : public Peer {
  public:
   Fcl(const Points& points, const Triangles& triangles)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// What a tick costs besides its plugin and its device: `bench_servo [TICKS]`. The whole tick from waking to sleeping,
-/// with black box and status page, over a wall and a gantry that take nanoseconds. At 10 kHz in real time every second
-/// tick follows a sleep, with caches and branch predictors as cold as the kernel and a hypervisor's other guests leave
-/// them, and every other one follows that at once: the first is what the machine adds, the second what the daemon
-/// costs.
+/// bench_servo [TICKS]: measures the time of a tick without plugin and device. It measures the whole tick, from waking
+/// up to going to sleep, with black box and status page. The model is a wall and the arm a gantry, which take only
+/// nanoseconds. The rate is 10 kHz in real time. Every second tick follows a sleep, during which the kernel and other
+/// guests of a hypervisor replace the contents of caches and branch predictors. The other ticks follow at once, without
+/// a sleep. So the second kind shows the cost of the daemon, and the difference of both kinds what the machine adds.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kRate = 10'000;  ///< [Hz]
 
-/// A real clock that sleeps before every second tick only, and books the time between two waits.
+/// A real clock that sleeps only before every second tick, and records the time between two waits.
 class BookingClock final : public Clock {
  public:
   Nanoseconds now() noexcept HSP_RT override { return clock_.now(); }
@@ -45,7 +45,7 @@ void print(const char* when, const record::Histogram& busy) {
 }
 
 void bench(uint64_t ticks) {
-  Rig rig(0);  // its own loop is not run
+  Rig rig(0);  // the rig's own loop is not used
   const auto page = std::filesystem::temp_directory_path() / "bench_servo.status";
   rig.telemetry->attach(
       std::make_unique<Flight>(std::move(*record::FlightRing::create(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// table1: the evaluation of Thompson et al. 1999 in simulation, see kUsage.
+/// table1: repeats the evaluation of Thompson et al. 1999 in simulation, see kUsage.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -20,14 +20,14 @@ using namespace hapticd::table1;
 constexpr const char* kUsage =
     "Usage: table1 [--seconds S] [--seed N] [--check] [--write]\n\n"
     "Runs the evaluation of Thompson et al. (1999) again with a simulated hand and prints its table.\n"
-    "  --seconds S  of simulated time a row; without it 60, as the goals need\n"
-    "  --seed N     of the hand's tremor\n"
-    "  --check      exit code 1 where a goal is missed\n"
+    "  --seconds S  simulated time of each row [s]; 60 by default, as the goals need\n"
+    "  --seed N     seed of the variation of the push\n"
+    "  --check      end with exit code 1 if a goal is missed\n"
     "  --write      overwrite driver/docs/reports/table1.md and its pictures\n\n"
     "Exit code 2: bad usage.\n"
     "Example: table1 --check\n";
 
-/// Whether every word is an option of this program or the value of one.
+/// True if every argument is an option of this program or the value of one.
 bool understood(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
@@ -55,7 +55,7 @@ bool has(int argc, char** argv, const char* flag) {
   return false;
 }
 
-/// The cylinder at rest again, with one thing changed at a time.
+/// Repeats the row of the cylinder at rest, and changes one number of the protocol at a time.
 std::vector<Variation> variations(const Subject& subject, const Protocol& protocol, const std::filesystem::path& work) {
   const std::vector<std::pair<std::string, std::function<void(Protocol&)>>> changes = {
       {"as above", [](Protocol&) {}},
@@ -80,7 +80,7 @@ std::vector<Variation> variations(const Subject& subject, const Protocol& protoc
 }
 
 int evaluate(int argc, char** argv) {
-  setenv("HAPTICD_INSTRUCTIONS", "portable", 1);  // the same numbers on every processor
+  setenv("HAPTICD_INSTRUCTIONS", "portable", 1);  // gives the same numbers on every processor
   const auto begun = std::chrono::steady_clock::now();
   const Protocol protocol = protocolOf(argc, argv);
   const std::filesystem::path work =
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   if (!understood(argc, argv)) {
-    fmt::print(stderr, "error: not an option, or one without its value\n{}", kUsage);
+    fmt::print(stderr, "error: an argument is not an option, or an option has no value\n{}", kUsage);
     return 2;
   }
   try {

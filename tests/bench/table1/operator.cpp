@@ -14,7 +14,7 @@ Operator::Operator(const Protocol& protocol, std::function<Aim(double)> route)
       random_(protocol.seed),
       seen_(static_cast<size_t>(std::max(1.0, protocol.visual_delay * protocol.rate))) {}
 
-/// [N] An Ornstein-Uhlenbeck process about the mean push, and a tremor.
+/// Returns the push [N]: the mean push, varied by an Ornstein-Uhlenbeck process and a tremor.
 double Operator::push(double t, double dt) {
   const double pole = 2 * M_PI * protocol_.spread_rate, keep = std::exp(-pole * dt);
   wander_ = keep * wander_ + std::sqrt(1 - keep * keep) * normal_(random_);
@@ -23,12 +23,13 @@ double Operator::push(double t, double dt) {
   return protocol_.force * std::max(0.0, 1 + protocol_.spread * wander_ + tremor);
 }
 
-/// How far outside the surface the wanted point is: behind it by `depth`, but lifted and brought down every few
-/// seconds.
+/// Returns the distance [m] of the target point outside the surface. It is -depth, but every few seconds the finger is
+/// lifted and comes down again.
 double Operator::outward(double t, double depth) const {
   constexpr double kRise = 0.3;  // [s]
   const double phase = std::fmod(t, protocol_.touch_every);
-  const double down = (protocol_.lift + depth) / protocol_.touch_speed;  // [s] from the top to the wanted point
+  // [s] time from the highest point to the target point
+  const double down = (protocol_.lift + depth) / protocol_.touch_speed;
   const double begin = protocol_.touch_every - kRise;
   if (phase >= begin) {
     const double s = (phase - begin) / kRise;
@@ -53,7 +54,8 @@ Wish Operator::wish(double t, double dt, const hsp_pose& pose) {
   };
   Wish wish;
   wish.position = at(push(t, dt));
-  // The damper works between the finger and where the hand goes; a push that wanders is a force, not a motion.
+  // The damper acts between the finger and the motion of the hand. That motion is computed with the mean push, because
+  // variations of the push are forces and not motions.
   const Vector3d way = at(protocol_.force);
   if (started_ && dt > 0) wish.velocity = (way - last_) / dt;
   last_ = way;

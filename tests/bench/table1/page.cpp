@@ -82,7 +82,8 @@ void drawHistograms(const Evaluation& e, const std::string& file) {
   save(picture, file);
 }
 
-/// Eq. 10 along the detent curve: the tip is where the surface's spring has added its share to the button's travel.
+/// Returns the force over the travel of the tip along the detent curve, by Eq. 10. The travel of the tip is that of the
+/// button plus the compression of the surface's spring.
 record::Curve closedForm() {
   record::Curve curve{"two springs, closed form", "#222", {}, {}, 1.2};
   const auto add = [&](double x2, double force) {
@@ -142,11 +143,11 @@ std::string table(const Evaluation& e) {
                             e.verdict.mean, e.verdict.std, e.verdict.max);
 }
 
-/// Rows whose mean is off by more than a quarter. The law of the wall, F = 6 N sqrt(x / 1 mm), says what push the
-/// paper's mean depth asks for.
+/// Lists the rows whose mean depth differs from the paper's by more than a quarter. The last column is the push that
+/// gives the paper's mean depth, by the law of the wall F = 6 N sqrt(x / 1 mm).
 std::string missesText(const Evaluation& e) {
   constexpr double kAllowed = 0.25;
-  constexpr double kWall = 6;  // [N] at 1 mm
+  constexpr double kWall = 6;  // [N] force at the depth of 1 mm
   std::string text =
       "| row | mean against the paper | STD | max | push that the paper's mean asks for |\n|---|---|---|---|---|\n";
   for (const Row& row : e.rows) {

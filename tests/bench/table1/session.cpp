@@ -25,7 +25,7 @@ void write(const fs::path& file, const std::string& text) {
   if (!(out << text) || !out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
 }
 
-/// The model file at its size, as JSON.
+/// Writes a model file, scaled, as JSON.
 void writeScaled(const std::string& from, double scale, const fs::path& to) {
   const ModelFile model = readModelFile(from);
   std::string text = "{\"format\": \"hapticd-model/1\", \"surfaces\": [";
@@ -76,7 +76,7 @@ T must(Result<T> result) {
   return std::move(*result);
 }
 
-/// World, arm and hand of a scene, ticked by hand.
+/// World, arm and hand of a scene. Its owner calls tick() for each tick.
 class Rig {
  public:
   explicit Rig(const scene::Scene& scene) : rate_(scene.servo.rate) {
@@ -93,7 +93,7 @@ class Rig {
     arm_->carryWeight(true);
   }
 
-  /// One tick. The hand goes to `wish` while it passes.
+  /// Makes one tick, in which the hand is pulled to `wish`.
   Sample tick(const Wish& wish) {
     const double dt = count_ == 0 ? 0 : 1 / rate_, t = static_cast<double>(count_) / rate_;
     const auto now = static_cast<Nanoseconds>(std::llround(t * 1e9));
@@ -159,7 +159,8 @@ Recording run(const Subject& subject, bool moving, const Protocol& protocol, con
 }
 
 Recording press(const Subject& button, const Protocol& protocol, const std::string& work) {
-  constexpr double kSeconds = 24, kDepth = 0.075, kOutside = 0.005;  // the hand's spring is soft: 75 mm for 20 N
+  // the target is 75 mm deep, because the hand's spring is soft (about 20 N)
+  constexpr double kSeconds = 24, kDepth = 0.075, kOutside = 0.005;
   const Aim middle = [&] {
     Aim aim = button.route(0);
     aim.point.x() = aim.point.z() = 0;

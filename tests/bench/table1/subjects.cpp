@@ -24,9 +24,9 @@ double swing(double t, double rate, double phase = 0) {
   return std::sin(2 * M_PI * rate * t + phase);
 }
 
-/// Round the front of a cube of half side a: over the front face, round an upright edge and over the side. Near an edge
-/// the finger is lifted and goes round it at a distance: pressed round it, it would stay behind on the face it came
-/// from.
+/// Returns a route round the front of a cube with the half side a: over the front face, round an upright edge and over
+/// the side face. Near an edge the finger is lifted and goes round it at a distance. If it were pressed round the edge,
+/// its contact would be held on the face from which it came.
 Aim cubeRoute(double a, double t) {
   constexpr double kLift = 0.02, kClear = 0.03, kTurn = kLift * M_PI / 2;  // [m]
   const double way = (2 * a + kTurn) * swing(t, 0.08), side = way < 0 ? -1 : 1;
@@ -67,7 +67,8 @@ Aim capRoute(double a, double t) {
   return aim;
 }
 
-/// The goblet's own spline tells point and normal: from its stem over the bowl to below the rim.
+/// Returns a route on the goblet, from its stem over the bowl to below the rim. Points and normals come from the spline
+/// of the goblet.
 std::function<Aim(double)> gobletRoute(const std::string& file, double scale) {
   ModelFile model = readModelFile(file);
   for (Vector3d& point : model.surfaces.at(1).points) point *= scale;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What the parts of bench_trace share: surfaces, clock, solvers of one closest point a tick.
+/// What the parts of bench_trace share: surfaces, the measurement of times, and solvers that find one closest point per
+/// tick.
 #pragma once
 #include <Eigen/Core>
 #include <algorithm>
@@ -15,31 +16,32 @@
 
 namespace hapticd::bench {
 
-/// The surfaces of the tables: bicubic sheet, rational sphere and torus, degree 5, finely ridged sheet. About 0.2 m.
+/// Returns the surfaces of the tables, of about 0.2 m: a bicubic sheet, a rational sphere and torus, a sheet of degree
+/// 5, and a finely ridged sheet.
 std::vector<spline::SurfaceData> surfaces();
-/// `count` x `count` bicubic tiles of one wavy sheet, each a surface of its own.
+/// Returns `count` x `count` bicubic tiles of one wavy sheet. Each tile is a surface of its own.
 std::vector<spline::SurfaceData> tiles(int count);
 
-/// A probe that keeps contact: each true foot is known because the probe is built from it.
+/// The path of a probe near a surface. Each probe is constructed from its foot, so the true foot is known exactly.
 struct Path {
   std::vector<Eigen::Vector3d> probe, foot;
   std::vector<std::array<double, 2>> uv;
 };
-/// The walk of all tables.
+/// Number of ticks of the walk in all tables.
 inline constexpr int kTicks = 4000;
-inline constexpr double kStep = 0.3e-3;   ///< [m] a tick: 0.3 m/s at 1 kHz
-inline constexpr double kDepth = 2.5e-3;  ///< [m] to either side
-/// `step` [m] a tick along the surface, up to `depth` [m] to either side of it.
+inline constexpr double kStep = 0.3e-3;   ///< [m] motion per tick: 0.3 m/s at 1 kHz
+inline constexpr double kDepth = 2.5e-3;  ///< [m] greatest distance from the surface, on both sides
+/// Returns a path that moves along the surface by `step` [m] per tick, up to `depth` [m] away from it on both sides.
 Path contactPath(const spline::SurfaceData& data, double step, double depth, int ticks);
 
-/// One way to find the closest point near the last one.
+/// A method that finds the closest point near the last one.
 class Solver {
  public:
   virtual ~Solver() = default;
   virtual std::string name() const = 0;
   virtual void start(double u, double v) = 0;
   virtual Eigen::Vector3d step(const Eigen::Vector3d& probe) = 0;
-  /// Most evaluations in any tick so far; 0 where the solver does not say.
+  /// Returns the most evaluations in any tick so far; 0 if the solver does not count them.
   virtual int worstEvaluations() const { return 0; }
 };
 
@@ -54,7 +56,7 @@ void printCold();
 void printMany();
 void printScale();
 
-/// Nanoseconds of `work()`, divided by `count`.
+/// Returns the time [ns] that `work()` takes, divided by `count`.
 template <class Work>
 double nanoseconds(int count, Work work) {
   const auto begin = std::chrono::steady_clock::now();
@@ -63,11 +65,12 @@ double nanoseconds(int count, Work work) {
   return time.count() / count;
 }
 
-/// The cost of a step of a walk of `kTicks`: the mean over short stretches of the best time of each in any round, so
-/// that a busy machine interrupts few of them.
+/// Measures the time of a step of a walk with kTicks steps. The walk is divided into short stretches. For each stretch
+/// the shortest time over all rounds counts, so that interruptions by other load hardly matter. The result is the mean
+/// of these times.
 class Stretches {
  public:
-  /// Walks once: step(i) for every i.
+  /// Makes one round: calls step(i) for every i.
   template <class Step>
   void walk(Step step) {
     for (std::size_t k = 0; k < best_.size(); ++k) {
@@ -85,7 +88,7 @@ class Stretches {
   std::vector<double> best_ = std::vector<double>(kTicks / kStretch, HUGE_VAL);
 };
 
-/// Keeps a result alive without storing it.
+/// Makes the compiler compute a value although nothing uses it.
 template <class T>
 void keep(const T& value) {
   asm volatile("" : : "r,m"(value) : "memory");

@@ -16,7 +16,8 @@ double median(std::vector<double>& times) {
   return times[kColdTicks / 2];
 }
 
-/// Median of `work()` after `bytes` of other memory went through the caches, then `ahead()`, which is not counted.
+/// Returns the median time [ns] of `work()`. Before each call, `bytes` of other memory replace the contents of the
+/// caches, and then `ahead()` is called, whose time does not count.
 template <class Work, class Ahead>
 double cold(std::size_t bytes, Work work, Ahead ahead) {
   std::vector<char> other(bytes, 1);
@@ -59,19 +60,19 @@ void printTick(const spline::SurfaceData& data) {
   printRow(data.name, "tick", [&] { keep(tracer.step(path.probe[i++ % path.probe.size()]).depth); });
 }
 
-/// Asks for `count` bytes without waiting for them.
+/// Prefetches `count` bytes.
 void askFor(const void* begin, std::size_t count) {
   for (std::size_t i = 0; i < count; i += 64) __builtin_prefetch(static_cast<const char*>(begin) + i);
 }
 
-/// Waits until what was asked for has come.
+/// Waits 3 us, until prefetched memory has arrived.
 void waitForMemory() {
   const auto begin = std::chrono::steady_clock::now();
   while (std::chrono::steady_clock::now() - begin < std::chrono::microseconds(3)) {
   }
 }
 
-/// What it brings to touch, at several times, what the next tick needs.
+/// Measures how much time a prefetch of the memory for the next tick saves, at several points in time.
 void printAhead(const spline::SurfaceData& data) {
   const trace::Model model({data});
   trace::Tracer tracer(model);
@@ -80,7 +81,7 @@ void printAhead(const spline::SurfaceData& data) {
   std::size_t i = 0;
   trace::Foot foot = tracer.step(path.probe[0]);
   const auto tick = [&] {
-    foot = tracer.step(path.probe[++i % 2]);  // near each other: the cell stays
+    foot = tracer.step(path.probe[++i % 2]);  // the two probes are near each other, so the cell is the same
     keep(foot.depth);
   };
   spline::SurfacePoint E;

@@ -24,7 +24,8 @@ void evaluate(const Surface& surface, double u, double v, SurfacePoint& E) {
   }
 }
 
-/// The next parameters depend on the last result, too little to leave the neighbourhood.
+/// Returns the time [ns] of an evaluation that must wait for the one before. The next parameters depend on the last
+/// result, but so little that they hardly change.
 template <int kOrder>
 double latency(const Surface& surface) {
   double best = HUGE_VAL;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Whether single precision would pay: the same table evaluation of one bicubic span, in double and in float.
+/// Measures whether single precision would be faster: the same table evaluation of one bicubic span in double and in
+/// float.
 #include <Eigen/Dense>
 #include <cstdio>
 
@@ -16,7 +17,8 @@ namespace {
 
 constexpr int kSize = 4, kEvaluations = 20000, kRounds = 25;
 
-/// Coefficients (x, y, z, 0) of u^i v^j about an origin in the middle of the span, as the production table has them.
+/// Coefficients (x, y, z, 0) of u^i v^j about an origin in the middle of the span, in the layout of the production
+/// table.
 template <class T>
 struct Span {
   typedef T Vector __attribute__((vector_size(4 * sizeof(T))));
@@ -46,7 +48,7 @@ HAPTICD_FAST void evaluate(const Span<T>& span, double u, double v, Point<T>& ou
   out.Sv = ((g[3] * s + g[2]) * s + g[1]) * s + g[0];
 }
 
-/// The span that holds (u, v), fitted to points of the surface.
+/// Returns the span that contains (u, v). Its coefficients are fitted to points of the surface.
 template <class T>
 Span<T> spanAt(const spline::Surface& surface, double u, double v) {
   Span<T> span{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// bench_trace: figures to read, not a test, as Markdown. Run it on an idle machine; compare ratios, not absolute
-/// times.
+/// bench_trace: measures the time of tracing and prints tables in Markdown. It is not a test. Run it on an idle
+/// machine, and compare ratios rather than absolute times.
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -61,11 +61,12 @@ void printUsage(std::FILE* to) {
   std::fprintf(to,
                "Usage: bench_trace [PART...]\n"
                "       bench_trace --write\n\n"
-               "Prints what tracing costs on this machine, as Markdown: all parts, or those named of\n ");
+               "Measures the time of tracing on this machine and prints tables in Markdown: all parts, or those that "
+               "are named, of\n ");
   for (const Part& part : kParts) std::fprintf(to, " %s", part.name);
   std::fprintf(to,
-               ".\n  --write    all parts, over driver/docs/reports/bench_trace.md\n\n"
-               "Run it on an idle machine; all of it takes minutes. Exit code 2: bad usage.\n"
+               ".\n  --write    measure all parts and overwrite driver/docs/reports/bench_trace.md\n\n"
+               "Run it on an idle machine; all parts together take minutes. Exit code 2: bad usage.\n"
                "Example: bench_trace tick\n");
 }
 

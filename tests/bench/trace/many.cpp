@@ -13,7 +13,7 @@ using spline::SurfaceData;
 
 constexpr int kRounds = 9;
 
-/// Nanoseconds a tick of a tracer that follows the first `count` surfaces of a model, all activated as a search would.
+/// Returns the time per tick [ns] of a tracer that traces the surfaces in `start`, activated as after a search.
 double costOf(const trace::Model& model, const std::vector<trace::Near>& start,
               const std::vector<Eigen::Vector3d>& probe) {
   trace::Tracer tracer(model);
@@ -33,7 +33,8 @@ std::vector<trace::Near> nearest(const trace::Model& model, const Eigen::Vector3
   return found;
 }
 
-/// Sheets above each other, `gap` [m] apart.
+/// Returns the time per tick [ns] over `count` sheets that lie above each other. @param gap [m] distance between two
+/// sheets
 double costOfStack(int count, double gap) {
   const SurfaceData data = surfaces()[0];
   std::vector<SurfaceData> stack(static_cast<std::size_t>(count), data);
@@ -45,7 +46,7 @@ double costOfStack(int count, double gap) {
   return costOf(model, nearest(model, path.probe[0], stack.size()), path.probe);
 }
 
-/// A walk in circles over the tiles around the middle of the sheet, in contact and out of it.
+/// Returns a walk in circles over the tiles around the middle of the sheet. It goes into contact and out of it.
 std::vector<Eigen::Vector3d> circles() {
   constexpr double kRadius = 0.015;
   std::vector<Eigen::Vector3d> probe;

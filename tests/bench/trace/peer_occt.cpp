@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Open CASCADE as Debian packages it. Millimetres, as CAD kernels and their tolerances expect.
+// Solvers of Open CASCADE, as Debian packages it. Lengths are in millimetres, as CAD kernels and their tolerances
+// expect.
 #include <Extrema_GenLocateExtPS.hxx>
 #include <Extrema_POnSurf.hxx>
 #include <GeomAdaptor_Surface.hxx>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SISL as Debian packages it. Millimetres, as its tolerances expect.
+// The solver of SISL, as Debian packages it. Lengths are in millimetres, as its tolerances expect.
 #include <sisl.h>
 
 #include "bench.hpp"
@@ -15,7 +15,7 @@ class Sisl : public Solver {
  public:
   explicit Sisl(const spline::SurfaceData& data) {
     const int count_u = data.count(0), count_v = data.count(1);
-    std::vector<double> coefficients;  // u runs fastest; homogeneous where rational
+    std::vector<double> coefficients;  // u runs fastest; homogeneous if the surface is rational
     for (int j = 0; j < count_v; ++j) {
       for (int i = 0; i < count_u; ++i) {
         const auto at = static_cast<std::size_t>(i * count_v + j);

@@ -39,7 +39,8 @@ double circleWeight(int i) {
   return i % 2 == 1 ? std::sqrt(0.5) : 1;
 }
 
-/// A profile of quarter circles (radius from the axis, height) turned about z.
+/// Returns the surface of revolution of a profile about z. The profile consists of quarter circles; its control points
+/// are (radius from the axis, height).
 SurfaceData revolution(const char* name, const std::vector<std::array<double, 2>>& profile) {
   SurfaceData data;
   data.name = name;
@@ -67,7 +68,7 @@ SurfaceData torus(double ring, double tube) {
 
 constexpr double kTile = 0.02;  // [m]
 
-/// Neighbours share the control points of their common side.
+/// Returns one tile. Neighbouring tiles have the same control points on their common side.
 SurfaceData tile(int i, int j) {
   SurfaceData data = sheet("tile", 3, 4, 0, 1);
   for (std::size_t k = 0; k < data.points.size(); ++k) {
@@ -92,7 +93,7 @@ std::vector<SurfaceData> surfaces() {
 }
 
 Path contactPath(const SurfaceData& data, double step, double depth, int ticks) {
-  constexpr double kMargin = 0.12;  // of the domain, clear of sides and poles
+  constexpr double kMargin = 0.12;  // share of the domain that the path keeps away from sides and poles
   const spline::Surface surface(data, spline::Form::kNet);
   spline::SurfacePoint E;
   Path path;

@@ -41,8 +41,8 @@ struct Result {
   double error_p99 = 0, error_worst = 0;
 };
 
-/// Two walks along the path, in the second of which each probe waits for the foot before, as a servo's force does. The
-/// first walk also measures the errors.
+/// Walks along the path twice. In the second walk each probe depends on the foot before, as in a servo loop. If
+/// `measure` is true, the first walk also measures the errors.
 void walk(Solver& solver, const Path& path, bool measure, Result& result) {
   std::vector<Eigen::Vector3d> feet(path.probe.size());
   solver.start(path.uv[0][0], path.uv[0][1]);
@@ -77,7 +77,7 @@ std::vector<std::unique_ptr<Solver>> allSolvers(const spline::SurfaceData& data)
 
 std::vector<std::unique_ptr<Solver>> ourSolvers(const spline::SurfaceData& data) {
   trace::TraceOptions nearest, newton;
-  newton.rule = {};  // contacts are held
+  newton.rule = {};  // the default rule holds contacts
   trace::TraceOptions direct = newton, tight = newton;
   direct.method = trace::Method::kDirect;
   tight.tolerance = 1e-15;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The claims of the NURBS paper about its velocity estimate, checked.
+/// Checks the claims of the NURBS paper about its velocity estimate.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ TEST(PaperClaims, TheWindowIsNotDelayFree) {
 
 TEST(PaperClaims, TheProductionWindowIsLateByHalfItsLength) {
   auto estimator = velocity::make("window", 15, kRate);
-  double v = 0;  // of x = t^2 the window gives 2 (t - n T/2), exactly
+  double v = 0;  // for x = t^2 the window gives exactly 2 (t - n T/2)
   for (int i = 0; i <= 60; ++i) v = estimator.update({std::pow(i / kRate, 2), 0, 0}, i == 0 ? 0 : 1 / kRate).x();
   EXPECT_NEAR(60 / kRate - v / 2, 5e-3, 1e-12);
 }

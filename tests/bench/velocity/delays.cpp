@@ -9,21 +9,22 @@
 namespace hapticd::velocity_bench {
 namespace {
 
-/// Sum of -1/p over the poles of a low pass: its delay at frequency 0 over its cut-off frequency [rad/s].
+/// Returns the delay [s] at frequency 0 of a low pass whose poles are given for a cut-off of 1 rad/s: the sum of -1/p
+/// over the poles p. For another cut-off frequency, divide by it.
 double delayOfPoles(const std::vector<std::complex<double>>& poles) {
   std::complex<double> sum = 0;
   for (const std::complex<double>& p : poles) sum -= 1.0 / p;
   return sum.real();
 }
 
-/// Bilinear transform with the cut-off kept: low frequencies are stretched by the warp. Half a sample for the
-/// difference.
+/// Returns the delay [s] of the digital filter behind a difference of two samples. The bilinear transform is prewarped
+/// so that it keeps the cut-off, which stretches low frequencies. The difference adds half a sample.
 double digital(double delay_times_cutoff, double cutoff, double rate) {
   const double warped = 2 * rate * std::tan(M_PI * cutoff / rate);
   return delay_times_cutoff / warped + 0.5 / rate;
 }
 
-/// The taps that stay: as many on either side of the point half a sample ago.
+/// Returns the indices of the taps that remain: equally many on each side of the time half a sample ago.
 std::vector<int> middle(int taps) {
   std::vector<int> kept;
   for (int i = 0; i < taps; ++i) kept.push_back(1 - taps / 2 + i);
@@ -33,7 +34,7 @@ std::vector<int> middle(int taps) {
 }  // namespace
 
 double windowCutoff(int n, double rate) {
-  double low = 0, high = 1;  // of sin(x)/x with x = pi f n T: half way to its first zero is far enough
+  double low = 0, high = 1;  // brackets x / pi for the gain sin(x) / x = 1 / sqrt(2), with x = pi f n T
   for (int i = 0; i < 80; ++i) {
     const double x = M_PI * (low + high) / 2;
     (std::sin(x) / x > M_SQRT1_2 ? low : high) = (low + high) / 2;
@@ -49,7 +50,8 @@ double butterworthDelay(int order, double cutoff, double rate) {
 
 double chebyshevDelay(int order, double ripple_db, double cutoff, double rate) {
   const double epsilon = std::sqrt(std::pow(10, ripple_db / 10) - 1), a = std::asinh(1 / epsilon) / order;
-  // -3 dB against frequency 0, where a differentiator must be right; there even orders are a ripple below their top.
+  // The cut-off is 3 dB below the gain at frequency 0, because a differentiator must be exact there. At frequency 0 the
+  // gain of even orders is one ripple below its maximum.
   const double fall = order % 2 == 0 ? std::sqrt(2 + 1 / (epsilon * epsilon)) : 1 / epsilon;
   const double half_power = std::cosh(std::acosh(fall) / order);
   std::vector<std::complex<double>> poles;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// velocity: the estimators side by side, and the claims of the NURBS paper about theirs. Prints tables; with --write,
-/// writes driver/docs/reports/velocity.md and its picture.
+/// velocity: compares the velocity estimators, and checks the claims of the NURBS paper about its own. It prints
+/// tables. With --write it writes driver/docs/reports/velocity.md and its picture.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -41,7 +41,8 @@ double rounded(double x, double step) {
   return step > 0 ? std::round(x / step) * step : x;
 }
 
-/// Gain against the ideal differentiator, and delay [s], at one frequency, of a swing of `amplitude` [m] in steps.
+/// Gain relative to the ideal differentiator, and delay [s], at one frequency. The input is a sine of `amplitude` [m],
+/// rounded to steps.
 struct Response {
   double gain, delay;
 };
@@ -60,7 +61,7 @@ Response responseOf(const Kind& kind, double rate, double frequency, double ampl
   return {std::abs(sum) / (amplitude * w), -std::arg(sum) / w};
 }
 
-/// A hand's motion: strokes, tremor, and a stop at a wall every second. Truth in closed form.
+/// Position [m] and velocity [m/s] of a hand at one time, in closed form. strokes() has strokes and a tremor.
 struct Motion {
   double x, v;
 };
@@ -73,7 +74,8 @@ Motion strokes(double t) {
   }
   return m;
 }
-/// Hits a wall of 45 Hz (75 g on 6000 N/m) at 0.2 m/s every half second: half a swing in contact, then away.
+/// Returns the motion of a hand that hits a wall at 0.2 m/s every half second. The contact is half a swing at 45 Hz (75
+/// g on 6000 N/m), then the hand moves away.
 Motion taps(double t) {
   constexpr double kWall = 2 * M_PI * 45, kSpeed = 0.2, kContact = M_PI / kWall;
   const double phase = std::fmod(t, 0.5) - 0.25;
@@ -82,7 +84,8 @@ Motion taps(double t) {
   return {-kSpeed * (phase - kContact), -kSpeed};
 }
 
-/// rms error [m/s] over eight seconds, dithered by where the counts lie.
+/// Returns the rms error [m/s] over four runs of two seconds. In each run the counts of the encoder are shifted at
+/// random.
 template <class Path>
 double rmsError(const Kind& kind, double rate, double step, const Path& path, bool jumps) {
   std::mt19937 random(1);
@@ -95,7 +98,7 @@ double rmsError(const Kind& kind, double rate, double step, const Path& path, bo
       const double t = i / rate;
       const Motion m = path(t);
       const Eigen::Vector3d v = estimator.update({rounded(m.x + shift, step), 0, 0}, i == 0 ? 0 : 1 / rate);
-      const bool back = jumps && std::fmod(t, 0.5) < 0.1;  // the path starts anew there
+      const bool back = jumps && std::fmod(t, 0.5) < 0.1;  // the path jumps back to its start there
       if (i < 0.2 * rate || back) continue;
       sum += (v.x() - m.v) * (v.x() - m.v), ++count;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a velocity estimate costs: gain, phase, delay and noise, in closed form.
+/// Gain, phase, delay and noise of velocity estimates, in closed form.
 #pragma once
 
 namespace hapticd::velocity_bench {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// zwidth: the largest stiffness and damping that can be rendered, against rate, window, delay and resolution, beside
-/// the theoretical bounds. Prints tables; with --write, writes driver/docs/reports/zwidth.md and its picture.
+/// zwidth: computes the largest stiffness and damping that can be rendered, depending on rate, window, delay and
+/// resolution, and compares them with the theoretical bounds. It prints tables. With --write it writes
+/// driver/docs/reports/zwidth.md and its picture.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -26,7 +27,7 @@ const std::string& colour(size_t i) {
   return hapticd::record::colourOf(i);
 }
 
-/// Theory as a line, what a simulation found as dots.
+/// A line for the theory, and dots for the results of the simulation.
 struct Pair {
   Curve theory, found;
   Pair(const std::string& name, const std::string& ink)
@@ -99,7 +100,8 @@ void againstDamping(Picture& picture, Page& page) {
       Wall wall;
       wall.damping = B, wall.window = windows[i];
       const double bound = passivity::maxStiffness(device.damping, B, wall.window, 0, wall.period);
-      const bool slow = wall.window > 15 && std::fmod(B, 1) != 0;  // fifty samples of state: a few dots are enough
+      // skipped, because a state of fifty samples takes long
+      const bool slow = wall.window > 15 && std::fmod(B, 1) != 0;
       const double found = bound > 0 && !slow ? stableStiffnessWorstHand(wall, device) : std::nan("");
       pairs[i].add(B, bound, found);
       line += std::isnan(found) ? fmt::format(" {:.3f} |", bound * 1e-3)

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-/// Position and velocity over a period under a held force: columns for x, v and the force.
+/// Returns the matrix that maps (x, v, force) to x and v one period later, if the force is held.
 Eigen::Matrix<double, 2, 3> heldStep(const Body& body, double period) {
   Eigen::Matrix3d rates = Eigen::Matrix3d::Zero();
   rates(0, 1) = 1;
@@ -29,7 +29,8 @@ double quantised(double x, double step) {
   return step > 0 ? std::round(x / step) * step : x;
 }
 
-/// Bisects a stiffness on a logarithmic scale: the largest for which `holds`.
+/// Returns the largest stiffness for which `holds` is true, by bisection on a logarithmic scale; 0 if it is false for
+/// `from`.
 template <class Holds>
 double largest(double from, double to, const Holds& holds) {
   constexpr int kHalvings = 44;
@@ -68,8 +69,8 @@ double stableStiffness(Wall wall, const Body& body, double from, double to) {
 }
 
 double stableStiffnessWorstHand(Wall wall, const Body& device) {
-  // The hand is told by the frequency of its own at which wall and sampling meet it, in parts of the sampling rate, and
-  // by its mass: light hands move most. Instability is an island in stiffness, so that a scan comes before the
+  // A hand is described by its mass and by its natural frequency, as the phase theta [rad] per sample. Light hands move
+  // most. The loop may be unstable in an interval of stiffness only, so a scan finds this interval before the
   // bisection.
   double least = std::numeric_limits<double>::infinity();
   for (const double load : {1e-3, 1e-2, 1e-1, 1.0, 10.0, 100.0, 1000.0}) {
@@ -98,7 +99,7 @@ double zigzagEnergy(const Wall& wall, const Body& device, double center, double 
   double energy = 0;
   for (int i = 0; i < 2 * samples; ++i) {
     const double along = i < samples ? i * leg : (2 * samples - i) * leg;
-    const double way = i < samples ? leg : -leg;  // deeper at first
+    const double way = i < samples ? leg : -leg;  // the first half goes deeper
     const double seen = quantised(center - amplitude + along, wall.resolution);
     energy += contact::wallForce(law, seen, 0).force * way;
     energy += (device.damping * speed + device.friction) * std::abs(way);
@@ -138,7 +139,7 @@ double sinusoidEnergy(const Wall& wall, const Body& device, double theta) {
   }
   double energy = 0, window = 0;
   for (int k = settle; k < settle + samples; ++k) {
-    // Weighted so that a cut period counts little: a Hann window over the whole run.
+    // A Hann window over the whole run, so that an incomplete period has little weight.
     const double weight = 1 - std::cos(2 * M_PI * (k - settle + 0.5) / samples);
     const double way = x[static_cast<size_t>(k) + 1] - x[static_cast<size_t>(k)];
     energy += weight * (force[static_cast<size_t>(k - wall.delay)] + device.damping * way / wall.period) * way;
@@ -152,7 +153,8 @@ double restitution(const Wall& wall, double mass) {
   const contact::WallLaw law{wall.stiffness, 0, 1, 1e-3};
   double largest_ratio = 0;
   for (int phase = 0; phase < kPhases; ++phase) {
-    double x = -(phase + 0.5) / kPhases * wall.period, v = 1;  // reaches the wall somewhere within the first period
+    // the mass reaches the wall within the first period, at a time that depends on the phase
+    double x = -(phase + 0.5) / kPhases * wall.period, v = 1;
     for (int i = 0; i < 1'000'000 && !(x < 0 && v < 0); ++i) {
       const double a = -contact::wallForce(law, x, 0).force / mass;
       x += v * wall.period + a * wall.period * wall.period / 2;

@@ -84,8 +84,8 @@ told("a STEP file that ends too early is told so", "its last line END-ISO-10303-
 told("a damaged STEP file is told so", "it is a damaged STEP file", put("broken.step", step.replace(b"DATA;", b"DATB;", 1)))
 told("too little memory is told with the limit", "it needs more than the 64 MB", put("large.step", step), "--memory", "64")
 read_with("a mark of UTF-8 before STEP is passed over", "nothing was lost", put("mark.step", b"\xef\xbb\xbf" + step))
-read_with("an unknown prefix of a unit is told", "is the size right?", put("prefix.step", step.replace(b".MILLI.", b".MILLY.")))
-read_with("a point without its coordinates is told", "the part may have another form",
+read_with("an unknown prefix of a unit is told", "check the size of the part", put("prefix.step", step.replace(b".MILLI.", b".MILLY.")))
+read_with("a point without its coordinates is told", "the part may have another shape",
           put("flat.step", step.replace(b"CARTESIAN_POINT('',(", b"CARTESIAN_POINT('',", 1)))
 read_with("a STEP file without a unit is told", "millimetres were assumed",
           put("unitless.step", re.sub(rb"(?s)GLOBAL_UNIT_ASSIGNED_CONTEXT\s*\(\(.*?\)\)", b"", step)))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The test arm `rig`: three sliding joints, so that torques are the force at the tip. It counts as real hardware and
-/// has no watchdog: its motors hold the last command for ever. It logs every command, cut and stop with its time
-/// (rig_page.hpp), and fails as the test wishes.
+/// The test arm `rig`. It has three sliding joints, so the torques of its joints are the force at the tip. The host
+/// treats it as real hardware. It has no watchdog, so its motors hold the last command for ever. It logs every command,
+/// cut and stop with its time (rig_page.hpp), and simulates the faults that a test asks for.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <time.h>
@@ -125,7 +125,7 @@ struct Rig : Device {
     }
     if (memory == MAP_FAILED) throw std::runtime_error("the page of the rig cannot be mapped");
     page_ = static_cast<Page*>(memory);
-    if (page_->magic == Page::kMagic) return;  // the log of an arm that was opened before goes on
+    if (page_->magic == Page::kMagic) return;  // an arm was opened with this page before, and its log is continued
     page_ = new (memory) Page;
     std::memcpy(page_->wishes.position, at.data(), sizeof page_->wishes.position);
     std::memcpy(page_->wishes.weight, weight.data(), sizeof page_->wishes.weight);
@@ -137,7 +137,7 @@ struct Rig : Device {
     descriptor_ = -1;
   }
 
-  /// @param torque of the motors from now on; nullptr: none, the motors are free
+  /// Adds an entry to the log. @param torque [N] torques of the motors from now on; nullptr if the motors are free
   void note(uint32_t kind, uint64_t given_ns, const double* torque) noexcept HSP_RT {
     Entry& entry = page_->entries[page_->count.load() % Page::kCapacity];
     entry.time_ns = monotonic();
@@ -159,7 +159,7 @@ struct Rig : Device {
   static int32_t cutLeft(const hdv_device* device) noexcept HSP_RT {
     return !of(device).lazy || of(device).carried_.load() ? 1 : 0;
   }
-  /// Another process writes zeros over what the motors do.
+  /// Tells the host how another process can silence the arm: by zeros written over `Page::motors`.
   static int32_t how(hdv_device* device, hdv_silence* to) {
     Rig& rig = of(device);
     if (rig.descriptor_ < 0 || !rig.guarded) return 0;
@@ -214,8 +214,8 @@ struct Rig : Device {
   static constexpr hdv_ext_pace kPacing{sizeof(hdv_ext_pace), 0, &wait};
 
   Page* page_ = nullptr;
-  int descriptor_ = -1;           ///< of its file
-  std::atomic<bool> cut_{false};  ///< until a write of HDV_OFF
+  int descriptor_ = -1;           ///< descriptor of the page file
+  std::atomic<bool> cut_{false};  ///< set by a cut, and cleared by a command HDV_OFF
   std::atomic<bool> running_{false}, carried_{false};
   std::thread carrier_;
   uint64_t next_ns_ = 0;

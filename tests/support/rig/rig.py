@@ -1,4 +1,4 @@
-"""Reads and leads the test arm `rig` from a script: rig_page.hpp has the layout.
+"""Reads and controls the test arm `rig` from a script, through the page that rig_page.hpp describes.
 
     arm = Rig(folder)                  # before the daemon starts; arm.device is a device file
     ... run a scene with --device arm.device ...
@@ -17,7 +17,7 @@ COUNT, MOTORS_ON, TORQUE, POSITION, WEIGHT, STAMP, FAULTS, BUTTONS = 16, 32, 40,
 
 
 class Entry:
-    """time_ns (time.monotonic_ns), kind, on, force (N, device frame)."""
+    """An entry of the log: time_ns (as of time.monotonic_ns()), given_ns, kind, on, force [N] in the device frame."""
 
     def __init__(self, raw):
         self.time_ns, self.given_ns, self.kind, self.on, *self.force = ENTRY.unpack(raw)
@@ -34,7 +34,7 @@ class Rig:
         self._map = None
 
     def page(self, timeout=20):
-        """The page, once the daemon has opened the arm."""
+        """Returns the page. Waits until the daemon has opened the arm."""
         end = time.monotonic() + timeout
         while self._map is None:
             if os.path.exists(self.file) and os.path.getsize(self.file) >= HEADER + CAPACITY * ENTRY.size:
@@ -56,7 +56,7 @@ class Rig:
         return self._read("I", MOTORS_ON)[0] != 0
 
     def force(self):
-        """[N] that the motors hold now."""
+        """Returns the force [N] that the motors hold now."""
         return self._read("3d", TORQUE)
 
     def entries(self):
@@ -65,11 +65,11 @@ class Rig:
         return [Entry(page[at:at + ENTRY.size]) for at in (HEADER + i % CAPACITY * ENTRY.size for i in range(begin, count))]
 
     def commands_after(self, time_ns):
-        """Commands with a torque that came later than this time.monotonic_ns()."""
+        """Returns the entries with a torque that are later than time_ns, a value of time.monotonic_ns()."""
         return [e for e in self.entries() if e.time_ns > time_ns and e.on]
 
     def wait_for_force(self, timeout=20):
-        """Until the motors push. False: they never did."""
+        """Waits until the motors push. Returns False if they did not in time."""
         end = time.monotonic() + timeout
         self.page(timeout)
         while not self.motors_on():
@@ -79,7 +79,8 @@ class Rig:
         return True
 
     def silent_after(self, seconds):
-        """The motors are free within this time, and stay so for 50 ms: ns until the last torque ended, or None."""
+        """Waits until the motors are free and stay free for 50 ms. Returns the time [ns] until they became free, or None if they
+        did not within `seconds`."""
         begun = time.monotonic_ns()
         while time.monotonic_ns() < begun + int(seconds * 1e9):
             if not self.motors_on():

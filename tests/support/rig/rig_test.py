@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The test arm `rig` tells the truth: what the daemon sends stands in its page, during a run and after a kill.
+"""Tests the test arm `rig`: its page must have what the daemon sends, during a run and after the daemon was killed.
 
-Usage: rig_test.py HAPTICD RIG.so     prints one line per check; exit 1 when one fails.
+Usage: rig_test.py HAPTICD RIG.so     prints one line per check; the exit code is 1 if one fails
 """
 import os
 import signal

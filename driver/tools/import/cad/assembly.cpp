@@ -30,8 +30,8 @@ std::string nameOf(const TDF_Label& label) {
   Standard_PCharacter at = text.data();
   wide.ToUTF8CString(at);
   text.resize(text.find('\0'));
-  if (text.rfind("=>[", 0) == 0) return "";  // Open CASCADE's name for a reference that has no name
-  // and its names for shapes that have none
+  if (text.rfind("=>[", 0) == 0) return "";  // Open CASCADE gives this name to references that have none
+  // Open CASCADE gives these names to shapes that have none.
   for (const char* kind : {"COMPOUND", "COMPSOLID", "SOLID", "SHELL", "FACE"})
     if (text == kind) return "";
   return brep::plainText(std::move(text));
@@ -90,7 +90,7 @@ class Tree {
   }
 
   void walk(const TDF_Label& label, gp_Trsf pose, int parent, std::uint32_t colour, int depth) {
-    if (depth > kDeepest) throw CadError("assemblies are nested deeper than 200 levels");
+    if (depth > kDeepest) throw CadError("its assemblies are nested more than 200 levels deep; expected at most 200");
     TDF_Label shape = label;
     if (XCAFDoc_ShapeTool::IsReference(label)) {
       pose.Multiply(XCAFDoc_ShapeTool::GetLocation(label).Transformation());
@@ -126,7 +126,8 @@ class Tree {
 void addShape(const TopoDS_Shape& shape, Node node, CadFile& file) {
   if (shape.IsNull()) return;
   const std::vector<TopoDS_Shape> pieces = piecesOf(shape);
-  if (file.nodes.size() + pieces.size() >= kMostNodes) throw CadError("more than 1,000,000 instances");
+  if (file.nodes.size() + pieces.size() >= kMostNodes)
+    throw CadError("it has more than 1,000,000 instances; expected fewer: export a simpler assembly");
   const gp_Trsf pose = node.pose;
   const std::string name = node.name, body_name = node.body_name.empty() ? name : node.body_name;
   if (pieces.size() > 1) {

@@ -62,7 +62,7 @@ void findRange(const TopoDS_Face& face, brep::Face& record) {
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const double lo = record.lo[axis], hi = record.hi[axis];
     if (!(std::abs(lo) < Precision::Infinite() / 2 && std::abs(hi) < Precision::Infinite() / 2))
-      throw Unkept("it has no end: nothing bounds its surface");
+      throw Unkept("its surface is infinite, and no loop bounds it");
     if (!(lo < hi)) throw Unkept("it has no area");
   }
 }
@@ -77,7 +77,7 @@ BodyBuilder::Sizes BodyBuilder::sizes() const {
           part_.edges.size(),    part_.coedges.size(), part_.loops.size(),   part_.faces.size(), part_.losses.size()};
 }
 
-/// Removes the records of a face that could not be kept.
+/// Removes the records that were added since `to` was taken, for a face that could not be kept.
 void BodyBuilder::cutBack(const Sizes& to) {
   cut(part_.surfaces, to.surfaces), cut(part_.curves3, to.curves3), cut(part_.curves2, to.curves2);
   cut(part_.reals, to.reals), cut(part_.vertices, to.vertices), cut(part_.edges, to.edges);
@@ -136,7 +136,7 @@ void BodyBuilder::addCoedge(const TopoDS_Face& face, const TopoDS_Edge& edge) {
     ShapeFix_Edge().FixAddPCurve(edge, face, BRep_Tool::IsClosed(edge, face), Precision::Confusion());
     curve = BRep_Tool::CurveOnSurface(edge, face, t0, t1);
   }
-  if (curve.IsNull()) throw Unkept("one of its edges has no curve in its parameters");
+  if (curve.IsNull()) throw Unkept("one of its edges has no curve in the parameter plane of the face");
   brep::Coedge record;
   record.edge = edgeOf(edge);
   record.face = sizeOf(part_.faces);
@@ -147,7 +147,7 @@ void BodyBuilder::addCoedge(const TopoDS_Face& face, const TopoDS_Edge& edge) {
   if (!(record.t0 < record.t1)) throw Unkept("one of its edges has no length");
   const double wide = 1e-9 * (record.t1 - record.t0);
   if (std::abs(record.t0 - t0) > wide || std::abs(record.t1 - t1) > wide)
-    throw Unkept("an edge and its curve in the face's parameters have different ranges");
+    throw Unkept("an edge and its curve in the parameter plane of the face have different parameter ranges");
   if (unfolding_) {
     if (pole) throw Unkept("it has a pole");
     double c0 = 0, c1 = 0;
@@ -175,7 +175,7 @@ void BodyBuilder::addLoop(const TopoDS_Face& face, const TopoDS_Shape& wire, con
     const bool pole = BRep_Tool::Degenerated(edge);
     if (pole && flat) continue;  // a plane has no poles
     if (!pole) BRep_Tool::Range(edge, t0, t1);
-    if (!pole && !(t0 < t1)) continue;  // the edge is a point, which its neighbours contain as well
+    if (!pole && !(t0 < t1)) continue;  // the edge is a single point, which is an end of its neighbours
     addCoedge(face, edge);
   }
   loop.count = sizeOf(part_.coedges) - loop.first;
@@ -290,10 +290,11 @@ std::uint32_t BodyBuilder::add(const TopoDS_Shape& shape, std::uint32_t name, st
               : shell                  ? brep::BodyKind::kShell
                                        : brep::BodyKind::kSheet;
   if (solid && body.flags == 0 && part_.losses.size() == losses)
-    part_.warnings.push_back("'" + name_ + "' is called a solid, but has edges with one face alone: taken as a shell");
+    part_.warnings.push_back("'" + name_ +
+                             "' is stored as a solid, but some of its edges bound only one face: taken as a shell");
   if (body.flags != 0 && body.kind == brep::BodyKind::kSolid && isInsideOut(shape)) {
     for (std::uint32_t f = 0; f < body.face_count; ++f) part_.faces[body.first_face + f].flags ^= brep::kReversed;
-    part_.warnings.push_back("'" + name_ + "' was inside out: its faces were turned");
+    part_.warnings.push_back("'" + name_ + "' was inside out: its faces were reversed");
   }
   part_.bodies.push_back(body);
   return sizeOf(part_.bodies) - 1;

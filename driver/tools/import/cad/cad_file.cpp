@@ -56,9 +56,9 @@ std::string noShapes(const std::vector<brep::Loss>& losses) {
   return losses.empty() ? text : text + "; " + losses.front().what + ": " + losses.front().reason;
 }
 
-constexpr std::string_view kMark = "\xef\xbb\xbf";  ///< some editors put it before UTF-8
+constexpr std::string_view kMark = "\xef\xbb\xbf";  ///< byte order mark, which some editors write before UTF-8 text
 
-/// Reads a STEP file, also one that begins with the mark of UTF-8, which Open CASCADE refuses.
+/// Reads a STEP file. Open CASCADE refuses a file that begins with a byte order mark, so the mark is skipped.
 bool parseStep(const std::string& file, bool marked, STEPCAFControl_Reader& reader) {
   if (!marked) return reader.ReadFile(file.c_str()) == IFSelect_RetDone;
   std::ifstream in(file, std::ios::binary);
@@ -66,7 +66,7 @@ bool parseStep(const std::string& file, bool marked, STEPCAFControl_Reader& read
   return reader.ChangeReader().ReadStream(file.c_str(), in) == IFSelect_RetDone;
 }
 
-/// Returns why Open CASCADE may have refused a STEP file. `start` is how it begins.
+/// Returns why Open CASCADE may have refused a STEP file. @param start the first bytes of the file
 std::string stepFault(const std::string& file, std::string_view start) {
   if (start.find("ISO-10303-21") == start.npos) return "it is not a STEP file: its first line is not ISO-10303-21;";
   constexpr std::streamoff kEnd = 4096;
@@ -103,8 +103,8 @@ void readStep(const std::string& file, CadFile& cad) {
   findLostFaces(reader.ChangeReader().WS(), millimetresIn(cad.unit), cad.losses);
 }
 
-/// Returns true if the file has the last section of an IGES file, which is one line with a T in column 73. The reader
-/// does not notice if it is missing.
+/// Returns true if the last section of an IGES file is there: one line with a T in column 73. Open CASCADE accepts a
+/// file without it, so a file that was cut off would be read as if it were complete.
 bool endsAsIges(const std::string& file) {
   constexpr std::size_t kSection = 72;
   std::ifstream in(file);
@@ -114,7 +114,8 @@ bool endsAsIges(const std::string& file) {
   return last.size() > kSection && last[kSection] == 'T';
 }
 
-/// Reads the unit of an IGES file. Its number decides, and its name only if the number is 3.
+/// Reads the unit of an IGES file. The header gives the unit as a number and as a name. The name counts only if the
+/// number is 3 (IGES 5.3, global parameters 14 and 15).
 void readIgesUnit(const IGESData_GlobalSection& section, CadFile& cad) {
   constexpr const char* kUnits[] = {"in", "mm", "", "ft", "mi", "m", "km", "mil", "um", "cm", "uin"};
   const int flag = section.UnitFlag();
@@ -144,7 +145,8 @@ void readIges(const std::string& file, CadFile& cad) {
   findLostFaces(reader.WS(), 1, cad.losses);
 }
 
-/// Returns true if a word is C's text for a value that is not finite: "nan", "-inf", "1.#QNAN" and the like.
+/// Returns true if a word is what C's printf() writes for a value that is not finite: "nan", "-inf", "1.#QNAN" and the
+/// like.
 bool isNoNumber(std::string word) {
   std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
   if (word.find("#qnan") != word.npos || word.find("#inf") != word.npos || word.find("#ind") != word.npos) return true;
@@ -169,7 +171,7 @@ void readBrep(const std::string& file, CadFile& cad) {
   TopoDS_Shape shape;
   const BRep_Builder builder;
   const Handle(Progress) progress = new Progress("reading shapes");
-  // The reader loops for ever if a word is missing, so the stream is made to throw.
+  // At the end of an incomplete file Open CASCADE's reader would loop for ever, so the stream throws there.
   std::ifstream in(file);
   try {
     in.exceptions(std::ios::failbit | std::ios::badbit);
@@ -207,7 +209,7 @@ void gatherLooseFaces(CadFile& cad, const std::string& name) {
   }
   if (gathered < 2) return;
   std::swap(cad.nodes, kept);
-  for (Node& node : cad.nodes)  // with assemblies, indices of parents would be wrong without the removed roots
+  for (Node& node : cad.nodes)  // if there are assemblies, removing nodes would make their indices of parents wrong
     if (node.parent >= 0) return std::swap(cad.nodes, kept);
   Node node;
   node.name = node.body_name = name;

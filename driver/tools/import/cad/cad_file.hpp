@@ -35,7 +35,7 @@ struct CadFile {
   /// Colours of faces and other shapes; the key is the address of the TShape.
   std::unordered_map<const void*, std::uint32_t> colours;
   std::vector<brep::Loss> losses;    ///< faces of the file that the reader could not make
-  std::vector<std::string> remarks;  ///< what may be wrong, such as a unit that had to be assumed
+  std::vector<std::string> remarks;  ///< warnings about the file, such as a unit that had to be assumed
 };
 
 /// [main] Reads .step, .stp, .iges, .igs, .brep and .rle. @throws CadError

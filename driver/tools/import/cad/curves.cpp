@@ -101,7 +101,9 @@ Handle(Geom_BSplineCurve) asSpline(const Handle(Geom_Curve) & curve, double t0, 
   if (isKept(spline)) return unrolled(spline, t0, t1);
   const Handle(Geom_TrimmedCurve) piece = new Geom_TrimmedCurve(curve, t0, t1);
   const GeomConvert_ApproxCurve fit(piece, kNear, GeomAbs_C1, kMostSegments, kDegree);
-  if (!fit.HasResult()) throw Unkept("a curve of kind " + std::string(curve->DynamicType()->Name()) + " has no spline");
+  if (!fit.HasResult())
+    throw Unkept("a curve of kind " + std::string(curve->DynamicType()->Name()) +
+                 " cannot be approximated by a spline");
   error = std::max(fit.MaxError(), 1e-12);
   return fit.Curve();
 }
@@ -114,7 +116,8 @@ Handle(Geom2d_BSplineCurve) asSpline(const Handle(Geom2d_Curve) & curve, double 
   const Handle(Geom2d_TrimmedCurve) piece = new Geom2d_TrimmedCurve(curve, t0, t1);
   const Geom2dConvert_ApproxCurve fit(piece, kNear, GeomAbs_C1, kMostSegments, kDegree);
   if (!fit.HasResult())
-    throw Unkept("a pcurve of kind " + std::string(curve->DynamicType()->Name()) + " has no spline");
+    throw Unkept("a pcurve of kind " + std::string(curve->DynamicType()->Name()) +
+                 " cannot be approximated by a spline");
   error = std::max(fit.MaxError(), 1e-12);
   return fit.Curve();
 }

@@ -47,7 +47,7 @@ void moveColour(const TopoDS_Shape& from, const TopoDS_Shape& to, Colours& colou
 TopoDS_Shape fixed(const TopoDS_Shape& shape, const std::string& body, Colours& colours,
                    std::vector<std::string>& steps) {
   if (mostLoops(shape) > kManyLoops) {
-    steps.push_back(body + ": not checked, it has a face with more than 200 loops");
+    steps.push_back(body + ": not checked, because it has a face with more than 200 loops");
     return shape;
   }
   if (BRepCheck_Analyzer(shape).IsValid()) return shape;
@@ -55,7 +55,7 @@ TopoDS_Shape fixed(const TopoDS_Shape& shape, const std::string& body, Colours& 
   const Handle(ShapeFix_Shape) fix = new ShapeFix_Shape(shape);
   fix->Perform(progress->Start());
   if (progress->late()) {
-    steps.push_back(body + ": not valid; healing took longer than 10 s and was left out");
+    steps.push_back(body + ": not valid, and not healed, because healing took longer than 10 s");
     return shape;
   }
   const TopoDS_Shape result = fix->Shape();
@@ -63,7 +63,7 @@ TopoDS_Shape fixed(const TopoDS_Shape& shape, const std::string& body, Colours& 
   for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
     moveColour(face.Current(), fix->Context()->Apply(face.Current()), colours);
   const bool valid = BRepCheck_Analyzer(result).IsValid();
-  steps.push_back(body + (valid ? ": was not valid, healed" : ": is not valid, even after healing"));
+  steps.push_back(body + (valid ? ": was not valid, and was healed" : ": is not valid, even after healing"));
   return result;
 }
 
@@ -96,7 +96,7 @@ TopoDS_Shape sewnFaces(const TopoDS_Shape& faces, const std::string& body, Colou
                        std::vector<std::string>& steps) {
   const Seam seam = sewn(faces, body);
   if (seam.shape.IsNull()) {
-    steps.push_back(body + ": loose faces, not sewn within 10 s");
+    steps.push_back(body + ": its loose faces could not be sewn within 10 s");
     return faces;
   }
   for (TopExp_Explorer face(faces, TopAbs_FACE); face.More(); face.Next())

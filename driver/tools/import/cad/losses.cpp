@@ -80,7 +80,8 @@ std::string nameOf(const Handle(Interface_InterfaceModel) & model, const Entity&
   return text;
 }
 
-/// Returns true for points, curves, surfaces and what is made of them, but not for texts and colours.
+/// Returns true for entities that carry geometry or topology (points, curves, surfaces, edges, faces), and false for
+/// others such as texts and colours.
 bool isForm(const Entity& entity) {
   return entity->IsKind(STANDARD_TYPE(StepGeom_Point)) || entity->IsKind(STANDARD_TYPE(StepGeom_Direction)) ||
          entity->IsKind(STANDARD_TYPE(StepGeom_Placement)) || entity->IsKind(STANDARD_TYPE(StepGeom_Curve)) ||
@@ -139,12 +140,13 @@ void findOddEntities(const Handle(XSControl_WorkSession) & session, std::vector<
     const std::string what = std::string(label.IsNull() ? "" : label->ToCString()) + " cannot be read (" +
                              brep::plainText(check->CFail(1)) + ")";
     if (!unit && odd_shapes++ == 0) first_shape = what;
-    if (unit && remarks.size() < kMost) remarks.push_back("unit " + what + ", so one was assumed; is the size right?");
+    if (unit && remarks.size() < kMost)
+      remarks.push_back("unit " + what + ", so a unit was assumed; check the size of the part");
   }
   if (odd_shapes > 0)
     remarks.push_back("entity " + first_shape +
-                      (odd_shapes > 1 ? ", nor " + std::to_string(odd_shapes - 1) + " others" : "") +
-                      ": the file is damaged, and the part may have another form; compare it with the CAD program");
+                      (odd_shapes > 1 ? ", and neither can " + std::to_string(odd_shapes - 1) + " others" : "") +
+                      ": the file is damaged, and the part may have another shape; compare it with the CAD program");
   if (!assigned) remarks.emplace_back(kNoUnit);
 }
 

@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
   app.addFlag("--json", options.json, "report as JSON");
   if (const auto ended = app.parse(argc, argv)) return *ended;
   hapticd::cad::setLimits(options);
-  // Messages of Open CASCADE are dropped: the report has what matters.
+  // Messages of Open CASCADE are dropped, because the report says what matters to the user.
   Message::DefaultMessenger()->ChangePrinters().Clear();
   std::cout.rdbuf(nullptr);
   return hapticd::cad::guarded(options);

@@ -84,7 +84,7 @@ class PartBuilder {
   std::uint32_t bodyOf(Node& node) {
     const std::string name = node.body_name.empty() ? node.name : node.body_name;
     if (!isRigid(node.pose)) {
-      report_.steps.push_back(name + ": mirrored or scaled, made a body of its own");
+      report_.steps.push_back(name + ": mirrored or scaled, so it was stored as a body of its own");
       return build(BRepBuilderAPI_Transform(node.shape, node.pose, true).Shape(), name, node.colour);
     }
     const auto key = std::pair(static_cast<const void*>(node.shape.TShape().get()), node.shape.Orientation());
@@ -97,7 +97,8 @@ class PartBuilder {
     try {
       whole = healed(shape, name, file_.colours, report_.steps);
     } catch (const Standard_Failure& failure) {
-      report_.steps.push_back(name + ": healing failed (" + failure.DynamicType()->Name() + "), left as it is");
+      report_.steps.push_back(name + ": healing failed (" + failure.DynamicType()->Name() +
+                              "); the body stays as it is");
     }
     BodyBuilder builder(file_.colours, name, part_);
     const std::uint32_t body = builder.add(whole, nameIndex(name), colour);
@@ -108,7 +109,8 @@ class PartBuilder {
     return kNone;
   }
 
-  /// Warns of a solid whose faces do not bound one volume. All solids together get some seconds.
+  /// Warns of a solid whose faces do not bound one volume. All solids together get at most kSeconds, because the test
+  /// is slow for large solids.
   void judgeSides(const TopoDS_Shape& solid, const std::string& name) {
     constexpr double kSeconds = 4;
     if (sides_s_ >= kSeconds) return;
@@ -121,7 +123,7 @@ class PartBuilder {
                                  " faces tried do not have the outside in front of them and the inside behind: Open "
                                  "CASCADE may have read another part of a surface than the file means; compare the "
                                  "part with the CAD program, and save the file again from there");
-    } catch (const Standard_Failure&) {  // the check is only a help
+    } catch (const Standard_Failure&) {  // the part is good without this test
     }
     sides_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   }

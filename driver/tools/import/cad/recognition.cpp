@@ -63,7 +63,7 @@ Vector3d mean(const std::vector<Vector3d>& v) {
   return sum / static_cast<double>(v.size());
 }
 
-/// Returns the direction along which the vectors differ least from `about`.
+/// Returns the direction along which the vectors have the least spread about `about` (principal component analysis).
 Vector3d flattest(const std::vector<Vector3d>& v, const Vector3d& about) {
   Matrix3d spread = Matrix3d::Zero();
   for (const Vector3d& x : v) spread += (x - about) * (x - about).transpose();
@@ -315,7 +315,8 @@ Unfolding::Sample Unfolding::sampleAt(const Handle(Geom_Curve) & curve, double t
   if (!((at.p - point).norm() <= within)) throw Unkept("an edge leaves it");
   const double uu = at.u.squaredNorm(), vv = at.v.squaredNorm();
   if (!(uu > 0 && vv > 0)) throw Unkept("an edge runs through its pole");
-  return {t, {uv[0], uv[1]}, {way.dot(at.u) / uu, way.dot(at.v) / vv}};  // the tangents are at right angles
+  // divided separately, because the tangents along u and v are at right angles
+  return {t, {uv[0], uv[1]}, {way.dot(at.u) / uu, way.dot(at.v) / vv}};
 }
 
 /// Samples an edge over [t0, t1]; u is followed from `uv`, the point at t, to both ends.

@@ -60,12 +60,13 @@ std::string textOf(const Part& part, const Report& report, const std::string& ou
   };
   if (report.recognised > 0)
     add(plural(report.recognised, "spline face is", "spline faces are") +
-        " in fact of a simpler kind (plane, cylinder, cone or sphere), and converted to it");
+        " really a plane, cylinder, cone or sphere, and stored as such");
   for (const std::string& step : report.steps) add(step);
   for (const std::string& warning : part.warnings) add(warning);
   for (const brep::Loss& loss : part.losses)
     add("lost: " + loss.what + ": " + loss.reason + (loss.size > 0 ? " (" + metresText(loss.size) + ")" : ""));
-  if (lines > kMostLines) text += "  and " + std::to_string(lines - kMostLines) + " lines more: --json has them all\n";
+  if (lines > kMostLines)
+    text += "  and " + std::to_string(lines - kMostLines) + " more lines: --json lists them all\n";
   if (part.losses.empty()) text += "  nothing was lost\n";
   return text;
 }

@@ -14,7 +14,7 @@ struct Report {
   double seconds = 0;
 };
 
-/// [main] Returns lines for a person: what is in the part, what was done, what was lost.
+/// [main] Returns the report as text for a person: the contents of the part, the repairs, the warnings and the losses.
 std::string textOf(const brep::Part& part, const Report& report, const std::string& out);
 
 /// [main] Returns the same report for programs, as JSON.

@@ -27,7 +27,7 @@ class LimitedFixes final : public XSAlgo_AlgoContainer {
     const Handle(ShapeProcess_ShapeContext) context =
         new ShapeProcess_ShapeContext(shape, Interface_Static::CVal(resources));
     context->SetNonManifold(non_manifold);
-    info = context;  // with it, the reader finds the colours of changed faces
+    info = context;  // the reader needs it to find the colours of changed faces
     const Handle(ShapeFix_Shape) fix = new ShapeFix_Shape(shape);
     fix->SetPrecision(precision);
     fix->SetMaxTolerance(widest);
@@ -55,7 +55,7 @@ int mostLoops(const TopoDS_Shape& shape) {
 }
 
 void limitShapeFixes() {
-  XSAlgo::Init();  // otherwise the first reader calls this, and replaces our container
+  XSAlgo::Init();  // called before the first reader calls it, because it would replace the container that is set here
   XSAlgo::SetAlgoContainer(new LimitedFixes);
 }
 

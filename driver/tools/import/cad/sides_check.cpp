@@ -21,7 +21,7 @@
 namespace hapticd::cad {
 namespace {
 
-/// Returns 1 if the face is right, -1 if it is wrong, 0 if this cannot be told.
+/// Returns 1 if the outside is in front of the face and the inside behind it, -1 if not, 0 if this cannot be decided.
 int judge(BRepClass3d_SolidClassifier& solid, const TopoDS_Face& face, double step) {
   gp_Pnt p;
   gp_Vec along_u, along_v;
@@ -44,7 +44,7 @@ int judge(BRepClass3d_SolidClassifier& solid, const TopoDS_Face& face, double st
 
 SidesTried trySides(const TopoDS_Shape& solid, double seconds) {
   constexpr int kMostFaces = 40;
-  constexpr double kStep = 1e-4;  // of the diagonal
+  constexpr double kStep = 1e-4;  // share of the diagonal of the solid
   SidesTried result;
   Bnd_Box box;
   BRepBndLib::Add(solid, box, false);

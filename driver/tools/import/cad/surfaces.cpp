@@ -34,7 +34,8 @@ Vector plain(const gp_XYZ& v) {
   return {v.X(), v.Y(), v.Z()};
 }
 
-/// Makes a cylinder, cone, sphere or torus with the given axes. `along` is in metres per unit of v.
+/// Makes a cylinder, cone, sphere or torus with the given axes. @param along [m] length of the axis z, which is the
+/// length of one unit of v
 Surface framed(SurfaceKind kind, const gp_Ax3& axes, double along, double r0, double r1) {
   Surface s;
   s.kind = kind;
@@ -83,7 +84,8 @@ Surface splineRecord(const Handle(Geom_BSplineSurface) & s, Part& part) {
   for (int i = 1; i <= s->NbUPoles(); ++i)
     for (int j = 1; j <= s->NbVPoles(); ++j)
       for (const double value : metres(s->Pole(i, j).XYZ())) {
-        if (!(std::abs(value) <= brep::kFarthestPart)) throw Unkept("its surface lies beyond all bounds");
+        if (!(std::abs(value) <= brep::kFarthestPart))
+          throw Unkept("its surface reaches farther than 1,000,000 m from the origin");
         part.reals.push_back(value);
       }
   if (s->IsUClosed()) record.flags |= brep::kClosedU;
@@ -115,7 +117,8 @@ Handle(Geom_BSplineSurface)
   const GeomConvert_ApproxSurface fit(piece, kSplineError, GeomAbs_C1, GeomAbs_C1, kSplineDegree, kSplineDegree,
                                       kMostPatches, 1);
   if (!fit.HasResult())
-    throw Unkept("its surface of kind " + std::string(surface->DynamicType()->Name()) + " has no spline");
+    throw Unkept("its surface, of kind " + std::string(surface->DynamicType()->Name()) +
+                 ", cannot be approximated by a spline");
   error = std::max(fit.MaxError(), 1e-12) * kMetres;
   return fit.Surface();
 }
@@ -196,7 +199,8 @@ Kept addSurface(const Handle(Geom_Surface) & any, const Vector2& lo, const Vecto
     record = splineRecord(asSpline(surface, lo, hi, kept.error), part);
   for (const Vector* axis : {&record.o, &record.x, &record.y, &record.z})
     for (const double value : *axis)
-      if (!(std::abs(value) <= brep::kFarthestPart)) throw Unkept("its surface lies beyond all bounds");
+      if (!(std::abs(value) <= brep::kFarthestPart))
+        throw Unkept("its surface reaches farther than 1,000,000 m from the origin");
   kept.index = static_cast<std::uint32_t>(part.surfaces.size());
   part.surfaces.push_back(record);
   return kept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Random walks over real parts: no foot that is told to be the nearest is farther than any other point of the part.
-/// HAPTICD_PART_TICKS=1e8 makes the long run; it counts the ticks of all parts together.
+/// Random walks over real parts. No foot that is certified (proved to be the nearest) may be farther away than another
+/// point of the part. HAPTICD_PART_TICKS sets the number of ticks of all parts together, such as 1e8 for a long run.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRounding = 1e-12;  ///< [m] and as a part of distances
+constexpr double kRounding = 1e-12;  ///< [m], and as a share of a distance
 
 std::int64_t ticksOfAll() {
   const char* asked = std::getenv("HAPTICD_PART_TICKS");
@@ -37,7 +37,7 @@ Part splines(const std::string& name) {
   return samples::sheetOf(readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + name).surfaces);
 }
 
-/// A mesh of 2 n^2 triangles over a square of 40 mm, with waves.
+/// Returns a wavy mesh of 2 n^2 triangles over a square of 40 mm x 40 mm.
 Part wavyMesh(std::uint32_t n) {
   Part part;
   for (std::uint32_t i = 0; i <= n; ++i)
@@ -57,7 +57,7 @@ Part wavyMesh(std::uint32_t n) {
   return part;
 }
 
-/// Points that lie on the surface: none of them may be nearer than a foot that is told to be the nearest.
+/// Points on the surface. None of them may be nearer to the probe than a certified foot.
 class Witnesses {
  public:
   explicit Witnesses(const Model& model) {
@@ -72,7 +72,7 @@ class Witnesses {
 
   std::size_t count() const { return x_.size(); }
 
-  /// [m] to the nearest of them.
+  /// Returns the distance [m] from p to the nearest of the points.
   double distance(const Vector3d& p) const {
     double best = 1e300;
     for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -117,8 +117,8 @@ struct Tally {
   std::int64_t ticks = 0, proved = 0, wrong = 0;
 };
 
-/// Walks at several speeds about the part and through it. A foot is wrong where a point of the surface is nearer, where
-/// a search from nothing finds a nearer one, or where the distance changed by more than the way.
+/// Walks at several speeds around a part and through it. A foot is wrong if a point of the surface is nearer, if a
+/// search without memory finds a nearer point, or if the distance has changed by more than the probe has moved.
 class Walk {
  public:
   Walk(const Model& model, unsigned seed)
@@ -143,7 +143,7 @@ class Walk {
     if (number % 7 == 0) walking_.reset();
     before_ = -1;
   }
-  /// Turns slowly, and comes back when it has gone away.
+  /// Moves the probe in a direction that changes slowly. If the probe is far away from the part, it turns back.
   void move() {
     way_ = 0.98 * way_ + 0.14 * step_ * Vector3d(normal_(random_), normal_(random_), normal_(random_));
     const Eigen::AlignedBox3d& box = model_.bounds();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Ticks over spline surfaces that look at the elements about the probe alone, beside searches of the whole part.
+/// Compares ticks that examine only the gathered elements around the probe with searches of the whole part, on spline
+/// surfaces.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -20,7 +21,8 @@ struct NearTally {
   std::int64_t ticks = 0, near_nodes = 0, whole_nodes = 0, proved = 0;
 };
 
-/// A probe that goes over the surface, now outside and now inside, and jumps to another place every 2000 ticks.
+/// A probe that moves along the surface, sometimes outside and sometimes inside. It jumps to another place every 2000
+/// ticks.
 class OverSurface {
  public:
   explicit OverSurface(const Model& model) : model_(model), random_(29) {}
@@ -49,7 +51,7 @@ Part sheet(const std::string& file) {
   return samples::sheetOf(readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + file).surfaces);
 }
 
-/// Three of it, turned and run into each other.
+/// Returns the part with two copies of its last instance, rotated and shifted so that they overlap.
 Part assembly(Part part) {
   const double size = Model(part).bounds().diagonal().norm(), c = std::cos(0.3), s = std::sin(0.3);
   for (const double far : {0.1, 0.2}) {
@@ -60,7 +62,8 @@ Part assembly(Part part) {
   return part;
 }
 
-/// A search whose budget is too small for the elements about the probe looks at the whole part.
+/// Walks with two searches. The budget of the second is too small for gathered elements, so it always searches the
+/// whole part.
 NearTally walkBesideWhole(Part part, const std::string& file, int most_rows) {
   const Model model(std::move(part));
   const SearchBudget enough, whole{enough.nodes, most_rows};
@@ -72,7 +75,8 @@ NearTally walkBesideWhole(Part part, const std::string& file, int most_rows) {
     const Nearest& found = near.nearest(p, enough);
     const Nearest& truth = all.nearest(p, whole);
     ++tally.ticks;
-    if (!found.proved || !truth.proved) {  // they may have different feet, and would go on from these
+    // the two searches may have different feet, and the next search begins at the last foot
+    if (!found.proved || !truth.proved) {
       near.reset();
       all.reset();
       continue;

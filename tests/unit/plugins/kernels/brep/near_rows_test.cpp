@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The discs about rows of triangles, and ticks that look at the rows about the probe alone.
+/// Tests the discs around rows of triangles, and ticks that examine only the gathered rows around the probe.
 #include "kernels/brep/near_rows.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// One mesh of the given corners.
+/// Returns a part with one mesh. @param corners point indices of each triangle
 Part meshOf(std::vector<Vector> points, const std::vector<std::array<std::uint32_t, 3>>& corners) {
   Part part;
   part.points = std::move(points);
@@ -36,7 +36,7 @@ Part meshOf(std::vector<Vector> points, const std::vector<std::array<std::uint32
   return part;
 }
 
-/// A sheet of 100 mm with waves of `height` and 2 n^2 triangles.
+/// Returns a wavy sheet of 100 mm x 100 mm with 2 n^2 triangles. @param height [m] amplitude of the waves
 Part sheet(std::uint32_t n, double height) {
   std::vector<Vector> points;
   std::vector<std::array<std::uint32_t, 3>> corners;
@@ -59,7 +59,7 @@ double distanceTo(const Part& part, std::uint32_t triangle, const Vector3d& p) {
   return (triangleFoot(p, vec(part.points[c[0]]), vec(part.points[c[1]]), vec(part.points[c[2]])).point - p).norm();
 }
 
-/// Triangles of any size and shape, needles and points among them.
+/// Returns triangles of many sizes and shapes. Some are needles, and some are single points.
 Part scattered(std::mt19937& random) {
   std::uniform_real_distribution<double> share(-1, 1), exponent(-9, 0);
   std::vector<Vector> points;
@@ -76,8 +76,8 @@ Part scattered(std::mt19937& random) {
   return meshOf(std::move(points), corners);
 }
 
-/// Seen from as far as a metre and as near as a nanometre.
-TEST(RowSlab, BoundsNoTriangleFromAbove) {
+/// The probes are at distances from a nanometre to a metre.
+TEST(RowDisc, BoundsNoTriangleFromAbove) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> share(-1, 1), exponent(-9, 0);
   const Model model(scattered(random));
@@ -86,9 +86,9 @@ TEST(RowSlab, BoundsNoTriangleFromAbove) {
   for (std::int32_t n = 0; n < static_cast<std::int32_t>(body.tree.nodeCount()); ++n)
     for (std::size_t i = 0; i < 4; ++i) {
       if (body.tree.node(n).child[i] >= 0) continue;
-      const RowSlab& slab = body.slabs[static_cast<std::size_t>(body.tree.node(n).row[i])];
-      FourSlabs four = emptyFour(slab);
-      for (int lane = 0; lane < 4; ++lane) put(slab, lane, four);
+      const RowDisc& disc = body.discs[static_cast<std::size_t>(body.tree.node(n).row[i])];
+      FourDiscs four = emptyFour(disc);
+      for (int lane = 0; lane < 4; ++lane) put(disc, lane, four);
       const ElementRow row = BoxTree::rowOf(body.tree.node(n).child[i]);
       for (int k = 0; k < 40; ++k) {
         const std::uint32_t corner = model.part().triangles[body.elements[row.first].index()].corner[k % 3u];
@@ -98,7 +98,7 @@ TEST(RowSlab, BoundsNoTriangleFromAbove) {
         for (std::uint32_t e = row.first; e < row.first + row.count; ++e)
           truth = std::min(truth, distanceTo(model.part(), body.elements[e].index(), p));
         const BoxProbe probe(body.tree, p);
-        const auto bound = static_cast<double>(rowDistance(slab, probe));
+        const auto bound = static_cast<double>(rowDistance(disc, probe));
         ASSERT_LE(bound, truth * truth) << p.transpose();
         ASSERT_LE(static_cast<double>(rowDistances(four, probe)[k % 4]), truth * truth) << p.transpose();
         close += bound > 0.25 * truth * truth;
@@ -107,7 +107,8 @@ TEST(RowSlab, BoundsNoTriangleFromAbove) {
   EXPECT_GT(close, 20000);
 }
 
-/// Walks at several speeds, with rests and jumps, beside a search that has no budget for rows about the probe.
+/// Walks at several speeds, with rests and jumps, and compares with a search whose budget is too small for gathered
+/// rows. @param spares true to check that gathering saves nodes
 void walkBeside(const Model& model, unsigned seed, bool spares) {
   const SearchBudget whole{2048, NearTriangles::kMostRows * BodyTree::kMeshRow};
   Search near(model), all(model);
@@ -140,10 +141,10 @@ void walkBeside(const Model& model, unsigned seed, bool spares) {
 
 TEST(NearRows, ChangeNoBitOfAnyAnswer) {
   walkBeside(Model(sheet(150, 0.004)), 1, true);
-  walkBeside(Model(sheet(60, 0)), 2, false);  // flat: many triangles are just as near
+  walkBeside(Model(sheet(60, 0)), 2, false);  // flat, so that many triangles are equally near
 }
 
-/// Beside a corner of a cube three faces of two triangles each are just as near.
+/// Near a corner of a cube, six triangles on three faces are equally near.
 TEST(NearRows, KeepTheOrderOfPreferenceAtACube) {
   std::vector<Vector> points;
   for (int i = 0; i < 8; ++i) points.push_back({0.05 * (i & 1), 0.05 * (i >> 1 & 1), 0.05 * (i >> 2 & 1)});

@@ -51,7 +51,7 @@ TEST(PartFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(back.source.unit, "mm");
 }
 
-/// Names come from foreign files and go to terminals.
+/// Names come from the files of other programs and are shown in terminals.
 TEST(PartFile, ControlCharactersOfNamesBecomeSpaces) {
   Part part = samples::cappedCylinder(10, 20);
   part.names = {"a\x1b[2Jb\n\x7f",
@@ -83,7 +83,7 @@ TEST(PartFile, CutAnywhereIsAnErrorAndNothingWorse) {
     EXPECT_NE(errorOf([&] { readPart(bytesOf(file).first(length), "x"); }), "") << length;
 }
 
-/// What checkPart() says once a sample was spoilt.
+/// Returns the error of checkPart() for a sample after `spoil` has changed it; "" if there is none.
 std::string spoilt(const std::function<void(Part&)>& spoil) {
   Part part = samples::cappedCylinder(10, 20);
   spoil(part);
@@ -93,13 +93,15 @@ std::string spoilt(const std::function<void(Part&)>& spoil) {
 TEST(PartCheck, NamesTheRecordThatBreaksARule) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(spoilt([](Part&) {}), "");
-  EXPECT_EQ(spoilt([](Part& p) { p.coedges[2].edge = 3; }), "edge 1: coedge 2 belongs to another edge");
+  EXPECT_EQ(spoilt([](Part& p) { p.coedges[2].edge = 3; }),
+            "edge 1: coedge 2 belongs to edge 3, expected a coedge of this edge");
   EXPECT_EQ(spoilt([&](Part& p) { p.surfaces[0].r[0] = nan; }),
-            "surface 0: a radius is nan, expected a finite number up to 1000000");
-  EXPECT_EQ(spoilt([](Part& p) { p.surfaces[0].r[0] = -1; }), "surface 0: r0 is -1, expected above 0");
+            "surface 0: a radius is nan, expected a finite number of magnitude at most 1000000");
+  EXPECT_EQ(spoilt([](Part& p) { p.surfaces[0].r[0] = -1; }),
+            "surface 0: r0 is -1, expected above 0 and at most 1000000");
   EXPECT_EQ(spoilt([](Part& p) { p.faces[1].surface = 7; }), "face 1: surface 7, but the index must be below 3");
   EXPECT_EQ(spoilt([](Part& p) { p.loops[1].count = 0xfffffff0u; }),
-            "loop 1: coedges 4 to 4294967284, but there are only 6");
+            "loop 1: coedges: 4294967280 from index 4 on, but the part has only 6");
   EXPECT_EQ(spoilt([](Part& p) { p.edges[0].t1 = p.edges[0].t0; }),
             "edge 0: parameters from 0 to 0, expected finite numbers, the second greater than the first");
   EXPECT_EQ(spoilt([](Part& p) { p.coedges[0].next = 0; }),
@@ -112,7 +114,7 @@ TEST(PartCheck, NamesTheRecordThatBreaksARule) {
             "bodies: together they have 2 faces, but the part has 3; each must belong to exactly one body");
 }
 
-/// Whatever single word of a record is spoilt: the reader answers, with an error or a part that passes the check again.
+/// Spoils single words of all records. The reader must either report an error or return a part that passes the check.
 TEST(PartCheck, SurvivesAnyWordOfARecordSpoilt) {
   std::mt19937 random(1);
   const Part good = samples::cappedCylinder(10, 20);

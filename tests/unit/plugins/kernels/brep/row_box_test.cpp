@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// No box of a row is farther from a probe than a point of what it holds.
+/// Tests that the distance to the box of a row is never greater than the distance to a point of its element.
 #include "kernels/brep/row_box.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
-constexpr int kAlong = 9;  ///< points along a curve or an axis of a surface
+constexpr int kAlong = 9;  ///< intervals between points along a curve, or along each axis of a surface
 
 std::vector<Vector3d> pointsOfSurface(const Model& model, std::uint32_t face, const Array2d& lo, const Array2d& hi) {
   std::vector<Vector3d> points;
@@ -64,7 +64,7 @@ struct RowTally {
   std::int64_t looks = 0, close = 0;
 };
 
-/// Seen from as far as a metre and as near as a nanometre.
+/// Checks the box of one row for probes at distances from a nanometre to a metre.
 void lookAtRow(const Model& model, const BodyTree& body, const RowBox& box, Element element, std::mt19937& random,
                RowTally& tally) {
   std::uniform_real_distribution<double> exponent(-9, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Small parts made by hand, for tests. Parameters of planes and axes count millimetres, as those of CAD files do.
+/// Small parts made by hand, for tests. The parameters of planes and axes are in millimetres, as in CAD files.
 #pragma once
 #include <cmath>
 #include <initializer_list>
@@ -41,7 +41,7 @@ inline std::uint32_t addEdge(Part& part, const Curve3& curve, double t0, double 
   return last(part.edges);
 }
 
-/// A coedge with the pcurve o + t x (line) or o + cos t x + sin t y (circle).
+/// Adds a coedge with a pcurve that is a line o + t x or a circle o + cos t x + sin t y.
 inline void addCoedge(Part& part, std::uint32_t edge, const Curve2& pcurve, std::uint32_t flags) {
   part.curves2.push_back(pcurve);
   Coedge coedge;
@@ -76,7 +76,7 @@ inline void addFace(Part& part, const Surface& surface, std::uint32_t flags, Vec
   face.surface = last(part.surfaces);
   face.first_loop = static_cast<std::uint32_t>(part.loops.size());
   face.flags = flags;
-  face.body = static_cast<std::uint32_t>(part.bodies.size());  // closed by endBody()
+  face.body = static_cast<std::uint32_t>(part.bodies.size());  // endBody() adds this body
   face.lo = lo;
   face.hi = hi;
   part.faces.push_back(face);
@@ -87,7 +87,7 @@ inline void addLoop(Part& part) {
   ++part.faces.back().loop_count;
 }
 
-/// All that was added since the last body becomes one.
+/// Makes a body of all records that were added since the last body.
 inline void endBody(Part& part, BodyKind kind, std::uint32_t flags) {
   Body body;
   if (!part.bodies.empty()) {
@@ -112,7 +112,7 @@ inline void endBody(Part& part, BodyKind kind, std::uint32_t flags) {
   linkCoedges(part);
 }
 
-/// A cylinder of radius r [mm] about z from z = 0 to z = h [mm], with one seam and two caps.
+/// Returns a solid cylinder of radius r [mm] about z, from z = 0 to z = h [mm], with one seam and two caps.
 inline Part cappedCylinder(double r, double h) {
   constexpr double kTurn = 2 * std::numbers::pi;
   Part part;

@@ -21,7 +21,8 @@ class Polyhedron {
  public:
   Part part;
 
-  /// A polygon of points [mm], counter-clockwise seen from outside; further ones are holes, clockwise.
+  /// Adds a polygon with holes. @param loops points [mm] of the outline, counter-clockwise seen from outside, then of
+  /// the holes, clockwise
   void addPolygon(const std::vector<std::vector<Vector3d>>& loops) {
     const std::vector<Vector3d>& outer = loops[0];
     Vector3d n = Vector3d::Zero();
@@ -74,7 +75,7 @@ class Polyhedron {
   std::map<std::array<std::uint32_t, 2>, std::uint32_t> edges_;
 };
 
-/// The prism over a polygon of the xy plane, counter-clockwise, from z = 0 to h.
+/// Returns the prism over a counter-clockwise polygon of the xy plane, from z = 0 to h.
 inline Part prism(const std::vector<std::array<double, 2>>& polygon, double h) {
   Polyhedron made;
   std::vector<Vector3d> top, bottom;
@@ -92,12 +93,12 @@ inline Part prism(const std::vector<std::array<double, 2>>& polygon, double h) {
   return made.part;
 }
 
-/// The concave bracket of CAD.md's truth case 6: legs 30 x 10 mm, depth 20 mm.
+/// Returns a concave bracket with two legs of 30 mm x 10 mm and a depth of 20 mm.
 inline Part bracket() {
   return prism({{0, 0}, {30, 0}, {30, 10}, {10, 10}, {10, 30}, {0, 30}}, 20);
 }
 
-/// A surface of revolution about z with x and y as they are.
+/// Returns a surface of revolution about z, whose axes x and y are those of the frame.
 inline Surface aboutZ(SurfaceKind kind, double r0, double r1, double z_length, double o_z = 0) {
   Surface s;
   s.kind = kind;
@@ -119,7 +120,7 @@ inline Curve3 circleAboutZ(double r, double z, Vector2 centre = {0, 0}) {
   return c;
 }
 
-/// An edge that is one point, and its coedge along v = const from u = 0 to 2 pi.
+/// Adds an edge that is a single point, and its coedge along v = const from u = 0 to 2 pi.
 inline void addPole(Part& part, std::uint32_t vertex, double v, std::uint32_t flags) {
   Edge pole;
   pole.kind = EdgeKind::kPole;
@@ -129,7 +130,7 @@ inline void addPole(Part& part, std::uint32_t vertex, double v, std::uint32_t fl
   part.coedges.back().t1 = kTurn;
 }
 
-/// A sphere of radius r about the origin with one seam and two poles.
+/// Returns a sphere of radius r about the origin, with one seam and two poles.
 inline Part sphere(double r) {
   constexpr double kQuarter = std::numbers::pi / 2;
   Part part;
@@ -149,7 +150,7 @@ inline Part sphere(double r) {
   return part;
 }
 
-/// A cone with its apex at the origin, opening toward -z to radius r at depth h.
+/// Returns a cone with its apex at the origin and its base of radius r at z = -h.
 inline Part cone(double r, double h) {
   Part part;
   const double slant = std::hypot(r, h);
@@ -178,7 +179,7 @@ inline Part cone(double r, double h) {
   return part;
 }
 
-/// A torus about z with two seams.
+/// Returns a torus about z with two seams.
 inline Part torus(double r0, double r1) {
   Part part;
   const std::uint32_t v = addVertex(part, {(r0 + r1) * kMm, 0, 0});
@@ -199,7 +200,8 @@ inline Part torus(double r0, double r1) {
   return part;
 }
 
-/// A plate of columns x rows round holes of radius r, their centres `pitch` apart, thickness h.
+/// Returns a plate of thickness h with columns x rows round holes of radius r. @param pitch distance between the
+/// centres of neighbouring holes
 inline Part plate(int columns, int rows, double r, double pitch, double h) {
   const double width = columns * pitch, depth = rows * pitch;
   Polyhedron made;
@@ -235,7 +237,7 @@ inline Part plate(int columns, int rows, double r, double pitch, double h) {
       holes.push_back({below, above, c});
     }
   made.addPolygon({{bottom[0], bottom[3], bottom[2], bottom[1]}});
-  for (const Hole& hole : holes) {  // the plane's x runs along the plate's y here
+  for (const Hole& hole : holes) {  // the axis x of this plane is along y of the plate
     addLoop(part);
     addCoedge(part, hole.below, circle2({hole.centre[1], hole.centre[0]}, {0, r}, {r, 0}), 0);
   }

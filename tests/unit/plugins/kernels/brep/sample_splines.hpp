@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Parts of untrimmed spline surfaces: every surface a face with four edges of its own.
+/// Parts of untrimmed spline surfaces. Each surface is a face with four edges of its own.
 #pragma once
 #include "kernels/spline/surface_data.hpp"
 #include "sample_parts.hpp"
@@ -12,7 +12,8 @@ inline std::uint64_t addReals(Part& part, const std::vector<double>& reals) {
   return first;
 }
 
-/// The side of a clamped surface where `axis` is at its end, as an edge.
+/// Adds one side of a clamped surface as an edge, and returns its index. @param at_end true for the side at the high
+/// end of `axis`, false for the low end
 inline std::uint32_t addSideEdge(Part& part, const spline::SurfaceData& data, int axis, bool at_end) {
   const auto along = static_cast<std::size_t>(1 - axis);
   const int count = data.count(1 - axis), place = at_end ? data.count(axis) - 1 : 0;
@@ -73,7 +74,7 @@ inline void addSplineFace(Part& part, const spline::SurfaceData& data) {
   side(0, false, line2({u[0], 0}, {0, 1}), kReversed);
 }
 
-/// A sheet of loose faces. The surfaces must be clamped.
+/// Returns a sheet of loose faces. The surfaces must be clamped.
 inline Part sheetOf(const std::vector<spline::SurfaceData>& surfaces) {
   Part part;
   for (const spline::SurfaceData& data : surfaces) addSplineFace(part, data);

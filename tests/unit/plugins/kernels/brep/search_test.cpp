@@ -17,7 +17,7 @@ Vector3d randomIn(std::mt19937& random, const Vector3d& lo, const Vector3d& hi) 
   return lo + Vector3d(share(random), share(random), share(random)).cwiseProduct(hi - lo);
 }
 
-/// Distance to the surface of a solid cylinder of radius r about z from 0 to h.
+/// Returns the distance to the surface of a solid cylinder of radius r about z, from z = 0 to h.
 double cylinderDistance(const Vector3d& p, double r, double h) {
   const double out = std::hypot(p.x(), p.y()) - r, below = -p.z(), above = p.z() - h;
   const double up = std::max(below, above);
@@ -42,7 +42,8 @@ TEST(Search, FindsTheNearestPointOfACappedCylinder) {
   std::printf("worst error %.2g m\n", worst);
 }
 
-/// Slow walks go on without a search where the last one still proves the foot: that must change no answer.
+/// In a slow walk, many ticks need no search because the last one still proves the foot. This must not change any
+/// answer.
 TEST(Search, SkipsChangeNoAnswer) {
   const Model model(samples::cappedCylinder(10, 20));
   Search walking(model), cold(model);
@@ -61,7 +62,7 @@ TEST(Search, SkipsChangeNoAnswer) {
   EXPECT_GT(skipped, 50000);
 }
 
-/// A curve of a loop that stands 0.5 mm off in both parameters leaves a gap at either end.
+/// A pcurve that is shifted by 0.5 mm leaves a gap at each of its ends.
 TEST(Model, NamesTheFacesWhoseLoopsHaveGaps) {
   Part part = samples::cappedCylinder(10, 20);
   EXPECT_TRUE(Model(part).warnings().empty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Nearest points and sides of solids whose distance is known in closed form (CAD.md 7: truth cases).
+/// Nearest points and sides of solids whose distance has a closed form.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -15,7 +15,7 @@ namespace {
 using contact::Foot;
 using Eigen::Vector3d;
 
-/// [m] from the surface of a solid, negative inside.
+/// Distance [m] from the surface of a solid, negative inside.
 using Signed = std::function<double(const Vector3d&)>;
 
 Vector3d randomBetween(std::mt19937& random, const Vector3d& lo, const Vector3d& hi) {
@@ -23,13 +23,14 @@ Vector3d randomBetween(std::mt19937& random, const Vector3d& lo, const Vector3d&
   return lo + Vector3d(share(random), share(random), share(random)).cwiseProduct(hi - lo);
 }
 
-/// How often the runs below are longer than usual: HAPTICD_PART_TICKS=1e8 makes the long one.
+/// Returns the number of queries of each run below. HAPTICD_PART_TICKS changes it, such as 1e8 for a long run.
 int queries() {
   const char* asked = std::getenv("HAPTICD_PART_TICKS");
   return asked != nullptr ? static_cast<int>(std::atof(asked)) : 80000;
 }
 
-/// Cold queries in the box grown by its half, and walks; every foot proved, right in distance and side.
+/// Makes cold queries in a box that is half as large again as the part, and walks. Every foot must be proved, and its
+/// distance and side must be right.
 void expectTruth(Part part, const Signed& truth, double tolerance = 1e-14) {
   const Model model(std::move(part));
   const Vector3d grow = 0.25 * model.bounds().sizes() + Vector3d::Constant(1e-3);
@@ -59,14 +60,14 @@ void expectTruth(Part part, const Signed& truth, double tolerance = 1e-14) {
   EXPECT_EQ(proved, count);
 }
 
-/// Distance in the plane from the point (a, b) to the segment from (a0, b0) to (a1, b1).
+/// Returns the distance in the plane from the point (a, b) to the segment from (a0, b0) to (a1, b1).
 double toSegment(double a, double b, double a0, double b0, double a1, double b1) {
   const double da = a1 - a0, db = b1 - b0;
   const double t = std::clamp(((a - a0) * da + (b - b0) * db) / (da * da + db * db), 0.0, 1.0);
   return std::hypot(a - a0 - t * da, b - b0 - t * db);
 }
 
-/// Of a prism over a polygon: from its distance in the plane.
+/// Returns the signed distance from a prism, computed from the distance to its polygon in the plane.
 Signed prismTruth(std::vector<std::array<double, 2>> polygon, double h) {
   return [polygon, h](const Vector3d& p) {
     double side = 1e9;
@@ -116,7 +117,7 @@ TEST(Solids, PlateWithHoles) {
   expectTruth(samples::plate(kColumns, kRows, 1.5, 5, 3), [](const Vector3d& p) {
     const double w = kColumns * 5e-3, d = kRows * 5e-3;
     const double outer = std::max({-p.x(), p.x() - w, -p.y(), p.y() - d});
-    // In the plane: distance to the outline or to the nearest hole's rim.
+    // Distance in the plane to the outline or to the rim of the nearest hole.
     double rim = 1e9;
     bool in_hole = false;
     for (int i = 0; i < kColumns; ++i)
@@ -134,7 +135,7 @@ TEST(Solids, PlateWithHoles) {
   });
 }
 
-/// CAD.md 7, case 18: on the axis, in the centre, not a number.
+/// Probes on an axis, in a centre, and probes that are not finite.
 TEST(Solids, DegenerateProbesHaveAnAnswer) {
   const Model can(samples::cappedCylinder(10, 40)), ball(samples::sphere(15)), ring(samples::torus(20, 6));
   Tracer in_can(can), in_ball(ball), in_ring(ring);

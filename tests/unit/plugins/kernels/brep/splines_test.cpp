@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Feet on spline faces, against dense sampling and closed forms.
+/// Feet on spline faces, compared with dense sampling and with closed forms.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -16,7 +16,8 @@ using Eigen::Vector3d;
 
 const std::string kModels = HAPTICD_SOURCE_DIR "/config/models/";
 
-/// The nearest point of all patches, by Newton from a dense grid on each: slow, and sure.
+/// Returns the distance to the nearest point of all patches, by Newton's method from a dense grid on each. This is slow
+/// but reliable.
 double denseDistance(const std::vector<spline::Surface>& surfaces, const Vector3d& p) {
   constexpr int kRaster = 24;
   double best = 1e9;
@@ -58,7 +59,7 @@ void expectAsNearAsTraceFinds(const std::string& file, double tolerance) {
   }
   std::printf("%s: excess at most %.2g m, nearer by at most %.2g m, %.1f %% proved\n", file.c_str(), worse, better,
               100.0 * proved / queries);
-  EXPECT_GT(proved, 0.7 * queries);  // some are far inside, at centres of curvature
+  EXPECT_GT(proved, 0.7 * queries);  // probes far inside, near centres of curvature, are not proved
 }
 
 TEST(SplineFeet, OfTheTeapot) {

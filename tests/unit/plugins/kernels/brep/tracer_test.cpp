@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Contacts with parts, tick by tick.
+/// Tests contacts with parts, tick by tick.
 #include "kernels/brep/tracer.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using contact::FootStatus;
 using contact::Sides;
 using Eigen::Vector3d;
 
-/// Goes straight from a to b in steps of about `step` [m]; calls see(foot, p) for each.
+/// Moves the probe straight from a to b in steps of about `step` [m], and calls see(foot, p) for each.
 template <class See>
 void walk(Tracer& tracer, const ContactRule& rule, const Vector3d& a, const Vector3d& b, double step, const See& see) {
   const int count = std::max(1, static_cast<int>((b - a).norm() / step));
@@ -32,7 +32,8 @@ TEST(Contact, BeginsOnTheFaceThatIsCrossedAndIsHeldInAThinWall) {
   Tracer tracer(model);
   double last = -1;
   walk(tracer, {}, {0.015, 0.010, 0.005}, {0.015, 0.010, -0.004}, 1e-4, [&](const Foot& foot, const Vector3d& p) {
-    EXPECT_NEAR(foot.depth, 0.001 - p.z(), 1e-12);  // through the far side and beyond, pushed back all the way
+    // the probe goes through the far side and beyond, and is pushed back all the time
+    EXPECT_NEAR(foot.depth, 0.001 - p.z(), 1e-12);
     EXPECT_NEAR(foot.normal.z(), 1, 1e-12);
     EXPECT_GE(foot.depth, last - 1e-12);
     last = foot.depth;
@@ -52,7 +53,7 @@ TEST(Contact, WithoutHysteresisIsTheNearestFace) {
 TEST(Contact, IsReleasedOverAConvexEdge) {
   const Model model(samples::prism({{0, 0}, {30, 0}, {30, 20}, {0, 20}}, 10));
   Tracer tracer(model);
-  // Pressed 2 mm into the top, dragged over the edge at x = 30 mm.
+  // The probe is pressed 2 mm into the top face and dragged over the edge at x = 30 mm.
   walk(tracer, {}, {0.025, 0.010, 0.012}, {0.025, 0.010, 0.008}, 1e-4, [](const Foot&, const Vector3d&) {});
   walk(tracer, {}, {0.025, 0.010, 0.008}, {0.035, 0.010, 0.008}, 1e-4, [&](const Foot& foot, const Vector3d& p) {
     if (p.x() < 0.030 - 1e-9) {
@@ -80,14 +81,14 @@ TEST(Contact, RestsAgainstBothFacesOfAConcaveEdge) {
   EXPECT_NEAR(foot.normal.dot(Vector3d(3, 2, 0).normalized()), 1, 1e-9);
 }
 
-/// Round a smooth body pressed 1 mm deep: the foot and the normal never jump, whatever seams and poles are crossed.
+/// A probe slides over a smooth body, 1 mm deep. Foot and normal must not jump where it crosses seams and poles.
 TEST(Contact, SlidesOverSeamsAndPolesWithoutAJump) {
   const Model model(samples::sphere(15));
   Tracer tracer(model);
   tracer.step({0, 0, 0.0155}, {});
   Vector3d last(0, 0, 1);
   for (int i = 0; i <= 20000; ++i) {
-    const double a = 1e-3 * i, b = 0.37 * a;  // a curve that winds about the ball
+    const double a = 1e-3 * i, b = 0.37 * a;  // a curve that winds around the ball
     const Vector3d n(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a));
     const Foot foot = tracer.step(0.014 * n, {});
     ASSERT_NEAR(foot.depth, 0.001, 1e-12) << i;
@@ -99,7 +100,7 @@ TEST(Contact, SlidesOverSeamsAndPolesWithoutAJump) {
   EXPECT_EQ(tracer.counts().degraded, 0u);
 }
 
-/// A tick that begins far outside and ends deep inside, as at 1000 Hz and 5 m/s, in any direction.
+/// Ticks that begin far outside and end deep inside, as at 1000 Hz and 5 m/s, in random directions.
 TEST(Contact, FindsTheFirstFaceInTheWay) {
   const Model model(samples::plate(6, 4, 1.5, 5, 2));
   std::mt19937 random(5);
@@ -112,7 +113,7 @@ TEST(Contact, FindsTheFirstFaceInTheWay) {
     tracer.step(from, {});
     const Foot foot = tracer.step(to, {});
     const Vector3d at_top = from + (to - from) * (0.0045 - 0.002) / (0.0045 - to.z());
-    double clear = 1;  // from the rim of the nearest hole, where the way meets the top
+    double clear = 1;  // distance from the rim of the nearest hole to the point where the path meets the top face
     for (int a = 0; a < 6; ++a)
       for (int b = 0; b < 4; ++b)
         clear = std::min(clear, std::hypot(at_top.x() - (a + 0.5) * 5e-3, at_top.y() - (b + 0.5) * 5e-3) - 1.5e-3);
@@ -120,7 +121,7 @@ TEST(Contact, FindsTheFirstFaceInTheWay) {
     for (int a = 0; a < 6; ++a)
       for (int b = 0; b < 4; ++b)
         end = std::min(end, std::hypot(to.x() - (a + 0.5) * 5e-3, to.y() - (b + 0.5) * 5e-3) - 1.5e-3);
-    if (clear > 1e-6 && end > 1e-6) {  // through the top, and still under it
+    if (clear > 1e-6 && end > 1e-6) {  // the path goes through the top face and ends below it
       ++began;
       ASSERT_NEAR(foot.depth, 0.002 - to.z(), 1e-9) << i;
     }
@@ -130,7 +131,7 @@ TEST(Contact, FindsTheFirstFaceInTheWay) {
 
 TEST(Contact, ShellsAreFeltFromTheSideTheyWereEntered) {
   Part part = samples::prism({{0, 0}, {30, 0}, {30, 20}, {0, 20}}, 10);
-  // The top alone, as a sheet.
+  // Only the top face, as a sheet.
   samples::Polyhedron sheet;
   sheet.addPolygon({{{0, 0, 0}, {30, 0, 0}, {30, 20, 0}, {0, 20, 0}}});
   samples::endBody(sheet.part, BodyKind::kSheet, 0);

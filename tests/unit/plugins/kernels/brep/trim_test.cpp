@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Loops of splines: what they hold, and how many pieces they fall into.
+/// Tests loops of splines: which points are inside, and into how many pieces the loops are cut.
 #include "kernels/brep/trim.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace hapticd::brep {
 namespace {
 
-/// A pcurve of one span from t = 0 to 1.
+/// Returns a Bezier pcurve with t from 0 to 1. Its numbers are appended to the part.
 Curve2 bezier2(Part& part, const std::vector<Vector2>& points) {
   Curve2 curve;
   curve.kind = CurveKind::kSpline;
@@ -27,7 +27,7 @@ Curve2 bezier2(Part& part, const std::vector<Vector2>& points) {
   return curve;
 }
 
-/// A plane face from (0, 0) to `hi`, whose sides are these pcurves.
+/// Returns the part with a plane face from (0, 0) to `hi`, whose loop consists of the pcurves `sides`.
 Part faceOf(Part part, const std::vector<Curve2>& sides, Vector2 hi) {
   Surface plane;
   plane.x = {samples::kMm, 0, 0};
@@ -42,7 +42,8 @@ Part faceOf(Part part, const std::vector<Curve2>& sides, Vector2 hi) {
   return part;
 }
 
-/// Random points of the face, every other one within 1e-7 of the curve: on the right side of it by the formula.
+/// Checks random points of the face, every other one within 1e-7 of the curve. They must be inside exactly if they are
+/// below the curve by its formula. @param above returns v of the curve at u
 void expectInside(const Trim& trim, Vector2 hi, const std::function<double(double u, double v)>& above) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> share(0, 1);
@@ -54,7 +55,8 @@ void expectInside(const Trim& trim, Vector2 hi, const std::function<double(doubl
   }
 }
 
-/// Where it turns, a curve is as far from its chord as its piece is high: halving that goes on for ever.
+/// Near the point where v turns back, a piece deviates from its chord by as much as its whole extent in v, however
+/// often it is halved. So halving must stop by another rule.
 TEST(TrimPieces, AreFewAboutTheTurnOfACurve) {
   Part part;
   const Curve2 top = bezier2(part, {{1, 1}, {0.5, 1.4}, {0, 1}});
@@ -67,8 +69,8 @@ TEST(TrimPieces, AreFewAboutTheTurnOfACurve) {
   EXPECT_LT(trim.bytes(), 6000u);
 }
 
-/// Exporters write lines as splines whose points are off by rounding: each half of such a piece is as far from its
-/// chord as the whole is wide.
+/// Exporters write lines as splines whose points have rounding errors. Each half of such a piece deviates from its
+/// chord by as much as the width of the whole piece.
 TEST(TrimPieces, AreFewAlongASideThatIsStraightButForRounding) {
   constexpr double kOff = 4e-12;
   Part part;
@@ -87,8 +89,8 @@ TEST(TrimPieces, AreFewAlongASideThatIsStraightButForRounding) {
   }
 }
 
-/// Sides that are upright but for the last bit, with a border of the grid between their ends: a point beside the border
-/// crosses the side either to the right or above, and never both or neither.
+/// The sides are parallel to v except for the last bit, and a border of the grid lies between the u of their ends. The
+/// path from a point beside the border must cross the side exactly once: to the right or above.
 TEST(Trim, DecidesHolesWithNearlyUprightSides) {
   for (int column = 1; column < 5; ++column)
     for (const bool leans_right : {true, false}) {
@@ -116,7 +118,8 @@ TEST(Trim, DecidesHolesWithNearlyUprightSides) {
     }
 }
 
-/// The crest of a thread: a strip that winds nine times around its cylinder, with a pitch of 1 and a width of 0.5.
+/// The crest of a thread is a strip that winds nine times around its cylinder, with a pitch of 1 mm and a width of 0.5
+/// mm.
 TEST(FaceFoot, FindsEachTurnOfAFaceThatWindsAroundItsCylinder) {
   constexpr double kTurn = 2 * std::numbers::pi, kMost = 9 * kTurn;
   Surface cylinder;
@@ -138,7 +141,7 @@ TEST(FaceFoot, FindsEachTurnOfAFaceThatWindsAroundItsCylinder) {
   const Geometry geometry(part, spline::Form::kTable);
   const FaceShape face = faceShape(geometry, 0);
   for (int turn = 0; turn < 9; ++turn)
-    for (const double v : {0.25, 0.75}) {  // on the strip, and beside it
+    for (const double v : {0.25, 0.75}) {  // one point on the strip, one beside it
       const double u = 1, height = turn + u / kTurn + v;
       const Eigen::Vector3d p(4 * samples::kMm * std::cos(u), 4 * samples::kMm * std::sin(u), height * samples::kMm);
       Hit hit;

@@ -17,7 +17,7 @@ namespace hapticd::brep {
 /// Both are linear in p. So each is the sum of its value for a fixed point o and of (o - p) S_i or (o - p) S_ij. The
 /// value for o hardly changes over the leaf if o is the centre of curvature, and the vectors S_i and S_ij stay near
 /// their values in the middle.
-struct LeafBow {
+struct LeafCurvature {
   /// Bounds of one such derivative over the leaf. Its value for the point o is in [low, high], and each component of
   /// the vector that multiplies (o - p) is within `off` of `middle`. Stored in single precision because a part has many
   /// leaves; the bounds include the rounding.
@@ -30,12 +30,13 @@ struct LeafBow {
   /// Rows: unit vectors of the two principal directions and of the normal.
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
   Eigen::Array2d along[2]{{0, 0}, {0, 0}};  ///< [1/m] change of (u, v) per metre along direction 1 and 2
-  double bent[2]{0, 0};                     ///< [1/m] the two principal curvatures in the middle
-  /// [m] height along the normal of the point o (see above) for direction i; NaN if it is unknown.
+  double principal[2]{0, 0};                ///< [1/m] the two principal curvatures in the middle
+  /// [m] height of the point o (see above) along the normal, for direction i: the centre of curvature, or 0 if the leaf
+  /// is nearly straight in that direction. NaN if the leaf was not measured; then the number of feet is unknown.
   double focus[2]{kUnknown, kUnknown};
   Term slope[2];        ///< bounds of (S - o) S_i
-  Term bend[2];         ///< bounds of S_i S_i + (S - o) S_ii
-  Term twist;           ///< bounds of S_1 S_2 + (S - center) S_12
+  Term second[2];       ///< bounds of S_i S_i + (S - o) S_ii
+  Term mixed;           ///< bounds of S_1 S_2 + (S - center) S_12
   bool smooth = false;  ///< true if the surface goes on smoothly beyond each border, or ends there
 
   /// [any] Returns the point p in the frame of the leaf.
@@ -45,12 +46,12 @@ struct LeafBow {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// [main] Measures the piece of a surface between two corners of a parameter rectangle. The result is unknown (see
+/// [main] Measures the piece of a surface between two corners of a parameter rectangle. Nothing is measured (see
 /// `focus`) if the surface is not regular in the middle, and for offsets, whose second derivatives are not exact.
 /// @param ends Leaf::borders @param hull becomes a box that encloses the piece, in the frame of its middle; it stays
-/// unchanged if the result is unknown
-LeafBow leafBowOf(const Geometry& geometry, std::uint32_t surface, const Eigen::Array2d& lo, const Eigen::Array2d& hi,
-                  std::uint32_t ends, TurnedBox& hull);
+/// unchanged if nothing is measured
+LeafCurvature leafCurvature(const Geometry& geometry, std::uint32_t surface, const Eigen::Array2d& lo,
+                            const Eigen::Array2d& hi, std::uint32_t ends, OrientedBox& hull);
 
 enum class FeetOfLeaf : std::uint8_t {
   kNowhere,  ///< no nearest point of a smooth surface lies on the leaf
@@ -58,18 +59,19 @@ enum class FeetOfLeaf : std::uint8_t {
   kUnknown
 };
 
-/// How many feet a probe has on a leaf, as far as this is known.
-struct LeafSight {
-  FeetOfLeaf feet = FeetOfLeaf::kUnknown;
+/// How many feet a probe has on a leaf, as far as the bounds show it.
+struct LeafFeet {
+  FeetOfLeaf number = FeetOfLeaf::kUnknown;
   /// For kOne: lower bound of the second derivative of half the squared distance, in any direction.
-  double least_bend = 0;
+  double least_second = 0;
 };
 
 /// [rt] Returns how many feet a probe has on the leaf. @param q [m] the probe in the frame of the leaf
-LeafSight feetSeenFrom(const LeafBow& bow, const Eigen::Vector3d& q) noexcept;
+LeafFeet countFeet(const LeafCurvature& curvature, const Eigen::Vector3d& q) noexcept;
 
 /// [rt] Returns (u, v) near the foot, as a start for Newton's method; it may lie outside the leaf. @param middle (u, v)
 /// in the middle of the leaf
-Eigen::Array2d footNear(const LeafBow& bow, const Eigen::Array2d& middle, const Eigen::Vector3d& q) noexcept;
+Eigen::Array2d footNear(const LeafCurvature& curvature, const Eigen::Array2d& middle,
+                        const Eigen::Vector3d& q) noexcept;
 
 }  // namespace hapticd::brep

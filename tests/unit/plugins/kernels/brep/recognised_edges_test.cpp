@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/brep/guised_edges.hpp"
+#include "kernels/brep/recognised_edges.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,8 @@ using Eigen::Vector3d;
 
 constexpr double kRadius = 0.005, kHeight = 0.02;
 
-/// Three quarters of a cylinder's wall as a rational spline: arcs below and above, lines beside.
+/// Returns three quarters of a cylinder's wall as a rational spline. Its edges are two arcs and two lines. @param bulge
+/// [m] makes the arcs deviate from circles
 spline::SurfaceData wall(double bulge) {
   spline::SurfaceData data;
   data.degree = {2, 1};
@@ -36,17 +37,17 @@ spline::SurfaceData wall(double bulge) {
   return data;
 }
 
-TEST(GuisedEdges, AreTheLinesAndCirclesTheyAreInTruth) {
+TEST(RecognisedEdges, AreTheLinesAndCirclesTheyAreInTruth) {
   const Part part = samples::sheetOf({wall(0)});
   const Geometry geometry(part, spline::Form::kNet);
   int circles = 0, lines = 0;
   spline::CurvePoint C;
   for (const Edge& edge : part.edges) {
-    const auto made = unguised(geometry, edge);
+    const auto made = recogniseEdge(geometry, edge);
     ASSERT_TRUE(made);
     ++(made->is_circle ? circles : lines);
     EXPECT_NEAR(made->shape.t1, made->is_circle ? 1.5 * std::numbers::pi : kHeight, 1e-12);
-    for (int i = 0; i <= 1000; ++i) {  // its parameter comes back
+    for (int i = 0; i <= 1000; ++i) {  // parameterAt() must return the parameter of each point
       const double t = edge.t0 + (edge.t1 - edge.t0) * i / 1000;
       geometry.curve(edge.curve, t, C);
       const Vector3d w = C.C - made->shape.o;
@@ -59,16 +60,17 @@ TEST(GuisedEdges, AreTheLinesAndCirclesTheyAreInTruth) {
   EXPECT_EQ(lines, 2);
 }
 
-TEST(GuisedEdges, AreNotTakenForMoreThanTheyAre) {
-  const Part part = samples::sheetOf({wall(1e-9)});  // bulges by some tenths of a nanometre
+TEST(RecognisedEdges, AreNotTakenForMoreThanTheyAre) {
+  const Part part = samples::sheetOf({wall(1e-9)});  // the arcs deviate from circles by some tenths of a nanometre
   const Geometry geometry(part, spline::Form::kNet);
   int lines = 0;
   for (const Edge& edge : part.edges)
-    if (const auto made = unguised(geometry, edge)) lines += !made->is_circle;
+    if (const auto made = recogniseEdge(geometry, edge)) lines += !made->is_circle;
   EXPECT_EQ(lines, 2);
 }
 
-/// Minima of the distance from p along a piece, its ends included; `inner`: those that are no end.
+/// Returns the number of minima of the distance from p along a piece, including its ends. @param inner becomes the
+/// number without the ends
 int minima(const Geometry& geometry, const BoxedPiece& made, std::uint32_t curve, const Vector3d& p, int& inner) {
   constexpr int kSamples = 400;
   spline::CurvePoint C;
@@ -77,7 +79,7 @@ int minima(const Geometry& geometry, const BoxedPiece& made, std::uint32_t curve
   for (int i = 0; i <= kSamples; ++i) {
     const double t0 = made.piece.t0, range = made.piece.t1 - t0;
     geometry.curve(curve, t0 + range * std::min(static_cast<double>(i) / kSamples, 1 - 1e-9),
-                   C);  // a knot is the next span's
+                   C);  // at a knot, derivatives are evaluated in the span to its right
     const int now = (C.C - p).dot(C.C1) > 0 ? 1 : -1;
     if (sign < 0 && now > 0) ++count, inner += i > 0;
     sign = now;
@@ -85,7 +87,7 @@ int minima(const Geometry& geometry, const BoxedPiece& made, std::uint32_t curve
   return count + (sign < 0 ? 1 : 0);
 }
 
-TEST(PieceBow, PromisesNoFewerFeetThanThereAre) {
+TEST(PieceCurvature, PromisesNoFewerFeetThanThereAre) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   for (const double bulge : {1e-9, 1e-4, -5e-4}) {
@@ -99,7 +101,7 @@ TEST(PieceBow, PromisesNoFewerFeetThanThereAre) {
         for (int i = 0; i < 500; ++i, ++all) {
           const double far = std::pow(10.0, -3 + i % 4);
           const Vector3d p = far * Vector3d(normal(random), normal(random), i % 2 * normal(random));
-          const FeetOfPiece feet = feetSeenFrom(made.piece.shape, p);
+          const FeetOfPiece feet = countFeet(made.piece.curvature, p);
           int inner = 0;
           const int count = minima(geometry, made, part.edges[e].curve, p, inner);
           wrong += (feet == FeetOfPiece::kOne && count != 1) || (feet == FeetOfPiece::kAtAnEnd && inner != 0);
@@ -112,9 +114,10 @@ TEST(PieceBow, PromisesNoFewerFeetThanThereAre) {
   }
 }
 
-/// Pieces of such splines were not proved from beyond their centres of curvature: every tick then looked at all that
-/// is no farther than their boxes, and told of a degraded foot.
-TEST(GuisedEdges, AreProvedFromAfarWithFewFeet) {
+/// Regression: the foot on a piece of such a spline was not proved if the probe was beyond the centre of curvature.
+/// Each tick then examined all elements that are not farther than the boxes of the pieces, and returned a degraded
+/// foot.
+TEST(RecognisedEdges, AreProvedFromAfarWithFewFeet) {
   std::ifstream in(HAPTICD_SOURCE_DIR "/config/models/as1.hpart", std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   for (const char* instance : {"", "l-bracket-assembly_1", "plate_1", "rod-assembly_1"}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/brep/row_slab.hpp"
+#include "kernels/brep/row_disc.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace hapticd::brep {
 
 using Eigen::Vector3d;
 
-RowSlab rowSlab(const Part& part, std::span<const std::uint32_t> triangles, const BoxTree& tree) {
+RowDisc rowDisc(const Part& part, std::span<const std::uint32_t> triangles, const BoxTree& tree) {
   Vector3d normal(0, 0, 0);
   Eigen::AlignedBox3d box;
   for (const std::uint32_t triangle : triangles) {
@@ -23,13 +23,13 @@ RowSlab rowSlab(const Part& part, std::span<const std::uint32_t> triangles, cons
   // zero if the triangles have no area or opposite normals; the disc then becomes a ball
   normal = normal.stableNormalized();
   // The disc must enclose the triangles even after rounding to single precision.
-  RowSlab slab;
+  RowDisc disc;
   Vector3d center, n;
   for (int axis = 0; axis < 3; ++axis) {
-    slab.center[axis] = static_cast<float>(box.center()[axis] - tree.origin()[axis]);
-    slab.normal[axis] = static_cast<float>(normal[axis]);
-    center[axis] = tree.origin()[axis] + static_cast<double>(slab.center[axis]);
-    n[axis] = static_cast<double>(slab.normal[axis]);
+    disc.center[axis] = static_cast<float>(box.center()[axis] - tree.origin()[axis]);
+    disc.normal[axis] = static_cast<float>(normal[axis]);
+    center[axis] = tree.origin()[axis] + static_cast<double>(disc.center[axis]);
+    n[axis] = static_cast<double>(disc.normal[axis]);
   }
   double half = 0, radius = 0;
   for (const std::uint32_t triangle : triangles)
@@ -39,9 +39,9 @@ RowSlab rowSlab(const Part& part, std::span<const std::uint32_t> triangles, cons
       half = std::max(half, std::abs(off));
       radius = std::max(radius, std::sqrt(std::max(0.0, way.squaredNorm() - off * off)));
     }
-  slab.half = static_cast<float>(half * (1 + 1e-6) + 1e-6 * radius + tree.margin());
-  slab.radius = static_cast<float>(radius * (1 + 1e-5) + 1e-6 * half + tree.margin());
-  return slab;
+  disc.half = static_cast<float>(half * (1 + 1e-6) + 1e-6 * radius + tree.margin());
+  disc.radius = static_cast<float>(radius * (1 + 1e-5) + 1e-6 * half + tree.margin());
+  return disc;
 }
 
 }  // namespace hapticd::brep

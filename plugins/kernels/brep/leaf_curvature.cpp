@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/brep/leaf_bow.hpp"
+#include "kernels/brep/leaf_curvature.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -15,10 +15,10 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using spline::SurfacePoint;
 
-constexpr int kBowIntervals = 6;       ///< steps between samples along an axis
-constexpr double kBowBetween = 1.25;   ///< factor by which values between the samples may be larger
-constexpr double kSagBetween = 1.5;    ///< the same factor for second derivatives
-constexpr double kBowRounding = 1e-9;  ///< relative to the terms that are compared
+constexpr int kLeafIntervals = 6;       ///< steps between samples along an axis
+constexpr double kLeafBetween = 1.25;   ///< factor by which values between the samples may be larger
+constexpr double kSagBetween = 1.5;     ///< the same factor for second derivatives
+constexpr double kLeafRounding = 1e-9;  ///< relative to the terms that are compared
 /// [rad] normals on both sides of a border that differ by less than this count as equal.
 constexpr double kSmoothKink = 1e-6;
 
@@ -28,21 +28,23 @@ struct LeafSample {
 };
 
 /// Returns the point and its derivatives along the leaf's directions, which are fixed in the parameter plane.
-LeafSample leafSample(const LeafBow& bow, const SurfacePoint& E) {
+LeafSample leafSample(const LeafCurvature& curvature, const SurfacePoint& E) {
   const auto second = [&](const Array2d& a, const Array2d& b) {
-    return Vector3d(bow.frame * (a[0] * b[0] * E.Suu + (a[0] * b[1] + a[1] * b[0]) * E.Suv + a[1] * b[1] * E.Svv));
+    return Vector3d(curvature.frame *
+                    (a[0] * b[0] * E.Suu + (a[0] * b[1] + a[1] * b[0]) * E.Suv + a[1] * b[1] * E.Svv));
   };
   LeafSample sample;
-  sample.S = bow.local(E.S);
-  for (int i = 0; i < 2; ++i) sample.first[i] = bow.frame * (bow.along[i][0] * E.Su + bow.along[i][1] * E.Sv);
-  sample.second[0] = second(bow.along[0], bow.along[0]);
-  sample.second[1] = second(bow.along[1], bow.along[1]);
-  sample.second[2] = second(bow.along[0], bow.along[1]);
+  sample.S = curvature.local(E.S);
+  for (int i = 0; i < 2; ++i)
+    sample.first[i] = curvature.frame * (curvature.along[i][0] * E.Su + curvature.along[i][1] * E.Sv);
+  sample.second[0] = second(curvature.along[0], curvature.along[0]);
+  sample.second[1] = second(curvature.along[1], curvature.along[1]);
+  sample.second[2] = second(curvature.along[0], curvature.along[1]);
   return sample;
 }
 
 /// Sets frame and directions from the middle of a leaf. Returns false if the surface is not regular there.
-bool turnToPrincipal(LeafBow& bow, const SurfacePoint& E) {
+bool turnToPrincipal(LeafCurvature& curvature, const SurfacePoint& E) {
   const Vector3d across = E.Su.cross(E.Sv);
   const double su = E.Su.norm(), area = across.norm();
   if (!(area > 1e-9 * su * E.Sv.norm()) || !(su > 0)) return false;
@@ -55,23 +57,23 @@ bool turnToPrincipal(LeafBow& bow, const SurfacePoint& E) {
   };
   const double angle = 0.5 * std::atan2(2 * form(first, second), form(first, first) - form(second, second));
   const double c = std::cos(angle), s = std::sin(angle);
-  bow.along[0] = c * first + s * second;
-  bow.along[1] = c * second - s * first;
-  bow.frame.row(0) = c * t1 + s * t2;
-  bow.frame.row(1) = c * t2 - s * t1;
-  bow.frame.row(2) = n;
-  bow.center = E.S;
-  return bow.frame.allFinite() && bow.along[0].allFinite() && bow.along[1].allFinite();
+  curvature.along[0] = c * first + s * second;
+  curvature.along[1] = c * second - s * first;
+  curvature.frame.row(0) = c * t1 + s * t2;
+  curvature.frame.row(1) = c * t2 - s * t1;
+  curvature.frame.row(2) = n;
+  curvature.center = E.S;
+  return curvature.frame.allFinite() && curvature.along[0].allFinite() && curvature.along[1].allFinite();
 }
 
-/// A LeafBow::Term in double precision, while it is measured.
+/// A LeafCurvature::Term in double precision, while it is measured.
 struct MeasuredTerm {
   double low = 0, high = 0;
   Vector3d middle{0, 0, 0}, off{0, 0, 0};
 
-  LeafBow::Term rounded() const {
+  LeafCurvature::Term rounded() const {
     constexpr float kUp = std::numeric_limits<float>::infinity();
-    LeafBow::Term term;
+    LeafCurvature::Term term;
     term.low = std::nextafter(static_cast<float>(low), -kUp);
     term.high = std::nextafter(static_cast<float>(high), kUp);
     term.middle = middle.cast<float>();
@@ -80,8 +82,8 @@ struct MeasuredTerm {
     return term;
   }
 };
-struct MeasuredBow {
-  MeasuredTerm slope[2], bend[2], twist;
+struct MeasuredCurvature {
+  MeasuredTerm slope[2], second[2], mixed;
 };
 
 /// Widens a term so that it includes one sample.
@@ -91,81 +93,81 @@ void extendTerm(MeasuredTerm& term, double value, const Vector3d& vector) {
   term.off = term.off.cwiseMax((vector - term.middle).cwiseAbs());
 }
 
-void extendBow(MeasuredBow& bow, const double (&focus)[2], const LeafSample& s) {
+void extendTerms(MeasuredCurvature& curvature, const double (&focus)[2], const LeafSample& s) {
   for (int i = 0; i < 2; ++i) {
     const Vector3d from = s.S - focus[i] * Vector3d::UnitZ();
-    extendTerm(bow.slope[i], from.dot(s.first[i]), s.first[i]);
-    extendTerm(bow.bend[i], s.first[i].squaredNorm() + from.dot(s.second[i]), s.second[i]);
+    extendTerm(curvature.slope[i], from.dot(s.first[i]), s.first[i]);
+    extendTerm(curvature.second[i], s.first[i].squaredNorm() + from.dot(s.second[i]), s.second[i]);
   }
-  extendTerm(bow.twist, s.first[0].dot(s.first[1]) + s.S.dot(s.second[2]), s.second[2]);
+  extendTerm(curvature.mixed, s.first[0].dot(s.first[1]) + s.S.dot(s.second[2]), s.second[2]);
 }
 
 /// Starts all terms with the values in the middle of a leaf.
-MeasuredBow beginBow(LeafBow& bow, const LeafSample& s, double size) {
+MeasuredCurvature beginTerms(LeafCurvature& curvature, const LeafSample& s, double size) {
   // size times curvature; below it, the centre of curvature would be mostly rounding error
   constexpr double kStraight = 1e-4;
-  MeasuredBow measured;
+  MeasuredCurvature measured;
   for (int i = 0; i < 2; ++i) {
-    const double curvature = s.second[i].z();
-    bow.bent[i] = curvature;
-    bow.focus[i] = std::abs(curvature) * size > kStraight ? 1 / curvature : 0;
+    const double principal = s.second[i].z();
+    curvature.principal[i] = principal;
+    curvature.focus[i] = std::abs(principal) * size > kStraight ? 1 / principal : 0;
     measured.slope[i].middle = s.first[i];
-    measured.bend[i].middle = s.second[i];
-    measured.bend[i].low = LeafBow::kEndless;
-    measured.bend[i].high = -LeafBow::kEndless;
+    measured.second[i].middle = s.second[i];
+    measured.second[i].low = LeafCurvature::kEndless;
+    measured.second[i].high = -LeafCurvature::kEndless;
   }
-  measured.twist.middle = s.second[2];
+  measured.mixed.middle = s.second[2];
   return measured;
 }
 
 /// Rounds a term to single precision, with a margin for the points between the samples.
-LeafBow::Term widened(MeasuredTerm term) {
-  const double more = (kBowBetween - 1) * (term.high - term.low);
+LeafCurvature::Term widened(MeasuredTerm term) {
+  const double more = (kLeafBetween - 1) * (term.high - term.low);
   term.low -= more;
   term.high += more;
-  term.off *= kBowBetween;
+  term.off *= kLeafBetween;
   return term.rounded();
 }
 
-void keepTerms(const MeasuredBow& measured, LeafBow& bow) {
+void keepTerms(const MeasuredCurvature& measured, LeafCurvature& curvature) {
   for (int i = 0; i < 2; ++i) {
-    bow.slope[i] = widened(measured.slope[i]);
-    bow.bend[i] = widened(measured.bend[i]);
+    curvature.slope[i] = widened(measured.slope[i]);
+    curvature.second[i] = widened(measured.second[i]);
   }
-  bow.twist = widened(measured.twist);
+  curvature.mixed = widened(measured.mixed);
 }
 
 /// Measures what encloses a leaf: a box in its frame, and cylinders about the centre of curvature of that direction
 /// along which the leaf is deeper.
 class LeafHull {
  public:
-  /// @param corner [m] a corner of the leaf, in the frame of the bow
-  LeafHull(const LeafBow& bow, const Vector3d& corner) : bow_(bow) {
-    const auto depth = [&](int i) { return std::abs(bow.bent[i]) * corner[i] * corner[i]; };
+  /// @param corner [m] a corner of the leaf, in the frame of the leaf
+  LeafHull(const LeafCurvature& curvature, const Vector3d& corner) : curvature_(curvature) {
+    const auto depth = [&](int i) { return std::abs(curvature.principal[i]) * corner[i] * corner[i]; };
     bent_ = depth(1) > depth(0) ? 1 : 0;
     turn_.row(0) = Vector3d::Unit(bent_);
     turn_.row(1) = Vector3d::Unit(1 - bent_);
     turn_.row(2) = Vector3d::UnitZ();
-    straight_ = bow.focus[bent_] == 0;
+    straight_ = curvature.focus[bent_] == 0;
   }
-  /// Adds a point. @param S [m] in the frame of the bow
+  /// Adds a point. @param S [m] in the frame of the leaf
   void extend(const Vector3d& S) {
     const Vector3d q = turn_ * S;
     box_.extend(q);
-    const double radius = std::hypot(q[0], q[2] - bow_.focus[bent_]);
+    const double radius = std::hypot(q[0], q[2] - curvature_.focus[bent_]);
     inner_ = std::min(inner_, radius);
     outer_ = std::max(outer_, radius);
   }
   /// Returns the hull of the points. @param sag [m] greatest deviation of the leaf from the chords between neighbouring
-  /// points, in the frame of the bow
-  TurnedBox with(const Vector3d& sag) const {
-    const Vector3d room = turn_ * sag + Vector3d::Constant(1e-12 * (1 + bow_.center.norm()));
-    TurnedBox hull;
-    hull.frame = turn_ * bow_.frame;
-    const Vector3d center = hull.frame * bow_.center;
+  /// points, in the frame of the leaf
+  OrientedBox with(const Vector3d& sag) const {
+    const Vector3d room = turn_ * sag + Vector3d::Constant(1e-12 * (1 + curvature_.center.norm()));
+    OrientedBox hull;
+    hull.frame = turn_ * curvature_.frame;
+    const Vector3d center = hull.frame * curvature_.center;
     hull.box = {box_.min() - room + center, box_.max() + room + center};
     if (straight_) return hull;
-    hull.focus = {center[0], center[2] + bow_.focus[bent_]};
+    hull.focus = {center[0], center[2] + curvature_.focus[bent_]};
     const double across = std::hypot(room[0], room[2]);
     hull.inner = std::max(inner_ - across, 0.0);
     hull.outer = outer_ + across;
@@ -173,12 +175,12 @@ class LeafHull {
   }
 
  private:
-  const LeafBow& bow_;
+  const LeafCurvature& curvature_;
   Matrix3d turn_;
   int bent_ = 0;
   bool straight_ = false;
   Eigen::AlignedBox3d box_;
-  double inner_ = LeafBow::kEndless, outer_ = 0;
+  double inner_ = LeafCurvature::kEndless, outer_ = 0;
 };
 
 /// True if the normals on both sides of one border of a leaf are equal.
@@ -212,71 +214,72 @@ bool goesOnSmoothly(const Geometry& geometry, std::uint32_t surface, const Array
 }
 
 /// Returns bounds of a term's derivative for a probe p. @param from o - p
-void rangeOfTerm(const LeafBow::Term& term, const Vector3d& from, double& low, double& high) noexcept {
+void rangeOfTerm(const LeafCurvature::Term& term, const Vector3d& from, double& low, double& high) noexcept {
   const double known = from.dot(term.middle.cast<double>()), off = from.cwiseAbs().dot(term.off.cast<double>());
-  const double rounding = kBowRounding * (std::abs(known) + off);
+  const double rounding = kLeafRounding * (std::abs(known) + off);
   low = static_cast<double>(term.low) + known - off - rounding;
   high = static_cast<double>(term.high) + known + off + rounding;
 }
 
 }  // namespace
 
-LeafBow leafBowOf(const Geometry& geometry, std::uint32_t surface, const Array2d& lo, const Array2d& hi,
-                  std::uint32_t ends, TurnedBox& hull) {
-  LeafBow bow;
-  if (geometry.part().surfaces[surface].kind == SurfaceKind::kOffset) return bow;
+LeafCurvature leafCurvature(const Geometry& geometry, std::uint32_t surface, const Array2d& lo, const Array2d& hi,
+                            std::uint32_t ends, OrientedBox& hull) {
+  LeafCurvature curvature;
+  if (geometry.part().surfaces[surface].kind == SurfaceKind::kOffset) return curvature;
   SurfacePoint E;
   const Array2d middle = 0.5 * (lo + hi);
   geometry.surface(surface, middle[0], middle[1], E);
-  if (!turnToPrincipal(bow, E)) return bow;
+  if (!turnToPrincipal(curvature, E)) return curvature;
   const double size = (hi - lo).matrix().cwiseProduct(Eigen::Vector2d(E.Su.norm(), E.Sv.norm())).norm();
-  MeasuredBow measured = beginBow(bow, leafSample(bow, E), size);
+  MeasuredCurvature measured = beginTerms(curvature, leafSample(curvature, E), size);
   geometry.surface(surface, lo[0], lo[1], E);
-  LeafHull about(bow, bow.local(E.S));
-  const Array2d step = (hi - lo) / kBowIntervals;
+  LeafHull about(curvature, curvature.local(E.S));
+  const Array2d step = (hi - lo) / kLeafIntervals;
   const Array2d end = hi - 1e-9 * (hi - lo);  // at a knot, derivatives are evaluated in the span to its right
   Vector3d sag = Vector3d::Zero();
-  for (int i = 0; i <= kBowIntervals; ++i)
-    for (int j = 0; j <= kBowIntervals; ++j) {
+  for (int i = 0; i <= kLeafIntervals; ++i)
+    for (int j = 0; j <= kLeafIntervals; ++j) {
       const Array2d uv = (lo + Array2d(i, j) * step).min(end);
       geometry.surface(surface, uv[0], uv[1], E);
-      extendBow(measured, bow.focus, leafSample(bow, E));
-      about.extend(bow.local(E.S));
-      const Vector3d bent = step[0] * step[0] * (bow.frame * E.Suu).cwiseAbs() +
-                            2 * step[0] * step[1] * (bow.frame * E.Suv).cwiseAbs() +
-                            step[1] * step[1] * (bow.frame * E.Svv).cwiseAbs();
+      extendTerms(measured, curvature.focus, leafSample(curvature, E));
+      about.extend(curvature.local(E.S));
+      const Vector3d bent = step[0] * step[0] * (curvature.frame * E.Suu).cwiseAbs() +
+                            2 * step[0] * step[1] * (curvature.frame * E.Suv).cwiseAbs() +
+                            step[1] * step[1] * (curvature.frame * E.Svv).cwiseAbs();
       sag = sag.cwiseMax(kSagBetween / 8 * bent);
     }
-  keepTerms(measured, bow);
+  keepTerms(measured, curvature);
   hull = about.with(sag);
-  bow.smooth = goesOnSmoothly(geometry, surface, lo, hi, ends);
-  return bow;
+  curvature.smooth = goesOnSmoothly(geometry, surface, lo, hi, ends);
+  return curvature;
 }
 
-LeafSight feetSeenFrom(const LeafBow& bow, const Vector3d& q) noexcept {
+LeafFeet countFeet(const LeafCurvature& curvature, const Vector3d& q) noexcept {
   double low[3], high[3];
   for (int i = 0; i < 2; ++i) {
-    const Vector3d from(-q[0], -q[1], bow.focus[i] - q[2]);
+    const Vector3d from(-q[0], -q[1], curvature.focus[i] - q[2]);
     double least, most;
-    rangeOfTerm(bow.slope[i], from, least, most);
+    rangeOfTerm(curvature.slope[i], from, least, most);
     const double kink = kSmoothKink * q.lpNorm<1>();
-    if (bow.smooth && (least > kink || most < -kink)) return {FeetOfLeaf::kNowhere};
-    rangeOfTerm(bow.bend[i], from, low[i], high[i]);
-    if (bow.smooth && high[i] < -kBowRounding) return {FeetOfLeaf::kNowhere};
+    if (curvature.smooth && (least > kink || most < -kink)) return {FeetOfLeaf::kNowhere};
+    rangeOfTerm(curvature.second[i], from, low[i], high[i]);
+    if (curvature.smooth && high[i] < -kLeafRounding) return {FeetOfLeaf::kNowhere};
   }
-  rangeOfTerm(bow.twist, -q, low[2], high[2]);
-  const double twist = std::max(std::abs(low[2]), std::abs(high[2]));
-  if (!(low[0] > 0 && low[1] > 0 && low[0] * low[1] > twist * twist)) return {};
+  rangeOfTerm(curvature.mixed, -q, low[2], high[2]);
+  const double mixed = std::max(std::abs(low[2]), std::abs(high[2]));
+  if (!(low[0] > 0 && low[1] > 0 && low[0] * low[1] > mixed * mixed)) return {};
   const double mean = 0.5 * (low[0] + low[1]), half = 0.5 * (low[0] - low[1]);
-  return {FeetOfLeaf::kOne, mean - std::sqrt(half * half + twist * twist)};
+  return {FeetOfLeaf::kOne, mean - std::sqrt(half * half + mixed * mixed)};
 }
 
-Array2d footNear(const LeafBow& bow, const Array2d& middle, const Vector3d& q) noexcept {
-  constexpr double kLeastBend = 0.2;  // below this second derivative, the step of the quadratic model would be too long
+Array2d footNear(const LeafCurvature& curvature, const Array2d& middle, const Vector3d& q) noexcept {
+  // below this second derivative, the step of the quadratic model would be too long
+  constexpr double kLeastSecond = 0.2;
   Array2d uv = middle;
   for (int i = 0; i < 2; ++i) {
-    const double bend = 1 - q[2] * bow.bent[i];
-    uv += q[i] / (bend > kLeastBend ? bend : 1) * bow.along[i];
+    const double second = 1 - q[2] * curvature.principal[i];
+    uv += q[i] / (second > kLeastSecond ? second : 1) * curvature.along[i];
   }
   return uv;
 }

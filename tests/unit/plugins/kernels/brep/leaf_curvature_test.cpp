@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a probe is told of a leaf without a foot, against a dense grid of the leaf.
+/// Compares countFeet() and the lower bounds of leaves with a dense grid of points on each leaf.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr int kGrid = 24;  ///< intervals along each axis
 
-/// Points of a leaf, and what the distances from a probe to them say.
+/// Points of a leaf, and their distances from a probe.
 class LeafGrid {
  public:
   LeafGrid(const Model& model, const Leaf& leaf) {
@@ -36,7 +36,7 @@ class LeafGrid {
     for (const Vector3d& point : points_) d2_.push_back((point - p).squaredNorm());
   }
   double least() const { return *std::min_element(d2_.begin(), d2_.end()); }
-  /// (u, v) of the points inside that are nearer than all eight about them.
+  /// Returns (u, v) of the inner points that are nearer to the probe than their eight neighbours.
   std::vector<Array2d> minimaInside(const Leaf& leaf) const {
     std::vector<Array2d> minima;
     for (int i = 1; i < kGrid; ++i)
@@ -62,15 +62,17 @@ struct LeafTally {
   int nowhere = 0, one = 0, unknown = 0, passed_over = 0;
 };
 
-/// Newton over the whole leaf: no border is the surface's, no trim leaves anything out. False: it gave up, and says so.
+/// Finds the foot on the whole leaf by Newton's method, as if the surface went on beyond the borders. Returns false if
+/// the foot is not proved.
 bool footFrom(const Model& model, Leaf leaf, const Array2d& uv, const Vector3d& p, Hit& hit) {
   leaf.borders = 0;
   const LeafStart start{uv, {FeetOfLeaf::kOne}, false};
   return leafFoot(model.geometry(), leaf, model.face(leaf.face), model.part().faces[leaf.face].surface, p, start, hit)
-      .alone;
+      .proved;
 }
 
-/// Whether a foot lies inside the leaf; a narrow valley that only looks like one on the grid leads to the border.
+/// True if a foot lies inside the leaf. A minimum of the grid may be only a point of a narrow valley, from which
+/// Newton's method leads to the border; such a minimum does not count.
 bool hasFootInside(const Model& model, const Leaf& leaf, const LeafGrid& grid, const Vector3d& p) {
   const Array2d rounding = 1e-6 * (leaf.hi - leaf.lo);
   for (const Array2d& uv : grid.minimaInside(leaf)) {
@@ -82,28 +84,28 @@ bool hasFootInside(const Model& model, const Leaf& leaf, const LeafGrid& grid, c
   return false;
 }
 
-/// A leaf that is passed over after one evaluation is farther than the limit.
-void lookFromAfar(const Model& model, Leaf leaf, const Vector3d& p, const LeafSight& sight, const LeafGrid& grid,
+/// Checks that a leaf which is given up after one evaluation is farther away than the limit.
+void lookFromAfar(const Model& model, Leaf leaf, const Vector3d& p, const LeafFeet& feet, const LeafGrid& grid,
                   LeafTally& tally) {
   leaf.borders = 0;
   for (const double share : {0.5, 0.9, 0.99, 1.0, 1.01}) {
-    LeafStart start{footNear(leaf.bow, leaf.middle(), leaf.bow.local(p)), sight, false};
+    LeafStart start{footNear(leaf.curvature, leaf.middle(), leaf.curvature.local(p)), feet, false};
     start.limit2 = share * grid.least();
     Hit hit;
     const std::uint32_t surface = model.part().faces[leaf.face].surface;
-    const PieceAnswer answer = leafFoot(model.geometry(), leaf, model.face(leaf.face), surface, p, start, hit);
+    const NewtonResult answer = leafFoot(model.geometry(), leaf, model.face(leaf.face), surface, p, start, hit);
     if (answer.evaluations > 1 || hit.d2 < 1e300) continue;
     ++tally.passed_over;
-    EXPECT_LE(answer.region2, grid.least() * (1 + 1e-9)) << p.transpose();
-    EXPECT_GT(answer.region2, start.limit2) << p.transpose();
+    EXPECT_LE(answer.untrimmed2, grid.least() * (1 + 1e-9)) << p.transpose();
+    EXPECT_GT(answer.untrimmed2, start.limit2) << p.transpose();
   }
 }
 
 void lookAtLeaf(const Model& model, const Leaf& leaf, const Vector3d& p, LeafGrid& grid, LeafTally& tally) {
-  const Vector3d q = leaf.bow.local(p);
+  const Vector3d q = leaf.curvature.local(p);
   grid.lookFrom(p);
-  const LeafSight sight = feetSeenFrom(leaf.bow, q);
-  switch (sight.feet) {
+  const LeafFeet feet = countFeet(leaf.curvature, q);
+  switch (feet.number) {
     case FeetOfLeaf::kNowhere:
       ++tally.nowhere;
       EXPECT_FALSE(hasFootInside(model, leaf, grid, p)) << p.transpose();
@@ -111,9 +113,9 @@ void lookAtLeaf(const Model& model, const Leaf& leaf, const Vector3d& p, LeafGri
     case FeetOfLeaf::kOne: {
       ++tally.one;
       Hit hit;
-      const bool arrived = footFrom(model, leaf, footNear(leaf.bow, leaf.middle(), q), p, hit);
+      const bool arrived = footFrom(model, leaf, footNear(leaf.curvature, leaf.middle(), q), p, hit);
       EXPECT_TRUE(!arrived || hit.d2 <= grid.least() * (1 + 1e-9) + 1e-18) << p.transpose();
-      lookFromAfar(model, leaf, p, sight, grid, tally);
+      lookFromAfar(model, leaf, p, feet, grid, tally);
       break;
     }
     default:
@@ -129,13 +131,13 @@ void expectTrueOf(const std::string& file) {
   for (std::uint32_t i = 0; i < model.leafCount(); ++i) {
     const Leaf& leaf = model.leaf(i);
     LeafGrid grid(model, leaf);
-    for (const double away : {1e-4, 1e-3, 1e-2, 0.1})  // of the probe from the middle of the leaf
+    for (const double away : {1e-4, 1e-3, 1e-2, 0.1})  // [m] distance of the probe from the middle of the leaf
       for (int k = 0; k < 6; ++k) {
         const Vector3d aside(normal(random), normal(random), normal(random));
-        const Vector3d p = k < 3
-                               ? Vector3d(leaf.bow.center + away * aside)
-                               : Vector3d(leaf.bow.center + away * normal(random) * leaf.bow.frame.row(2).transpose() +
-                                          0.1 * away * aside);
+        const Vector3d p =
+            k < 3 ? Vector3d(leaf.curvature.center + away * aside)
+                  : Vector3d(leaf.curvature.center + away * normal(random) * leaf.curvature.frame.row(2).transpose() +
+                             0.1 * away * aside);
         lookAtLeaf(model, leaf, p, grid, tally);
       }
   }
@@ -146,16 +148,16 @@ void expectTrueOf(const std::string& file) {
   EXPECT_GT(tally.nowhere, 0);
   EXPECT_GT(tally.one, 0);
   EXPECT_GT(tally.passed_over, tally.one);
-  EXPECT_LT(tally.unknown, 0.5 * all);  // near poles, and at centres of curvature
+  EXPECT_LT(tally.unknown, 0.5 * all);  // unknown near poles and at centres of curvature
 }
 
-TEST(LeafBow, OfTheTeapot) {
+TEST(LeafCurvature, OfTheTeapot) {
   expectTrueOf("teapot.yaml");
 }
-TEST(LeafBow, OfTheGoblet) {
+TEST(LeafCurvature, OfTheGoblet) {
   expectTrueOf("goblet.yaml");
 }
-TEST(LeafBow, OfTheTorus) {
+TEST(LeafCurvature, OfTheTorus) {
   expectTrueOf("torus.yaml");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/brep/guised_edges.hpp"
+#include "kernels/brep/recognised_edges.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -14,8 +14,8 @@ using spline::CurvePoint;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kOff = 5e-13;  ///< [m] greatest deviation of the points from the shape
-/// Samples per knot span. The squared distance of a rational cubic from a centre has degree 6. So if it is right at
-/// more than 6 points of a span, it is right between them too.
+/// Samples per knot span. The numerator of the squared distance from a point to a rational cubic is a polynomial of
+/// degree 6. So if the distance is right at more than 6 points of a span, it is right in the whole span.
 constexpr int kInSpan = 9;
 
 struct Samples {
@@ -44,7 +44,7 @@ bool rises(const std::vector<double>& values) {
   return std::adjacent_find(values.begin(), values.end(), [](double a, double b) { return !(a < b); }) == values.end();
 }
 
-bool findLine(const Samples& samples, GuisedEdge& made) {
+bool findLine(const Samples& samples, RecognisedEdge& made) {
   EdgeShape& line = made.shape;
   line.o = samples.points.front();
   const Vector3d way = samples.points.back() - line.o;
@@ -58,7 +58,7 @@ bool findLine(const Samples& samples, GuisedEdge& made) {
   return rises(made.stops);
 }
 
-bool findCircle(const Samples& samples, GuisedEdge& made) {
+bool findCircle(const Samples& samples, RecognisedEdge& made) {
   // largest ratio of the radius to the distance of the three points; above it, the centre is mostly rounding error
   constexpr double kWidest = 1e3;
   const auto at = [&](std::size_t thirds) { return samples.points[(samples.points.size() - 1) * thirds / 3]; };
@@ -88,10 +88,10 @@ bool findCircle(const Samples& samples, GuisedEdge& made) {
 
 }  // namespace
 
-std::optional<GuisedEdge> unguised(const Geometry& geometry, const Edge& edge) {
+std::optional<RecognisedEdge> recogniseEdge(const Geometry& geometry, const Edge& edge) {
   if (edge.curve == kNone || geometry.part().curves3[edge.curve].kind != CurveKind::kSpline) return std::nullopt;
   const Samples samples = samplesOf(geometry, edge);
-  GuisedEdge made;
+  RecognisedEdge made;
   made.curve = edge.curve;
   made.parameters = samples.t;
   if (!findLine(samples, made)) {
@@ -104,7 +104,7 @@ std::optional<GuisedEdge> unguised(const Geometry& geometry, const Edge& edge) {
   return made;
 }
 
-double parameterAt(const Geometry& geometry, const GuisedEdge& edge, double s, const Vector3d& point) noexcept {
+double parameterAt(const Geometry& geometry, const RecognisedEdge& edge, double s, const Vector3d& point) noexcept {
   constexpr int kSteps = 4;
   if (s <= edge.stops.front()) return edge.parameters.front();
   if (s >= edge.stops.back()) return edge.parameters.back();
