@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cctype>
 #include <random>
+#include <sstream>
 
 #include "kernels/brep/part_check.hpp"
 #include "mesh_import/mesh_part.hpp"
@@ -92,32 +93,79 @@ std::string errorOf(const Result<MeshFile>& mesh) {
 }
 
 TEST(MeshImport, SaysWhereAFileIsWrong) {
-  EXPECT_EQ(errorOf(parseObjMesh("v 0 0\n", "x.obj")), "x.obj:1: expected v x y z, finite numbers");
-  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 0\nf 1 2 3\n", "x.obj")), "x.obj:2: point '2', expected 1 to 1");
-  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 nan\n", "x.obj")), "x.obj:1: expected v x y z, finite numbers");
-  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 0\nf 1 2\33[2J 3\n", "x.obj")), "x.obj:2: point '2?[2J', expected 1 to 1");
+  EXPECT_EQ(errorOf(parseObjMesh("v 0 0\n", "x.obj")),
+            "x.obj:1: 'v 0 0' is not a point; expected v x y z, finite numbers");
+  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 0\nf 1 2 3\n", "x.obj")),
+            "x.obj:2: the face names the point '2'; expected 1 to 1");
+  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 nan\n", "x.obj")),
+            "x.obj:1: 'v 0 0 nan' is not a point; expected v x y z, finite numbers");
+  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 0\nf 1 2\33[2J 3\n", "x.obj")),
+            "x.obj:2: the face names the point '2?[2J'; expected 1 to 1");
   EXPECT_EQ(errorOf(parseMesh("\xfe\xff\0#", "x.obj")),
             "x.obj: is text in UTF-16, expected UTF-8 or ASCII: save it again with that encoding");
   EXPECT_EQ(errorOf(parseMesh("", "x.stl")), "x.stl: is empty");
   EXPECT_EQ(errorOf(parseStlMesh("solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\n", "x.stl")),
-            "x.stl:2: the file ends inside this facet: it is cut off; expected endfacet");
+            "x.stl:2: the file ends inside this facet, so it is cut off; expected endfacet");
   EXPECT_EQ(errorOf(parseStlMesh("solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nendfacet\nendsolid", "x.stl")),
-            "x.stl:5: the facet before this line has less than three corners");
-  EXPECT_EQ(errorOf(parsePlyMesh("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
-                                 "property float z\nend_header\n0 0 0\n",
-                                 "x.ply")),
-            "x.ply:8: vertex 1 of 2: the file ends here: it is cut off, or the header states too many");
+            "x.stl:2: the facet has 2 corners; expected three lines vertex x y z");
+  EXPECT_EQ(
+      errorOf(parsePlyMesh("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+                           "property float z\nend_header\n0 0 0\n",
+                           "x.ply")),
+      "x.ply:8: vertex 1 (from 0) of 2: the file ends here, but the header states more; the file is cut off, or the "
+      "number in the header is wrong");
   EXPECT_EQ(errorOf(parsePlyMesh("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                                  "end_header\n0 0\n",
                                  "x.ply")),
             "x.ply:6: the element vertex has no property z; expected x, y and z");
   EXPECT_EQ(errorOf(parseStlMesh("solid\nvertex 0 0 zero\n", "x.stl")),
-            "x.stl:2: expected vertex x y z, finite numbers");
+            "x.stl:2: 'vertex 0 0 zero' is not a corner; expected vertex x y z, finite numbers\n"
+            "x.stl:2: the facet has 1 corner; expected three lines vertex x y z");
   EXPECT_EQ(errorOf(parsePlyMesh("ply\nformat odd 1.0\n", "x.ply")),
-            "x.ply:2: unknown format, expected ascii, binary_little_endian or binary_big_endian");
+            "x.ply:2: the format 'odd' is unknown; expected ascii, binary_little_endian or binary_big_endian");
   EXPECT_EQ(errorOf(parseMesh("", "x.foo")), "x.foo: the name is not that of a mesh, expected .obj, .stl or .ply");
   EXPECT_NE(errorOf(parsePlyMesh("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n", "x.ply")),
             "");
+}
+
+/// The lines of an error.
+std::vector<std::string> linesOf(const std::string& error) {
+  std::vector<std::string> lines;
+  std::istringstream in(error);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(MeshImport, TellsAllWrongLinesAtOnce) {
+  const auto obj = linesOf(errorOf(parseObjMesh("v 0 0 0\nv 0 zero 0\nv 0 1 0\nf 1 2 3\nf 1 2 9\nf 1 2\n", "x.obj")));
+  ASSERT_EQ(obj.size(), 3u);
+  EXPECT_EQ(obj[0].rfind("x.obj:2: 'v 0 zero 0'", 0), 0u);
+  EXPECT_EQ(obj[1], "x.obj:5: the face names the point '9'; expected 1 to 3");
+  EXPECT_EQ(obj[2], "x.obj:6: the face has 2 points; expected f and at least three");
+  const auto stl =
+      linesOf(errorOf(parseStlMesh("solid\nfacet\nvertex 0 0 a\nvertex 1 0 0\nvertex 0 1 b\nendfacet\n"
+                                   "facet\nvertex 0 0 0\nendfacet\nendsolid\n",
+                                   "x.stl")));
+  ASSERT_EQ(stl.size(), 3u);
+  EXPECT_EQ(stl[1].rfind("x.stl:5: 'vertex 0 1 b'", 0), 0u);
+  EXPECT_EQ(stl[2].rfind("x.stl:7: the facet has 1 corner", 0), 0u);
+  const auto ply = linesOf(
+      errorOf(parsePlyMesh("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                           "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+                           "0 0 0\n1 0\n0 one 0\n3 0 1 2\n3 0 1 7\n",
+                           "x.ply")));
+  ASSERT_EQ(ply.size(), 3u);
+  EXPECT_EQ(ply[0], "x.ply:11: vertex 1 (from 0) of 3: the line ends before the value of the property z");
+  EXPECT_EQ(ply[1], "x.ply:12: vertex 2 (from 0) of 3: 'one' is not a number; expected the value of the property y");
+  EXPECT_EQ(ply[2].rfind("x.ply:14: face 1 (from 0) of 2: its vertex 7 is out of range", 0), 0u);
+}
+
+TEST(MeshImport, CountsTheWrongLinesBeyondTwenty) {
+  std::string text;
+  for (int i = 0; i < 100; ++i) text += "v 0 0\n";
+  const auto lines = linesOf(errorOf(parseObjMesh(text, "x.obj")));
+  ASSERT_EQ(lines.size(), 21u);
+  EXPECT_EQ(lines[20], "x.obj: 80 more lines are wrong");
 }
 
 const char* const kPlyHead =
@@ -233,6 +281,22 @@ TEST(MeshImport, ReadsStlAsOtherProgramsWriteIt) {
     EXPECT_TRUE(mesh->remarks.empty());
   }
   EXPECT_EQ(parseStlMesh("solid\n" + facet, "x.stl")->remarks.size(), 1u);  // endsolid is missing
+  const std::string corners = "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n",
+                    loop = "outer loop\n" + corners + "endloop\n";
+  for (const std::string& text :
+       {"solid\n" + corners + corners + "endsolid", "solid\n" + loop + "outer loop\n" + corners + "endloop\nendsolid",
+        "solid\nfacet\n" + loop + loop + "endfacet\nendsolid",
+        "# vertex of a solid\nsolid\n// facet\n" + facet + "; vertex 1\n" + facet + "endsolid"}) {
+    const auto mesh = parseStlMesh(text, "x.stl");
+    ASSERT_TRUE(mesh) << mesh.error();
+    EXPECT_EQ(mesh->corners.size(), 2u) << text;
+    EXPECT_TRUE(mesh->remarks.empty());
+  }
+  const auto square =
+      parseStlMesh("solid\nfacet\nouter loop\n" + corners + "vertex -1 1 0\nendloop\nendfacet\nendsolid", "x.stl");
+  ASSERT_TRUE(square) << square.error();
+  EXPECT_EQ(square->corners.size(), 2u);
+  EXPECT_EQ(square->remarks[0], "1 facet has more than three corners and became triangles");
   std::string binary(84 + 50, '\0');
   binary.replace(0, 5, "solid");
   binary[80] = 1;
@@ -251,11 +315,18 @@ TEST(MeshImport, ReadsPlyAsOtherProgramsWriteIt) {
                                    "x.ply");
   ASSERT_TRUE(longer) << longer.error();
   EXPECT_EQ(longer->remarks.size(), 1u);
+  std::string one_line = points + "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3";
+  for (char& c : one_line)
+    if (c == '\n') c = ' ';
+  const auto together = parsePlyMesh(
+      head + "element face 4\nproperty list uchar int vertex_indices\nend_header\n" + one_line + "\n", "x.ply");
+  ASSERT_TRUE(together) << together.error();
+  EXPECT_EQ(together->remarks[0], "lines and elements do not agree; the values were read one after another");
   const auto strips = parsePlyMesh(head + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" +
                                        points + "10 0 2 1 3 0 -1 0 3 2 -1\n",
                                    "x.ply");
   ASSERT_TRUE(strips) << strips.error();
-  for (const auto& mesh : {longer, strips}) {
+  for (const auto& mesh : {longer, together, strips}) {
     MeshReport report;
     meshPart(*mesh, {}, "x.ply", report);
     EXPECT_TRUE(report.closed);
