@@ -152,7 +152,7 @@ def others(folder, ask, recording, path, file):
         check(f"{words[0]} {words[-1]} fills an empty file and replaces its own", codes == [0, 0] and os.path.getsize(again) > 0, codes)
     write(folder, "p2.csv", "t,x,y,z,qw,qx,qy,qz\n0,0,0.2,0,1,0,0,0\n0.001,0,0.2,0,0.9999,0,0,0\n0.002,nan,nan,nan,nan,nan,nan,nan\n# x\n0.003,0,0.2,0,0,0,0,0\n")
     code, out, err = ask("trace", file, "--probe", os.path.join(folder, "p2.csv"), "--out", "-")
-    check("an orientation without its length is refused at its line, others are taken", code == 2 and "p2.csv:6: " in err and "has the length 0, expected 1" in err, err)
+    check("an orientation without its length is refused at its line, others are taken", code == 2 and "p2.csv:6: " in err and "has the length 0; expected a unit quaternion" in err, err)
 
 
 def everything(folder, ask):
