@@ -298,7 +298,7 @@ def refuse(folder):
     refused("index.obj", "v 0 0 0\nf 1 2 3\n", "index.obj:2: the face names the point '2'; expected 1 to 1")
     refused("empty.stl", "solid nothing\nendsolid\n", "no triangles")
     refused("what.ply", "ply\n", "the header has no end")
-    refused("what.off", "OFF\n", "expected .obj, .stl, .ply")
+    refused("what.txt", "OFF\n", "expected .obj, .stl, .ply")
     code, said = hapticd("import", "--medial", os.path.join(folder, "none.obj"), os.path.join(folder, "out.ma"))
     check("a file that is not there is refused", code == 2 and "none.obj" in said, said)
     code, said = hapticd("import", "--medial", os.path.join(folder, "open.obj"), os.path.join(folder, "out.txt"))
