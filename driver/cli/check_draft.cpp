@@ -54,7 +54,9 @@ class Models {
       const auto plugin = catalog().shape(draft.models[i].plugin);
       plugins_.push_back(plugin ? *plugin : nullptr);
       unread_.push_back(plugin ? unread.ofModel(i, **plugin) : UnreadModel{});
-      left_out_[i] = !plugin || lacksNeeded(draft.models[i], **plugin);
+      lacks_.push_back(plugin && lacksNeeded(draft.models[i], **plugin));
+      // a plugin that ships can be asked all the same: it finds what is wrong with the other parameters
+      left_out_[i] = !plugin || (lacks_[i] && !host::ships(draft.models[i].library));
     }
   }
 
@@ -105,7 +107,9 @@ class Models {
   /// parameters in backquotes; other words of it are keys of the file.
   bool dependsOnUnread(const document::Problem& one) const {
     const auto model = modelOf(one.key);
-    if (!model || *model >= unread_.size() || plugins_[*model] == nullptr || unread_[*model].sound()) return false;
+    if (!model || *model >= unread_.size() || plugins_[*model] == nullptr) return false;
+    if (lacks_[*model] && !concernsGiven(one, *model)) return true;
+    if (unread_[*model].sound()) return false;
     const auto& given = draft_.models[*model].parameters;
     const bool of_file = std::any_of(given.begin(), given.end(), [&one](const scene::Value& value) {
       return value.kind == HSP_PATH && one.what.find(value.text + ":") != std::string::npos;
@@ -115,6 +119,18 @@ class Models {
       return isUnread(*model, param.id) &&
              (of_file ? one.what.find("`" + param.id + "`") != std::string::npos : hasWord(one.what, param.id));
     });
+  }
+
+  /// Returns true if a message about a model that lacks a needed parameter is about those that it has.
+  bool concernsGiven(const document::Problem& one, size_t model) const {
+    bool concerns = false;
+    for (const host::ParamInfo& param : plugins_[model]->params) {
+      if (!hasWord(one.what, param.id)) continue;
+      const bool given = givenIn(draft_.models[model].parameters, param.id.c_str()) != nullptr;
+      if (!given && (param.flags & HSP_P_REQUIRED) != 0) return false;
+      concerns = concerns || given;
+    }
+    return concerns;
   }
 
   static bool hasWord(std::string_view text, std::string_view word) {
@@ -129,7 +145,7 @@ class Models {
   const scene::Scene& draft_;
   std::vector<const host::ClassInfo*> plugins_;
   std::vector<UnreadModel> unread_;
-  std::vector<bool> left_out_;
+  std::vector<bool> left_out_, lacks_;  ///< of each model: it is not tried; it lacks a needed parameter
 };
 
 /// Judges settings that need the arms.
@@ -149,7 +165,14 @@ void checkDraftArms(const scene::Scene& draft, const UnreadKeys& unread, const M
     add(warnings, unstableContacts(draft, trial.stiffness));
     add(warnings, slowArms(draft));
   }
-  if (!unread.has("servo") && !unread.has("hand")) add(problems, refusedArms(draft, trial.needs_velocity));
+  if (unread.has("servo")) return;
+  document::Problems refused = refusedArms(draft, trial.needs_velocity);
+  if (unread.has("hand"))  // its directions can be judged without the other keys
+    std::erase_if(refused, [&unread](const document::Problem& one) {
+      return (one.key != "hand.normal" && one.key != "hand.axis") || unread.has("hand.normal") ||
+             unread.has("hand.axis");
+    });
+  add(problems, refused);
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ int importSoftBody(const ImportArguments& options) {
   body.out = options.out;
   body.scale = options.placement.scale;
   const auto mesh = readSurface(body, catalog());
-  if (!mesh) return fail(kBadInput, mesh.error());
+  if (!mesh) return failLines(kBadInput, mesh.error());
   const auto done = importMedial(body, *mesh, catalog());
   return done ? kWorked : fail(kFailed, done.error());
 }
@@ -203,8 +203,7 @@ void addImport(const Command& app, int& exit_code) {
   command
       .addOption("file", options->file,
                  "Bezier patches (.bpt), triangles (.obj, .stl, .ply) or CAD (.step, .stp, .iges, .igs, .brep). With "
-                 "--medial: "
-                 ".obj, .stl, or a model file with surfaces")
+                 "--medial: .obj, .stl, .ply, or a model file with surfaces")
       .required();
   command.addOption(
       "-o,--out,out", options->out,

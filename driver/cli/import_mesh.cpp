@@ -67,6 +67,16 @@ void print(const importing::MeshReport& r, const std::string& out) {
 
 }  // namespace
 
+int failLines(int exit_code, const std::string& lines) {
+  for (std::size_t begin = 0; begin < lines.size();) {
+    std::size_t end = lines.find('\n', begin);
+    while (end != std::string::npos && end + 1 < lines.size() && lines[end + 1] == ' ') end = lines.find('\n', end + 1);
+    fail(exit_code, lines.substr(begin, end - begin));
+    begin = end == std::string::npos ? lines.size() : end + 1;
+  }
+  return exit_code;
+}
+
 int importMesh(const MeshImport& options) {
   if (std::filesystem::path(options.out).extension() != ".hpart")
     return fail(kBadInput, options.out +
@@ -75,7 +85,7 @@ int importMesh(const MeshImport& options) {
   const auto bytes = readRegular(options.file, kMaxMeshBytes);
   if (!bytes) return fail(kBadInput, options.file + ": " + bytes.error());
   auto mesh = importing::parseMesh(*bytes, options.file);
-  if (!mesh) return fail(kBadInput, mesh.error());
+  if (!mesh) return failLines(kBadInput, mesh.error());
   const importing::Placement& placement = options.placement;
   const bool placed = placement.fit > 0 || placement.center || placement.up != 'y';
   if (placed) importing::placePoints(mesh->points, mesh->corners, placement);

@@ -14,6 +14,9 @@ struct MeshImport {
   bool json = false;        ///< true prints the report as JSON
 };
 
+/// [main] Prints each line of an error as an error of its own. @return the given exit code
+int failLines(int exit_code, const std::string& lines);
+
 /// [main] Converts the mesh and prints the report or the error. @return the exit code
 int importMesh(const MeshImport& options);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -140,9 +141,20 @@ void takeOwnDepths(const record::Recording& recording, uint32_t arm, const recor
   }
 }
 
-record::RunReport reportOf(const std::string& file, const std::vector<record::Sample>& samples) {
+/// Returns the name of the recording, with the scene and the only arm of the run as far as they are known. If there are
+/// several arms, the picture names the one that is drawn.
+std::string titleOf(const std::string& file, const record::Recording& recording) {
+  const std::string name = std::filesystem::path(file).filename().string();
+  const auto about = servo::readAbout(recording.aboutJson());
+  if (!about) return name;
+  const auto& devices = about->scene.devices;
+  return fmt::format("{} (scene {}{})", name, about->scene.file.filename().string(),
+                     devices.size() == 1 ? ", arm " + devices[0].name : "");
+}
+
+record::RunReport reportOf(const std::string& title, const std::vector<record::Sample>& samples) {
   record::RunReport report;
-  report.scene = file;
+  report.scene = title;
   report.ticks = samples.size();
   report.seconds = samples.empty() ? 0 : samples.back().t - samples.front().t;
   report.rate_hz = report.seconds > 0 ? static_cast<double>(samples.size() - 1) / report.seconds : 0;
@@ -155,7 +167,8 @@ int plot(const PlotArguments& options) {
   if (const std::string wrong = whyNotWritten(out, pictureKind(), {{options.file, "the recording"}}); !wrong.empty())
     return fail(kBadInput, wrong);
   if (options.from && options.to && *options.from >= *options.to)
-    return fail(kBadInput, "--from is not before --to, expected an earlier time");
+    return fail(kBadInput, fmt::format("--from {:g} is not before --to {:g}; expected an earlier time", *options.from,
+                                       *options.to));
   auto recording = record::Recording::open(options.file);
   if (!recording) return fail(kBadInput, recording.error());
   if (const std::string& damage = (*recording)->damage(); !damage.empty())
@@ -179,7 +192,7 @@ int plot(const PlotArguments& options) {
                                        options.file, first, last));
   if (!std::ofstream(out, std::ios::app))
     return fail(kBadInput, out + ": cannot be written, expected a file in a folder that you may write to");
-  record::RunReport report = reportOf(options.file, samples);
+  record::RunReport report = reportOf(titleOf(options.file, **recording), samples);
   const record::RunNotes notes = notesOf(**recording, options.arm, report.virtual_time);
   if (const record::Column* tick = ticks->find("tick"); tick != nullptr && !notes.arm.empty())
     takeOwnDepths(**recording, options.arm, *tick, *ticks, rows, samples);

@@ -37,9 +37,13 @@ struct ConformanceArguments {
 };
 
 struct Outcome {
-  std::string plugin, name, why;
-  bool passed = false, skipped = false, hung = false, warned = false;
-  std::string end;  ///< how the process of the test ended, if it gave no answer
+  std::string plugin, name;
+  conformance::Verdict verdict;
+  bool hung = false;
+  std::string end{};  ///< how the process of the test ended, if it gave no answer
+
+  bool failed() const { return verdict.failed(); }
+  const std::string& why() const { return verdict.text; }
 };
 
 /// If a plugin that ships with hapticd needs a model file, gives it one that ships too, and prints a note.
@@ -98,18 +102,11 @@ Result<Touch> lookForContact(const Recipe& recipe, const ConformanceArguments& o
 }
 
 Outcome tryOne(const Recipe& recipe, const ConformanceTest& test, const ConformanceArguments& options) {
-  Outcome outcome{recipe.class_name, test.name, "", false, false, false, false, ""};
   shareLastStep();
-  const auto said = host::runInChild([&] { return "=" + test.run(recipe, options.seed); }, options.limitMs());
-  if (!said) outcome.end = said.error();
-  outcome.why = said ? said->substr(1) : "it " + said.error() + whereItEnded();
-  outcome.hung = !said && said.error().rfind("took longer", 0) == 0;
-  outcome.skipped = outcome.why.rfind("skip: ", 0) == 0;
-  outcome.warned = outcome.why.rfind("warn: ", 0) == 0;
-  const bool noted = outcome.why.rfind("note: ", 0) == 0;
-  outcome.passed = outcome.why.empty() || outcome.skipped || outcome.warned || noted;
-  if (outcome.skipped || outcome.warned || noted) outcome.why.erase(0, 6);
-  return outcome;
+  const auto said = host::runInChild([&] { return toText(test.run(recipe, options.seed)); }, options.limitMs());
+  if (said) return {recipe.class_name, test.name, verdictFromText(*said)};
+  const bool hung = said.error().rfind("took longer", 0) == 0;
+  return {recipe.class_name, test.name, "it " + said.error() + whereItEnded(), hung, said.error()};
 }
 
 /// Tests `count` runs with random input in one child process. @return "=" if nothing was wrong
@@ -128,44 +125,61 @@ Result<std::string> fuzzSome(const Recipe& recipe, const ConformanceArguments& o
 Outcome fuzz(const Recipe& recipe, const ConformanceArguments& options) {
   constexpr int kRunsAChild = 20;
   const Nanoseconds end = monotonicNow() + static_cast<Nanoseconds>(options.fuzz * 1e9);
-  Outcome outcome{recipe.class_name, "fuzz", "", true, false, false, false, ""};
+  std::string wrong;
   uint64_t seed = options.seed;
-  for (; monotonicNow() < end && outcome.passed; seed += kRunsAChild) {
+  for (; monotonicNow() < end && wrong.empty(); seed += kRunsAChild) {
     const auto said = fuzzSome(recipe, options, seed, kRunsAChild);
     if (said && *said == "=") continue;
-    outcome.passed = false;
-    outcome.why = said ? *said : "it " + said.error();
+    wrong = said ? *said : "it " + said.error();
     for (uint64_t s = seed; !said && s < seed + kRunsAChild; ++s) {
       const auto one = fuzzSome(recipe, options, s, 1);
       if (one) continue;
-      outcome.why = "seed " + std::to_string(s) + ": it " + one.error();
+      wrong = "seed " + std::to_string(s) + ": it " + one.error();
       break;
     }
   }
-  if (outcome.passed) outcome.why = std::to_string(seed - options.seed) + " runs of 500 steps";
-  return outcome;
+  if (!wrong.empty()) return {recipe.class_name, "fuzz", wrong};
+  return {recipe.class_name, "fuzz", noted(std::to_string(seed - options.seed) + " runs of 500 steps")};
+}
+
+/// How a kind of verdict is shown: in the table, and in JSON.
+struct Shown {
+  const char *word, *json;
+  Colour colour;
+};
+
+Shown shown(conformance::Verdict::Kind kind) {
+  switch (kind) {
+    case conformance::Verdict::Kind::kPassed:
+      return {"ok", "pass", Colour::kGood};
+    case conformance::Verdict::Kind::kSkipped:
+      return {"skip", "skip", Colour::kWarning};
+    case conformance::Verdict::Kind::kWarned:
+      return {"warn", "warn", Colour::kWarning};
+    case conformance::Verdict::Kind::kFailed:
+      break;
+  }
+  return {"FAIL", "fail", Colour::kBad};
 }
 
 void print(const Outcome& outcome) {
-  const bool remark = outcome.skipped || outcome.warned;
-  const std::string word = outcome.skipped ? "skip" : outcome.warned ? "warn" : outcome.passed ? "ok" : "FAIL";
-  const Colour colour = remark ? Colour::kWarning : outcome.passed ? Colour::kGood : Colour::kBad;
-  std::printf("%s%-*s %-31s %s\n", coloured(word, colour).c_str(), static_cast<int>(5 - word.size()), "",
-              outcome.name.c_str(), outcome.why.c_str());
+  const Shown how = shown(outcome.verdict.kind);
+  std::printf("%s%-*s %-31s %s\n", coloured(how.word, how.colour).c_str(),
+              static_cast<int>(5 - std::string_view(how.word).size()), "", outcome.name.c_str(), outcome.why().c_str());
   std::fflush(stdout);
 }
 
 /// Returns the outcome for a file whose classes cannot even be read: a failure of the first test.
 std::vector<Outcome> unusable(const std::string& why) {
   const bool slow = why.find("took longer") != std::string::npos;
-  return {{"", slow ? "scan-time-limit" : "descriptor-complete", why, false, false, false, false, ""}};
+  return {{"", slow ? "scan-time-limit" : "descriptor-complete", why}};
 }
 
 /// Reports a shape that cannot be activated as a single failure, not as a failure of every test.
 size_t notActive(const Recipe& recipe, const std::string& why, const ConformanceArguments& options,
                  std::vector<Outcome>& outcomes) {
   const size_t left = conformanceTests().size();
-  outcomes.push_back({recipe.class_name, "activate", why, false, false, false, false, ""});
+  outcomes.push_back({recipe.class_name, "activate", why});
   if (options.json) return left;
   print(outcomes.back());
   const bool crashed = endedBeforeSteps();
@@ -225,9 +239,9 @@ std::optional<Outcome> overrunBehind(const Recipe& recipe, const ConformanceArgu
   for (const ConformanceTest& test : conformanceTests()) {
     if (test.name != std::string_view(kGuarded)) continue;
     Outcome guarded = tryOne(recipe, test, options);
-    const bool named = overran() || guarded.why.find(kBeyond) != std::string::npos;
-    if (guarded.passed || guarded.hung || !named) return std::nullopt;
-    crashed.why +=
+    const bool named = overran() || guarded.why().find(kBeyond) != std::string::npos;
+    if (!guarded.failed() || guarded.hung || !named) return std::nullopt;
+    crashed.verdict.text +=
         ": it wrote or read memory that is not its own; first correct what fails in " + std::string(kGuarded);
     return guarded;
   }
@@ -248,7 +262,7 @@ size_t testClass(const Recipe& recipe, const ConformanceArguments& options, std:
     if (guarded && tests[i].name == std::string_view(kGuarded)) continue;
     outcomes.push_back(tryOne(recipe, tests[i], options));
     if (!guarded) guarded = overrunBehind(recipe, options, outcomes.back());
-    if (!outcomes.back().passed) lacking.add(outcomes.back());
+    if (outcomes.back().failed()) lacking.add(outcomes.back());
     const bool hung = outcomes.back().hung;
     if (!same.known(outcomes.back()) && !options.json) print(outcomes.back());
     if (guarded && !told) {
@@ -277,9 +291,9 @@ int sum(const std::vector<Outcome>& outcomes, size_t not_run, const ConformanceA
   size_t failed = 0;
   auto tests = nlohmann::ordered_json::array();
   for (const Outcome& o : outcomes) {
-    failed += o.passed ? 0 : 1;
-    const char* result = o.skipped ? "skip" : o.warned ? "warn" : o.passed ? "pass" : "fail";
-    tests.push_back({{"plugin", o.plugin}, {"name", o.name}, {"result", result}, {"why", o.why}});
+    failed += o.failed() ? 1 : 0;
+    const char* result = shown(o.verdict.kind).json;
+    tests.push_back({{"plugin", o.plugin}, {"name", o.name}, {"result", result}, {"why", o.why()}});
   }
   const nlohmann::ordered_json all{
       {"file", options.file}, {"seed", options.seed}, {"failed", failed}, {"not_run", not_run}, {"tests", tests}};

@@ -26,8 +26,9 @@ Result<std::vector<PathRow>> readProbePath(const std::string& file) {
     const double length = rows[i].orientation.norm();
     if (!rows[i].orientation.coeffs().allFinite() || std::abs(length - 1) <= kLengthError)
       continue;  // a row of NaN is a gap without samples
-    return Error{fmt::format("{}:{}: qw,qx,qy,qz: ({:g}, {:g}, {:g}, {:g}) has the length {:.4g}, expected 1", file,
-                             table->lines[i], v[4], v[5], v[6], v[7], length)};
+    return Error{
+        fmt::format("{}:{}: qw,qx,qy,qz: ({:g}, {:g}, {:g}, {:g}) has the length {:.4g}; expected a unit quaternion",
+                    file, table->lines[i], v[4], v[5], v[6], v[7], length)};
   }
   return rows;
 }

@@ -14,6 +14,7 @@
 #include "cli/probe_path.hpp"
 #include "cli/tick_watch.hpp"
 #include "cli/trace_writer.hpp"
+#include "document/suggestion.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "servo/velocity/probe_velocity.hpp"
 #include "session/silence_reason.hpp"
@@ -29,6 +30,7 @@ struct TraceArguments {
 
 /// Returns the indices of the models to print; an empty `filter` means all.
 Result<std::vector<uint32_t>> chosenModels(const scene::Scene& scene, const std::string& filter) {
+  constexpr std::size_t kMostListed = 24;
   std::vector<uint32_t> chosen;
   if (filter.empty()) {
     for (uint32_t i = 0; i < scene.models.size(); ++i) chosen.push_back(i);
@@ -37,7 +39,12 @@ Result<std::vector<uint32_t>> chosenModels(const scene::Scene& scene, const std:
   for (const std::string& name : command_line::split(filter, ',')) {
     const auto it =
         std::find_if(scene.models.begin(), scene.models.end(), [&](const auto& m) { return m.name == name; });
-    if (it == scene.models.end()) return Error{"--models: the scene has no model \"" + name + "\""};
+    if (it == scene.models.end()) {
+      std::vector<std::string> names;
+      for (const scene::Model& model : scene.models) names.push_back(model.name);
+      return Error{"--models: the scene has no model \"" + name + "\"; expected one of " +
+                   document::listed(names, kMostListed) + document::suggestion(name, names)};
+    }
     chosen.push_back(static_cast<uint32_t>(it - scene.models.begin()));
   }
   return chosen;

@@ -44,11 +44,14 @@ void stopTuning(int signal) {
 Result<tune::Motion> motionOfFile(const std::string& file, double rate) {
   auto rows = readProbePath(file);
   if (!rows) return Error{rows.error()};
-  if (rows->size() < 100) return Error{file + ": " + std::to_string(rows->size()) + " rows, expected at least 100"};
+  if (rows->size() < 100)
+    return Error{file + ": the path has " + std::to_string(rows->size()) +
+                 " rows; expected at least 100, one for each tick"};
   const double period = (rows->back().t - rows->front().t) / static_cast<double>(rows->size() - 1);
   std::vector<Eigen::Vector3d> position;
   for (const PathRow& row : *rows) {
-    if (!row.finite()) return Error{file + ": a row has a value that is not finite, expected a path without gaps"};
+    if (!row.finite())
+      return Error{file + ": a row holds a value that is not a finite number; expected a path without gaps"};
     position.push_back(row.position);
   }
   return tune::resampled(tune::motionThrough(std::move(position), period), rate);
@@ -63,19 +66,25 @@ Result<tune::Motion> motionOfRecording(const std::string& file, double rate) {
   const char* names[] = {"t", "arm0_x", "arm0_y", "arm0_z"};
   for (size_t i = 0; i < 4; ++i)
     if (ticks == nullptr || (columns[i] = ticks->find(names[i])) == nullptr)
-      return Error{file + ": has no column " + names[i] + " in ticks, expected a recording of `hapticd run --record`"};
+      return Error{file + ": the stream of ticks has no column " + names[i] +
+                   "; expected a recording of `hapticd run --record`"};
   noteOpenEnd(file, **recording, "measuring over");
-  if (ticks->rows() < 100) return Error{file + ": " + std::to_string(ticks->rows()) + " ticks, expected at least 100"};
+  if (ticks->rows() < 100)
+    return Error{file + ": the recording has " + std::to_string(ticks->rows()) + " ticks; expected at least 100"};
   std::vector<Eigen::Vector3d> position;
   for (uint64_t i = 0; i < ticks->rows(); ++i) {
     Eigen::Vector3d p;
     for (int axis = 0; axis < 3; ++axis) p[axis] = ticks->number(i, *columns[1 + axis]);
-    if (!p.allFinite() && position.empty()) return Error{file + ": its first tick has no position"};
+    if (!p.allFinite() && position.empty())
+      return Error{file +
+                   ": the first tick has no position of the tip (arm0_x, arm0_y, arm0_z); expected a recording that "
+                   "begins with samples"};
     position.push_back(p.allFinite() ? p : position.back());
   }
   const double seconds = ticks->number(ticks->rows() - 1, *columns[0]) - ticks->number(0, *columns[0]);
   const double period = seconds / static_cast<double>(ticks->rows() - 1);
-  if (!(period > 0)) return Error{file + ": its times do not increase"};
+  if (!(period > 0))
+    return Error{file + ": the times of its ticks do not increase; expected a recording of `hapticd run --record`"};
   return tune::resampled(tune::motionThrough(std::move(position), period), rate);
 }
 

@@ -294,10 +294,11 @@ std::vector<std::string> optionNames(const CLI::App& app) {
   return names;
 }
 
-/// Describes the first word that no command takes.
+/// Describes the first word that no command takes. After the word -- no other one is an option.
 std::string unexpected(const CLI::App& app, const std::vector<std::string>& words) {
-  const std::string word = words.empty() ? "" : words.front();
-  if (word.size() > 1 && word[0] == '-') {
+  const bool plain = !words.empty() && words.front() == "--";
+  const std::string word = words.size() > (plain ? 1 : 0) ? words[plain ? 1 : 0] : "";
+  if (!plain && word.size() > 1 && word[0] == '-') {
     const std::string name = word.substr(0, word.find('='));
     return "there is no option " + name + meant(name, optionNames(app));
   }
@@ -316,7 +317,7 @@ std::string missing(const CLI::App& app, std::string told) {
   std::vector<std::string> rest = app.remaining();
   for (const CLI::App* at = app.get_parent(); rest.empty() && at != nullptr; at = at->get_parent())
     rest = at->remaining();  // a command leaves to its parent what it does not know
-  const bool is_option = !rest.empty() && rest.front().size() > 1 && rest.front()[0] == '-';
+  const bool is_option = !rest.empty() && rest.front().size() > 1 && rest.front()[0] == '-' && rest.front() != "--";
   if (is_option || (told == "A subcommand" && !rest.empty())) return unexpected(app, rest);
   if (told == "A subcommand")
     return fmt::format("no subcommand given, expected one of {}", fmt::join(subcommandNames(app), ", "));

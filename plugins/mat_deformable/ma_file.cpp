@@ -96,12 +96,15 @@ class MaReader {
       const bool good = words.number(s.center.x()) && words.number(s.center.y()) && words.number(s.center.z()) &&
                         words.number(s.radius) && s.center.allFinite() &&
                         s.center.cwiseAbs().maxCoeff() <= kFarthestPoint && s.radius >= 0 && s.radius <= kFarthestPoint;
-      if (!good) problem("expected v x y z r: centre and radius in m, at most 1e6, and a radius of at least 0");
+      if (!good)
+        problem(
+            "'" + printable(line.substr(0, 60)) +
+            "' is not a vertex; expected v x y z r: centre and radius in m, at most 1e6, and a radius of at least 0");
       data_.vertices.push_back(s);
     } else if (kind == "e") {
-      readCorners(words, data_.edges, "e i j");
+      readCorners(line, words, data_.edges, "e i j");
     } else if (kind == "f") {
-      readCorners(words, data_.triangles, "f i j k");
+      readCorners(line, words, data_.triangles, "f i j k");
     } else {
       problem("'" + printable(kind.substr(0, 20)) + "': a line must begin with v, e, f or #");
     }
@@ -125,7 +128,7 @@ class MaReader {
   }
 
   template <std::size_t kCount>
-  void readCorners(Words& words, std::vector<std::array<int, kCount>>& out, const char* form) {
+  void readCorners(std::string_view line, Words& words, std::vector<std::array<int, kCount>>& out, const char* form) {
     std::array<int, kCount> corners{};
     bool good = true;
     for (int& corner : corners) {
@@ -134,7 +137,8 @@ class MaReader {
     }
     for (std::size_t i = 0; good && i < kCount; ++i) good = corners[i] != corners[(i + 1) % kCount];
     if (!good)
-      problem(std::string("expected ") + form + ": different vertices" +
+      problem("'" + printable(line.substr(0, 60)) + "' does not name vertices; expected " + form +
+              ": different vertices" +
               (counts_known_ ? " from 0 to " + std::to_string(counts_[0] - 1) : std::string()));
     out.push_back(corners);
   }
@@ -145,8 +149,8 @@ class MaReader {
     if (!counts_known_) return;
     const auto check = [this](long promised, std::size_t found, const char* one, const char* many) {
       if (static_cast<std::size_t>(promised) != found)
-        problem(std::to_string(found) + " " + (found == 1 ? one : many) + " in the file, but the first line says " +
-                std::to_string(promised) + " of them");
+        problem(std::to_string(found) + " " + (found == 1 ? one : many) + (found == 1 ? " is" : " are") +
+                " in the file, but the first line says " + std::to_string(promised) + " of them");
     };
     check(counts_[0], data_.vertices.size(), "vertex", "vertices");
     check(counts_[1], data_.edges.size(), "edge", "edges");

@@ -85,6 +85,8 @@ hsp_status NurbsRigid::step(const hsp_step& given) noexcept HSP_RT {
 hsp_status NurbsRigid::press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT {
   const Touch touch = trace(probe, step, contact);
   const uint32_t index = indexOf(probe, step);
+  // a stuck point from before a jump would pull the probe toward where it was
+  if (index < friction_.size() && (probe.flags & HSP_IN_JUMP) != 0) friction_[index].reset();
   const double depth = touch.depth + (touch.traced && texture_amplitude_ > 0 ? texture(touch.foot) : 0);
   if (!touch.traced || touch.depth <= 0 || depth <= 0) {
     if (index < friction_.size()) friction_[index].reset();

@@ -79,6 +79,7 @@ class ShapeInstance {
   uint32_t surfaceCount() const noexcept { return surface_count_; }
   const hsp_ext_geometry* geometry() const { return geometry_; }
   const hsp_ext_energy* energy() const { return energy_; }
+  const std::filesystem::path& file() const { return library_->file(); }  ///< [main] file of the plugin
   const Owner* owner() const noexcept { return owner_; }
   Contour* contour() const { return contour_.get(); }  ///< nullptr if its steps write no vertices
   hsp_shape* handle() const { return shape_; }

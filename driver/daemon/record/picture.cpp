@@ -64,7 +64,7 @@ Panel histogramOf(const Quantity& q, const std::vector<Sample>& samples) {
   for (size_t i = 0; i <= kBins; ++i) bars.edges.push_back(x.at(static_cast<double>(i) / kBins));
   for (double& count : bars.counts) count *= 100 / std::max(counted, 1.0);
   const double most = *std::max_element(bars.counts.begin(), bars.counts.end());
-  Panel panel(fmt::format("{:.0f} ticks", counted), x, axisOver(q.counted, 0, std::max(most, 1.0)));
+  Panel panel(fmt::format("distribution of {:.0f} ticks", counted), x, axisOver(q.counted, 0, std::max(most, 1.0)));
   panel.bars = {std::move(bars)};
   panel.height = kHeight;
   return panel;
@@ -180,7 +180,7 @@ void addAsked(Panel& panel, const std::vector<Sample>& samples, const RunNotes& 
 std::string titleOf(const RunReport& report, double first, double last) {
   const bool whole = last - first > 0.98 * report.seconds;
   const std::string part = whole ? "" : fmt::format("{:.1f} to {:.1f} s of ", first, last);
-  std::string text = fmt::format("{}: {}{:.1f} s, {:.1f} Hz held", report.scene, part, report.seconds, report.rate_hz);
+  std::string text = fmt::format("{}: {}{:.1f} s at {:.1f} Hz", report.scene, part, report.seconds, report.rate_hz);
   if (report.overruns > 0) text += fmt::format(", {} overruns", report.overruns);
   return text;
 }

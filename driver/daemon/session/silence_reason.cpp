@@ -46,7 +46,8 @@ std::string causeOf(const Pull& pull) {
 
 std::string silenceReason(const ModelState& model) {
   if (model.shape == nullptr) return "";
-  return silenceReason(model.shape->name(), model.guard.fault(), model.failed_status, model.pull);
+  return silenceReason(model.shape->name(), model.guard.fault(), model.failed_status, model.pull,
+                       model.shape->file().string());
 }
 
 std::string silenceReason(const hapticd_event& event, const std::string& model) {
@@ -60,8 +61,9 @@ std::string silenceReason(const std::string& model, ShapeFault trouble, int32_t 
   return silenceReason(model, trouble, failed_status, Pull());
 }
 
-std::string silenceReason(const std::string& model, ShapeFault trouble, int32_t failed_status, const Pull& pull) {
-  const std::string who = "model " + model + ": its plugin ";
+std::string silenceReason(const std::string& model, ShapeFault trouble, int32_t failed_status, const Pull& pull,
+                          const std::string& file) {
+  const std::string who = "model " + model + ": its plugin ", check = "hapticd plugin check " + file;
   switch (trouble) {
     case ShapeFault::kNone:
     case ShapeFault::kLost:
@@ -72,23 +74,20 @@ std::string silenceReason(const std::string& model, ShapeFault trouble, int32_t 
       return who + "returned status " + std::to_string(failed_status) +
              ", which a step may not return; it was silenced";
     case ShapeFault::kOverrun:
-      return who +
-             "took longer than the budget of a tick, several times; it was silenced; measure it with: hapticd plugin "
-             "check FILE.so";
+      return who + "took longer than the budget of a tick, several times; it was silenced; measure it with: " + check;
     case ShapeFault::kJump:
       return who + "gave forces that jumped by more than its claimed stiffness allows" + sizeOf(pull) +
-             "; it was silenced; " + onPurpose(pull) + "test it with: hapticd plugin check FILE.so";
+             "; it was silenced; " + onPurpose(pull) + "test it with: " + check;
     case ShapeFault::kTwists:
       return who +
-             "gave torques that jumped by more than its claimed stiffness allows; it was silenced; test it with: "
-             "hapticd plugin "
-             "check FILE.so";
+             "gave torques that jumped by more than its claimed stiffness allows; it was silenced; test it with: " +
+             check;
     case ShapeFault::kNotUnit:
       return who + "gave a pose whose quaternion does not have length 1; it was silenced";
     case ShapeFault::kPulls:
       return who + "pulled the probe into its surface" + placeOf(pull) + ": " + causeOf(pull) +
-             ", although it reports to push only (HSP_R_PUSHES); it was silenced; test it "
-             "with: hapticd plugin check FILE.so, which also says where";
+             ", although it reports to push only (HSP_R_PUSHES); it was silenced; test it with: " + check +
+             ", which also says where";
   }
   return "";
 }

@@ -18,7 +18,9 @@ std::string silenceReason(const ModelState& model);
 /// and that the ABI does not allow
 std::string silenceReason(const std::string& model, ShapeFault trouble, int32_t failed_status);
 /// [main] Returns the same text with more detail. @param pull the pull, or the largest jump, for which it was silenced
-std::string silenceReason(const std::string& model, ShapeFault trouble, int32_t failed_status, const Pull& pull);
+/// @param file the file of the plugin
+std::string silenceReason(const std::string& model, ShapeFault trouble, int32_t failed_status, const Pull& pull,
+                          const std::string& file = "FILE.so");
 /// [main] Returns the text for an event of kind HAPTICD_SILENCED.
 std::string silenceReason(const hapticd_event& event, const std::string& model);
 

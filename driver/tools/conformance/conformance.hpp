@@ -5,15 +5,14 @@
 #include <vector>
 
 #include "conformance/conformance_subject.hpp"
+#include "conformance/verdict.hpp"
 
 namespace hapticd::conformance {
 
 struct ConformanceTest {
   const char* name;
   const char* doc;
-  /// Returns "" if the shape passed, "skip: WHY" if the test does not apply, "warn: WHAT" if it passed with a remark,
-  /// "note: WHAT" if it passed and something was measured, and otherwise what is wrong.
-  std::string (*run)(const Recipe& recipe, uint64_t seed);
+  Verdict (*run)(const Recipe& recipe, uint64_t seed);
   const char* needs = nullptr;  ///< test that must pass first, because this one would only repeat its failure
 };
 

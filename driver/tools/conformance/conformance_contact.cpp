@@ -12,16 +12,34 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// Warns of the thinnest place, if it is so thin that a hand comes through it with a press of 1 mm.
+Verdict thinnest(const Subject& subject, const Touch& touch) {
+  constexpr double kThin = 1e-3;  // [m]
+  const auto place = std::min_element(touch.places.begin(), touch.places.end(),
+                                      [](const Place& a, const Place& b) { return a.through < b.through; });
+  if (place->through >= kThin) return "";
+  const double stiffness = subject.report().max_stiffness;
+  const std::string with =
+      stiffness > 0 ? " (" + roughly(stiffness * place->through) + " N at the claimed stiffness)" : "";
+  return warned(placed("the shape is thin here: from a depth of about " + roughly(place->through * 1e3) + " mm on" +
+                           with +
+                           " it names the surface on the other side and pushes the hand out there; expected either a "
+                           "thicker shape, or one that keeps each probe on the side from which it came until it comes "
+                           "out; the other tests press only " +
+                           roughly(pressDepth(subject, *place) * 1e3) + " mm deep here",
+                       place->foot));
+}
+
 /// Fails if no contact was found, because without a contact no test of contacts would test anything.
-std::string contactFound(const Recipe& recipe, uint64_t) {
+Verdict contactFound(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   const Touch touch = recipe.touch.places.empty() ? findTouch(recipe) : recipe.touch;
-  if (!touch.places.empty()) return "";
+  if (!touch.places.empty()) return thinnest(*made.subject, touch);
   if (touch.traced)
     return "NOT TESTED: its depth is nowhere above 0, not even 1 mm behind the foot points that it names; expected "
            "depth_m above 0 inside: look at the sign of depth_m and at point";
-  if (touch.felt) return kField;
+  if (touch.felt) return fieldOnly();
   return "NOT TESTED: it answered neither a foot point (HSP_OUT_TRACED) nor a force, on any side of the origin from 1 "
          "mm "
          "to 1 m; expected a contact to test: trace the surface while the probe is outside too, tell where the shape "
@@ -76,7 +94,7 @@ std::string pullsThere(Subject& subject, const Place& place) {
   return pulls;
 }
 
-std::string forceOutward(const Recipe& recipe, uint64_t) {
+Verdict forceOutward(const Recipe& recipe, uint64_t) {
   return atEachPlace(recipe, [](Subject& subject, const Place& place) {
     std::string wrong = wrongSign(subject, place);
     // pulls are judged only for shapes that claim to push and stand still
@@ -96,7 +114,7 @@ std::string flagsOf(const hsp_contact& c) {
   return "";
 }
 
-std::string contactFlags(const Recipe& recipe, uint64_t) {
+Verdict contactFlags(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   return along(*made.subject, [](const Answer& answer, const Vector3d&) { return flagsOf(answer.contacts[0]); });
@@ -132,7 +150,7 @@ std::vector<double> slopesOf(Subject& subject, const Place& place) {
 /// because the force of a velocity filter is not stiffness.
 std::vector<double> slopesAtRest(Subject& subject, const Place& place) {
   constexpr int kPlaces = 10, kRest = 200;  // ticks to wait at each place
-  const double depth = pressDepth(subject);
+  const double depth = pressDepth(subject, place);
   const hsp_report& report = subject.report();
   const double jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
   std::vector<double> slopes;
@@ -194,22 +212,22 @@ std::string toldStiffness(Subject& subject, const Place& place) {
                 place.foot);
 }
 
-std::string stiffnessClaim(const Recipe& recipe, uint64_t) {
+Verdict stiffnessClaim(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (made.subject->moves()) return "skip: it moves, so its force changes by itself";
+  if (made.subject->moves()) return skipped("it moves, so its force changes by itself");
   const double claimed = made.subject->report().max_stiffness;
   // factors by which the claim may be exceeded, because a force law may be a little steeper in places; [N/m]
   constexpr double kFails = 1.5, kWarns = 1.1, kNoise = 10;
   double steepest = 0;
-  std::string wrong = atEachPlace(recipe, [claimed, &steepest](Subject& subject, const Place& place) {
+  Verdict verdict = atEachPlace(recipe, [claimed, &steepest](Subject& subject, const Place& place) {
     const double measured = stiffnessAt(subject, place, claimed);
     steepest = std::max(steepest, measured);
     return measured <= kFails * claimed + kNoise ? toldStiffness(subject, place) : besideClaim(claimed, measured);
   });
-  if (!wrong.empty() || steepest == 0) return wrong;
-  if (steepest > kWarns * claimed + kNoise) return "warn: " + besideClaim(claimed, steepest);
-  return "note: it claims " + text(claimed) + " N/m, and its force grows by " + text(steepest) + " N/m at most";
+  if (!verdict.clean() || steepest == 0) return verdict;
+  if (steepest > kWarns * claimed + kNoise) return warned(besideClaim(claimed, steepest));
+  return noted("it claims " + text(claimed) + " N/m, and its force grows by " + text(steepest) + " N/m at most");
 }
 
 /// Returns by how much a torque jumps where the surface is met, or "".
@@ -225,11 +243,11 @@ std::string torqueAtOnce(const Vector3d& before, const Vector3d& now, double exp
 
 /// Tests that the force does not jump where the surface is met, because a jump buzzes even if the slope below the
 /// surface is small.
-std::string noStep(const Recipe& recipe, uint64_t) {
+Verdict noStep(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   const hsp_report& report = made.subject->report();
-  if (made.subject->moves()) return "skip: it moves, so its force changes by itself";
+  if (made.subject->moves()) return skipped("it moves, so its force changes by itself");
   const double stiffness = report.max_stiffness > 0 ? report.max_stiffness : servo::Claim::kUnclaimed;
   const double jumps = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
   return atEachPlace(recipe, [stiffness, jumps](Subject& subject, const Place& place) {
@@ -261,7 +279,7 @@ struct DeepPress {
 
 DeepPress pressDeep(Subject& subject, const Place& place) {
   constexpr double kStep = 1e-4, kStrongest = 10;  // [m]; [N] more than most hands press
-  const double most = deepestPress(subject);
+  const double most = deepestPress(subject, place);
   // [ticks] in this time the force of a damper fades completely, and that of a velocity filter nearly
   constexpr int kRest = 10;
   DeepPress press;
@@ -278,7 +296,7 @@ DeepPress pressDeep(Subject& subject, const Place& place) {
 }
 
 /// Tests depths that other tests do not reach, where the force may become steep or click.
-std::string deepPress(const Recipe& recipe, uint64_t) {
+Verdict deepPress(const Recipe& recipe, uint64_t) {
   constexpr double kRoom = 0.1;  // [N] not felt as a step
   constexpr size_t kApart = 10;  // steps over which a slope is taken
   // factors by which the claim may be exceeded: over kApart steps, as at the surface; from one step to the next
@@ -287,12 +305,12 @@ std::string deepPress(const Recipe& recipe, uint64_t) {
   if (!made.error.empty()) return made.error;
   const hsp_report& report = made.subject->report();
   if (made.subject->moves() || (made.subject->description().flags & HSP_C_DEFORMS) != 0)
-    return "skip: it moves or deforms, so its force does not depend on the depth alone";
+    return skipped("it moves or deforms, so its force does not depend on the depth alone");
   const double claimed = report.max_stiffness, jumps = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
-  if (!(claimed > 0)) return "skip: no stiffness is claimed";
-  std::string steep;
+  if (!(claimed > 0)) return skipped("no stiffness is claimed");
+  Verdict steep = "";
   int left = 4;  // [places] at all of them, a slow shape would take too long
-  const std::string wrong = atEachPlace(recipe, [&](Subject& subject, const Place& place) {
+  Verdict verdict = atEachPlace(recipe, [&](Subject& subject, const Place& place) {
     if (left-- <= 0) return std::string();
     const DeepPress press = pressDeep(subject, place);
     for (size_t i = 1; i < press.force.size(); ++i) {
@@ -301,15 +319,15 @@ std::string deepPress(const Recipe& recipe, uint64_t) {
         return "the force jumps by " + text(jump) + " N within " + text(way * 1e6) + " um at a depth of " +
                text(press.depth[i] * 1e3) + " mm, below " + text(place.foot) + "; expected what " + text(claimed) +
                " N/m explain (a jump on purpose is claimed: HSP_R_JUMPS and max_jump)";
-      if (i < kApart || !steep.empty()) continue;
+      if (i < kApart || !steep.clean()) continue;
       const double slope =
           (press.force[i] - press.force[i - kApart] - jumps) / (press.depth[i] - press.depth[i - kApart]);
       if (slope > kSteep * claimed + kRoom / (kApart * way))
-        steep = "warn: at a depth of " + text(press.depth[i] * 1e3) + " mm " + besideClaim(claimed, slope);
+        steep = warned("at a depth of " + text(press.depth[i] * 1e3) + " mm " + besideClaim(claimed, slope));
     }
     return std::string();
   });
-  return wrong.empty() ? steep : wrong;
+  return verdict.clean() ? steep : verdict;
 }
 
 }  // namespace
@@ -322,6 +340,7 @@ std::vector<ConformanceTest> contactTests() {
        &footAndNormal, "depth-falls-outward"},
       {"force-along-normal", "a shape that only pushes, and has no friction, pushes along its normal",
        &forceAlongNormal, kFoot},
+      {"torque-about-probe", "the torque is about the probe, not about the model's origin", &torqueAboutProbe, kFinite},
       {"loops-give-no-energy", "a loop into the shape, along below its surface and out again gives no energy",
        &loopsGiveNoEnergy, kFinite},
       {"damping-sign", "a damper brakes the hand: moving in it pushes no less than moving out", &dampingSign, kFinite},

@@ -58,7 +58,7 @@ std::string tooSlow(const Spent& spent, const char* where, uint64_t claim_ns) {
 }
 
 /// Judges steps without and with contact separately, because only the computation of contacts may be slow.
-std::string stepsEndInTime(const Recipe& recipe, uint64_t) {
+Verdict stepsEndInTime(const Recipe& recipe, uint64_t) {
   constexpr Nanoseconds kLong = kNanosecondsPerSecond / 2;  // a hundred steps of 5 ms are enough to judge
   constexpr size_t kEnough = 50;  // steps to judge at least, even if the machine was stopped meanwhile
   const Made made(recipe);
@@ -84,7 +84,7 @@ std::string stepsEndInTime(const Recipe& recipe, uint64_t) {
   return wrong.empty() ? tooSlow(free, "without contact", claim) : wrong;
 }
 
-std::string noAllocation(const Recipe& recipe, uint64_t) {
+Verdict noAllocation(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   watchAllocations();
@@ -103,10 +103,10 @@ std::string noAllocation(const Recipe& recipe, uint64_t) {
          "; expected memory that activate() takes";
 }
 
-std::string noLock(const Recipe& recipe, uint64_t) {
+Verdict noLock(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (!countLocksOf(recipe.file)) return "skip: the file imports no lock function";
+  if (!countLocksOf(recipe.file)) return skipped("the file imports no lock function");
   uint64_t steps = 0;
   Vector3d first = Vector3d::Zero();
   alongAndDeep(*made.subject, [&](const Answer&, const Vector3d& p) {
@@ -123,11 +123,11 @@ std::string noLock(const Recipe& recipe, uint64_t) {
 
 /// Fails if a step makes a system call. Most often this is a print, so output is not buffered here: each line is then a
 /// system call.
-std::string noSystemCall(const Recipe& recipe, uint64_t) {
+Verdict noSystemCall(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   std::setvbuf(stdout, nullptr, _IONBF, 0);
-  if (!watchSystemCalls()) return "skip: system calls cannot be watched here (this needs Linux 5.11 on x86-64)";
+  if (!watchSystemCalls()) return skipped("system calls cannot be watched here (this needs Linux 5.11 on x86-64)");
   uint64_t steps = 0;
   Vector3d first = Vector3d::Zero();
   alongAndDeep(*made.subject, [&](const Answer&, const Vector3d& p) {
@@ -144,7 +144,7 @@ std::string noSystemCall(const Recipe& recipe, uint64_t) {
 
 /// Compares the cost with the claim. The claim was measured on the author's machine, so only a large difference is a
 /// failure.
-std::string stepCost(const Recipe& recipe, uint64_t) {
+Verdict stepCost(const Recipe& recipe, uint64_t) {
   constexpr uint64_t kFar = 10;  // factor over the claim from which the test fails
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
@@ -156,10 +156,10 @@ std::string stepCost(const Recipe& recipe, uint64_t) {
   });
   const uint64_t typical = median(spent);
   const std::string takes = "a step takes " + std::to_string(typical) + " ns (median)";
-  if (claim == 0) return "skip: it claims no cost (report.worst_ns); " + takes;
+  if (claim == 0) return skipped("it claims no cost (report.worst_ns); " + takes);
   if (typical <= claim) return "";
-  return (typical <= kFar * claim ? "warn: here " : "") + takes + "; the claimed worst is " + std::to_string(claim) +
-         " (report.worst_ns)";
+  const std::string claimed = "; the claimed worst is " + std::to_string(claim) + " (report.worst_ns)";
+  return typical <= kFar * claim ? warned("here " + takes + claimed) : takes + claimed;
 }
 
 }  // namespace

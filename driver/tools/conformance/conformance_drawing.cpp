@@ -110,7 +110,7 @@ std::string verdictOf(const Compared& found) {
 
 }  // namespace
 
-std::string boundsWhereFelt(const Recipe& recipe, uint64_t) {
+Verdict boundsWhereFelt(const Recipe& recipe, uint64_t) {
   constexpr double kRoom = 0.01;  // share of the diagonal: a curve may lie a little outside of the box of its drawing
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
@@ -119,41 +119,41 @@ std::string boundsWhereFelt(const Recipe& recipe, uint64_t) {
   Vector3d low = Vector3d::Zero(), high = low;
   if (geometry == nullptr || geometry->bounds == nullptr ||
       geometry->bounds(subject.handle(), low.data(), high.data()) != HSP_OK)
-    return "skip: it gives no bounds() (hsp.geometry/1)";
-  if (subject.moves()) return "skip: it moves, so it does not stay in its bounds";
+    return skipped("it gives no bounds() (hsp.geometry/1)");
+  if (subject.moves()) return skipped("it moves, so it does not stay in its bounds");
   const Eigen::AlignedBox3d box(low, high);
   if (!low.allFinite() || !high.allFinite() || box.isEmpty())
-    return "warn: bounds() gives from " + text(low) + " to " + text(high) + "; expected min below max, finite";
+    return warned("bounds() gives from " + text(low) + " to " + text(high) + "; expected min below max, finite");
   const Touch touch = recipe.touch.places.empty() ? findTouch(recipe) : recipe.touch;
   double farthest = kRoom * box.diagonal().norm();
   const Place* outside = nullptr;
   for (const Place& place : touch.places)
     if (const double away = box.exteriorDistance(place.foot); away > farthest) farthest = away, outside = &place;
   if (outside == nullptr) return "";
-  return "warn: bounds() gives from " + text(low) + " to " + text(high) + ", but the surface is felt at " +
-         text(outside->foot) + ", " + text(farthest * 1e3) +
-         " mm outside; expected a box that holds all of the model, in m, model frame";
+  return warned("bounds() gives from " + text(low) + " to " + text(high) + ", but the surface is felt at " +
+                text(outside->foot) + ", " + text(farthest * 1e3) +
+                " mm outside; expected a box that holds all of the model, in m, model frame");
 }
 
-std::string drawingWhereFelt(const Recipe& recipe, uint64_t) {
+Verdict drawingWhereFelt(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   Subject& subject = *made.subject;
   const auto* geometry = static_cast<const hsp_ext_geometry*>(subject.extension(HSP_EXT_GEOMETRY));
   if (geometry == nullptr || geometry->tessellate == nullptr)
-    return "skip: it draws nothing (hsp.geometry/1), so the page of a run shows the arm and the foot point alone";
+    return skipped("it draws nothing (hsp.geometry/1), so the page of a run shows the arm and the foot point alone");
   Vector3d low = Vector3d::Zero(), high = low;
   hsp_mesh mesh{};
   mesh.struct_size = sizeof mesh;
   if (geometry->bounds == nullptr || geometry->bounds(subject.handle(), low.data(), high.data()) != HSP_OK)
-    return "skip: it gives no bounds()";
+    return skipped("it gives no bounds()");
   const double chord = kDrawnChord * std::max((high - low).norm(), 1e-6);
-  if (geometry->tessellate(subject.handle(), chord, &mesh) != HSP_OK) return "skip: tessellate() gives nothing";
+  if (geometry->tessellate(subject.handle(), chord, &mesh) != HSP_OK) return skipped("tessellate() gives nothing");
   Drawing drawing;
   if (std::string wrong = readDrawing(mesh, drawing); !wrong.empty()) return wrong;
-  if (drawing.triangles.empty()) return "skip: tessellate() gives no triangle";
+  if (drawing.triangles.empty()) return skipped("tessellate() gives no triangle");
   if (std::string wrong = outsideBounds(drawing, low, high); !wrong.empty()) return wrong;
-  if (subject.moves()) return "skip: it moves, so its surface does not stay where it is drawn";
+  if (subject.moves()) return skipped("it moves, so its surface does not stay where it is drawn");
   Compared found;
   const size_t tried = std::min(kMostTriangles, drawing.triangles.size());
   constexpr double kGolden = 0.6180339887498949;  // equal steps could try the same column of a grid again and again

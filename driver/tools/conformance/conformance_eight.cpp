@@ -37,7 +37,7 @@ std::vector<Together> stepsOf(const Subject& subject) {
   const auto& places = subject.places();
   std::vector<std::vector<PressStep>> presses;
   for (size_t probe = 0; probe < kProbes && !places.empty(); ++probe)
-    presses.push_back(pressAt(places[probe % places.size()], pressDepth(subject)));
+    presses.push_back(pressAt(places[probe % places.size()], pressDepth(subject, places[probe % places.size()])));
   for (size_t i = 0; !presses.empty() && i < presses[0].size(); ++i) {
     Together step{{}, i == 0 ? uint32_t{HSP_IN_JUMP} : 0};
     for (const auto& press : presses) step.at.push_back(press[i].p);
@@ -85,7 +85,7 @@ std::string eachAsAlone(const Recipe& recipe, const std::vector<Together>& steps
 
 }  // namespace
 
-std::string eightProbes(const Recipe& recipe, uint64_t) {
+Verdict eightProbes(const Recipe& recipe, uint64_t) {
   std::string error;
   const std::unique_ptr<Subject> subject = guardedSubject(recipe, kProbes, error);
   if (!error.empty()) return "eight probes: " + error;

@@ -44,7 +44,7 @@ double leakOf(const std::vector<double>& used) {
 
 /// Makes and destroys the shape many times and measures the memory in use. The number of lives is the same on every
 /// machine; only a shape whose lives take very long gets fewer.
-std::string createDestroyLeak(const Recipe& recipe, uint64_t) {
+Verdict createDestroyLeak(const Recipe& recipe, uint64_t) {
   constexpr int kFirst = 5, kLives = 40;
   constexpr Nanoseconds kLong = 3 * kNanosecondsPerSecond;
   constexpr double kNoLeak = 256;  // [bytes] per life
@@ -59,7 +59,7 @@ std::string createDestroyLeak(const Recipe& recipe, uint64_t) {
     }
     if (i >= kFirst) used.push_back(static_cast<double>(mallinfo2().uordblks));
   }
-  if (used.size() < 2 * kParts) return "skip: activation takes too long to repeat it";
+  if (used.size() < 2 * kParts) return skipped("activation takes too long to repeat it");
   const double leak = leakOf(used);
   if (leak < kNoLeak) return "";
   return "it keeps about " + text(std::round(leak)) + " bytes in each life, from create() to destroy() (" +

@@ -55,7 +55,7 @@ Work walk(Subject& subject, const std::vector<Vector3d>& points) {
 std::string gives(Subject& subject, const Place& place, const Vector3d& aside) {
   constexpr double kRounding = 0.02, kLeast = 1e-8;  // share of Work::moved; [J]
   const hsp_report& report = subject.report();
-  const double depth = pressDepth(subject);
+  const double depth = pressDepth(subject, place);
   const double jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;  // a claimed pulse does work too
   std::vector<Vector3d> points = loopAt(place, aside, depth);
   for (int sense = 0; sense < 2; ++sense) {
@@ -76,12 +76,12 @@ std::string gives(Subject& subject, const Place& place, const Vector3d& aside) {
 
 }  // namespace
 
-std::string loopsGiveNoEnergy(const Recipe& recipe, uint64_t) {
+Verdict loopsGiveNoEnergy(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (made.subject->moves()) return "skip: it moves, so gravity may give it energy too";
+  if (made.subject->moves()) return skipped("it moves, so gravity may give it energy too");
   int left = 6;  // [places] at all of them, a slow shape would take too long
-  const std::string wrong = atEachPlace(recipe, [&left](Subject& subject, const Place& place) {
+  Verdict verdict = atEachPlace(recipe, [&left](Subject& subject, const Place& place) {
     if (left-- <= 0) return std::string();
     const Vector3d u = place.out.unitOrthogonal(), v = place.out.cross(u);
     std::string given = gives(subject, place, u);
@@ -89,7 +89,7 @@ std::string loopsGiveNoEnergy(const Recipe& recipe, uint64_t) {
   });
   // The force of a soft body comes from the material near the probe, so it need not be the gradient of a potential.
   const bool soft = (made.subject->description().flags & HSP_C_DEFORMS) != 0;
-  return soft && !wrong.empty() && wrong.rfind("skip: ", 0) != 0 ? "note: " + wrong : wrong;
+  return soft && verdict.failed() ? noted(verdict.text) : verdict;
 }
 
 }  // namespace hapticd::conformance

@@ -32,10 +32,48 @@ std::string firstDifference(const std::vector<Answer>& a, const std::vector<Answ
   return "";
 }
 
-std::string resetEqualsFresh(const Recipe& recipe, uint64_t) {
+constexpr const char* kForget =
+    "; expected reset() to forget what earlier steps have left: foot points that are followed, stuck points of "
+    "friction, "
+    "filters, detents";
+
+/// [N] Returns the force at `to` in the first steps after reset(). Without a jump, a shape can only forget in reset().
+std::vector<Vector3d> forcesAfterReset(Subject& subject, const Vector3d& to) {
+  constexpr int kSteps = 3;
+  subject.reset();
+  std::vector<Vector3d> forces;
+  for (int i = 0; i < kSteps; ++i) forces.emplace_back(subject.step({to}, kConformanceDt).contacts[0].force);
+  return forces;
+}
+
+/// Fails if a shape keeps the state of a contact (a point of static friction, a filter, a detent) over reset(). Outside
+/// of the shape, where other tests call reset(), such a state has ended by itself.
+std::string keptOverReset(const Recipe& recipe, Subject& subject) {
+  constexpr size_t kMostPlaces = 4;
+  constexpr int kStay = 50;  // [ticks]
+  const std::vector<Place>& places = recipe.touch.places;
+  for (size_t i = 0; i < std::min(kMostPlaces, places.size()); ++i) {
+    const Place &from = places[i], &next = places[(i + 1) % places.size()];
+    const double depth = std::min(pressDepth(subject, from), pressDepth(subject, next));
+    const Vector3d below = from.foot - depth * from.out, aside = below + depth * from.out.unitOrthogonal(),
+                   to = next.foot - depth / 2 * next.out;
+    for (int k = 0; k < kStay; ++k) subject.step({below}, kConformanceDt, k == 0 ? uint32_t{HSP_IN_JUMP} : 0);
+    for (int k = 0; k < kStay; ++k) subject.step({aside}, kConformanceDt);
+    const Made fresh(recipe);
+    const auto got = forcesAfterReset(subject, to), expected = forcesAfterReset(*fresh.subject, to);
+    for (size_t k = 0; k < got.size(); ++k)
+      if (const double apart = (got[k] - expected[k]).norm(); apart > 1e-3 * (1 + expected[k].norm()))
+        return placed("after reset() in a contact elsewhere the force differs by " + text(apart) +
+                          " N from that of a new instance, in step " + std::to_string(k + 1) + kForget,
+                      to);
+  }
+  return "";
+}
+
+Verdict resetEqualsFresh(const Recipe& recipe, uint64_t) {
   const Made used(recipe), fresh(recipe);
   if (!used.error.empty()) return used.error;
-  if (used.subject->moves()) return "skip: it moves, and reset() does not forget its pose";
+  if (used.subject->moves()) return skipped("it moves, and reset() keeps its pose");
   size_t steps = answersOf(*used.subject, kConformanceSteps / 2, 0.7).size();
   // A shape may keep a phase that repeats every 2, 3, 5 or 7 steps. After whole periods, it would not show.
   constexpr size_t kRounds = 2 * 3 * 5 * 7;
@@ -45,35 +83,39 @@ std::string resetEqualsFresh(const Recipe& recipe, uint64_t) {
   for (size_t i = 0; i < a.size(); ++i) {
     const double apart = (Vector3d(a[i].contacts[0].force) - Vector3d(b[i].contacts[0].force)).norm();
     if (!(apart <= 1e-6 * (1 + Vector3d(b[i].contacts[0].force).norm())))
-      return "after reset() the force differs by " + text(apart) + " N at step " + std::to_string(i);
+      return "after reset() the force differs by " + text(apart) + " N from that of a new instance, in step " +
+             std::to_string(i + 1) + kForget;
   }
-  return "";
+  const bool soft = (used.subject->description().flags & HSP_C_DEFORMS) != 0;
+  const bool remembers = soft || used.subject->extension(HSP_EXT_STATE) != nullptr;
+  return remembers ? "" : keptOverReset(recipe, *used.subject);
 }
 
 /// Tests that two probes get the same answers together as alone. The two probes stay apart, because a plugin may use
 /// what it found for one probe to start the search of another probe nearby, as TracedShape::searchAbout does. Then the
 /// search ends at the same foot with other last bits (1e-15 N with eight probes of nurbs_rigid, and another "certified"
 /// flag). This does not couple forces and is allowed.
-std::string batchEqualsSingle(const Recipe& recipe, uint64_t) {
+Verdict batchEqualsSingle(const Recipe& recipe, uint64_t) {
   const Made batch(recipe, 2), one(recipe), two(recipe);
   if (!batch.error.empty()) return "two probes: " + batch.error;
   if (batch.subject->moves() || (batch.subject->description().flags & HSP_C_DEFORMS) != 0)
-    return "skip: a moving or deforming shape couples the probes";
+    return skipped("a moving or deforming shape couples the probes");
   for (int i = 0; i < kConformanceSteps; ++i) {
     const double part = static_cast<double>(i) / kConformanceSteps;
     const Vector3d p = onPath(*batch.subject, part), q = onPath(*batch.subject, part, 1.1);
     const Answer both = batch.subject->step({p, q}, kConformanceDt);
     if (std::string wrong = wrongStatus(both); !wrong.empty())
-      return "one of two probes got " + wrong + ", at " + text(p) + " or " + text(q);
+      return "with two probes in one step, at " + text(p) + " and " + text(q) + ": " + wrong;
     const Answer &a = one.subject->step({p}, kConformanceDt), &b = two.subject->step({q}, kConformanceDt);
     if (std::memcmp(&both.contacts[0], &a.contacts[0], sizeof(hsp_contact)) != 0 ||
         std::memcmp(&both.contacts[1], &b.contacts[0], sizeof(hsp_contact)) != 0)
-      return "two probes in one step get other answers than each alone, at step " + std::to_string(i);
+      return "in step " + std::to_string(i + 1) +
+             " two probes in one step get other answers than each alone; expected a state of its own for each probe";
   }
   return "";
 }
 
-std::string determinism(const Recipe& recipe, uint64_t) {
+Verdict determinism(const Recipe& recipe, uint64_t) {
   const Made first(recipe), second(recipe);
   if (!first.error.empty()) return first.error;
   return firstDifference(answersOf(*first.subject, kConformanceSteps), answersOf(*second.subject, kConformanceSteps));
@@ -89,7 +131,8 @@ std::string searchesAfterJump(const Recipe& recipe, Subject& subject, uint64_t s
     const Made fresh(recipe);
     const double alone = fresh.subject->step({p}, kConformanceDt).contacts[0].depth_m;
     if (!(std::abs(jumped - alone) <= 1e-4 * (1e-2 + std::abs(alone))))
-      return "after a jump the depth is " + text(jumped) + " m, but that of a fresh instance is " + text(alone) + " m";
+      return "after a jump to " + text(p) + " the depth is " + text(jumped) + " m, but that of a new instance is " +
+             text(alone) + " m; expected a new search for the nearest foot point at HSP_IN_JUMP";
   }
   return "";
 }
@@ -107,9 +150,10 @@ Vector3d forceAfterJump(Subject& subject, const std::vector<Vector3d>& way, cons
 /// compared with that of an instance whose probe was outside for as long, because a force may depend on time.
 std::string keptOverJump(const Recipe& recipe, const std::vector<Place>& places, Subject& subject) {
   constexpr size_t kMostPlaces = 4;
-  const double depth = pressDepth(subject), deep = std::min(5 * depth, deepestPress(subject));
   for (size_t i = 0; i < std::min(kMostPlaces, places.size()); ++i) {
     const Place &from = places[i], &next = places[(i + 1) % places.size()];
+    const double depth = std::min(pressDepth(subject, from), pressDepth(subject, next)),
+                 deep = std::min(5 * depth, deepestPress(subject, from));
     const Vector3d below = from.foot - deep * from.out, aside = below + depth * from.out.unitOrthogonal();
     const Vector3d to = next.foot - depth / 2 * next.out, outside = next.foot + depth * next.out;
     const Made fresh(recipe);
@@ -127,49 +171,52 @@ std::string keptOverJump(const Recipe& recipe, const std::vector<Place>& places,
   return "";
 }
 
-std::string jumpFlag(const Recipe& recipe, uint64_t seed) {
+Verdict jumpFlag(const Recipe& recipe, uint64_t seed) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   if (made.subject->moves() || (made.subject->description().flags & HSP_C_DEFORMS) != 0)
-    return "skip: a moving or deforming shape remembers where it was touched";
-  std::string wrong = searchesAfterJump(recipe, *made.subject, seed);
+    return skipped("a moving or deforming shape remembers where it was touched");
+  const std::string wrong = searchesAfterJump(recipe, *made.subject, seed);
   const bool remembers = made.subject->extension(HSP_EXT_STATE) != nullptr;
   return wrong.empty() && !remembers ? keptOverJump(recipe, recipe.touch.places, *made.subject) : wrong;
 }
 
-std::string stateRoundtrip(const Recipe& recipe, uint64_t) {
+Verdict stateRoundtrip(const Recipe& recipe, uint64_t) {
   auto first = Subject::make(recipe), second = Subject::make(recipe);
   if (!first) return first.error();
   const auto* state = static_cast<const hsp_ext_state*>((*first)->extension(HSP_EXT_STATE));
-  if (state == nullptr) return "skip: no state extension";
+  if (state == nullptr) return skipped("it does not offer hsp.state/1");
   if (auto active = (*first)->activate(); !active) return active.error();
   answersOf(**first, kConformanceSteps / 2);
   (*first)->deactivate();
   std::vector<char> bytes(static_cast<size_t>(std::max<int64_t>(0, state->save((*first)->handle(), nullptr, 0))));
   state->save((*first)->handle(), bytes.data(), bytes.size());
-  if (state->load((*second)->handle(), bytes.data(), bytes.size()) < 0) return "load() refused what save() wrote";
+  if (state->load((*second)->handle(), bytes.data(), bytes.size()) < 0)
+    return "load() refused the bytes that save() wrote";
   std::vector<char> again(bytes.size());
   const int64_t size = state->save((*second)->handle(), again.data(), again.size());
-  return size == static_cast<int64_t>(bytes.size()) && bytes == again ? ""
-                                                                      : "the loaded state is saved with other bytes";
+  return size == static_cast<int64_t>(bytes.size()) && bytes == again
+             ? ""
+             : "after load(), save() writes other bytes than were loaded";
 }
 
-std::string stateGarbage(const Recipe& recipe, uint64_t seed) {
+Verdict stateGarbage(const Recipe& recipe, uint64_t seed) {
   auto made = Subject::make(recipe);
   if (!made) return made.error();
   const auto* state = static_cast<const hsp_ext_state*>((*made)->extension(HSP_EXT_STATE));
-  if (state == nullptr) return "skip: no state extension";
+  if (state == nullptr) return skipped("it does not offer hsp.state/1");
   std::mt19937_64 random(seed);
   for (const size_t size : {0u, 1u, 7u, 64u, 1000u}) {
     std::vector<char> bytes(size);
     for (char& byte : bytes) byte = static_cast<char>(random());
     if (state->load((*made)->handle(), bytes.data(), bytes.size()) >= 0)
-      return "load() accepted " + std::to_string(size) + " bytes of garbage";
+      return "load() accepted " + std::to_string(size) +
+             " random bytes as a state; expected a check of size and content";
   }
   return "";
 }
 
-std::string denormals(const Recipe& recipe, uint64_t) {
+Verdict denormals(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   for (const double tiny : {0.0, -0.0, 5e-324, 1e-310, -1e-310, 1e-160}) {
@@ -178,12 +225,12 @@ std::string denormals(const Recipe& recipe, uint64_t) {
     for (int i = 0; i < 3; ++i) probe.position[i] = probe.velocity[i] = tiny * (i + 1);
     for (int i = 0; i < 10; ++i)
       if (std::string wrong = wrongStatus(made.subject->stepRaw(probe, kConformanceDt)); !wrong.empty())
-        return wrong + " for a probe at " + text(tiny);
+        return "with a probe at " + text(tiny) + " m " + wrong;
   }
   return "";
 }
 
-std::string twoInstances(const Recipe& recipe, uint64_t) {
+Verdict twoInstances(const Recipe& recipe, uint64_t) {
   const Made alone(recipe), first(recipe), second(recipe);
   if (!alone.error.empty()) return alone.error;
   const auto expected = answersOf(*alone.subject, kConformanceSteps / 2);
@@ -202,28 +249,34 @@ std::string twoInstances(const Recipe& recipe, uint64_t) {
   return firstDifference(expected, mixed);
 }
 
-std::string layoutGolden(const Recipe& recipe, uint64_t) {
+Verdict layoutGolden(const Recipe& recipe, uint64_t) {
   const Made made(recipe), wide(recipe);
   if (!made.error.empty()) return made.error;
   const hsp_class& c = made.subject->description();
-  if (c.struct_size < offsetof(hsp_class, extension)) return "hsp_class is smaller than that of version 1.0";
+  if (c.struct_size < offsetof(hsp_class, extension))
+    return "hsp_class.struct_size is " + std::to_string(c.struct_size) +
+           " bytes, less than in version 1.0 of the ABI; " + "expected sizeof(hsp_class)";
   if (c.param_count > 0 && c.params[0].struct_size < sizeof(hsp_param))
-    return "hsp_param is smaller than that of version 1.0";
-  if (made.subject->report().struct_size != sizeof(hsp_report)) return "activate() changed report.struct_size";
+    return "hsp_param.struct_size is " + std::to_string(c.params[0].struct_size) +
+           " bytes, less than in version 1.0 of the ABI; expected sizeof(hsp_param)";
+  if (made.subject->report().struct_size != sizeof(hsp_report))
+    return "activate() changed report.struct_size, which the host sets; expected that it stays";
   wide.subject->widen(32);  // the records of a later host may be larger
   for (int i = 0; i < kConformanceSteps / 4; ++i) {
     const Vector3d p = onPath(*made.subject, static_cast<double>(i) / kConformanceSteps);
     const Answer expected = made.subject->step({p}, kConformanceDt);
     if (!sameBits(expected, wide.subject->step({p}, kConformanceDt)))
-      return "answers change with larger records: use HSP_AT";
-    if (!wide.subject->roomUntouched()) return "it wrote beyond hsp_contact";
+      return "the answers change if the records of a step are larger; expected HSP_AT with step.in_stride and " +
+             std::string("step.out_stride instead of in[i] and out[i]");
+    if (!wide.subject->roomUntouched())
+      return "it writes behind its hsp_contact; expected writes to the record of the probe alone";
   }
   return "";
 }
 
 /// Fails if velocity or orientation change the answers of a shape that did not ask for them, because the host fills
 /// them in only if asked.
-std::string asksForWhatItReads(const Recipe& recipe, uint64_t) {
+Verdict asksForWhatItReads(const Recipe& recipe, uint64_t) {
   struct Asked {
     uint32_t flag;
     const char *member, *name;

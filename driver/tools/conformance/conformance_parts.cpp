@@ -24,6 +24,12 @@ std::string text(double value) {
   return words;
 }
 
+std::string roughly(double value) {
+  char words[32];
+  std::snprintf(words, sizeof words, "%.2g", value);
+  return words;
+}
+
 std::string text(const Vector3d& p) {
   const auto rounded = [](double v) { return text(std::abs(v) < 1e-9 ? 0 : v); };
   return rounded(p.x()) + ", " + rounded(p.y()) + ", " + rounded(p.z()) + " m";
@@ -60,18 +66,19 @@ std::string alongAndDeep(Subject& subject, const std::function<std::string(const
   if (std::string objection = along(subject, look); !objection.empty()) return objection;
   for (const Place& place : subject.places())
     for (int i = 0; i <= 2 * kIn; ++i) {
-      const Vector3d p = place.foot - place.out * (deepestPress(subject) * (kIn - std::abs(i - kIn)) / kIn);
+      const Vector3d p = place.foot - place.out * (deepestPress(subject, place) * (kIn - std::abs(i - kIn)) / kIn);
       const Answer& answer = subject.step({p}, kConformanceDt, i == 0 ? uint32_t{HSP_IN_JUMP} : 0);
       if (std::string objection = look(answer, p); !objection.empty()) return placed(objection, p);
     }
   return "";
 }
 
-std::string atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test) {
+Verdict atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   if (recipe.touch.places.empty())
-    return recipe.touch.traced || !recipe.touch.felt ? "skip: no contact was found to test, see contact-found" : kField;
+    return recipe.touch.traced || !recipe.touch.felt ? skipped("no contact was found to test, see contact-found")
+                                                     : fieldOnly();
   for (const Place& place : recipe.touch.places)
     if (std::string wrong = test(*made.subject, place); !wrong.empty()) return wrong;
   return "";
@@ -85,23 +92,25 @@ hsp_contact answerAtRest(Subject& subject, const Vector3d& p) {
 
 std::string wrongStatus(const Answer& answer) {
   const bool known = answer.status == HSP_OK || answer.status == HSP_DEGRADED || answer.status == HSP_E_NUMERIC;
-  if (!known) return "status " + std::to_string(answer.status);
-  return finite(answer) ? "" : "an answer that is not finite";
+  if (!known)
+    return "step() returned status " + std::to_string(answer.status) +
+           "; expected HSP_OK, HSP_DEGRADED or HSP_E_NUMERIC, because any other status silences the model";
+  return notFinite(answer);
 }
 
 const hsp_param& paramAt(const hsp_class& c, uint32_t i) {
   return *HSP_AT(const hsp_param, c.params, c.params[0].struct_size, i);
 }
 
-std::string warningOfParams(const Recipe& recipe, const std::function<std::string(const hsp_param&)>& objection,
-                            const std::string& between, const std::string& advice) {
+Verdict warningOfParams(const Recipe& recipe, const std::function<std::string(const hsp_param&)>& objection,
+                        const std::string& between, const std::string& advice) {
   auto made = Subject::make(recipe);
   if (!made) return made.error();
   const hsp_class& c = (*made)->description();
   std::string found;
   for (uint32_t i = 0; i < c.param_count; ++i)
     if (const std::string one = objection(paramAt(c, i)); !one.empty()) found += (found.empty() ? "" : between) + one;
-  return found.empty() ? "" : "warn: " + found + advice;
+  return found.empty() ? Verdict("") : warned(found + advice);
 }
 
 }  // namespace hapticd::conformance

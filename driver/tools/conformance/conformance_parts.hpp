@@ -27,6 +27,7 @@ struct Made {
 };
 
 std::string text(double value);
+std::string roughly(double value);           ///< with two digits
 std::string text(const Eigen::Vector3d& p);  ///< "X, Y, Z m"
 
 /// Returns the objection (a text that says what is wrong) with the place in front of it. The place does not stand at
@@ -48,30 +49,35 @@ std::string alongAndDeep(Subject& subject,
                          const std::function<std::string(const Answer&, const Eigen::Vector3d&)>& look);
 
 /// Runs a test on one instance at each place where the shape can be touched. Stops when `test` returns an objection,
-/// and returns it. Returns "skip: WHY" if there is no such place.
-std::string atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test);
+/// and returns it. Skips the test if there is no such place.
+Verdict atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test);
 
 /// The result of a test of contacts for a shape that names no surface.
-constexpr const char* kField = "skip: it names no surface (HSP_OUT_TRACED), so its force points neither in nor out";
+inline Verdict fieldOnly() {
+  return skipped("it names no surface (HSP_OUT_TRACED), so its force points neither in nor out");
+}
 
 /// Returns the answer to a probe that jumps to p and rests there; zero if no answer can be judged.
 hsp_contact answerAtRest(Subject& subject, const Eigen::Vector3d& p);
 
 /// Returns why point, normal and depth do not belong to one surface, or "".
-std::string footAndNormal(const Recipe& recipe, uint64_t);
+Verdict footAndNormal(const Recipe& recipe, uint64_t);
 
 /// Returns by how much the force of a shape that only pushes deviates from its normal, or "".
-std::string forceAlongNormal(const Recipe& recipe, uint64_t);
+Verdict forceAlongNormal(const Recipe& recipe, uint64_t);
+
+/// Fails if the torque of a contact is that of its force about the model's origin instead of about the probe.
+Verdict torqueAboutProbe(const Recipe& recipe, uint64_t);
 
 /// Returns the energy that a hand gains if it goes in, along below the surface, and out again, or "" if it gains none.
-std::string loopsGiveNoEnergy(const Recipe& recipe, uint64_t);
+Verdict loopsGiveNoEnergy(const Recipe& recipe, uint64_t);
 
 /// Returns the objection to a damper that drives the hand instead of braking it, or that pulls in a shape that reports
 /// to push only; otherwise "".
-std::string dampingSign(const Recipe& recipe, uint64_t);
+Verdict dampingSign(const Recipe& recipe, uint64_t);
 
-/// Returns "warn: ..." if there are parameters whose units are not SI, otherwise "".
-std::string unitsSi(const Recipe& recipe, uint64_t);
+/// Warns of parameters whose units are not SI, or are written in another way than in scenes.
+Verdict unitsSi(const Recipe& recipe, uint64_t);
 
 /// [bytes] Returns the memory that leaks in each life of an instance, from create() to destroy(). The lives are divided
 /// into four quarters. Each quarter has a least and a greatest use. The leak is the smallest growth of the least or of
@@ -82,26 +88,25 @@ std::string unitsSi(const Recipe& recipe, uint64_t);
 double leakOf(const std::vector<double>& used);
 
 /// Returns how much memory leaks from create() to destroy(), as a text, or "".
-std::string createDestroyLeak(const Recipe& recipe, uint64_t);
+Verdict createDestroyLeak(const Recipe& recipe, uint64_t);
 
-/// Returns the objection that the drawing of the shape (hsp.geometry/1) is not where the shape is felt, or "". Returns
-/// "skip: WHY" if the shape draws nothing.
-std::string drawingWhereFelt(const Recipe& recipe, uint64_t);
+/// Fails if the drawing of the shape (hsp.geometry/1) is not where the shape is felt. Skips a shape that draws nothing.
+Verdict drawingWhereFelt(const Recipe& recipe, uint64_t);
 
-/// Returns "warn: ..." if the shape is felt outside of its bounds(), or "". Returns "skip: WHY" if it gives none.
-std::string boundsWhereFelt(const Recipe& recipe, uint64_t);
+/// Warns if the shape is felt outside of its bounds(). Skips a shape that gives none.
+Verdict boundsWhereFelt(const Recipe& recipe, uint64_t);
 
 /// Returns what goes wrong with eight probes, as many as a run may have, in guarded memory, or "".
-std::string eightProbes(const Recipe& recipe, uint64_t);
+Verdict eightProbes(const Recipe& recipe, uint64_t);
 
 /// Returns "" if the status is one that a step may return and the answer is finite, otherwise what is wrong.
 std::string wrongStatus(const Answer& answer);
 
 const hsp_param& paramAt(const hsp_class& c, uint32_t i);
 
-/// Returns a warning: what `objection` says about each parameter, separated by `between`, and then `advice`. Returns ""
-/// if there is no objection.
-std::string warningOfParams(const Recipe& recipe, const std::function<std::string(const hsp_param&)>& objection,
-                            const std::string& between, const std::string& advice);
+/// Returns a warning: what `objection` says about each parameter, separated by `between`, and then `advice`. Passes if
+/// there is no objection.
+Verdict warningOfParams(const Recipe& recipe, const std::function<std::string(const hsp_param&)>& objection,
+                        const std::string& between, const std::string& advice);
 
 }  // namespace hapticd::conformance

@@ -12,10 +12,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-std::string finiteOutputs(const Recipe& recipe, uint64_t seed) {
+Verdict finiteOutputs(const Recipe& recipe, uint64_t seed) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  const auto look = [](const Answer& answer, const Vector3d&) { return wrongStatus(answer); };
+  int number = 0;
+  const auto look = [&number](const Answer& answer, const Vector3d&) {
+    ++number;
+    const std::string wrong = wrongStatus(answer);
+    return wrong.empty() ? "" : "in step " + std::to_string(number) + " " + wrong;
+  };
   if (std::string wrong = along(*made.subject, look); !wrong.empty()) return wrong;
   std::mt19937_64 random(seed);
   std::normal_distribution<double> step(0, 1e-3);
@@ -23,14 +28,14 @@ std::string finiteOutputs(const Recipe& recipe, uint64_t seed) {
   for (int i = 0; i < kConformanceSteps; ++i) {
     p += Vector3d(step(random), step(random), step(random));
     if (std::string wrong = wrongStatus(made.subject->step({p}, kConformanceDt)); !wrong.empty())
-      return "on a random walk, " + placed(wrong, p);
+      return "in step " + std::to_string(i + 1) + " of a random walk, " + placed(wrong, p);
   }
   return "";
 }
 
 /// Gives the shape bad samples (HSP_IN_INVALID) during a contact, where a shape that ignores the flag would go on
 /// pushing.
-std::string badSample(const Recipe& recipe, uint64_t) {
+Verdict badSample(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   return along(*made.subject, [&](const Answer& good, const Vector3d& p) -> std::string {
@@ -42,11 +47,11 @@ std::string badSample(const Recipe& recipe, uint64_t) {
     const Answer& answer = made.subject->stepRaw(bad, kConformanceDt);
     const std::string wrong = wrongStatus(answer);
     const double force = Vector3d(answer.contacts[0].force).norm();
-    if (wrong.empty() && !(force > 0)) return "";
-    return (wrong.empty() ? "a force of " + text(force) + " N" : wrong) +
-           " was the answer to a probe with HSP_IN_INVALID (no good sample; its position is the last good one); "
-           "expected "
-           "no force: if ((probe.flags & HSP_IN_INVALID) != 0) return HSP_OK";
+    if (!wrong.empty()) return "with a probe that has no good sample (HSP_IN_INVALID) " + wrong;
+    if (!(force > 0)) return "";
+    return "a force of " + text(force) +
+           " N was the answer to a probe that has no good sample (HSP_IN_INVALID; its position is the last good one); "
+           "expected no force: if ((probe.flags & HSP_IN_INVALID) != 0) return HSP_OK";
   });
 }
 
@@ -59,10 +64,10 @@ std::string jumped(double newtons, double metres, double stiffness) {
          "a claim that is too small";
 }
 
-std::string forceContinuous(const Recipe& recipe, uint64_t) {
+Verdict forceContinuous(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (!(made.subject->report().max_stiffness > 0)) return "skip: no stiffness is claimed";
+  if (!(made.subject->report().max_stiffness > 0)) return skipped("no stiffness is claimed");
   const hsp_report& report = made.subject->report();
   servo::ClaimBounds bounds;
   bounds.stiffness = report.max_stiffness;
@@ -92,7 +97,7 @@ std::string forceContinuous(const Recipe& recipe, uint64_t) {
   });
 }
 
-std::string normalUnit(const Recipe& recipe, uint64_t) {
+Verdict normalUnit(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   return along(*made.subject, [](const Answer& answer, const Vector3d&) {
@@ -149,10 +154,10 @@ class LengthsInMetres {
 
 /// Fails unless depth falls when the probe moves along the normal; otherwise depth or normal has the wrong sign, and so
 /// has the force.
-std::string depthOutward(const Recipe& recipe, uint64_t) {
+Verdict depthOutward(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (made.subject->moves()) return "skip: it moves, so its depth changes by itself";
+  if (made.subject->moves()) return skipped("it moves, so its depth changes by itself");
   double agrees = 0, depth = 0;
   Vector3d last = Vector3d::Zero();
   bool known = false;
@@ -174,11 +179,11 @@ std::string depthOutward(const Recipe& recipe, uint64_t) {
   return (made.subject->description().flags & HSP_C_DEFORMS) != 0 ? "" : lengths.wrong();
 }
 
-std::string energyNonIncreasing(const Recipe& recipe, uint64_t) {
+Verdict energyNonIncreasing(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   const double before = made.subject->energy();
-  if (made.subject->moves() && std::isnan(before)) return "skip: it moves and does not report its stored energy";
+  if (made.subject->moves() && std::isnan(before)) return skipped("it moves and does not report its stored energy");
   double given = 0, moved = 0;
   Vector3d last = onPath(*made.subject, 0), force = Vector3d::Zero();
   constexpr int kSlow = 20000;
@@ -200,7 +205,8 @@ std::string energyNonIncreasing(const Recipe& recipe, uint64_t) {
   const double allowed = kRounding * moved + 1e-6 - gained;
   return given <= allowed ? ""
                           : "a closed path gave " + text(given) + " J to the hand, of " + text(moved) +
-                                " J exchanged; expected none";
+                                " J exchanged, so a hand that repeats it would be driven; expected "
+                                "none: a force on the way out that is no greater than on the way in at the same depth";
 }
 
 }  // namespace

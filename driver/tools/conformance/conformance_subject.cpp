@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
 
 #include "base/allocation_count.hpp"
 #include "base/clock.hpp"
@@ -48,14 +49,52 @@ bool sameBits(const Answer& a, const Answer& b) {
          std::memcmp(&a.pose, &b.pose, sizeof a.pose) == 0;
 }
 
+namespace {
+
+/// An output of a step: some numbers that lie one behind the other.
+struct Output {
+  const char* name;
+  const double* values;
+  size_t count;
+};
+
+/// Returns the first number that is not finite, such as "contact.force[1] is nan", or "".
+std::string notFiniteOf(std::initializer_list<Output> outputs) {
+  for (const Output& output : outputs)
+    for (size_t i = 0; i < output.count; ++i)
+      if (!std::isfinite(output.values[i]))
+        return output.name + (output.count > 1 ? "[" + std::to_string(i) + "]" : std::string()) + " is " +
+               (std::isnan(output.values[i]) ? "nan" : text(output.values[i]));
+  return "";
+}
+
+std::string notFiniteIn(const hsp_contact& c) {
+  std::string wrong = notFiniteOf({{"contact.force", c.force, 3}, {"contact.torque", c.torque, 3}});
+  if (wrong.empty() && (c.flags & HSP_OUT_TRACED) != 0)
+    wrong = notFiniteOf({{"contact.point", c.point, 3},
+                         {"contact.normal", c.normal, 3},
+                         {"contact.depth_m", &c.depth_m, 1},
+                         {"contact.param", c.param, 2}});
+  return wrong.empty() ? notFiniteOf({{"contact.stiffness", &c.stiffness, 1}}) : wrong;
+}
+
+}  // namespace
+
+std::string notFinite(const Answer& answer) {
+  const hsp_pose& pose = answer.pose;
+  std::string wrong = notFiniteOf({{"pose.position", pose.position, 3},
+                                   {"pose.orientation", pose.orientation, 4},
+                                   {"pose.linear", pose.linear, 3},
+                                   {"pose.angular", pose.angular, 3}});
+  for (size_t i = 0; wrong.empty() && i < answer.contacts.size(); ++i) {
+    wrong = notFiniteIn(answer.contacts[i]);
+    if (!wrong.empty() && answer.contacts.size() > 1) wrong = "for probe " + std::to_string(i + 1) + " " + wrong;
+  }
+  return wrong.empty() ? "" : wrong + "; expected a finite number";
+}
+
 bool finite(const Answer& answer) {
-  const auto all = [](const double* values, int count) {
-    return std::all_of(values, values + count, [](double v) { return std::isfinite(v); });
-  };
-  return all(answer.pose.position, 13) &&
-         std::all_of(answer.contacts.begin(), answer.contacts.end(), [&](const hsp_contact& c) {
-           return all(c.force, 6) && ((c.flags & HSP_OUT_TRACED) == 0 || all(c.point, 9)) && std::isfinite(c.stiffness);
-         });
+  return notFinite(answer).empty();
 }
 
 Result<std::unique_ptr<Subject>> Subject::make(const Recipe& recipe) {

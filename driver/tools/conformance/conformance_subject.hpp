@@ -36,6 +36,8 @@ struct Answer {
 };
 bool sameBits(const Answer& a, const Answer& b);
 bool finite(const Answer& answer);
+/// Returns which output is not a finite number, such as "contact.force[1] is nan; expected a finite number", or "".
+std::string notFinite(const Answer& answer);
 
 /// The cost of one step.
 struct StepCost {

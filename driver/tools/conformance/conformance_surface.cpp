@@ -86,7 +86,7 @@ std::string wrongNormal(Subject& subject, const Foot& foot, double aside) {
 }
 
 std::string wrongFoot(Subject& subject, const Place& place) {
-  const double reach = pressDepth(subject);
+  const double reach = pressDepth(subject, place);
   for (const double part : {1.0, 0.3, -0.3}) {
     const Foot foot = footFor(subject, place.foot + part * reach * place.out);
     if (!foot.known) continue;
@@ -99,32 +99,68 @@ std::string wrongFoot(Subject& subject, const Place& place) {
 
 }  // namespace
 
-std::string footAndNormal(const Recipe& recipe, uint64_t) {
+Verdict footAndNormal(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   if (made.subject->moves() || (made.subject->description().flags & HSP_C_DEFORMS) != 0)
-    return "skip: it moves or deforms, so its foot point moves too";
+    return skipped("it moves or deforms, so its foot point moves too");
   return atEachPlace(recipe, &wrongFoot);
 }
 
-std::string forceAlongNormal(const Recipe& recipe, uint64_t) {
+namespace {
+
+/// Returns how the force of a press deviates from its normal, or "". @param at_rest true to judge the steps at rest,
+/// false to judge those in motion, where friction acts
+std::string offTheNormal(Subject& subject, const Place& place, bool at_rest) {
+  return press(subject, place, [at_rest](const Answer& answer, const PressStep& step) {
+    constexpr double kLeast = 0.02;  // [N] above which a force has a direction
+    const hsp_contact& c = answer.contacts[0];
+    const Vector3d force(c.force), normal(c.normal);
+    if (step.settled != at_rest || (c.flags & HSP_OUT_EDGE) != 0 || force.norm() < kLeast) return std::string();
+    const double angle = std::atan2(force.cross(normal).norm(), std::abs(force.dot(normal)));
+    if (angle <= kOffAngle) return std::string();
+    return "it reports to push only and to have no friction (HSP_R_PUSHES), and its force of " + text(force.norm()) +
+           " N on a probe " + (at_rest ? "at rest" : "that moves") + " lies " + text(angle * 180 / M_PI) +
+           " degrees off its normal; expected " +
+           (at_rest ? "force = normal times a size, or, for friction, no HSP_R_PUSHES in activate()"
+                    : "no HSP_R_PUSHES in activate() of a shape that has friction, viscosity or damping along the "
+                      "surface");
+  });
+}
+
+}  // namespace
+
+Verdict forceAlongNormal(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   if ((made.subject->report().flags & HSP_R_PUSHES) == 0)
-    return "skip: it does not report to push only and without friction (HSP_R_PUSHES)";
+    return skipped("it does not report to push only and without friction (HSP_R_PUSHES)");
   return atEachPlace(recipe, [](Subject& subject, const Place& place) {
-    return press(subject, place, [](const Answer& answer, const PressStep& step) {
-      constexpr double kLeast = 0.02;  // [N] above which a force has a direction
+    std::string wrong = offTheNormal(subject, place, true);
+    return wrong.empty() ? offTheNormal(subject, place, false) : wrong;
+  });
+}
+
+Verdict torqueAboutProbe(const Recipe& recipe, uint64_t) {
+  constexpr double kLeast = 1e-4, kClose = 0.01;  // [N m] least torque that is judged; share of it
+  constexpr int kEnough = 20;                     // steps at one place
+  return atEachPlace(recipe, [](Subject& subject, const Place& place) {
+    int judged = 0, same = 0;
+    Vector3d torque = Vector3d::Zero(), p = Vector3d::Zero();
+    press(subject, place, [&](const Answer& answer, const PressStep& step) {
       const hsp_contact& c = answer.contacts[0];
-      const Vector3d force(c.force), normal(c.normal);
-      if (!step.settled || (c.flags & HSP_OUT_EDGE) != 0 || force.norm() < kLeast) return std::string();
-      const double angle = std::atan2(force.cross(normal).norm(), std::abs(force.dot(normal)));
-      if (angle <= kOffAngle) return std::string();
-      return "it reports to push only and to have no friction (HSP_R_PUSHES), and its force of " + text(force.norm()) +
-             " N on a probe at rest lies " + text(angle * 180 / M_PI) +
-             " degrees off its normal; expected force = normal times a size, or, for friction, no HSP_R_PUSHES in "
-             "activate()";
+      const Vector3d about_origin = step.p.cross(Vector3d(c.force)), told(c.torque);
+      if (!(c.depth_m > 0) || about_origin.norm() < kLeast || told.norm() < kLeast) return std::string();
+      ++judged;
+      if ((told - about_origin).norm() > kClose * about_origin.norm()) return std::string();
+      ++same, torque = told, p = step.p;
+      return std::string();
     });
+    if (same < kEnough || same < judged) return std::string();
+    return placed("contact.torque of " + text(torque.norm()) +
+                      " N m is the torque of the force about the model's origin; expected the torque on the probe, "
+                      "about the probe: zero where the force acts at its tip",
+                  p);
   });
 }
 

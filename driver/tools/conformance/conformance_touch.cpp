@@ -67,6 +67,25 @@ struct Search {
     return inside;
   }
 
+  /// Returns the depth below which the shape names a foot point that is deeper than the probe, as a thin wall does
+  /// whose nearest side is felt. Shapes that move or deform are not judged.
+  double throughAt(const Place& place) {
+    constexpr double kFirst = 1e-5, kDeepest = 1e-2, kGrowth = 1.2;  // [m], [m], factor
+    constexpr double kBelow = 1.3;                                   // share of the depth; a foot is not exact
+    constexpr double kNear = 3;  // multiple of the depth: a foot that leaps farther is wrong in another way
+    if (subject.moves() || (subject.description().flags & HSP_C_DEFORMS) != 0) return place.through;
+    const Vector3d above(
+        subject.step({place.foot + kFirst * place.out}, kConformanceDt, HSP_IN_JUMP).contacts[0].point);
+    for (double depth = kFirst; depth < kDeepest; depth *= kGrowth) {
+      const Vector3d p = place.foot - depth * place.out;
+      const Answer& answer = subject.step({p}, kConformanceDt);
+      if (!finite(answer) || (answer.contacts[0].flags & HSP_OUT_TRACED) == 0) break;
+      const Vector3d down = above - Vector3d(answer.contacts[0].point);
+      if (down.dot(place.out) > kBelow * depth && down.norm() < kNear * depth) return depth / kGrowth;
+    }
+    return place.through;
+  }
+
   /// Searches for the surface from the point p. @return true if a place was found that can be touched and was not known
   /// before
   bool lookFrom(const Vector3d& p, double size) {
@@ -80,6 +99,7 @@ struct Search {
     found.traced = true;
     Place place{foot, way.norm() > 1e-9 ? way.normalized() : normal};
     if (std::abs(place.out.norm() - 1) > 1e-3 || known(place, size) || !touches(place)) return false;
+    place.through = throughAt(place);
     found.places.push_back(place);
     return true;
   }
@@ -87,16 +107,16 @@ struct Search {
 
 }  // namespace
 
-double pressDepth(const Subject& subject) {
-  constexpr double kDeep = 1e-3;
-  const double size = subject.report().size_m;
-  return size > 0 ? std::min(kDeep, size / 4) : kDeep;
+double pressDepth(const Subject& subject, const Place& place) {
+  constexpr double kDeep = 1e-3, kOfThrough = 0.6;  // [m]; a press also moves sideways, where a thin shape may bend
+  const double size = subject.report().size_m, deep = std::min(kDeep, kOfThrough * place.through);
+  return size > 0 ? std::min(deep, size / 4) : deep;
 }
 
-double deepestPress(const Subject& subject) {
-  constexpr double kDeepest = 10e-3;
-  const double size = subject.report().size_m;
-  return size > 0 ? std::min(kDeepest, size / 3) : kDeepest;
+double deepestPress(const Subject& subject, const Place& place) {
+  constexpr double kDeepest = 10e-3, kOfThrough = 0.9;
+  const double size = subject.report().size_m, deep = std::min(kDeepest, kOfThrough * place.through);
+  return size > 0 ? std::min(deep, size / 3) : deep;
 }
 
 std::vector<PressStep> pressAt(const Place& place, double depth) {
@@ -118,7 +138,7 @@ std::vector<PressStep> pressAt(const Place& place, double depth) {
 
 std::string press(Subject& subject, const Place& place, const PressLook& look) {
   uint32_t flags = HSP_IN_JUMP;
-  for (const PressStep& step : pressAt(place, pressDepth(subject))) {
+  for (const PressStep& step : pressAt(place, pressDepth(subject, place))) {
     const Answer& answer = subject.step({step.p}, kConformanceDt, flags);
     flags = 0;
     if (std::string objection = look(answer, step); !objection.empty()) return placed(objection, step.p);
@@ -152,8 +172,10 @@ std::string toText(const Touch& touch) {
   std::ostringstream out;
   out.precision(std::numeric_limits<double>::max_digits10);
   out << touch.traced << ' ' << touch.felt;
-  for (const Place& place : touch.places)
+  for (const Place& place : touch.places) {
     for (const Vector3d& v : {place.foot, place.out}) out << ' ' << v.x() << ' ' << v.y() << ' ' << v.z();
+    out << ' ' << place.through;
+  }
   return out.str();
 }
 
@@ -161,8 +183,8 @@ Touch touchFromText(const std::string& text) {
   std::istringstream in(text);
   Touch touch;
   in >> touch.traced >> touch.felt;
-  for (Place place;
-       in >> place.foot.x() >> place.foot.y() >> place.foot.z() >> place.out.x() >> place.out.y() >> place.out.z();)
+  for (Place place; in >> place.foot.x() >> place.foot.y() >> place.foot.z() >> place.out.x() >> place.out.y() >>
+                    place.out.z() >> place.through;)
     touch.places.push_back(place);
   return touch;
 }

@@ -17,6 +17,9 @@ struct Answer;
 struct Place {
   Eigen::Vector3d foot = Eigen::Vector3d::Zero();  ///< [m] model frame
   Eigen::Vector3d out = Eigen::Vector3d::Zero();   ///< unit vector from the solid to the free side, model frame
+  /// [m] A probe that is deeper than this is pushed out on the other side, because the shape is thin there. 1 m if no
+  /// such depth was found.
+  double through = 1;
 };
 
 /// The result of a search for places on several sides of the shape, for sizes from 1 mm to 1 m.
@@ -40,11 +43,11 @@ struct PressStep {
   bool settled = false;  ///< the probe rests and came straight in, so damping and friction give no force
 };
 
-/// Returns how deep [m] a press goes if it begins outside: 1 mm, and less for a small shape.
-double pressDepth(const Subject& subject);
+/// Returns how deep [m] a press goes if it begins outside: 1 mm, and less for a small or a thin shape.
+double pressDepth(const Subject& subject, const Place& place);
 
-/// Returns how deep [m] a shape is pressed when its depths are examined: 10 mm, and less for a small shape.
-double deepestPress(const Subject& subject);
+/// Returns how deep [m] a shape is pressed when its depths are examined: 10 mm, and less for a small or a thin shape.
+double deepestPress(const Subject& subject, const Place& place);
 
 /// Returns the steps of a press: from outside straight in, once round on a small circle, and out again, without a jump.
 std::vector<PressStep> pressAt(const Place& place, double depth);

@@ -105,17 +105,21 @@ document::Problems unreachableModels(const scene::Scene& scene, const servo::Wor
     };
     if (!rests(scene.models[i], *world.shapes()[i]) || std::all_of(scene.devices.begin(), scene.devices.end(), isFar))
       continue;
-    std::optional<double> least;  // [m] from the model to the nearest place that an arm reaches
+    std::optional<double> least;      // [m] from the model to the nearest place that an arm reaches
+    Vector3d end = Vector3d::Zero();  // [m] about this place, in the world
     for (uint32_t tip = 0; tip < tips.size(); ++tip) {
       const auto away = distanceOf(scene, world, core, i, tips[tip].tip, tip);
       const double missing = away ? *away - kRoom * tips[tip].reach - kLittle : 0;
-      least = std::min(least.value_or(missing), missing);
+      if (least && *least <= missing) continue;
+      least = missing;
+      end = tips[tip].tip + (scene.models[i].pose.position - tips[tip].tip).normalized() * tips[tip].reach;
     }
     if (least && *least > 0)
       reportAt(scene, i,
-               fmt::format("no arm reaches {}: the nearest arm ends about {:.3g} m before it; the position must be "
-                           "within reach, in m",
-                           scene.models[i].name, *least),
+               fmt::format("no arm reaches {}: the nearest arm ends about {:.3g} m before it, at about [{:.2f}, "
+                           "{:.2f}, {:.2f}] in the world; move the model there (pose.position, in m) or the arm "
+                           "(mount.position of its device)",
+                           scene.models[i].name, *least, end.x(), end.y(), end.z()),
                warnings);
   }
   return warnings;

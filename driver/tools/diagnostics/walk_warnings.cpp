@@ -47,12 +47,15 @@ void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& han
                     : fmt::format("a hand.radius with which it meets the surface (it is {:.4g} m now)", hand.radius)));
   }
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
+  constexpr double kWide = 0.2;  // [m] few arms let a hand move farther from its centre
+  const double wider = hand.radius + seen.away;
   const std::string at = fmt::format(
       "a hand that moves near a model: its centre (hand.center) is at [{:.3g}, {:.3g}, {:.3g}] in "
-      "the world, and {} at [{:.3g}, {:.3g}, {:.3g}]; move the arm (mount.position), "
-      "hand.center or the model (pose.position)",
-      center.x(), center.y(), center.z(), nearest.name, nearest.pose.position.x(), nearest.pose.position.y(),
-      nearest.pose.position.z());
+      "the world, it moves {:.3g} m from there (hand.radius), and {} is at [{:.3g}, {:.3g}, {:.3g}]; move the arm "
+      "(mount.position), hand.center or the model (pose.position){}",
+      center.x(), center.y(), center.z(), hand.radius, nearest.name, nearest.pose.position.x(),
+      nearest.pose.position.y(), nearest.pose.position.z(),
+      seen.away > 0 && wider < kWide ? fmt::format(", or give a hand.radius above {:.3g} m", wider) : std::string());
   const std::string in_list = fmt::format("devices[{}].mount.position", index);
   for (const std::string& id : {std::string("device.mount.position"), in_list})
     if (const auto place = placeOfKey(scene.file, id)) return document::report(warnings, *place, id, what + at);

@@ -34,7 +34,7 @@ class Numbers {
   }
 
   double next(const char* what) {
-    if (at_ == words_.size()) throw Error{file_ + ": ends early, expected " + what};
+    if (at_ == words_.size()) throw Error{file_ + ": the file ends too early; expected " + what};
     const Word& word = words_[at_++];
     const auto value = document::toNumber(word.text);
     if (!value || !std::isfinite(*value)) throw wrong(word, what);
@@ -64,8 +64,8 @@ class Numbers {
     }
   }
   Error wrong(const Word& word, const std::string& expected) const {
-    return Error{file_ + ":" + std::to_string(word.line) + ":" + std::to_string(word.column) + ": " +
-                 word.text.substr(0, 40) + ", expected " + expected};
+    return Error{file_ + ":" + std::to_string(word.line) + ":" + std::to_string(word.column) + ": " + "'" +
+                 word.text.substr(0, 40) + "' stands here; expected " + expected};
   }
   std::string file_;
   std::vector<Word> words_;

@@ -62,8 +62,8 @@ Result<std::vector<Answer>> readAnswers(const std::string& file) {
   for (std::size_t i = 0; i < table->rows(); ++i) {
     const double* row = table->row(i);
     if (!(row[3] > 0) || !(row[4] > 0))
-      return Error{
-          fmt::format("{}:{}: depth {} m, force {} N, expected both above 0", file, table->lines[i], row[3], row[4])};
+      return Error{fmt::format("{}:{}: the depth is {} m and the force {} N; expected both above 0", file,
+                               table->lines[i], row[3], row[4])};
     answers.push_back({Vector3d(row), row[3], row[4]});
   }
   return answers;
@@ -226,7 +226,10 @@ Result<std::vector<double>> fitStiffness(const Body& body, const std::vector<Ans
     forces = std::move(*felt);
     Eigen::VectorXd missing(static_cast<Eigen::Index>(forces.size()));
     for (std::size_t j = 0; j < forces.size(); ++j) {
-      if (!(forces[j] > 0)) return Error{fmt::format("nothing is felt at place {} of {}", j + 1, options.answers)};
+      if (!(forces[j] > 0))
+        return Error{
+            fmt::format("{}: at the place of row {} the body gives no force; expected a place on its surface, in m",
+                        options.answers, j + 1)};
       missing[static_cast<Eigen::Index>(j)] = std::log(answers[j].force / forces[j]);
     }
     if (missing.cwiseAbs().maxCoeff() < kFitted) break;
@@ -282,9 +285,8 @@ Result<void> calibrate(const Calibration& options, host::Catalog& catalog) {
   std::vector<Indentation> dents;
   if (!options.dents.empty()) {
     if (body->columns == 0)
-      return Error{
-          options.body +
-          ": has vertices, expected a grid of points: the dents of a mesh cannot be fitted, its rings fix them"};
+      return Error{options.body +
+                   ": the body has vertices; expected a grid of points, because rings fix the dents of a mesh"};
     auto read = readIndentations(options.dents);
     if (!read) return Error{read.error()};
     dents = std::move(*read);

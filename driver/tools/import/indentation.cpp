@@ -80,7 +80,8 @@ Result<double> measureIndentation(host::ShapeInstance& body, const Indentation& 
   const auto both = heldTogether(body, at);
   if (!both) return Error{both.error()};
   const double force = along((*both)[0]), other = along((*both)[1]);
-  if (!(force > 0) || !(stiffness[1] > 0)) return Error{"nothing is felt at a place of a dent"};
+  if (!(force > 0) || !(stiffness[1] > 0))
+    return Error{"the body gives no force at one of the two places; expected places on its surface, in m"};
   return (kPress - other / stiffness[1]) * stiffness[0] / force;
 }
 
@@ -92,13 +93,14 @@ Result<std::vector<Indentation>> readIndentations(const std::string& file) {
   rules.headers = {"x,y,z,x2,y2,z2,dent"};
   const auto table = document::readCsv(file, kMostTableBytes, rules, problems);
   if (!table || table->rows() == 0)
-    return Error{problems.empty() ? file + ": no dents, expected x,y,z,x2,y2,z2,dent" : problems.front().text()};
+    return Error{problems.empty() ? file + ": the file has no rows; expected x,y,z,x2,y2,z2,dent"
+                                  : problems.front().text()};
   std::vector<Indentation> dents;
   for (std::size_t i = 0; i < table->rows(); ++i) {
     const double* row = table->row(i);
     if (!(row[6] < 1) || !(row[6] > -1))
-      return Error{
-          fmt::format("{}:{}: dent {}, expected a share of the depth between -1 and 1", file, table->lines[i], row[6])};
+      return Error{fmt::format("{}:{}: the dent is {}; expected a share of the depth between -1 and 1", file,
+                               table->lines[i], row[6])};
     dents.push_back({Vector3d(row), Vector3d(row + 3), row[6]});
   }
   return dents;

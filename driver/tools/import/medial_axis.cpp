@@ -317,12 +317,12 @@ SurfaceSamples sampleSurface(const Triangles& mesh, std::size_t count) {
 
 Result<MedialAxis> medialAxis(const SurfaceSamples& samples, const MedialOptions& options,
                               const std::function<void(const std::string&)>& progress) {
-  if (samples.points.empty()) return Error{"no surface: all triangles have zero area"};
+  if (samples.points.empty()) return Error{"the triangles have no area, so there is no surface"};
   progress(std::to_string(samples.points.size()) + " points on the surface; shrinking a ball at each");
   const NearestPoints nearest(samples.points);
   const std::vector<Ball> balls = innerBalls(samples, nearest, options, progress);
   if (balls.empty())
-    return Error{"no ball inside touches the surface at two places " +
+    return Error{"the body has no medial axis: no ball inside touches the surface at two places that are " +
                  std::to_string(std::lround(options.least_angle)) +
                  " degrees apart\n  fix: give a smaller --angle (default 60), or more --samples if walls are thin"};
   progress(std::to_string(balls.size()) + " balls on the medial axis; choosing the fewest that cover the surface");

@@ -14,6 +14,7 @@
 #include "import/active_model.hpp"
 #include "import/medial_axis.hpp"
 #include "import/nearest_points.hpp"
+#include "mesh_import/mesh_file.hpp"
 
 namespace hapticd::importing {
 namespace {
@@ -139,7 +140,7 @@ void printSize(const Eigen::AlignedBox3d& box, const std::string& file) {
 
 Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalog) {
   if (!endsWith(options.out, ".ma") && !endsWith(options.out, ".yaml"))
-    return Error{options.out + ": expected a name that ends in .ma or .yaml"};
+    return Error{options.out + ": the name does not say which format to write; expected one that ends in .ma or .yaml"};
   if (endsWith(options.file, ".yaml") || endsWith(options.file, ".yml") || endsWith(options.file, ".json")) {
     const auto shape = activated("nurbs_rigid", options.file, catalog);
     if (!shape) return Error{shape.error()};
@@ -151,12 +152,17 @@ Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalo
   document::Problems problems;
   const auto text = document::readFile(options.file, kMostFileBytes, problems);
   if (!text) return Error{problems.empty() ? options.file + ": cannot be read" : problems.front().text()};
-  if (!endsWith(options.file, ".obj") && !endsWith(options.file, ".stl"))
-    return Error{options.file + ": expected .obj, .stl, or a model file (.yaml, .json) with surfaces"};
-  auto mesh = endsWith(options.file, ".obj") ? parseObj(*text, options.file) : parseStl(*text, options.file);
-  if (!mesh) return mesh;
-  for (Vector3d& p : mesh->points) p *= options.scale;
-  if (const auto closed = orientClosed(*mesh, options.file); !closed) return Error{closed.error()};
+  if (!isMeshFile(options.file))
+    return Error{options.file +
+                 ": its name does not say that it holds a surface; expected .obj, .stl, .ply, or a model file (.yaml, "
+                 ".json) with surfaces"};
+  auto read = parseMesh(*text, options.file);
+  if (!read) return Error{read.error()};
+  Triangles mesh{std::move(read->points), {}};
+  for (const auto& c : read->corners)
+    if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0]) mesh.corners.push_back(c);
+  for (Vector3d& p : mesh.points) p *= options.scale;
+  if (const auto closed = orientClosed(mesh, options.file); !closed) return Error{closed.error()};
   return mesh;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Closed triangle meshes from OBJ and STL files.
+/// Closed triangle meshes.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -14,11 +14,6 @@ struct Triangles {
   std::vector<Eigen::Vector3d> points;
   std::vector<std::array<uint32_t, 3>> corners;  ///< counter-clockwise seen from outside
 };
-
-/// [main] Reads an OBJ (v and f; polygons are cut into triangles) or an STL (text or binary; equal points become one).
-/// Errors give the line if there are lines.
-Result<Triangles> parseObj(const std::string& text, const std::string& file);
-Result<Triangles> parseStl(const std::string& bytes, const std::string& file);
 
 /// [main] Reverses all triangles if the surface is inside out. Fails for a surface with a hole, with an edge of more
 /// than two triangles, or without volume, because then it is not defined which points are inside.

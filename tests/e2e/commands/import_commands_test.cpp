@@ -24,11 +24,11 @@ TEST_F(ImportCommands, ImportScalesCentresAndKeepsTheCredit) {
 
 TEST_F(ImportCommands, ImportSaysWhereAPatchFileIsWrong) {
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"", "ends early, expected the number of patches"},
-      {"1\n3 3\n0 0 0\n", "ends early, expected a coordinate"},
-      {"1\n99 3\n", "bad.bpt:2:1: 99, expected a degree"},
-      {"1\n1 1\n0 0 0\n0 x 2\n", "bad.bpt:4:3: x, expected a coordinate"},
-      {"1\n1 1\n0 0 0\n0 0 2\n4 0 0\n4 0 2\n7\n", "bad.bpt:7:1: 7, expected the end"},
+      {"", "the file ends too early; expected the number of patches"},
+      {"1\n3 3\n0 0 0\n", "the file ends too early; expected a coordinate"},
+      {"1\n99 3\n", "bad.bpt:2:1: '99' stands here; expected a degree"},
+      {"1\n1 1\n0 0 0\n0 x 2\n", "bad.bpt:4:3: 'x' stands here; expected a coordinate"},
+      {"1\n1 1\n0 0 0\n0 0 2\n4 0 0\n4 0 2\n7\n", "bad.bpt:7:1: '7' stands here; expected the end"},
       {"999999999\n", "expected the number of patches, 1 to 100000"},
   };
   for (const auto& [text, reason] : cases) {

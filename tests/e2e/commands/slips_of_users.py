@@ -48,7 +48,7 @@ def foreign(folder, ask):
     code, out, err = ask("import", write(folder, "cubestl", STL), "-o", os.path.join(folder, "x.hpart"))
     check("a file without an ending is asked for it", code == 2 and "expected the ending .bpt, .stl" in err, (code, out, err))
     code, out, err = ask("import", write(folder, "short.stl", STL[:-1]), "-o", os.path.join(folder, "x.hpart"))
-    check("a short STL is told its length", code != 0 and "1 triangles has 134 bytes, and this file has 133" in err, (code, out, err))
+    check("a short STL is told its length", code != 0 and "1 triangles has 134 bytes, but this file has 133" in err, (code, out, err))
 
 
 def cube(at, size=0.04):
@@ -152,7 +152,7 @@ def others(folder, ask, recording, path, file):
         check(f"{words[0]} {words[-1]} fills an empty file and replaces its own", codes == [0, 0] and os.path.getsize(again) > 0, codes)
     write(folder, "p2.csv", "t,x,y,z,qw,qx,qy,qz\n0,0,0.2,0,1,0,0,0\n0.001,0,0.2,0,0.9999,0,0,0\n0.002,nan,nan,nan,nan,nan,nan,nan\n# x\n0.003,0,0.2,0,0,0,0,0\n")
     code, out, err = ask("trace", file, "--probe", os.path.join(folder, "p2.csv"), "--out", "-")
-    check("an orientation without its length is refused at its line, others are taken", code == 2 and "p2.csv:6: " in err and "has the length 0, expected 1" in err, err)
+    check("an orientation without its length is refused at its line, others are taken", code == 2 and "p2.csv:6: " in err and "has the length 0; expected a unit quaternion" in err, err)
 
 
 def everything(folder, ask):

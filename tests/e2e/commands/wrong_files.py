@@ -17,6 +17,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 from e2e import check, finish
 
 HAPTICD, FOLDER = sys.argv[1:3]
+SOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..")
 
 
 def expected(file):
@@ -104,6 +105,15 @@ with tempfile.TemporaryDirectory() as folder:
     check("triangles are fitted and turned", done.returncode == 0 and "0.06 x 0 x 0.06 m" in done.stdout, (done.stdout, done.stderr))
     done = imported("--outward", "normal")
     check("what means nothing for triangles is refused", done.returncode == 2 and "--outward has an effect only with .bpt files" in done.stderr, done.stderr)
+    # What is wrong at one place hides nothing that is wrong elsewhere.
+    hiding = os.path.join(folder, "hiding.yaml")
+    with open(hiding, "w") as out:
+        out.write(f"hapticd: 1\ndevice: {os.path.join(SOURCE, 'config/devices/simulated-premium15.yaml')}\n"
+                  "hand: {script: circle, center: [0, 30, 0], normal: [0, 0, 0]}\n"
+                  "models:\n  - {name: rough, plugin: nurbs_rigid, parameters: {friction_static: 0.2, friction_dynamic: 0.4}}\n")
+    done = subprocess.run([HAPTICD, "check", hiding], capture_output=True, text=True, timeout=120)
+    check("all is told at once", done.returncode == 2 and all(w in done.stdout for w in (
+        "hand.center[1]: 30 m is out of range", "hand.normal: is zero", "parameters.geometry: missing", "0.4 is more than friction_static, 0.2")), done.stdout)
     stl = os.path.join(folder, "cube.stl")
     open(stl, "w").write("solid\nendsolid\n")
     with open(scene, "w") as out:

@@ -22,7 +22,7 @@ class Words {
   bool nextLine() {
     if (rest_.empty()) return false;
     std::size_t end = rest_.find_first_of("\r\n");
-    line_ = rest_.substr(0, end);
+    line_ = whole_ = rest_.substr(0, end);
     if (end != std::string_view::npos && rest_.substr(end, 2) == "\r\n") ++end;
     rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
     ++number_;
@@ -38,12 +38,13 @@ class Words {
     return word;
   }
   void skipLine() { line_ = {}; }
+  std::string_view wholeLine() const { return whole_; }
   std::size_t lineNumber() const { return number_; }
   std::string_view rest() const { return rest_; }  ///< the text after this line
 
  private:
   static constexpr std::string_view kSpace = " \t\v\f";
-  std::string_view rest_, line_;
+  std::string_view rest_, line_, whole_;
   std::size_t number_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include "mesh_import/mesh_file.hpp"
 #include "mesh_import/mesh_words.hpp"
 #include "mesh_import/polygons.hpp"
+#include "mesh_import/wrong_lines.hpp"
 
 namespace hapticd::importing {
 namespace {
@@ -14,13 +15,16 @@ class ObjReader {
   Result<MeshFile> run() {
     while (words_.nextLine()) {
       const std::string_view kind = words_.next();
-      if (kind == "v" && !readPoint()) return Error{at(words_.lineNumber()) + wrong_};
-      if ((kind == "f" || kind == "fo") && !readFace()) return Error{at(line_) + wrong_};
+      if (kind == "v") readPoint();
+      if ((kind == "f" || kind == "fo") && !readFace()) tell(line_);
+      if (mesh_.corners.size() > kMostTriangles)
+        return Error{at(line_) + "the file has more than 20,000,000 triangles"};
       free_form_ = free_form_ || kind == "surf" || kind == "curv";
       lines_ += kind == "l" ? 1 : 0;
     }
     for (const Late& late : late_)
-      if (!addFace(late.indices, late.line)) return Error{at(late.line) + wrong_};
+      if (!addFace(late.indices, late.line)) tell(late.line);
+    if (!wrong_lines_.none()) return wrong_lines_.error(name_);
     if (mesh_.corners.empty()) return Error{name_ + ": " + whatIsMissing()};
     return std::move(mesh_);
   }
@@ -38,11 +42,15 @@ class ObjReader {
     return false;
   }
 
-  bool readPoint() {
+  void tell(std::size_t line) { wrong_lines_.add(line, at(line) + wrong_); }
+
+  /// Reads a point. A wrong one is kept as well, because the faces count it.
+  void readPoint() {
     const auto p = nextPoint(words_);
-    if (!p) return fail("expected v x y z, finite numbers");
-    points_.push_back(weld_.at(*p));
-    return true;
+    points_.push_back(weld_.at(p.value_or(Eigen::Vector3d::Zero())));
+    if (p) return;
+    fail("'" + plainWord(words_.wholeLine()) + "' is not a point; expected v x y z, finite numbers");
+    tell(words_.lineNumber());
   }
 
   /// Reads the indices of a face. They count from 1, or backward from the last point if they are negative. A line that
@@ -73,7 +81,9 @@ class ObjReader {
   }
 
   std::string outOfRange(std::string_view word) const {
-    return "point '" + plainWord(word) + "', expected 1 to " + std::to_string(points_.size());
+    const std::string what = "the face names the point '" + plainWord(word) + "'";
+    if (points_.empty()) return what + ", but no line v x y z stands before it";
+    return what + "; expected 1 to " + std::to_string(points_.size());
   }
 
   bool addFace(const std::vector<std::int64_t>& indices, std::size_t line) {
@@ -83,13 +93,13 @@ class ObjReader {
       if (index > static_cast<std::int64_t>(points_.size())) return fail(outOfRange(std::to_string(index)));
       polygon.push_back(points_[static_cast<std::size_t>(index - 1)]);
     }
-    if (polygon.size() < 3) return fail("expected f and at least three points");
-    if (!cutPolygon(mesh_.points, std::move(polygon), mesh_.corners)) return fail(kPolygonTooLarge);
-    return mesh_.corners.size() <= kMostTriangles || fail("more than 20,000,000 triangles");
+    if (polygon.size() < 3)
+      return fail("the face has " + std::to_string(polygon.size()) + " points; expected f and at least three");
+    return cutPolygon(mesh_.points, std::move(polygon), mesh_.corners) || fail(kPolygonTooLarge);
   }
 
   std::string whatIsMissing() const {
-    std::string text = "has no triangles, expected lines f i j k";
+    std::string text = "the file has no triangles; expected lines f i j k";
     if (free_form_)
       return text + "; it holds free-form surfaces: convert them to triangles in the program that wrote it";
     if (points_.empty()) return text;
@@ -106,6 +116,7 @@ class ObjReader {
   std::size_t line_ = 0, lines_ = 0;
   bool free_form_ = false;
   std::string wrong_;
+  WrongLines wrong_lines_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "mesh_import/mesh_file.hpp"
 #include "mesh_import/mesh_words.hpp"
 #include "mesh_import/polygons.hpp"
+#include "mesh_import/wrong_lines.hpp"
 
 namespace hapticd::importing {
 namespace {
@@ -41,18 +42,32 @@ struct Element {
   std::vector<Property> properties;
 };
 
+/// How the values of a text are divided into items.
+enum class Lines : std::uint8_t {
+  kOneAnItem,  ///< each item has a line of its own; more values than the header states are passed over
+  kAnywhere    ///< line breaks do not count
+};
+
 /// Reads the values of the body one after another.
 class Body {
  public:
   enum class Form : std::uint8_t { kText, kLittle, kBig };
-  Body(std::string_view bytes, Form form) : bytes_(bytes), words_(bytes), form_(form) { words_.nextLine(); }
+  Body(std::string_view bytes, Form form, Lines lines) : bytes_(bytes), words_(bytes), form_(form), lines_(lines) {}
+
+  /// Goes to the next item. @return false if the file has ended
+  bool nextItem() {
+    if (form_ == Form::kText && lines_ == Lines::kOneAnItem) word_ = nextWord();
+    ended_ = form_ == Form::kText && lines_ == Lines::kOneAnItem && word_.empty();
+    return !ended_;
+  }
 
   std::optional<double> next(Type type) {
     if (form_ == Form::kText) {
-      std::string_view word = words_.next();
-      while (word.empty() && words_.nextLine()) word = words_.next();
-      ended_ = word.empty();
-      return anyNumber(word);
+      if (lines_ == Lines::kAnywhere) word_ = nextWord();
+      ended_ = lines_ == Lines::kAnywhere && word_.empty();
+      last_ = word_;
+      if (lines_ == Lines::kOneAnItem) word_ = words_.next();
+      return anyNumber(last_);
     }
     const std::size_t size = sizeOf(type);
     ended_ = bytes_.size() - place_ < size;
@@ -63,17 +78,27 @@ class Body {
     return decode(type, raw);
   }
 
-  /// Passes over the rest of a line of text, since each item has its own line. @return true if it held a value
+  /// Passes over the rest of the line if each item has its own line. @return true if it held a value
   bool passRest() {
-    if (form_ != Form::kText) return false;
-    const bool more = !words_.next().empty();
-    words_.skipLine();
+    const bool more = form_ == Form::kText && lines_ == Lines::kOneAnItem && !word_.empty();
+    if (more) words_.skipLine();
+    word_ = {};
     return more;
   }
-  bool ended() const { return ended_; }  ///< true if the last value was missing
+  /// True if nothing but blanks is left of a text.
+  bool atEnd() { return form_ != Form::kText || nextWord().empty(); }
+  bool isText() const { return form_ == Form::kText; }
+  bool ended() const { return ended_; }  ///< true if the last value was missing because the file has ended
+  std::string_view lastWord() const { return last_; }  ///< the last value of a text; empty if the line had no more
   std::size_t lineNumber() const { return form_ == Form::kText ? words_.lineNumber() : 0; }
 
  private:
+  /// Returns the next word of this line or a later one.
+  std::string_view nextWord() {
+    std::string_view word = words_.next();
+    while (word.empty() && words_.nextLine()) word = words_.next();
+    return word;
+  }
   template <class T>
   static double as(const std::array<char, 8>& raw) {
     T value;
@@ -106,33 +131,59 @@ class Body {
   std::string_view bytes_;
   std::size_t place_ = 0;
   Words words_;
+  std::string_view word_, last_;  ///< the word to read next, if each item has its own line; the word read last
   Form form_;
+  Lines lines_;
   bool ended_ = false;
 };
 
+constexpr const char* kTooMany = "the file has more than 20,000,000 triangles";
+
 class Reader {
  public:
-  Reader(std::string_view bytes, const std::string& name) : words_(bytes), name_(name) {}
+  Reader(std::string_view bytes, const std::string& name, Lines lines) : words_(bytes), name_(name), lines_(lines) {}
 
   Result<MeshFile> run() {
     if (!readHeader() || !judgeHeader())
       return Error{name_ + ":" + std::to_string(words_.lineNumber()) + ": " + wrong_};
-    Body body(words_.rest(), form_);
-    std::size_t longer = 0;
+    Body body(words_.rest(), form_, lines_);
+    has_text_ = body.isText();
     for (const Element& element : elements_)
-      for (std::size_t i = 0; i < element.count && !element.properties.empty(); ++i) {
-        if (!readItem(element, body)) return Error{where(element, i, body) + wrong_};
-        longer += body.passRest() ? 1 : 0;
-      }
-    if (longer > 0)
+      if (!element.properties.empty() && !readItems(element, body)) return wrong_lines_.error(name_);
+    if (!wrong_lines_.none()) return wrong_lines_.error(name_);
+    if (lines_ == Lines::kAnywhere && !body.atEnd()) return Error{name_ + ": more values follow the last element"};
+    if (longer_ > 0)
       mesh_.remarks.push_back(
-          std::to_string(longer) +
-          " lines hold more values than the header states; the rest of these lines was passed over");
+          std::to_string(longer_) +
+          (longer_ == 1 ? " line holds more values than the header states; the rest of this line was passed over"
+                        : " lines hold more values than the header states; the rest of these lines was passed over"));
+    if (lines_ == Lines::kAnywhere)
+      mesh_.remarks.emplace_back("lines and elements do not agree; the values were read one after another");
     if (mesh_.corners.empty()) return Error{name_ + ": " + whatIsMissing()};
     return std::move(mesh_);
   }
+  /// True if the body is text, so that another division of its lines may fit.
+  bool hasText() const { return has_text_; }
 
  private:
+  /// Reads all items of an element. @return false if the others cannot be read either
+  bool readItems(const Element& element, Body& body) {
+    for (std::size_t i = 0; i < element.count; ++i) {
+      const bool there = body.nextItem() || failAt(body, "");
+      if (there && readItem(element, body)) {
+        longer_ += body.passRest() ? 1 : 0;
+        if (mesh_.corners.size() <= kMostTriangles) continue;
+        fail(kTooMany);
+      }
+      wrong_lines_.add(body.lineNumber(), where(element, i, body) + wrong_);
+      const bool own_lines = body.isText() && lines_ == Lines::kOneAnItem;
+      if (body.ended() || !own_lines || mesh_.corners.size() > kMostTriangles) return false;
+      if (element.name == "vertex" && points_.size() == i) points_.push_back(weld_.at(Vector3d::Zero()));  // it counts
+      body.passRest();
+    }
+    return true;
+  }
+
   bool fail(std::string wrong) {
     wrong_ = std::move(wrong);
     return false;
@@ -141,24 +192,30 @@ class Reader {
   std::string where(const Element& element, std::size_t item, const Body& body) const {
     const std::size_t line = body.lineNumber();
     return name_ + (line > 0 ? ":" + std::to_string(words_.lineNumber() + line) : "") + ": " +
-           std::string(element.name) + " " + std::to_string(item) + " of " + std::to_string(element.count) + ": ";
+           std::string(element.name) + " " + std::to_string(item) + " (from 0) of " + std::to_string(element.count) +
+           ": ";
   }
 
   /// A value was missing: says why.
-  bool failAt(const Body& body, const char* expected) {
-    return fail(body.ended() ? "the file ends here: it is cut off, or the header states too many"
-                             : std::string("this is not a number; expected ") + expected);
+  bool failAt(const Body& body, const std::string& expected) {
+    if (body.ended())
+      return fail(
+          "the file ends here, but the header states more; the file is cut off, or the number in the header is "
+          "wrong");
+    if (body.lastWord().empty()) return fail("the line ends before " + expected);
+    return fail("'" + plainWord(body.lastWord()) + "' is not a number; expected " + expected);
   }
 
   /// Says what is there if there are no triangles.
   std::string whatIsMissing() const {
-    std::string text = "has no triangles, expected an element face with vertex_indices";
+    std::string text = "the file has no triangles; expected an element face with vertex_indices";
     if (!points_.empty()) text += "; it holds points, but no faces";
     return text;
   }
 
   bool readHeader() {
-    if (!words_.nextLine() || words_.next() != "ply") return fail("not a PLY, expected its first line to be ply");
+    if (!words_.nextLine() || words_.next() != "ply")
+      return fail("this is not a PLY file; expected ply as its first line");
     while (words_.nextLine()) {
       const std::string_view word = words_.next();
       if (word == "end_header") return true;
@@ -166,7 +223,8 @@ class Reader {
       if (word == "element" && !readElement()) return false;
       if (word == "property" && !readProperty()) return false;
     }
-    return fail("the header has no end_header");
+    return fail(
+        "the header has no end; expected a line end_header, and each element and property on a line of its own");
   }
 
   /// Refuses vertices without a place, and faces that stand before their vertices.
@@ -189,7 +247,8 @@ class Reader {
     if (word == "binary_little_endian") form_ = Body::Form::kLittle;
     if (word == "binary_big_endian") form_ = Body::Form::kBig;
     return word == "ascii" || form_ != Body::Form::kText ||
-           fail("unknown format, expected ascii, binary_little_endian or binary_big_endian");
+           fail("the format '" + plainWord(word) +
+                "' is unknown; expected ascii, binary_little_endian or binary_big_endian");
   }
 
   bool readElement() {
@@ -210,13 +269,14 @@ class Reader {
     std::string_view word = words_.next();
     if (word == "list") {
       property.count = typeOf(words_.next());
-      if (property.count == Type::kUnknown) return fail("unknown type of a list's length, expected uchar or the like");
+      if (property.count == Type::kUnknown)
+        return fail("the type of the list's length is unknown; expected uchar or the like");
       word = words_.next();
     }
     property.type = typeOf(word);
     property.name = words_.next();
     if (property.type == Type::kUnknown)
-      return fail("unknown type '" + plainWord(word) + "', expected int, float, double, uchar or the like");
+      return fail("the type '" + plainWord(word) + "' is unknown; expected int, float, double, uchar or the like");
     elements_.back().properties.push_back(property);
     return true;
   }
@@ -232,12 +292,12 @@ class Reader {
         continue;
       }
       const auto value = body.next(property.type);
-      if (!value) return failAt(body, "the value of a property");
+      if (!value) return failAt(body, "the value of the property " + std::string(property.name));
       if (property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z')
         p[property.name[0] - 'x'] = *value;
     }
     if (element.name != "vertex") return true;
-    if (!p.allFinite()) return fail("a coordinate is not finite");
+    if (!p.allFinite()) return fail("a coordinate is not a finite number");
     points_.push_back(weld_.at(p));
     return true;
   }
@@ -274,7 +334,7 @@ class Reader {
       polygon.push_back(points_[static_cast<std::size_t>(index)]);
     }
     if (!cutPolygon(mesh_.points, std::move(polygon), mesh_.corners)) return fail(kPolygonTooLarge);
-    return mesh_.corners.size() <= kMostTriangles || fail("more than 20,000,000 triangles");
+    return true;
   }
 
   /// Adds the triangles of strips, each of which uses the last two points again, in turns with one and the other sense.
@@ -291,26 +351,34 @@ class Reader {
       const auto at = [&](std::size_t k) { return points_[static_cast<std::size_t>(list_[k])]; };
       const std::size_t odd = (i - begin) % 2;
       mesh_.corners.push_back({at(i - 2 + odd), at(i - 1 - odd), at(i)});
-      if (mesh_.corners.size() > kMostTriangles) return fail("more than 20,000,000 triangles");
+      if (mesh_.corners.size() > kMostTriangles) return fail(kTooMany);
     }
     return true;
   }
 
   Words words_;
   const std::string& name_;
+  Lines lines_;
+  bool has_text_ = false;
   Body::Form form_ = Body::Form::kText;
   std::vector<Element> elements_;
   MeshFile mesh_;
   Weld weld_{mesh_.points};
   std::vector<std::uint32_t> points_;  ///< index of each vertex after equal points were joined
   std::vector<double> list_;
+  std::size_t longer_ = 0;  ///< number of lines with more values than the header states
   std::string wrong_;
+  WrongLines wrong_lines_;
 };
 
 }  // namespace
 
 Result<MeshFile> parsePlyMesh(std::string_view bytes, const std::string& name) {
-  return Reader(bytes, name).run();
+  Reader by_line(bytes, name, Lines::kOneAnItem);
+  auto mesh = by_line.run();
+  if (mesh || !by_line.hasText()) return mesh;
+  auto anywhere = Reader(bytes, name, Lines::kAnywhere).run();
+  return anywhere ? std::move(anywhere) : std::move(mesh);
 }
 
 }  // namespace hapticd::importing

@@ -108,6 +108,8 @@ TEST(CommandLine, RefusesWhatBreaksARuleWithTheExitCodeOfBadUsage) {
       {{"draw", "a", "-q", "--copies", "2"}, "is given together with"},
       {{"draw", "a", "--weights", "1", "2"}, "2"},
       {{"draw", "a", "--other"}, "error: there is no option --other; see example draw --help"},
+      {{"move", "--", "-a"}, "error: --to is missing, expected `example move FILE --to X Y Z`;"},
+      {{"draw", "--", "-a", "-b"}, "error: unexpected word \"-b\": `example draw` takes only FILE and options"},
   };
   for (const auto& [words, text] : wrong) {
     Example e;

@@ -39,16 +39,17 @@ TEST(MaFile, SaysWhichLineIsWrongAndWhatWasExpected) {
             std::string::npos);
   EXPECT_NE(complaintOf("20000000 0 0\n").find("body.ma:1: 20000000 elements of one kind"), std::string::npos);
   EXPECT_NE(complaintOf("0 0 0\n").find("body.ma:1: there are no vertices"), std::string::npos);
-  EXPECT_NE(complaintOf("1 0 0\nv 0 0 0 -1\n").find("body.ma:2: expected v x y z r"), std::string::npos);
+  EXPECT_NE(complaintOf("1 0 0\nv 0 0 0 -1\n").find("is not a vertex; expected v x y z r"), std::string::npos);
   EXPECT_NE(complaintOf("1 0 0\nv 0 0 nan 1\n").find("body.ma:2: "), std::string::npos);
-  EXPECT_NE(complaintOf("1 0 0\nv 1e308 0 0 1\n").find("body.ma:2: expected v x y z r"), std::string::npos);
+  EXPECT_NE(complaintOf("1 0 0\nv 1e308 0 0 1\n").find("is not a vertex; expected v x y z r"), std::string::npos);
   EXPECT_NE(complaintOf("2 1 0\nv 0 0 0 1\nv 1 0 0 1\ne 0 2\n")
-                .find("body.ma:4: expected e i j: different vertices "
+                .find("does not name vertices; expected e i j: different vertices "
                       "from 0 to 1"),
             std::string::npos);
-  EXPECT_NE(complaintOf("3 0 1\nv 0 0 0 1\nv 1 0 0 1\nv 2 0 0 1\nf 0 1 1\n").find("body.ma:5: expected f i j k"),
+  EXPECT_NE(complaintOf("3 0 1\nv 0 0 0 1\nv 1 0 0 1\nv 2 0 0 1\nf 0 1 1\n")
+                .find("body.ma:5: 'f 0 1 1' does not name vertices; expected f i j k"),
             std::string::npos);
-  EXPECT_NE(complaintOf("2 0 0\nv 0 0 0 1\n").find("1 vertex in the file, but the first line says 2"),
+  EXPECT_NE(complaintOf("2 0 0\nv 0 0 0 1\n").find("1 vertex is in the file, but the first line says 2"),
             std::string::npos);
   EXPECT_NE(complaintOf("1 0 0\nv 0 0 0 1\nx 1\n").find("body.ma:3: 'x': a line must begin with v, e, f or #"),
             std::string::npos);

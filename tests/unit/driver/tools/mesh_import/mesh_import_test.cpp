@@ -92,29 +92,36 @@ std::string errorOf(const Result<MeshFile>& mesh) {
 }
 
 TEST(MeshImport, SaysWhereAFileIsWrong) {
-  EXPECT_EQ(errorOf(parseObjMesh("v 0 0\n", "x.obj")), "x.obj:1: expected v x y z, finite numbers");
-  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 0\nf 1 2 3\n", "x.obj")), "x.obj:2: point '2', expected 1 to 1");
-  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 nan\n", "x.obj")), "x.obj:1: expected v x y z, finite numbers");
-  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 0\nf 1 2\33[2J 3\n", "x.obj")), "x.obj:2: point '2?[2J', expected 1 to 1");
+  EXPECT_EQ(errorOf(parseObjMesh("v 0 0\n", "x.obj")),
+            "x.obj:1: 'v 0 0' is not a point; expected v x y z, finite numbers");
+  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 0\nf 1 2 3\n", "x.obj")),
+            "x.obj:2: the face names the point '2'; expected 1 to 1");
+  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 nan\n", "x.obj")),
+            "x.obj:1: 'v 0 0 nan' is not a point; expected v x y z, finite numbers");
+  EXPECT_EQ(errorOf(parseObjMesh("v 0 0 0\nf 1 2\33[2J 3\n", "x.obj")),
+            "x.obj:2: the face names the point '2?[2J'; expected 1 to 1");
   EXPECT_EQ(errorOf(parseMesh("\xfe\xff\0#", "x.obj")),
             "x.obj: is text in UTF-16, expected UTF-8 or ASCII: save it again with that encoding");
   EXPECT_EQ(errorOf(parseMesh("", "x.stl")), "x.stl: is empty");
   EXPECT_EQ(errorOf(parseStlMesh("solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\n", "x.stl")),
-            "x.stl:2: the file ends inside this facet: it is cut off; expected endfacet");
+            "x.stl:2: the file ends inside this facet, so it is cut off; expected endfacet");
   EXPECT_EQ(errorOf(parseStlMesh("solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nendfacet\nendsolid", "x.stl")),
-            "x.stl:5: the facet before this line has less than three corners");
-  EXPECT_EQ(errorOf(parsePlyMesh("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
-                                 "property float z\nend_header\n0 0 0\n",
-                                 "x.ply")),
-            "x.ply:8: vertex 1 of 2: the file ends here: it is cut off, or the header states too many");
+            "x.stl:2: the facet has 2 corners; expected three lines vertex x y z");
+  EXPECT_EQ(
+      errorOf(parsePlyMesh("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+                           "property float z\nend_header\n0 0 0\n",
+                           "x.ply")),
+      "x.ply:8: vertex 1 (from 0) of 2: the file ends here, but the header states more; the file is cut off, or the "
+      "number in the header is wrong");
   EXPECT_EQ(errorOf(parsePlyMesh("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                                  "end_header\n0 0\n",
                                  "x.ply")),
             "x.ply:6: the element vertex has no property z; expected x, y and z");
   EXPECT_EQ(errorOf(parseStlMesh("solid\nvertex 0 0 zero\n", "x.stl")),
-            "x.stl:2: expected vertex x y z, finite numbers");
+            "x.stl:2: 'vertex 0 0 zero' is not a corner; expected vertex x y z, finite numbers\n"
+            "x.stl:2: the facet has 1 corner; expected three lines vertex x y z");
   EXPECT_EQ(errorOf(parsePlyMesh("ply\nformat odd 1.0\n", "x.ply")),
-            "x.ply:2: unknown format, expected ascii, binary_little_endian or binary_big_endian");
+            "x.ply:2: the format 'odd' is unknown; expected ascii, binary_little_endian or binary_big_endian");
   EXPECT_EQ(errorOf(parseMesh("", "x.foo")), "x.foo: the name is not that of a mesh, expected .obj, .stl or .ply");
   EXPECT_NE(errorOf(parsePlyMesh("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n", "x.ply")),
             "");
@@ -251,11 +258,18 @@ TEST(MeshImport, ReadsPlyAsOtherProgramsWriteIt) {
                                    "x.ply");
   ASSERT_TRUE(longer) << longer.error();
   EXPECT_EQ(longer->remarks.size(), 1u);
+  std::string one_line = points + "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3";
+  for (char& c : one_line)
+    if (c == '\n') c = ' ';
+  const auto together = parsePlyMesh(
+      head + "element face 4\nproperty list uchar int vertex_indices\nend_header\n" + one_line + "\n", "x.ply");
+  ASSERT_TRUE(together) << together.error();
+  EXPECT_EQ(together->remarks[0], "lines and elements do not agree; the values were read one after another");
   const auto strips = parsePlyMesh(head + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" +
                                        points + "10 0 2 1 3 0 -1 0 3 2 -1\n",
                                    "x.ply");
   ASSERT_TRUE(strips) << strips.error();
-  for (const auto& mesh : {longer, strips}) {
+  for (const auto& mesh : {longer, together, strips}) {
     MeshReport report;
     meshPart(*mesh, {}, "x.ply", report);
     EXPECT_TRUE(report.closed);
