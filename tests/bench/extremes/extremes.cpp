@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Traces extreme surfaces and probe paths with `hapticd trace`, and prints for each case how far its feet are from the
-/// true nearest points. Each case of a folder is traced as it is, in 3 rigid motions (12 under HAPTICD_LONG), and in
+/// true nearest points. Each case of a folder is traced as it is, in one rigid motion (12 under HAPTICD_LONG), and in
 /// sessions that are recorded and replayed. The exit code is 1 if any case is not ok.
 ///   extremes HAPTICD [--random TICKS] [--sessions MOTIONS] [FOLDER...]
 /// If no folder is given, it traces tests/cases/extremes, the closed forms and the walks. --sessions gives the number
@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 constexpr double kRecovery = 0.005;  // [s] time that a tracer may need after the true nearest point has jumped
 constexpr int kMostEvaluations = 12;
 constexpr int kDefaultRandomTicks = 50'000;
-const int kMotions = hapticd::support::kLong ? 12 : 3;
+const int kMotions = hapticd::support::kLong ? 12 : 1;
 
 fs::path hapticd_program;
 // rigid motions of each case in sessions; few by default, because a test has less time than a report

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
 #include "kernels/contact/wall.hpp"
@@ -16,12 +15,25 @@ namespace {
 
 using Eigen::MatrixXd;
 
+/// Calculates exp(rates) by its series, with scaling and squaring. Eigen's function takes seconds to compile.
+Eigen::Matrix3d exponential(Eigen::Matrix3d rates) {
+  int halvings = 0;
+  for (; rates.norm() > 0.25; ++halvings) rates /= 2;
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Identity(), term = sum;
+  for (int i = 1; i <= 12; ++i) {
+    term = (term * rates / i).eval();
+    sum += term;
+  }
+  for (; halvings > 0; --halvings) sum = (sum * sum).eval();
+  return sum;
+}
+
 /// Returns the matrix that maps (x, v, force) to x and v one period later, if the force is held.
 Eigen::Matrix<double, 2, 3> heldStep(const Body& body, double period) {
   Eigen::Matrix3d rates = Eigen::Matrix3d::Zero();
   rates(0, 1) = 1;
   rates.row(1) << -body.hand_spring / body.mass, -body.damping / body.mass, 1 / body.mass;
-  const Eigen::Matrix3d over = (rates * period).exp();
+  const Eigen::Matrix3d over = exponential(rates * period);
   return over.topRows<2>();
 }
 
