@@ -51,7 +51,7 @@ Eigen::Quaterniond baseOrientation(const std::vector<double>& q) {
   const Eigen::Quaterniond base(q.at(0), q.at(1), q.at(2), q.at(3));
   if (!(std::abs(base.norm() - 1) <= 1e-3))
     throw std::invalid_argument("arm.base_orientation: the quaternion has length " + std::to_string(base.norm()) +
-                                ", expected length 1: w, x, y, z");
+                                ", expected a unit quaternion w, x, y, z (length 1)");
   return base.normalized();
 }
 

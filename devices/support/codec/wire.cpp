@@ -2,6 +2,7 @@
 #include "codec/wire.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <optional>
 #include <utility>
 
@@ -228,6 +229,12 @@ Framing readFraming(const Tree& tree, bool& marks_known) {
   return framing;
 }
 
+std::string secondsOf(double time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g s", time);
+  return text;
+}
+
 /// Reads whether the arm sends by itself or answers, and how often.
 void readTimes(const Tree& tree, Wire& wire) {
   if (tree.has("exchange")) wire.exchange = choiceOf(tree.at("exchange"), kExchanges);
@@ -236,9 +243,10 @@ void readTimes(const Tree& tree, Wire& wire) {
   if (tree.has("watchdog")) wire.watchdog = tree.at("watchdog").number(0, 10, "s (20 ms is 0.02 s)");
   if (wire.watchdog > 0 && wire.keep_alive > wire.watchdog / 2)
     tree.at(tree.has("keep_alive") ? "keep_alive" : "watchdog")
-        .fail(
-            "keep_alive is more than half of the watchdog time; expected at most half, or the motors would switch off "
-            "between commands");
+        .fail("keep_alive (" + secondsOf(wire.keep_alive) + ") is more than half of watchdog (" +
+              secondsOf(wire.watchdog) +
+              "), so the motors could switch off between commands; expected a keep_alive of " +
+              secondsOf(wire.watchdog / 2) + " or less");
 }
 
 void readStartup(const Tree& steps, Wire& wire) {

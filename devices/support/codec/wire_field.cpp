@@ -163,7 +163,7 @@ void requireBothSigns(const Tree& tree, const Field& field) {
   if (std::min(a, b) < 0 && std::max(a, b) > 0) return;
   char range[64];
   std::snprintf(range, sizeof range, "%g to %g N m", std::min(a, b), std::max(a, b));
-  tree.at("type").fail("\"" + tree.at("type").text() + "\" is " + range +
+  tree.at("type").fail("\"" + tree.at("type").text() + "\" can only express " + range +
                        " with this scale and offset; expected both " +
                        "signs: use a signed type such as i16, or an offset that puts zero in the middle");
 }

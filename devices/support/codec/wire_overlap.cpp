@@ -20,11 +20,11 @@ bool isNumber(Role role) {
          role == Role::kChecksum;
 }
 
-/// Bits that two fields may not share. Flags may share a status byte, and constants may cover anything. A clock may
-/// also count the reports.
+/// Bits that two fields may not share. Flags may share a status byte, and constants may cover anything. A clock may also
+/// count the reports; a second counter of the same bytes adds nothing, and `hapticd check` warns of it.
 bool exclusive(Role a, Role b) {
   const auto counts = [](Role role) { return role == Role::kTime || role == Role::kSequence; };
-  if (counts(a) && counts(b)) return a == b;
+  if (counts(a) && counts(b)) return false;
   return ofJoint(a) || ofJoint(b) || (isNumber(a) && (isFlag(b) || isNumber(b))) || (isFlag(a) && isNumber(b));
 }
 

@@ -26,7 +26,8 @@ kinematics::Pose baseOf(const MechanismParameters& p) {
   base.orientation = Eigen::Quaterniond(q.at(0), q.at(1), q.at(2), q.at(3));
   if (!(std::abs(base.orientation.norm() - 1) <= 1e-3))
     throw std::invalid_argument("arm.base_orientation: the quaternion has length " +
-                                std::to_string(base.orientation.norm()) + ", expected length 1: w, x, y, z");
+                                std::to_string(base.orientation.norm()) +
+                                ", expected a unit quaternion w, x, y, z (length 1)");
   base.orientation.normalize();
   return base;
 }

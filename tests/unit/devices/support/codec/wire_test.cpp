@@ -172,7 +172,7 @@ TEST(Wire, ATorqueHasBothSigns) {
                            R"("type":"u16","scale":0.001,"offset":-32.768)"})
     EXPECT_EQ(complaintOf(positionAnd(""), good), "") << good;
   EXPECT_EQ(complaintOf(positionAnd(""), R"("type":"u16","scale":0.001)"),
-            "wire.output.fields[0].type: \"u16\" is 0 to 65.535 N m with this scale and offset; expected both signs: "
+            "wire.output.fields[0].type: \"u16\" can only express 0 to 65.535 N m with this scale and offset; expected both signs: "
             "use a signed type such as i16, or an offset that puts zero in the middle");
   EXPECT_NE(complaintOf(positionAnd(""), R"("type":"i16","scale":0.001,"offset":33)").find("expected both signs"),
             std::string::npos);
