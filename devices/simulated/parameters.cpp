@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kinematics/error_collector.hpp"
+#include "kinematics/limit_order.hpp"
 #include "simulated/mechanisms.hpp"
 
 namespace hapticd::simulated {
@@ -49,8 +50,8 @@ Eigen::Quaterniond baseOrientation(const std::vector<double>& q) {
   if (q.empty()) return Eigen::Quaterniond::Identity();
   const Eigen::Quaterniond base(q.at(0), q.at(1), q.at(2), q.at(3));
   if (!(std::abs(base.norm() - 1) <= 1e-3))
-    throw std::invalid_argument("arm.base_orientation: norm " + std::to_string(base.norm()) +
-                                ", expected a unit quaternion w, x, y, z");
+    throw std::invalid_argument("arm.base_orientation: the quaternion has length " + std::to_string(base.norm()) +
+                                ", expected a unit quaternion w, x, y, z (length 1)");
   return base.normalized();
 }
 
@@ -64,8 +65,11 @@ kinematics::ChainGeometry chainOf(const Parameters& p) {
   wrong.attempt([&] { geometry.base.orientation = baseOrientation(p.base_orientation); });
   geometry.tool.position = vector(p.tool_position);
   const size_t count = p.dh.size() / 4;
-  if (count == 0)
-    throw std::invalid_argument("arm.dh is empty; expected a row a, alpha, d, theta for each joint of a chain");
+  kinematics::refuseReversedLimits(p.limits, wrong);
+  if (count == 0) {
+    wrong.add("arm.dh: has no rows, expected a row [a, alpha, d, theta] for each joint of a chain");
+    wrong.check();
+  }
   wrong.attempt([&] { (void)rowOf(p.limits, 2, 0, count, "arm.limits"); });
   wrong.attempt([&] { (void)rowOf(p.masses, 1, 0, count, "arm.masses"); });
   wrong.attempt([&] { (void)rowOf(p.centers, 3, 0, count, "arm.centers"); });
@@ -105,7 +109,7 @@ JointSettings jointsOf(const Parameters& p, int count) {
   const JointVector rotor = perJoint(p.rotor, premium ? kPremiumRotor : 0, "joint.rotor");
   const JointVector torque = perJoint(p.max_torque, premium ? kPremiumStall : 100, "joint.max_torque");
   if (!p.arm_torque.empty() && !p.max_torque.empty())
-    wrong.add("arm.max_torque and joint.max_torque are both given; remove one of the two");
+    wrong.add("joint.max_torque: cannot be given together with arm.max_torque; remove one of the two");
   joints.step = joints.rotor = joints.max_torque = JointVector::Zero(count);
   for (int i = 0; i < count; ++i) {
     joints.step[i] = counts[i] > 0 ? 2 * M_PI / (counts[i] * gear[i]) : 0;

@@ -8,6 +8,7 @@
 
 #include "cli/class_info.hpp"
 #include "cli/command.hpp"
+#include "cli/device_file.hpp"
 #include "diagnostics/device_bus.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/enable_button.hpp"
@@ -208,13 +209,9 @@ Json infoJson(const scene::Device& description, host::DeviceInstance& device) {
 }
 
 int info(const std::string& file, bool with_parameters, bool as_json) {
-  const scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
-  printProblems(loaded.problems, stderr);
-  if (!loaded.device) return kBadInput;
-  const scene::Device& description = *loaded.device;
-  const document::Problems wrong = tryDevice(file, catalog());
-  printProblems(wrong, stderr);
-  if (!wrong.empty()) return kBadInput;
+  const auto loaded = loadDeviceOrReport(file);
+  if (!loaded) return kBadInput;
+  const scene::Device& description = *loaded;
   auto device = host::DeviceInstance::create(description, logButNoErrors);
   if (!device) return fail(kFailed, device.error());
   if (as_json) return printJson(infoJson(description, **device));

@@ -8,6 +8,7 @@
 
 #include "base/clock.hpp"
 #include "cli/command.hpp"
+#include "cli/device_file.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
 
@@ -42,15 +43,14 @@ void printWhere(host::DeviceInstance& device) {
 }
 
 int calibrateDevice(const CalibrationArguments& options) {
-  const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
-  printProblems(loaded.problems, stderr);
-  if (!loaded.device) return kBadInput;
+  const auto loaded = loadDeviceOrReport(options.file);
+  if (!loaded) return kBadInput;
   std::optional<SetupErrors> once(std::in_place);
-  auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
+  auto device = host::DeviceInstance::create(*loaded, logToTerminal);
   if (!device) return fail(kFailed, device.error());
   const hdv_ext_calibration* calibration = (*device)->calibration();
   if (calibration == nullptr) {
-    std::printf("%s needs no calibration: its positions are absolute\n", loaded.device->name.c_str());
+    std::printf("%s needs no calibration: its positions are absolute\n", loaded->name.c_str());
     return kWorked;
   }
   if (auto opened = (*device)->open(); !opened) return fail(kFailed, opened.error());
@@ -62,7 +62,7 @@ int calibrateDevice(const CalibrationArguments& options) {
   if (auto started = (*device)->start(how); !started) return fail(kFailed, started.error());
   waitForUser(calibration->instructions, options.yes);
   if (calibration->calibrate((*device)->handle()) < 0)
-    return fail(kFailed, "device '" + loaded.device->name +
+    return fail(kFailed, "device '" + loaded->name +
                              "': not calibrated\n  no force is sent to it\n  fix: follow the instructions above, then "
                              "hapticd device calibrate " +
                              options.file);

@@ -43,9 +43,10 @@ int controls(const std::string& file) {
   const auto found = diagnostics::controlsOfFile(file, catalog(), problems);
   printProblems(problems, stderr);
   if (!found) return kBadInput;
-  std::printf("%s: %s\n\n%-8s %-30s %-26s %s\n", found->arm.c_str(),
-              found->opened ? "plugged in" : "not plugged in; this is what its file and module say", "", "control",
-              "against", "");
+  const char* state = found->simulated ? "a simulated arm: it has no motors, and nothing is plugged in"
+                      : found->opened  ? "plugged in"
+                                       : "not plugged in; this is what its file and module say";
+  std::printf("%s: %s\n\n%-8s %-30s %-26s %s\n", found->arm.c_str(), state, "", "control", "against", "");
   for (const diagnostics::Control& c : found->controls)
     std::printf("%-8s %-30s %-26s %s (%s)\n", nameOf(c.state), c.name.c_str(), wordsOf(c.hazards).c_str(),
                 c.text.c_str(), c.hazards.c_str());

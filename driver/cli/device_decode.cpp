@@ -14,12 +14,13 @@
 #include "capture/hints.hpp"
 #include "capture/plausible.hpp"
 #include "capture/report_table.hpp"
+#include "capture/row_range.hpp"
 #include "capture/saturation.hpp"
 #include "capture/time_series_hint.hpp"
 #include "cli/command.hpp"
 #include "cli/decoded_table.hpp"
+#include "cli/device_file.hpp"
 #include "cli/encode_columns.hpp"
-#include "diagnostics/device_trial.hpp"
 #include "document/csv.hpp"
 #include "document/node.hpp"
 #include "host/device_instance.hpp"
@@ -57,22 +58,16 @@ capture::ArmFacts factsOf(const scene::Device& device, size_t joints) {
 /// Reads the device file, or prints all its problems.
 std::optional<Described> describedIn(const std::string& file, int& exit_code) {
   exit_code = kBadInput;
-  const scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
-  printProblems(loaded.problems, stderr);
-  if (!loaded.device) return std::nullopt;
-  if (const document::Problems wrong = diagnostics::tryDevice(file, catalog()); !wrong.empty()) {
-    printProblems(wrong, stderr);
-    return std::nullopt;
-  }
-  auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
+  const auto loaded = loadDeviceOrReport(file);
+  if (!loaded) return std::nullopt;
+  auto device = host::DeviceInstance::create(*loaded, logToTerminal);
   if (!device) return exit_code = fail(kFailed, device.error()), std::nullopt;
-  for (const scene::Value& value : loaded.device->parameters)
+  for (const scene::Value& value : loaded->parameters)
     if (value.id == "wire") {
       const size_t joints = (*device)->kinematics().joint_count;
-      return Described{codec::readWire(value.text, joints), joints, factsOf(*loaded.device, joints),
-                       std::move(*device)};
+      return Described{codec::readWire(value.text, joints), joints, factsOf(*loaded, joints), std::move(*device)};
     }
-  exit_code = fail(kBadInput, file + ": its module " + loaded.device->module +
+  exit_code = fail(kBadInput, file + ": its module " + loaded->module +
                                   " has no parameter wire, expected a device file of usb_hid, usb_bulk or vme");
   return std::nullopt;
 }
@@ -158,6 +153,21 @@ std::vector<std::string> namesIn(const std::string& text, const std::vector<std:
   return names;
 }
 
+/// Returns a problem for each column with a number that the report cannot carry, at the first such line.
+document::Problems beyondFields(const DecodeArguments& options, const Described& described,
+                                const EncodeColumns& columns, const document::CsvTable& table) {
+  document::Problems problems;
+  for (size_t column = 0; column < columns.from.size(); ++column)
+    for (size_t i = 0; i < table.rows(); ++i) {
+      const std::string wrong = capture::beyondField(described.wire, !options.from_arm, columns.names[column],
+                                                     table.row(i)[columns.from[column]]);
+      if (wrong.empty()) continue;
+      document::report(problems, options.input, table.lines[i], 0, columns.names[column], wrong);
+      break;
+    }
+  return problems;
+}
+
 /// Returns every row as a report, raw or in hexadecimal digits.
 Result<std::string> encodeTable(const DecodeArguments& options, const Described& described,
                                 const EncodeColumns& columns, const document::CsvTable& table) {
@@ -218,6 +228,9 @@ int encode(const DecodeArguments& options) {
   const auto table = document::parseCsv(*text, options.input, {{header}}, problems);
   printProblems(problems, stderr);
   if (!table) return kBadInput;
+  problems = beyondFields(options, *described, *columns, *table);
+  printProblems(problems, stderr);
+  if (!problems.empty()) return kBadInput;
   const auto out = encodeTable(options, *described, *columns, *table);
   if (!out) return fail(kBadInput, out.error());
   return writeOut(options.out, *out);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/device_file.hpp"
 #include "cli/output_file.hpp"
 #include "document/csv.hpp"
 #include "document/reader.hpp"
@@ -163,10 +164,9 @@ class Table {
 };
 
 int kinematics(const KinematicsArguments& options) {
-  const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
-  printProblems(loaded.problems, stderr);
-  if (!loaded.device) return kBadInput;
-  auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
+  const auto loaded = loadDeviceOrReport(options.file);
+  if (!loaded) return kBadInput;
+  auto device = host::DeviceInstance::create(*loaded, logToTerminal);
   if (!device) return fail(kFailed, device.error());
   const Inputs inputs{{options.joints, "the file of joints"}, {options.file, "the device file"}};
   // Such tables have any number of joints.
@@ -179,7 +179,7 @@ int kinematics(const KinematicsArguments& options) {
       [](std::FILE* f) { return f != nullptr ? std::fclose(f) : 0; });
   if (options.out != "-" && !file) return fail(kBadInput, options.out + ": cannot be written");
   std::FILE* out = file ? file.get() : stdout;
-  const Eigen::Vector3d gravity = loaded.device->mount.orientation.conjugate() * scene::Servo{}.gravity;
+  const Eigen::Vector3d gravity = loaded->mount.orientation.conjugate() * scene::Servo{}.gravity;
   Table table(out, (*device)->kinematics(), (*device)->handle(), gravity);
   table.header(rows->columns);
   for (size_t i = 0; i < rows->rows(); ++i)

@@ -16,6 +16,8 @@
 
 #include "cli/command.hpp"
 #include "cli/questions.hpp"
+#include "codec/checksum.hpp"
+#include "codec/wire_correction.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "document/node.hpp"
 
@@ -26,7 +28,7 @@ namespace fs = std::filesystem;
 
 struct NewDeviceArguments {
   std::string name, out, bus = "hid", kind = "phantom", id = "1234:0006";
-  std::string checksum;
+  std::string checksum = "none";
   std::vector<double> lengths, twists;
   std::vector<double> counts{2000}, gear{10}, torque{0.5};  ///< one number for all joints, or one per joint
   int joints = 3, bits = 16, buttons = 1, report_id = 0;
@@ -60,6 +62,25 @@ std::string wrongLists(const NewDeviceArguments& o) {
   return "";
 }
 
+bool hasChecksum(const NewDeviceArguments& o) {
+  return o.checksum != "none";
+}
+
+std::string wrongChecksum(const std::string& name) {
+  static const std::vector<std::string> kPlain{"none", "sum", "xor", "sum8", "xor8"};
+  const auto crcs = codec::namedCrcs();
+  const bool known =
+      std::find(kPlain.begin(), kPlain.end(), name) != kPlain.end() ||
+      std::any_of(crcs.begin(), crcs.end(), [&](const codec::NamedCrc& one) { return name == one.name; });
+  if (known) return "";
+  if (name == "crc")
+    return "--checksum crc: a CRC without a name needs its numbers, which only the file can give; expected the name of "
+           "a CRC, such as crc16-modbus, or none";
+  return "--checksum " + name + ": no checksum has this name" + codec::suggestMethod(name) +
+         "; expected none, sum, xor or the name of a CRC, such as crc8, crc16 or crc16-modbus (driver/docs/devices.md "
+         "lists all)";
+}
+
 std::string wrongIn(const NewDeviceArguments& o) {
   const bool hid = o.bus == "hid", bulk = o.bus == "bulk";
   if (!hid && !bulk) return "--bus " + o.bus + ": expected hid or bulk";
@@ -76,8 +97,9 @@ std::string wrongIn(const NewDeviceArguments& o) {
     return "--lengths: expected 0 m or more each; a link that points the other way has a twist, not a length below 0";
   if (const std::string wrong = wrongLists(o); !wrong.empty()) return wrong;
   if (!(o.force > 0)) return "--force: expected a number above 0";
-  if (o.checksum.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") != std::string::npos)
-    return "--checksum " + o.checksum + ": expected a name as in driver/docs/devices.md, such as crc16";
+  if (const std::string wrong = wrongChecksum(o.checksum); !wrong.empty()) return wrong;
+  if (o.report_id < 0 || o.report_id > 255)
+    return "--report-id " + std::to_string(o.report_id) + ": expected 1 to 255, or 0 if reports have none";
   if (o.buttons < 0 || o.buttons > 32) return "--buttons " + std::to_string(o.buttons) + ": expected 0 to 32";
   unsigned vendor = 0, product = 0;
   int used = 0;
@@ -97,6 +119,9 @@ void askAll(const Command& command, NewDeviceArguments& options) {
   const auto wrong = [&options] { return wrongIn(options); };
   questions.ask("--bus", "Bus: hid, bulk (USB)", options.bus, wrong);
   questions.ask("--id", "USB vendor and product, hexadecimal (lsusb prints them)", options.id, wrong);
+  if (options.bus == "hid")
+    questions.ask("--report-id", "HID report id: first byte of each report, 1 to 255; 0 if reports have none",
+                  options.report_id, wrong);
   questions.ask("--kind", "Mechanism: phantom (two links on a turning base), delta, chain (any serial arm)",
                 options.kind, wrong);
   if (options.kind == "chain") questions.ask("--joints", "Joints", options.joints, wrong);
@@ -109,6 +134,9 @@ void askAll(const Command& command, NewDeviceArguments& options) {
   questions.askList("--gear", "Motor turns of one joint turn, or one for each joint [10]", options.gear, wrong);
   questions.ask("--bits", "Bits of a position in a report", options.bits, wrong);
   questions.ask("--buttons", "Buttons", options.buttons, wrong);
+  questions.ask("--checksum",
+                "Checksum of the arm's reports: none, sum, xor, or the name of a CRC, such as crc16-modbus",
+                options.checksum, wrong);
   questions.askList("--torque", "Largest torque of a joint [N m], or one for each [0.5]", options.torque, wrong);
   questions.ask("--force", "Largest force at the tip, to begin with [N]", options.force, wrong);
 }
@@ -175,7 +203,7 @@ int checksumBits(const std::string& name) {
 
 /// Returns the line for a checksum over the first `size` bytes, or a comment that shows how to write one.
 std::string checksumOf(const NewDeviceArguments& o, int size) {
-  const bool given = !o.checksum.empty();
+  const bool given = hasChecksum(o);
   const std::string name = given ? o.checksum : "crc16-modbus";
   const int bits = checksumBits(name);
   return fmt::format("        {}- {{is: checksum, at: {}, type: u{}, method: {}, from: 0, to: {}{}}}{}\n",
@@ -203,7 +231,7 @@ std::string wireOf(const NewDeviceArguments& o) {
   }
   for (int i = 0; i < o.buttons; ++i, ++bit)
     fields += fmt::format("        - {{is: button, button: {}, bit_offset: {}, type: u1}}\n", i + 1, bit);
-  const int payload = (bit + 7) / 8, size = payload + (o.checksum.empty() ? 0 : checksumBits(o.checksum) / 8);
+  const int payload = (bit + 7) / 8, size = payload + (hasChecksum(o) ? checksumBits(o.checksum) / 8 : 0);
   fields += checksumOf(o, payload);
   text +=
       id +
@@ -302,15 +330,6 @@ int makeNew(const Command& command, NewDeviceArguments options) {
   if (!out) return fail(kFailed, file.string() + " is not writable");
   document::Problems problems = scene::loadDevice(file, catalog()).problems;
   if (problems.empty()) problems = diagnostics::tryDevice(file, catalog());
-  const bool of_checksum = std::any_of(problems.begin(), problems.end(),
-                                       [](const document::Problem& one) { return one.key.ends_with("].method"); });
-  if (of_checksum && !options.checksum.empty()) {
-    fs::remove(file, error);
-    return fail(kBadInput,
-                "--checksum " + options.checksum +
-                    ": no checksum has this name, expected one such as crc8, crc16, crc16-modbus, crc32, sum "
-                    "or xor (driver/docs/devices.md lists all); nothing was written");
-  }
   printProblems(problems, stderr);
   const std::string name = file.string();
   if (!problems.empty())
@@ -343,8 +362,10 @@ void addDeviceNew(const Command& app, int& exit_code) {
   command.addOption("--report-id", options->report_id, "HID report id; 0: reports have none")
       .showDefault()
       .wholeWithin(0, 255);
-  command.addOption("--checksum", options->checksum,
-                    "checksum of the arm's reports, by name, such as crc16; default: none");
+  command
+      .addOption("--checksum", options->checksum,
+                 "checksum of the arm's reports: none, sum, xor, or the name of a CRC, such as crc16-modbus")
+      .showDefault();
   command.addOption("--buttons", options->buttons, "buttons").showDefault().wholeWithin(0, 32);
   list("--torque", options->torque, "largest torque of a joint [N m], or one for each; default: 0.5");
   command.addOption("--force", options->force, "limit of the force at the tip [N]").showDefault();

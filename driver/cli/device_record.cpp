@@ -8,6 +8,7 @@
 
 #include "capture/capture.hpp"
 #include "cli/command.hpp"
+#include "cli/device_file.hpp"
 #include "hapticd/device_capture.h"
 #include "host/device_instance.hpp"
 
@@ -40,16 +41,15 @@ int32_t take(void* who, uint64_t time_ns, uint32_t to_arm, const uint8_t* bytes,
 }
 
 int record(const CaptureArguments& options) {
-  const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
-  printProblems(loaded.problems, stderr);
-  if (!loaded.device) return kBadInput;
+  const auto loaded = loadDeviceOrReport(options.file);
+  if (!loaded) return kBadInput;
   std::optional<SetupErrors> once(std::in_place);
-  auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
+  auto device = host::DeviceInstance::create(*loaded, logToTerminal);
   if (!device) return fail(kFailed, device.error());
   const auto* extension =
       static_cast<const hdv_ext_capture*>((*device)->description().extension((*device)->handle(), HDV_EXT_CAPTURE));
   if (extension == nullptr)
-    return fail(kBadInput, options.file + ": its module " + loaded.device->module +
+    return fail(kBadInput, options.file + ": its module " + loaded->module +
                                " has no bytes to record, expected a device file of usb_hid, usb_bulk or vme");
   if (auto opened = (*device)->open(); !opened) return fail(kFailed, opened.error());
   once.reset();  // from now on each message is printed when it comes
@@ -58,13 +58,13 @@ int record(const CaptureArguments& options) {
   if (log.out == nullptr) return fail(kBadInput, options.out + ": cannot be written");
   log.until = options.seconds;
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { g_stop = true; });
-  std::fprintf(log.out, "# %s, %s: \"@seconds bytes\" from the arm, \"> @seconds bytes\" to it\n",
-               loaded.device->name.c_str(), options.file.c_str());
+  std::fprintf(log.out, "# %s, %s: \"@seconds bytes\" from the arm, \"> @seconds bytes\" to it\n", loaded->name.c_str(),
+               options.file.c_str());
   const hsp_status status = extension->capture((*device)->handle(), &take, &log);
   const bool closed = (log.out == stdout ? std::fflush(log.out) : std::fclose(log.out)) == 0;
   std::fprintf(stderr, "%zu transfers from the arm, %zu to it\n", log.from_arm, log.to_arm);
   if (log.full || !closed) return fail(kFailed, options.out + ": cannot be written");
-  if (status < 0) return fail(kFailed, "device '" + loaded.device->name + "': the transport failed; is it plugged in?");
+  if (status < 0) return fail(kFailed, "device '" + loaded->name + "': the transport failed; is it plugged in?");
   return log.from_arm > 0 ? kWorked
                           : fail(kFailed,
                                  "the arm sent nothing: an arm that only answers needs wire.exchange: poll, "

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "cli/command.hpp"
+#include "cli/device_file.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/hand_start.hpp"
 #include "document/node.hpp"
@@ -38,9 +39,11 @@ int checkTwinFile(const std::string& file, const std::string& out) {
 
 int makeTwin(const std::string& file, const std::string& wanted) {
   namespace fs = std::filesystem;
+  if (!loadDeviceOrReport(file))
+    return fail(kBadInput,
+                file + " has problems, so no twin was written\n  fix: correct them, then write the twin again");
   document::Problems problems;
   const auto root = document::parseFile(file, problems);
-  printProblems(problems, stderr);
   if (!root) return kBadInput;
   const auto text = diagnostics::twinOf(*root, fs::path(file).filename().string());
   if (!text) return fail(kBadInput, text.error());

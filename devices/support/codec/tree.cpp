@@ -140,9 +140,9 @@ double Tree::number(double least, double most, const char* unit) const {
   return taken;
 }
 
-double Tree::whole(double least, double most) const {
+double Tree::whole(double least, double most, const char* unit) const {
   const size_t before = problems();
-  const double value = number(least, most);
+  const double value = number(least, most, unit);
   if (problems() == before && value != std::floor(value)) fail(shown(jsonOf(value_)) + ", expected a whole number");
   return std::floor(value);
 }
@@ -161,7 +161,11 @@ uint64_t Tree::bits(unsigned width) const {
   const bool good = !text.empty() && text[0] >= '0' && text[0] <= '9' && *end == '\0' && errno == 0;
   if (good && !negative && value <= ones) return value;
   if (good && negative && value <= ones / 2 + 1) return (~value + 1) & ones;
-  fail(shown(json) + ", expected a whole number of " + std::to_string(width) + " bits");
+  char meant[64] = "";
+  if (good && !negative && width < 64 && value >> width == 1)  // as books write polynomials
+    std::snprintf(meant, sizeof meant, "; without its highest bit it is 0x%llx",
+                  static_cast<unsigned long long>(value & ones));
+  fail(shown(json) + ", expected a whole number of " + std::to_string(width) + " bits" + meant);
   return 0;
 }
 

@@ -21,7 +21,7 @@ class Tree {
   size_t count() const;  ///< number of items of a list
   /// Reads a number, or text such as 0x1A. @param unit unit for messages, or "" if there is none
   double number(double least, double most, const char* unit = "") const;
-  double whole(double least, double most) const;
+  double whole(double least, double most, const char* unit = "") const;
   uint64_t bits(unsigned width) const;  ///< an exact whole number of up to 64 bits; two's complement if negative
   bool boolean() const;
   std::string text() const;

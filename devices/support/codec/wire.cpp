@@ -2,7 +2,9 @@
 #include "codec/wire.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "codec/choice.hpp"
 #include "codec/tree.hpp"
@@ -44,15 +46,32 @@ uint8_t endpointAt(const Tree& tree, unsigned direction) {
   return static_cast<uint8_t>(address);
 }
 
-/// Notes a problem unless each joint has exactly one field of this role.
-void requireEach(const Tree& fields, const Report& report, size_t joints, Role role, const char* what) {
+/// A report that was read, and what is known of it.
+struct ReadReport {
+  Report report;
+  std::vector<FieldFacts> known;  ///< of each field
+  bool sized = false;             ///< true if its size is known
+
+  /// Returns how many fields with mistakes may be meant to have this role, of a joint that is unknown.
+  size_t unknown(Role role) const {
+    size_t count = 0;
+    for (size_t i = 0; i < known.size(); ++i)
+      count += !known[i].role || (report.fields[i].role == role && !known[i].target) ? 1 : 0;
+    return count;
+  }
+};
+
+/// Notes a problem for each joint that has two fields of this role, or none. If fields with mistakes may be the missing
+/// ones, nothing is noted of those.
+void requireEach(const Tree& fields, const ReadReport& read, size_t joints, Role role, const char* what) {
+  const Report& report = read.report;
   std::string missing;
   size_t lacks = 0;
   for (size_t joint = 0; joint < joints; ++joint) {
     const std::string number = std::to_string(joint + 1), which = std::string(what) + " of joint " + number;
     std::optional<size_t> first;
     for (size_t i = 0; i < report.fields.size(); ++i) {
-      if (report.fields[i].role != role || report.fields[i].index != joint) continue;
+      if (!read.known[i].target || report.fields[i].role != role || report.fields[i].index != joint) continue;
       if (first)
         fields.item(i).at("joint").fail(number + ", but fields[" + std::to_string(*first) + "] is the " + which +
                                         " already; give one of them another joint, or remove it");
@@ -61,10 +80,11 @@ void requireEach(const Tree& fields, const Report& report, size_t joints, Role r
     }
     if (!first) missing += (missing.empty() ? "" : ", ") + number, ++lacks;
   }
+  if (lacks <= read.unknown(role)) return;
   if (lacks == 1)
     fields.fail("no " + std::string(what) + " of joint " + missing + ", expected one field {is: " + what +
                 ", joint: " + missing + "}");
-  else if (lacks > 1)
+  else
     fields.fail("no " + std::string(what) + " of joints " + missing + ", expected one field {is: " + what +
                 ", joint: N} for each");
 }
@@ -77,38 +97,38 @@ size_t jointsNamed(const Report& report, Role role) {
   return joints;
 }
 
-/// Reads the fields. If all of them are known, also checks that no field that an arm needs is missing. Where the number
-/// of joints is not known, it is the highest one that the fields name.
-void readFields(const Tree& fields, size_t joints, bool input, bool sized, Report& report) {
-  bool all_known = true;
-  std::vector<bool> placed;
+/// Reads the fields, and checks that no field that an arm needs is missing. Where the number of joints is not known, it
+/// is the highest one that the fields name.
+void readFields(const Tree& fields, size_t joints, bool input, ReadReport& read) {
+  Report& report = read.report;
   for (size_t i = 0; i < fields.count(); ++i) {
-    const ReadField read = readField(fields.item(i), report, joints, input);
-    all_known = all_known && read.target_known;
-    report.fields.push_back(read.field);
-    placed.push_back(read.placed && read.target_known && sized);
+    const ReadField one = readField(fields.item(i), report, joints, input);
+    report.fields.push_back(one.field);
+    read.known.push_back(one.known);
   }
-  report.whole = all_known && fields.exists();
-  if (fields.exists()) checkOverlaps(fields, report, placed);
-  if (!all_known || !fields.exists()) return;
+  if (!fields.exists()) return;
+  report.whole = std::all_of(read.known.begin(), read.known.end(), [](const FieldFacts& one) { return one.target; });
+  checkOverlaps(fields, report, read.known);
   if (joints == 0) joints = jointsNamed(report, input ? Role::kPosition : Role::kTorque);
-  requireEach(fields, report, joints, input ? Role::kPosition : Role::kTorque, input ? "position" : "torque");
-  if (has(report, Role::kReference)) requireEach(fields, report, joints, Role::kReference, "reference");
-  if (has(report, Role::kReference) != has(report, Role::kFollow))
+  requireEach(fields, read, joints, input ? Role::kPosition : Role::kTorque, input ? "position" : "torque");
+  if (has(report, Role::kReference)) requireEach(fields, read, joints, Role::kReference, "reference");
+  const bool roles = std::all_of(read.known.begin(), read.known.end(), [](const FieldFacts& one) { return one.role; });
+  if (roles && has(report, Role::kReference) != has(report, Role::kFollow))
     fields.fail("\"reference\" and \"follow\" belong together; expected fields of both, or of neither");
 }
 
-Report readReport(const Tree& tree, size_t joints, bool input) {
-  Report report;
-  if (!tree.exists()) return report;
+ReadReport readReport(const Tree& tree, size_t joints, bool input) {
+  ReadReport read;
+  Report& report = read.report;
+  if (!tree.exists()) return read;
   tree.only(kReportKeys);
   if (tree.has("id")) report.id = static_cast<int>(tree.at("id").whole(1, 255));
   const size_t before = tree.problems();
   report.size = static_cast<size_t>(tree.at("size").whole(1, kMaxReportBytes - 1));
-  const bool sized = tree.problems() == before;
-  if (!sized) report.size = kMaxReportBytes - 1;  // the size is unknown: notes this once, not once per field
-  readFields(tree.at("fields"), joints, input, sized, report);
-  return report;
+  read.sized = tree.problems() == before;
+  if (!read.sized) report.size = kMaxReportBytes - 1;  // the size is unknown: notes this once, not once per field
+  readFields(tree.at("fields"), joints, input, read);
+  return read;
 }
 
 std::vector<uint8_t> bytesOf(const Tree& tree) {
@@ -209,6 +229,12 @@ Framing readFraming(const Tree& tree, bool& marks_known) {
   return framing;
 }
 
+std::string secondsOf(double time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g s", time);
+  return text;
+}
+
 /// Reads whether the arm sends by itself or answers, and how often.
 void readTimes(const Tree& tree, Wire& wire) {
   if (tree.has("exchange")) wire.exchange = choiceOf(tree.at("exchange"), kExchanges);
@@ -217,9 +243,10 @@ void readTimes(const Tree& tree, Wire& wire) {
   if (tree.has("watchdog")) wire.watchdog = tree.at("watchdog").number(0, 10, "s (20 ms is 0.02 s)");
   if (wire.watchdog > 0 && wire.keep_alive > wire.watchdog / 2)
     tree.at(tree.has("keep_alive") ? "keep_alive" : "watchdog")
-        .fail(
-            "keep_alive is more than half of the watchdog time; expected at most half, or the motors would switch off "
-            "between commands");
+        .fail("keep_alive (" + secondsOf(wire.keep_alive) + ") is more than half of watchdog (" +
+              secondsOf(wire.watchdog) +
+              "), so the motors could switch off between commands; expected a keep_alive of " +
+              secondsOf(wire.watchdog / 2) + " or less");
 }
 
 void readStartup(const Tree& steps, Wire& wire) {
@@ -244,14 +271,14 @@ Wire readAll(const Document& document, size_t joints) {
     wire.endpoint_in = endpointAt(endpoints.at("in"), 0x80);
     wire.endpoint_out = endpointAt(endpoints.at("out"), 0);
   }
-  const size_t before_reports = tree.problems();
-  wire.input = readReport(tree.at("input"), joints, true);
-  wire.output = readReport(tree.at("output"), joints, false);
-  if (tree.problems() == before_reports && marks_known) {
-    placeMarks(tree.at("input"), wire.framing, true, wire.input);
-    placeMarks(tree.at("output"), wire.framing, wire.framing.escape.used, wire.output);
+  ReadReport input = readReport(tree.at("input"), joints, true), output = readReport(tree.at("output"), joints, false);
+  if (marks_known) {
+    if (tree.has("input")) placeMarks(tree.at("input"), wire.framing, true, input.known, input.sized, input.report);
+    if (tree.has("output"))
+      placeMarks(tree.at("output"), wire.framing, wire.framing.escape.used, output.known, output.sized, output.report);
   }
-  if (wire.framing.escape.used && wire.output.bytes() > kMaxReportBytes / 2)
+  wire.input = std::move(input.report), wire.output = std::move(output.report);
+  if (output.sized && wire.framing.escape.used && wire.output.bytes() > kMaxReportBytes / 2)
     tree.at("output").at("size").fail("with framing.escape, a report may have at most half of " +
                                       std::to_string(kMaxReportBytes) + " bytes, because escapes can double its size");
   return wire;

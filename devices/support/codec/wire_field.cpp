@@ -51,27 +51,34 @@ bool onlyOut(Role role) {
   return role == Role::kEnable || role == Role::kCalibrate || role == Role::kReference || role == Role::kFollow;
 }
 
-bool readTarget(const Tree& tree, size_t joints, bool input, Field& field) {
+/// Reads what the field is, and the number of its joint or button.
+void readTarget(const Tree& tree, size_t joints, bool input, Field& field, FieldFacts& known) {
   const size_t before = tree.problems();
   const Tree is = tree.at("is");
   field.role = choiceOf(is, kRoles, [input](Role role) { return !(input ? onlyOut(role) : onlyIn(role)); });
-  if (tree.problems() != before) return false;
+  if (tree.problems() != before) return;
   if (input ? onlyOut(field.role) : onlyIn(field.role))
-    is.fail("\"" + is.text() + "\" in an " + (input ? "input" : "output") + " report, expected it in the other one");
+    return is.fail("\"" + is.text() + "\" cannot be a field of an " +
+                   (input ? "input report (what the arm sends); move it to wire.output"
+                          : "output report (what the arm gets); move it to wire.input"));
+  known.role = true;
   const double most = static_cast<double>(joints > 0 ? joints : kMaxJoints);
-  if (ofJoint(field.role)) field.index = static_cast<uint8_t>(tree.at("joint").whole(1, most) - 1);
-  if (field.role == Role::kButton) field.index = static_cast<uint8_t>(tree.at("button").whole(1, kMaxButtons) - 1);
-  return tree.problems() == before;
+  if (ofJoint(field.role))
+    field.index = static_cast<uint8_t>(tree.at("joint").whole(1, most, "(joints are counted from 1)") - 1);
+  if (field.role == Role::kButton)
+    field.index = static_cast<uint8_t>(tree.at("button").whole(1, kMaxButtons, "(buttons are counted from 1)") - 1);
+  known.target = tree.problems() == before;
 }
 
 /// Reads a type such as "u24" (u, i or f, then the number of bits), or one of the two kinds of text.
-void readType(const Tree& tree, Field& field) {
+/// @return false if the type is unknown
+bool readType(const Tree& tree, Field& field) {
   const size_t before = tree.problems();
   const std::string text = tree.text();
   if (text == "nibble" || text == "nibbles") {
     field.type = text == "nibble" ? Type::kNibble : Type::kNibbles;
     field.bits = text == "nibble" ? 8 : 32;
-    return;
+    return true;
   }
   const bool digits = text.size() >= 2 && text.size() <= 3 && text[1] != '0' &&
                       std::all_of(text.begin() + 1, text.end(), [](char c) { return c >= '0' && c <= '9'; });
@@ -88,6 +95,7 @@ void readType(const Tree& tree, Field& field) {
               "nibbles" +
               suggestType(text));
   }
+  return good;
 }
 
 /// Reads the first byte of a field. The bits of the field must fit into the report from this byte on.
@@ -108,8 +116,9 @@ void readPlace(const Tree& tree, const Report& report, Field& field) {
   if (tree.has("bit_offset") && isText(field.type))
     tree.at("bit_offset").fail("a text field has no bit_offset; only fields of type i, u or f have one");
   if (field.bits > 8 * report.size)
-    return tree.at("type").fail("takes " + std::to_string(field.bits / 8) +
-                                " bytes, expected no more than the report's " + std::to_string(report.size));
+    return tree.at("type").fail("\"" + tree.at("type").text() + "\" takes " + std::to_string((field.bits + 7) / 8) +
+                                " bytes, but the report has only " + std::to_string(report.size) +
+                                "; expected a narrower type, or a larger size");
   const bool at_bit = tree.has("bit_offset");
   double skip = at_bit && !tree.has("at") ? 0 : 8 * readByte(tree.at("at"), report, at_bit ? 8 : field.bits);
   if (at_bit) skip += tree.at("bit_offset").whole(0, std::max(0.0, room - skip));
@@ -117,19 +126,22 @@ void readPlace(const Tree& tree, const Report& report, Field& field) {
   field.bit_skip = static_cast<uint8_t>(static_cast<size_t>(skip) % 8);
 }
 
-void readNumber(const Tree& tree, const Report& report, Field& field) {
-  readType(tree.at("type"), field);
+/// Reads where the bits of the field are, and the number that they encode. While the type is unknown, every number is
+/// allowed, so that a mistake is noted once. @return false if the type is unknown
+bool readNumber(const Tree& tree, const Report& report, Field& field) {
+  const bool typed = readType(tree.at("type"), field);
   readPlace(tree, report, field);
   if (tree.has("endian")) field.big_endian = choiceOf(tree.at("endian"), kOrders);
-  std::tie(field.least, field.most) = rangeOf(field.type, field.bits);
+  std::tie(field.least, field.most) = typed ? rangeOf(field.type, field.bits) : rangeOf(Type::kFloat, 64);
   if (tree.has("bit")) {
     if (field.type == Type::kFloat || field.type == Type::kNibbles)
       tree.at("bit").fail("a field of type " + tree.at("type").text() +
                           " has no single bits; expected a whole-number type");
-    const double bits = field.type == Type::kNibble ? 4 : field.bits;
+    const double bits = !typed ? 64 : field.type == Type::kNibble ? 4 : field.bits;
     field.bit = static_cast<int8_t>(tree.at("bit").whole(0, bits - 1));
   }
   if (tree.has("inverted")) field.inverted = tree.at("inverted").boolean();
+  return typed;
 }
 
 /// Notes a problem if a key in degrees is used together with the key in SI units, or for a torque.
@@ -151,7 +163,7 @@ void requireBothSigns(const Tree& tree, const Field& field) {
   if (std::min(a, b) < 0 && std::max(a, b) > 0) return;
   char range[64];
   std::snprintf(range, sizeof range, "%g to %g N m", std::min(a, b), std::max(a, b));
-  tree.at("type").fail("\"" + tree.at("type").text() + "\" is " + range +
+  tree.at("type").fail("\"" + tree.at("type").text() + "\" can only express " + range +
                        " with this scale and offset; expected both " +
                        "signs: use a signed type such as i16, or an offset that puts zero in the middle");
 }
@@ -165,7 +177,8 @@ void readScale(const Tree& tree, Field& field) {
   if (tree.has("scale_degrees")) field.scale = degree * tree.at("scale_degrees").number(-1e9, 1e9);
   if (tree.has("offset_degrees")) field.offset = degree * tree.at("offset_degrees").number(-1e9, 1e9);
   if (!(std::abs(field.scale) > 0) && tree.problems() == before) {
-    tree.at(tree.has("scale_degrees") ? "scale_degrees" : "scale").fail("0, expected the SI value of one raw unit");
+    tree.at(tree.has("scale_degrees") ? "scale_degrees" : "scale")
+        .fail("0, expected the value of one raw unit in SI units (rad, m, N m), which is not 0");
     field.scale = 1;
   }
   if (tree.has("limit")) {
@@ -184,7 +197,7 @@ void readConstant(const Tree& tree, Field& field) {
   const Tree value = tree.at("value");
   const size_t before = tree.problems();
   field.value = value.number(field.least, field.most);
-  if (field.type == Type::kFloat || tree.problems() != before) return;
+  if (field.type == Type::kFloat || tree.problems() != before || field.most > std::ldexp(1.0, 64)) return;
   const unsigned digits = field.type == Type::kNibble ? 4 : field.type == Type::kNibbles ? 16 : field.bits;
   constexpr double kExact = 9007199254740992;  // 2^53: a double cannot hold all digits of larger numbers
   if (std::abs(field.value) < kExact && field.value == std::floor(field.value))
@@ -195,7 +208,7 @@ void readConstant(const Tree& tree, Field& field) {
 
 void readSequence(const Tree& tree, Field& field) {
   if (field.type == Type::kFloat)
-    tree.at("type").fail("\"" + tree.at("type").text() + "\", expected a whole-number type");
+    tree.at("type").fail("\"" + tree.at("type").text() + "\", expected a whole-number type such as u16");
   if (tree.has("modulo"))
     field.modulo = static_cast<uint64_t>(tree.at("modulo").whole(2, std::min(field.most + 1, 4294967296.0)));
 }
@@ -214,7 +227,10 @@ bool readMethod(const Tree& tree, Field& field) {
     check.method = Checksum::kCrc;
     check.polynomial = tree.at("polynomial").bits(check.bits);
     if (tree.problems() == before && (check.polynomial & 1) == 0)
-      tree.at("polynomial").fail("is even, expected the polynomial without its highest term, which ends in + 1");
+      tree.at("polynomial")
+          .fail(
+              "is even, but every polynomial of a CRC ends in + 1; expected it without its highest term, such as "
+              "0x1021 for x^16 + x^12 + x^5 + 1");
     return true;
   }
   std::string all = "sum, xor, sum8, xor8, crc";
@@ -234,7 +250,9 @@ bool readMethod(const Tree& tree, Field& field) {
 void readMethodDetails(const Tree& tree, Check& check) {
   const bool crc = tree.at("method").text() == "crc", named = check.method == Checksum::kCrc && !crc;
   const auto forbid = [&](const char* key, bool allowed, const char* what) {
-    if (tree.has(key) && !allowed) tree.at(key).fail(std::string("expected only with ") + what);
+    if (tree.has(key) && !allowed)
+      tree.at(key).fail("cannot be used with method: " + tree.at("method").text() + ", only with " + what +
+                        "; remove it, or correct method");
     return tree.has(key) && allowed;
   };
   (void)forbid("polynomial", crc, "method crc");
@@ -248,8 +266,25 @@ void readMethodDetails(const Tree& tree, Check& check) {
   if (forbid("word", words, "sum and xor")) check.word = static_cast<uint8_t>(tree.at("word").whole(1, 8));
 }
 
-void readChecksum(const Tree& tree, const Report& report, bool placed, Field& field) {
-  if (readMethod(tree, field)) readMethodDetails(tree, field.check);
+/// Notes a problem if a checksum covers its own bytes. The likeliest mistake is a `to` that counts the bytes of the
+/// checksum too.
+void refuseItself(const Tree& tree, const Field& field) {
+  const size_t end = field.at + field.bytes();
+  if (field.at >= field.to || end <= field.from) return;
+  const std::string own = field.bytes() == 1 ? "byte " + std::to_string(field.at)
+                                             : "bytes " + std::to_string(field.at) + " to " + std::to_string(end - 1);
+  if (field.at > field.from)
+    tree.at("to").fail(std::to_string(field.to) + ", so the checksum covers itself (" + own +
+                       "); the bytes from `from` to `to` - 1 are covered: expected to: " + std::to_string(field.at) +
+                       " or less, or another at");
+  else
+    tree.at("from").fail(std::to_string(field.from) + ", so the checksum covers itself (" + own +
+                         "); expected from: " + std::to_string(end) + " or more, or another at");
+}
+
+void readChecksum(const Tree& tree, const Report& report, const FieldFacts& known, Field& field) {
+  const bool method = readMethod(tree, field);
+  if (method) readMethodDetails(tree, field.check);
   field.check.big_endian = field.big_endian;
   if (tree.has("over_id") && tree.at("over_id").boolean()) {
     if (report.id < 0)
@@ -257,25 +292,30 @@ void readChecksum(const Tree& tree, const Report& report, bool placed, Field& fi
     if (field.check.word > 1) tree.at("over_id").fail("over_id works only with word: 1; remove one of the two");
     field.check = startedWith(field.check, static_cast<uint8_t>(std::max(report.id, 0)));
   }
+  const size_t before_range = tree.problems();
   field.from = static_cast<uint16_t>(tree.at("from").whole(0, static_cast<double>(report.size - 1)));
   field.to = static_cast<uint16_t>(tree.at("to").whole(field.from + 1.0, static_cast<double>(report.size)));
+  if (known.placed && tree.problems() == before_range) refuseItself(tree, field);
+  if (!known.type) return;
   if (field.type != Type::kUnsigned && field.type != Type::kSigned)
-    tree.at("type").fail("\"" + tree.at("type").text() + "\", expected a whole number of bits: u8, u16");
-  else if (field.bits < field.check.bits)
+    tree.at("type").fail("\"" + tree.at("type").text() +
+                         "\", expected a whole-number type for a checksum, such as u8 or u16");
+  else if (method && field.bits < field.check.bits)
     tree.at("type").fail("\"" + tree.at("type").text() + "\", expected u" + std::to_string(field.check.bits) + " for " +
                          tree.at("method").text());
-  if (placed && field.at < field.to && field.at + field.bytes() > field.from)
-    tree.at("at").fail("the checksum lies inside the bytes that it covers; expected a place outside of from ... to");
 }
 
 /// Reads the clock of the arm, whose scale is the length of one raw unit in s.
 void readTime(const Tree& tree, Field& field) {
-  const Tree scale = tree.at("scale");
+  constexpr const char* kExpected =
+      "expected the length of one raw unit in s, such as 1.0e-6 for a clock in microseconds";
   const size_t before = tree.problems();
-  field.scale = scale.number(0, 10);
-  if (tree.problems() != before || field.scale > 0) return;
-  scale.fail("0, expected the length of one raw unit in s, such as 1.0e-6 for a clock in microseconds");
-  field.scale = 1;
+  if (!tree.has("scale"))
+    tree.fail(std::string("lacks the key \"scale\", ") + kExpected);
+  else
+    field.scale = tree.at("scale").number(0, 10, "s");
+  if (tree.problems() == before && !(field.scale > 0)) tree.at("scale").fail(std::string("0 s, ") + kExpected);
+  if (!(field.scale > 0)) field.scale = 1;
 }
 
 }  // namespace
@@ -287,20 +327,24 @@ std::span<const char* const> fieldKeys() {
 ReadField readField(const Tree& tree, const Report& report, size_t joints, bool input) {
   ReadField read;
   Field& field = read.field;
+  const size_t first = tree.problems();
   if (!tree.only(kKeys) && !tree.has("is")) return read;
-  read.target_known = readTarget(tree, joints, input, field);
+  readTarget(tree, joints, input, field, read.known);
   const size_t before = tree.problems();
-  readNumber(tree, report, field);
-  read.placed = tree.problems() == before;
-  if (!read.target_known) return read;  // the role decides which other keys a field needs
+  read.known.type = readNumber(tree, report, field);
+  read.known.placed = tree.problems() == before;
+  if (!read.known.role) return read;  // the role decides which other keys a field needs
+  const size_t before_scale = tree.problems();
   if (ofJoint(field.role)) readScale(tree, field);
-  if (field.role == Role::kTorque && !input && tree.problems() == before) requireBothSigns(tree, field);
+  const bool scaled = read.known.type && tree.problems() == before_scale;
+  if (field.role == Role::kTorque && !input && scaled) requireBothSigns(tree, field);
   if (field.role == Role::kConstant || field.role == Role::kFirmware) readConstant(tree, field);
   if (field.role == Role::kEnable || field.role == Role::kCalibrate || field.role == Role::kFollow)
     field.value = tree.has("value") ? tree.at("value").number(field.least, field.most) : 1;
   if (field.role == Role::kSequence || field.role == Role::kStarts) readSequence(tree, field);
   if (field.role == Role::kTime) readTime(tree, field);
-  if (field.role == Role::kChecksum) readChecksum(tree, report, read.placed, field);
+  if (field.role == Role::kChecksum) readChecksum(tree, report, read.known, field);
+  read.known.all = tree.problems() == first;
   return read;
 }
 

@@ -5,18 +5,17 @@
 
 #include "codec/report.hpp"
 #include "codec/tree.hpp"
+#include "codec/wire_overlap.hpp"
 
 namespace hapticd::codec {
 
 /// Every key that a field may have.
 std::span<const char* const> fieldKeys();
 
-/// A field that was read. Some of its values may be missing because of problems in the file: `target_known` is true if
-/// the role and the joint are valid.
+/// A field that was read. Some of its values may be missing because of problems in the file, and have their defaults.
 struct ReadField {
   Field field;
-  bool target_known = false;
-  bool placed = false;  ///< true if its position in the report and its number of bits are known
+  FieldFacts known;
 };
 
 /// [main] Reads and checks one field, and notes each problem in the tree.

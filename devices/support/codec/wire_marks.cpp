@@ -45,14 +45,15 @@ uint8_t writtenAt(const Report& report, const Field& field, size_t at) {
 
 /// Adds a constant for one mark if no field of the file has bits in its byte. If fields have bits there, they must
 /// write the bits of the mark; another field is noted as a problem.
-void placeMark(const Tree& tree, const Mark& mark, bool framed, Report& report) {
+void placeMark(const Tree& tree, const Mark& mark, bool framed, const std::vector<FieldFacts>& known, Report& report) {
   uint8_t given = 0;
-  for (size_t i = 0; i < report.fields.size(); ++i) {
+  for (size_t i = 0; i < known.size(); ++i) {
     const Field& field = report.fields[i];
+    const bool fixed = field.role == Role::kConstant || field.role == Role::kFirmware;
+    if (!known[i].role || !(fixed ? known[i].all : known[i].placed)) continue;
     const uint8_t bits = bitsTaken(field, report.size)[mark.at];
     if (bits == 0) continue;
     given |= bits;
-    const bool fixed = field.role == Role::kConstant || field.role == Role::kFirmware;
     if (!framed || (fixed && (writtenAt(report, field, mark.at) & bits) == (mark.value & bits))) continue;
     const Tree wrong = tree.at("fields").item(i);
     wrong.at(fixed             ? "value"
@@ -71,8 +72,9 @@ void placeMark(const Tree& tree, const Mark& mark, bool framed, Report& report) 
 
 }  // namespace
 
-void placeMarks(const Tree& tree, const Framing& framing, bool framed, Report& report) {
-  if (framing.start >= 0 && framing.end >= 0 && report.bytes() < 2)
+void placeMarks(const Tree& tree, const Framing& framing, bool framed, const std::vector<FieldFacts>& known, bool sized,
+                Report& report) {
+  if (sized && framing.start >= 0 && framing.end >= 0 && report.bytes() < 2)
     return tree.at("size").fail("1, expected 2 or more: framing.start and framing.end are bytes of the report");
   if (framing.start >= 0 && report.id >= 0 && report.id != framing.start) {
     if (framed)
@@ -80,9 +82,9 @@ void placeMarks(const Tree& tree, const Framing& framing, bool framed, Report& r
           std::to_string(report.id) + " is the report id, and framing.start puts its mark " + hexOf(framing.start) +
           " into the same first byte; remove id (a constant field at byte 1 can tell kinds of reports apart)");
   } else if (framing.start >= 0 && report.id < 0) {
-    placeMark(tree, {"start", framing.start, 0}, framed, report);
+    placeMark(tree, {"start", framing.start, 0}, framed, known, report);
   }
-  if (framing.end >= 0) placeMark(tree, {"end", framing.end, report.size - 1}, framed, report);
+  if (sized && framing.end >= 0) placeMark(tree, {"end", framing.end, report.size - 1}, framed, known, report);
 }
 
 }  // namespace hapticd::codec

@@ -20,16 +20,18 @@ bool isNumber(Role role) {
          role == Role::kChecksum;
 }
 
-/// Bits that two fields may not share. Flags may share a status byte, and constants may cover
-/// anything.
+/// Bits that two fields may not share. Flags may share a status byte, and constants may cover anything. A clock may also
+/// count the reports; a second counter of the same bytes adds nothing, and `hapticd check` warns of it.
 bool exclusive(Role a, Role b) {
-  return ofJoint(a) || ofJoint(b) || (isFlag(a) && isNumber(b)) || (isNumber(a) && isFlag(b));
+  const auto counts = [](Role role) { return role == Role::kTime || role == Role::kSequence; };
+  if (counts(a) && counts(b)) return false;
+  return ofJoint(a) || ofJoint(b) || (isNumber(a) && (isFlag(b) || isNumber(b))) || (isFlag(a) && isNumber(b));
 }
 
 /// Returns the name of a field for messages: "fields[0] (position of joint 1)".
-std::string nameOf(const Tree& fields, const Field& field, size_t i) {
+std::string nameOf(const Tree& fields, const Field& field, const FieldFacts& known, size_t i) {
   std::string name = "fields[" + std::to_string(i) + "] (" + fields.item(i).at("is").text();
-  if (ofJoint(field.role)) name += " of joint " + std::to_string(field.index + 1);
+  if (ofJoint(field.role) && known.target) name += " of joint " + std::to_string(field.index + 1);
   return name + ")";
 }
 
@@ -73,18 +75,20 @@ std::vector<const Field*> outsideChecksum(const Report& report) {
   return outside;
 }
 
-void checkOverlaps(const Tree& fields, const Report& report, const std::vector<bool>& placed) {
+void checkOverlaps(const Tree& fields, const Report& report, const std::vector<FieldFacts>& known) {
+  const auto usable = [&known](size_t i) { return known[i].role && known[i].placed; };
   std::vector<std::vector<uint8_t>> taken;
   for (const Field& field : report.fields) taken.push_back(bitsTaken(field, report.size));
   for (size_t later = 1; later < taken.size(); ++later)
     for (size_t i = 0; i < later; ++i) {
       const bool matters = exclusive(report.fields[i].role, report.fields[later].role);
-      if (!matters || !placed[i] || !placed[later]) continue;
+      if (!matters || !usable(i) || !usable(later)) continue;
       const size_t byte = firstShared(taken[i], taken[later]);
       if (byte == report.size) continue;
       const Tree tree = fields.item(later);
       tree.at(tree.has("at") ? "at" : "bit_offset")
-          .fail("takes bits of byte " + std::to_string(byte) + ", which " + nameOf(fields, report.fields[i], i) +
+          .fail("takes bits of byte " + std::to_string(byte) + ", which " +
+                nameOf(fields, report.fields[i], known[i], i) +
                 " uses already; correct at, bit_offset or type of one of the two fields");
       break;
     }

@@ -2,7 +2,6 @@
 #include "kinematics/arm.hpp"
 
 #include <cstdio>
-#include <stdexcept>
 #include <string>
 
 #include "kinematics/error_collector.hpp"
@@ -15,10 +14,10 @@ void Arm::narrow(const JointLimits& limits) {
     std::snprintf(buffer, sizeof buffer, "%g", value);
     return std::string(buffer);
   };
-  if (limits.min.size() != jointCount())
-    throw std::invalid_argument("arm.limits: " + std::to_string(limits.min.size()) + " rows, expected " +
-                                std::to_string(jointCount()) + ": one for each joint");
   ErrorCollector wrong;
+  if (limits.min.size() != jointCount())
+    wrong.add("arm.limits: " + std::to_string(limits.min.size()) + " rows, expected " + std::to_string(jointCount()) +
+              ": one for each joint");
   for (Eigen::Index i = 0; i < limits.min.size(); ++i)
     if (!(limits.min[i] <= limits.max[i]))
       wrong.add("arm.limits[" + std::to_string(i) + "]: [" + text(limits.min[i]) + ", " + text(limits.max[i]) +

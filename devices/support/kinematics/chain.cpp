@@ -32,12 +32,12 @@ void exactTwist(double alpha, double& cosine, double& sine) {
 }
 
 void check(const ChainLink& link, size_t index) {
-  const std::string who = "joint " + std::to_string(index + 1) + " of the chain: ";
+  const std::string who = "arm.dh[" + std::to_string(index) + "]: joint " + std::to_string(index + 1) + ": ";
   for (const double value : {link.a, link.alpha, link.d, link.theta, link.min, link.max, link.mass})
     if (!std::isfinite(value)) throw std::invalid_argument(who + "a number is not finite; expected finite numbers");
   if (link.min > link.max) {
     char text[120];
-    std::snprintf(text, sizeof text, "arm.limits[%zu]: %g to %g, expected the smaller one first", index, link.min,
+    std::snprintf(text, sizeof text, "arm.limits[%zu]: [%g, %g], expected the smaller number first", index, link.min,
                   link.max);
     throw std::invalid_argument(text);
   }

@@ -18,7 +18,9 @@ constexpr double kLargestStep = 0.03;  ///< [m] longest step; keeps Newton's met
 Delta::Delta(const DeltaGeometry& geometry)
     : geometry_(geometry), R_device_arm_(geometry.base.orientation.normalized().toRotationMatrix()) {
   if (!(geometry.a > 0 && geometry.b > 0))
-    throw std::invalid_argument("delta: arm lengths a and b must be more than 0 m");
+    throw std::invalid_argument(
+        "arm.lengths: a and b (the first two numbers) are the lengths of an arm and a rod of the delta; expected more "
+        "than 0 m");
   if (!(geometry.theta_min < geometry.theta_max))
     throw std::invalid_argument("delta: the angle limits are in the wrong order; expected the smaller angle first");
   for (size_t i = 0; i < 3; ++i) {
@@ -32,8 +34,7 @@ Delta::Delta(const DeltaGeometry& geometry)
   if (!solve(neutral_, middle_))
     throw std::invalid_argument(
         "arm.lengths: with these the three arms of the delta do not meet in the middle of their range; expected a, b, "
-        "c, "
-        "d, e, f, r, s in m, in this order");
+        "c, d, e, f, r, s in m, in this order");
 }
 
 Delta::Closure Delta::closure(size_t arm, const Eigen::Vector3d& p, double theta) const noexcept {

@@ -210,7 +210,10 @@ class Arm : public Device, public Parameters {
   void needCalibrated(const codec::Wire& read) const {
     bool said = method != static_cast<int>(Calibration::kDevice) || !read.input.whole;
     for (const codec::Field& field : read.input.fields) said = said || field.role == codec::Role::kCalibrated;
-    if (!said) throw std::invalid_argument("calibration.method: device, but no field of wire.input is \"calibrated\"");
+    if (!said)
+      throw std::invalid_argument(
+          "calibration.method: device, but no field of wire.input says whether the arm has its zero; expected a field "
+          "{is: calibrated}, or method: none (absolute encoders) or pose");
   }
 
   void takeFirmware() {
@@ -263,7 +266,7 @@ class Arm : public Device, public Parameters {
 
   static hsp_status capture(hdv_device* device, hdv_take_transfer take, void* who) {
     T& self = *reinterpret_cast<T*>(device);
-    const auto done = self.link_ ? self.link_->capture(take, who) : Result<void>(Error{"is not open"});
+    const auto done = self.link_ ? self.link_->capture(take, who) : Result<void>(Error{"the arm is not open"});
     if (!done) detail::logError(self.host(), done.error());
     return done ? HSP_OK : HSP_E_IO;
   }

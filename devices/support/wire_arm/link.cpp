@@ -125,10 +125,10 @@ Result<void> Link::perform(const codec::StartStep& step) {
 }
 
 Result<void> Link::start() {
-  if (!open_) return Error{"is not open"};
+  if (!open_) return Error{"the arm is not open"};
   stop_ = false;
   if (const auto code = thread_.start("hapticd-io", [this] { run(); }))
-    return Error{"cannot start its I/O thread: " + code.message()};
+    return Error{"its I/O thread cannot be started: " + code.message()};
   const Nanoseconds until = monotonicNow() + kFirstReport;
   while (monotonicNow() < until) {
     pause(kMillisecond);
@@ -140,20 +140,21 @@ Result<void> Link::start() {
 }
 
 Result<void> Link::capture(hdv_take_transfer take, void* who) {
-  if (!open_) return Error{"is not open"};
+  if (!open_) return Error{"the arm is not open"};
   const Nanoseconds begun = monotonicNow();
   Nanoseconds due = begun;
   for (bool more = true; more;) {
     if (const Nanoseconds now = monotonicNow(); now >= due) {
       size_t size = session_.command(now, ArmCommand{}, out_);
       due = std::max(due + period_, now);
-      if (const Status sent = transport_->send({out_.data(), size}); sent == Status::kGone) return Error{"is gone"};
+      if (const Status sent = transport_->send({out_.data(), size}); sent == Status::kGone)
+        return Error{"the arm was unplugged"};
       more = take(who, now - begun, 1, out_.data(), size) == 0;
     }
     size_t size = 0;
     const Nanoseconds now = monotonicNow();
     const Status status = transport_->receive(in_, size, due > now ? std::min(due - now, kMillisecond) : 0);
-    if (status == Status::kGone) return Error{"is gone"};
+    if (status == Status::kGone) return Error{"the arm was unplugged"};
     if (status == Status::kOk) more = take(who, monotonicNow() - begun, 0, in_.data(), size) == 0 && more;
   }
   return {};

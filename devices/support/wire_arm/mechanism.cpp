@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "wire_arm/mechanism.hpp"
 
-#include <cstdio>
 #include <stdexcept>
 #include <string>
 
@@ -10,6 +9,7 @@
 #include "kinematics/chain.hpp"
 #include "kinematics/delta.hpp"
 #include "kinematics/error_collector.hpp"
+#include "kinematics/limit_order.hpp"
 #include "kinematics/phantom.hpp"
 
 namespace hapticd::wire_arm {
@@ -25,8 +25,9 @@ kinematics::Pose baseOf(const MechanismParameters& p) {
   const auto& q = p.base_orientation;
   base.orientation = Eigen::Quaterniond(q.at(0), q.at(1), q.at(2), q.at(3));
   if (!(std::abs(base.orientation.norm() - 1) <= 1e-3))
-    throw std::invalid_argument("arm.base_orientation: norm " + std::to_string(base.orientation.norm()) +
-                                ", expected a unit quaternion w, x, y, z");
+    throw std::invalid_argument("arm.base_orientation: the quaternion has length " +
+                                std::to_string(base.orientation.norm()) +
+                                ", expected a unit quaternion w, x, y, z (length 1)");
   base.orientation.normalize();
   return base;
 }
@@ -55,31 +56,21 @@ void needRows(const std::vector<double>& list, size_t columns, size_t rows, cons
                               ", expected " + std::to_string(rows) + ": " + why);
 }
 
-/// Refuses rows of limits that begin with the larger number.
-void needOrder(const std::vector<double>& limits) {
-  kinematics::ErrorCollector wrong;
-  for (size_t i = 0; i + 1 < limits.size(); i += 2) {
-    if (limits[i] <= limits[i + 1]) continue;
-    char text[120];
-    std::snprintf(text, sizeof text, "arm.limits[%zu]: %g to %g, expected the smaller one first", i / 2, limits[i],
-                  limits[i + 1]);
-    wrong.add(text);
-  }
-  wrong.check();
-}
-
 std::unique_ptr<kinematics::Arm> chain(const MechanismParameters& p) {
   kinematics::ChainGeometry g;
   kinematics::ErrorCollector wrong;
   wrong.attempt([&] { g.base = baseOf(p); });
   g.tool.position = Vector3d(p.tool_position[0], p.tool_position[1], p.tool_position[2]);
   const size_t count = p.dh.size() / 4, all = count + static_cast<size_t>(p.others);
-  if (count == 0) throw std::invalid_argument("arm.dh: empty, expected a row [a, alpha, d, theta] for each joint");
+  kinematics::refuseReversedLimits(p.limits, wrong);
+  if (count == 0) {
+    wrong.add("arm.dh: has no rows, expected a row [a, alpha, d, theta] for each joint of a chain");
+    wrong.check();
+  }
   wrong.attempt(
       [&] { needRows(p.limits, 2, all, "arm.limits", "one for each row of arm.dh and each joint of arm.others"); });
   wrong.attempt([&] { needRows(p.masses, 1, count, "arm.masses", "one for each row of arm.dh"); });
   wrong.attempt([&] { needRows(p.centers, 3, count, "arm.centers", "one for each row of arm.dh"); });
-  wrong.attempt([&] { needOrder(p.limits); });
   wrong.check();
   for (size_t i = 0; i < count; ++i) {
     kinematics::ChainLink link;
@@ -127,7 +118,7 @@ std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p) {
   std::unique_ptr<kinematics::Arm> arm;
   wrong.attempt([&] { arm = mechanism(p); });
   wrong.attempt([&] { needRows(p.limits, 2, jointsOf(p), "arm.limits", "one for each joint"); });
-  wrong.attempt([&] { needOrder(p.limits); });
+  kinematics::refuseReversedLimits(p.limits, wrong);
   wrong.check();
   const auto rows = static_cast<Eigen::Index>(p.limits.size() / 2);
   kinematics::JointLimits limits{kinematics::JointVector(rows), kinematics::JointVector(rows)};

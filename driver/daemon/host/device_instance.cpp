@@ -137,8 +137,7 @@ Result<void> DeviceInstance::open() {
   noteCall("open");
   const hsp_status status = playback_ == nullptr ? class_->open(device_, &info_) : HSP_OK;
   if (playback_ != nullptr) info_ = playback_->info;
-  absent_ = status < 0;
-  if (absent_) return Error{who + "cannot be opened: " + reasonOf(status, services_)};
+  if (status < 0) return Error{who + "cannot be opened: " + reasonOf(status, services_), ErrorKind::kAbsent};
   open_ = true;
   if (pace_ == nullptr && playback_ == nullptr) info_.capabilities &= ~uint32_t{HDV_C_PACING};  // no extension
   std::string wrong = wrongIn(info_, kinematics_->joint_count);

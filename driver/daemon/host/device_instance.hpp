@@ -36,8 +36,7 @@ class DeviceInstance {
   /// [main] Uses a playback in place of the hardware. Call it before open(). The playback must outlive the instance.
   void playBack(const Playback* playback) { playback_ = playback; }
 
-  Result<void> open();                       ///< [main] opens the hardware
-  bool absent() const { return absent_; }    ///< true if the last open() found no hardware
+  Result<void> open();                       ///< [main] opens the hardware; ErrorKind::kAbsent if there is none
   Result<void> start(const hdv_start& how);  ///< [main]
   void stop();                               ///< [main] switches the motors off
 
@@ -131,7 +130,7 @@ class DeviceInstance {
   const hdv_ext_trouble* trouble_ = nullptr;
   const hdv_ext_silence* silence_ = nullptr;
   const Playback* playback_ = nullptr;
-  bool open_ = false, started_ = false, absent_ = false;
+  bool open_ = false, started_ = false;
 };
 
 }  // namespace hapticd::host

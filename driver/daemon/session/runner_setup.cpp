@@ -37,12 +37,12 @@ LoopSettings loopSettings(const scene::Scene& scene, const RunOptions& options, 
 }
 
 /// Returns the error of a device that could not be opened, with a note where virtual time is in the way of it.
-Error notOpened(const std::string& why, const scene::Scene& scene, bool virtual_time) {
+Error notOpened(const Result<void>& opened, const scene::Scene& scene, bool virtual_time) {
   const bool real = std::any_of(scene.devices.begin(), scene.devices.end(),
                                 [](const scene::Device& device) { return device.module != "simulated"; });
-  const bool absent = why.find("cannot be opened") != std::string::npos;  // else its module is wrong
-  if (!virtual_time || !real || !absent) return Error{why};
-  return Error{why + "\n  note: --virtual-time allows simulated devices only"};
+  const bool absent = opened.kind() == ErrorKind::kAbsent;  // otherwise its module is wrong
+  if (!virtual_time || !real || !absent) return Error{opened.error(), opened.kind()};
+  return Error{opened.error() + "\n  note: --virtual-time allows simulated devices only"};
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
                                                 std::unique_ptr<World> world, const host::Services::Log& log) {
   std::unique_ptr<Runner> runner(new Runner(scene, options));
   runner->world_ = std::move(world);
-  if (auto opened = runner->openArms(log); !opened) return notOpened(opened.error(), scene, options.virtual_time);
+  if (auto opened = runner->openArms(log); !opened) return notOpened(opened, scene, options.virtual_time);
   if (options.virtual_time && !runner->onlySimulated())
     return Error{
         "--virtual-time runs faster than a real clock, but the scene names real hardware; expected simulated devices "
@@ -117,7 +117,7 @@ Result<void> Runner::openBlackBox(const LoopSettings& settings) {
 Result<void> Runner::openArms(const host::Services::Log& log) {
   for (const scene::Device& device : scene_.devices) {
     auto arm = Arm::open(device, scene_.servo, {options_.rate, world_->needsVelocity(), nullptr, scene_.clients}, log);
-    if (!arm) return Error{arm.error()};
+    if (!arm) return Error{arm.error(), arm.kind()};
     arms_.push_back(std::move(*arm));
   }
   return {};

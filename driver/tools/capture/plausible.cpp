@@ -7,6 +7,7 @@
 #include <map>
 
 #include "capture/alternative_decoding.hpp"
+#include "capture/byte_order_hint.hpp"
 
 namespace hapticd::capture {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 struct JointSeries {
   std::vector<double> at;
   double least = HUGE_VAL, most = -HUGE_VAL;
+  double count_size = 0;  ///< [rad] one count of a whole-number type; 0 for other types
 
   /// @param round [rad] range after which the number starts again; 0 if it never does
   void add(double q, double round) {
@@ -86,6 +88,31 @@ std::string tooLongAWay(const JointSeries& course, Stops stops) {
          "joint?";
 }
 
+/// [rad] The greatest way of a joint that is called tiny although its number changed by many counts, where its stops
+/// are unknown.
+constexpr double kTiny = 0.02;
+
+/// Returns true if the number of a joint changed by more counts than an encoder's noise makes.
+bool countedFar(const JointSeries& course) {
+  constexpr double kCounts = 500;
+  return course.count_size > 0 && course.most - course.least > kCounts * course.count_size;
+}
+
+/// Returns a text if every joint's number changed by many counts, but no joint moved far, where the stops are unknown.
+std::string tinyWays(const std::map<size_t, JointSeries>& courses) {
+  double widest = 0;
+  for (const auto& [joint, course] : courses) {
+    if (!countedFar(course) || course.most - course.least > kTiny) return "";
+    widest = std::max(widest, course.most - course.least);
+  }
+  if (courses.empty()) return "";
+  return "the numbers of all joints changed by more than 500 counts, but no joint moved by more than " +
+         number(widest) +
+         " rad: if they were moved by hand, scale is far too small; it must be in rad: 2 pi / (counts of a motor turn "
+         "* "
+         "motor turns of one joint turn)\n";
+}
+
 /// Returns a text if all joints moved, but none of them far, because a scale that is too small has no other symptom.
 std::string shortWays(const std::map<size_t, JointSeries>& courses, const ArmFacts& arm) {
   // shares of the range between the stops: kMoved tells whether a joint moved at all, kShort whether it moved far
@@ -95,8 +122,10 @@ std::string shortWays(const std::map<size_t, JointSeries>& courses, const ArmFac
   double widest = 0;
   for (const auto& [joint, course] : courses) {
     const Stops stops = stopsOf(arm, joint);
+    if (course.at.size() < kEnough) return "";
+    if (!stops.given) return tinyWays(courses);
     const double part = (course.most - course.least) / (stops.high - stops.low);
-    if (!stops.given || course.at.size() < kEnough || !(part > kMoved) || !(part < kShort)) return "";
+    if (!(part > kMoved || countedFar(course)) || !(part < kShort)) return "";
     widest = std::max(widest, part);
     ways += (ways.empty() ? "" : ", ") + number(100 * part) + " %";
   }
@@ -123,11 +152,15 @@ std::string implausible(const codec::Wire& wire, const ArmFacts& arm, const Deco
   for (const codec::Field& field : wire.input.fields) {
     if (field.role != codec::Role::kPosition || field.index >= arm.joints) continue;
     JointSeries& course = courses[field.index];
+    const bool whole = field.type == codec::Type::kUnsigned || field.type == codec::Type::kSigned;
+    course.count_size = whole ? std::abs(field.scale) : 0;
     const double round = field.wraps ? std::ldexp(std::abs(field.scale), field.bits) : 0;
     for (const DecodedReport& report : decoded.reports)
       if (report.verdict == codec::Verdict::kGood) course.add(report.state.position[field.index], round);
-    const std::string wrong =
-        field.wraps ? tooLongAWay(course, stopsOf(arm, field.index)) : implausibleSeries(wire, field, arm, course);
+    std::string wrong = wrongByteOrder(field, course.at);
+    if (wrong.empty())
+      wrong =
+          field.wraps ? tooLongAWay(course, stopsOf(arm, field.index)) : implausibleSeries(wire, field, arm, course);
     if (!wrong.empty()) text += "joint " + std::to_string(field.index + 1) + ": " + wrong + "\n";
   }
   return text.empty() ? shortWays(courses, arm) : text;

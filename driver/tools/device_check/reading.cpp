@@ -26,7 +26,7 @@ Opened openArm(const scene::Device& device) {
   const uint32_t claimed = claimsOf(**made);
   const auto opened = (*made)->open();
   if (opened) return {std::move(*made), "", false, claimed};
-  return {nullptr, opened.error(), (*made)->absent(), 0};
+  return {nullptr, opened.error(), opened.kind() == ErrorKind::kAbsent, 0};
 }
 
 std::string readFor(host::DeviceInstance& arm, hdv_sample& sample,

@@ -14,16 +14,18 @@ namespace {
 
 using document::Node;
 
-/// Returns the buttons of the reports, counted from 1; nothing if the file describes no reports.
+/// Returns the buttons of the reports, counted from 1; nothing if the file describes no reports, or gives a button a
+/// number that no button has, because that one may be meant.
 std::optional<std::set<int>> buttonsIn(const Node& root) {
   const Node* fields = find(root, {"parameters", "wire", "input", "fields"});
   if (fields == nullptr || !fields->isSequence()) return std::nullopt;
   std::set<int> buttons;
   for (const Node& field : fields->items) {
     const Node *is = find(field, {"is"}), *button = find(field, {"button"});
-    if (is == nullptr || is->scalar != "button" || button == nullptr) continue;
-    const double number = document::toNumber(button->scalar).value_or(0);
-    if (number >= 1 && number <= 32) buttons.insert(static_cast<int>(number));
+    if (is == nullptr || is->scalar != "button") continue;
+    const double number = button != nullptr ? document::toNumber(button->scalar).value_or(0) : 0;
+    if (!(number >= 1 && number <= 32)) return std::nullopt;
+    buttons.insert(static_cast<int>(number));
   }
   return buttons;
 }

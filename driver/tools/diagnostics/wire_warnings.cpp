@@ -211,16 +211,77 @@ void warnOfStartup(const Node& steps, const codec::Wire& wire, const scene::Devi
   }
 }
 
+/// Warns of one bit that is read as two buttons.
+void warnOfButtons(const Node& fields, const codec::Report& report, const scene::Device& device,
+                   document::Problems& warnings) {
+  const auto firstBit = [](const Field& field) {
+    return 8 * size_t{field.at} + field.bit_skip + static_cast<size_t>(std::max<int>(field.bit, 0));
+  };
+  for (size_t i = 1; i < report.fields.size() && i < fields.items.size(); ++i)
+    for (size_t before = 0; before < i; ++before) {
+      const Field &one = report.fields[before], &other = report.fields[i];
+      if (one.role != Role::kButton || other.role != Role::kButton) continue;
+      if (one.index == other.index || firstBit(one) != firstBit(other)) continue;
+      document::report(warnings, device.file.string(), fields.items[i].line, fields.items[i].column,
+                       fmt::format("parameters.wire.input.fields[{}].at", i),
+                       fmt::format("button {} is read from the same bit as button {} (fields[{}]), so both are always "
+                                   "pressed together; expected another at, bit_offset or bit",
+                                   other.index + 1, one.index + 1, before));
+      break;
+    }
+}
+
+/// Warns of a report whose id seems to be counted as byte 0: no field touches byte 0, and the last one ends the report.
+void warnOfCountedId(const Node& root, const codec::Report& report, const char* side, const scene::Device& device,
+                     document::Problems& warnings) {
+  if (report.id < 0 || report.fields.empty()) return;
+  size_t first = report.size, end = 0;
+  for (const Field& field : report.fields) {
+    first = std::min<size_t>(first, field.at);
+    end = std::max(end, field.at + field.bytes());
+  }
+  const Node* id = find(root, {"parameters", "wire", side, "id"});
+  if (id == nullptr || first != 1 || end != report.size) return;
+  document::report(
+      warnings, device.file.string(), id->line, id->column, fmt::format("parameters.wire.{}.id", side),
+      "no field begins at byte 0, the first byte after the id; `at` and `size` are counted without the id: "
+      "if they were counted with it, subtract 1 from each");
+}
+
+/// Warns of keys that only an arm on bulk endpoints (module usb_bulk) can obey.
+void warnOfBulkKeys(const Node& root, const scene::Device& device, document::Problems& warnings) {
+  const Node* wire = find(root, {"parameters", "wire"});
+  if (wire == nullptr || device.module == "usb_bulk") return;
+  const std::string file = device.file.string(), module = device.module;
+  if (const Node* endpoints = wire->find("endpoints"))
+    document::report(warnings, file, endpoints->line, endpoints->column, "parameters.wire.endpoints",
+                     "has no effect: the module " + module +
+                         " does not choose endpoints; remove this key, or give module: usb_bulk if the arm has bulk "
+                         "endpoints");
+  const Node* startup = wire->find("startup");
+  for (size_t i = 0; startup != nullptr && i < startup->items.size(); ++i)
+    if (const Node* control = startup->items[i].find("control"))
+      document::report(warnings, file, control->line, control->column,
+                       fmt::format("parameters.wire.startup[{}].control", i),
+                       "the module " + module +
+                           " cannot send control requests, so the arm could not be started; expected send: [bytes], or "
+                           "module: usb_bulk");
+}
+
 }  // namespace
 
 void warnOfWire(const Node& root, const scene::Device& device, size_t joints, document::Problems& warnings) {
   const Node* in = find(root, {"parameters", "wire", "input", "fields"});
   const Node* out = find(root, {"parameters", "wire", "output", "fields"});
+  warnOfBulkKeys(root, device, warnings);
   const auto wire = wireDraftOf(device, joints);
   if (!wire || in == nullptr || out == nullptr) return;
   if (!maxTorqueTooLarge(root, wire->output, device, warnings)) warnOfTorques(*out, wire->output, device, warnings);
   warnOfGaps(*in, wire->input, device, warnings);
+  warnOfButtons(*in, wire->input, device, warnings);
   if (!wireOf(device, joints)) return;  // a field with a mistake may lie elsewhere
+  warnOfCountedId(root, wire->input, "input", device, warnings);
+  warnOfCountedId(root, wire->output, "output", device, warnings);
   warnOfChecksum(*in, wire->input, "input", device, warnings);
   warnOfChecksum(*out, wire->output, "output", device, warnings);
   if (const Node* startup = find(root, {"parameters", "wire", "startup"}))

@@ -76,7 +76,7 @@ TEST_F(DeviceCommands, DeviceControlsSaysWhichControlsOneArmHas) {
   const Outcome simulated =
       run("device controls " HAPTICD_SOURCE_DIR "/config/devices/simulated-premium15.yaml", kShipped);
   EXPECT_EQ(simulated.exit_code, 0) << simulated.text;
-  EXPECT_TRUE(has(simulated.text, "simulated Premium 1.5: plugged in")) << simulated.text;
+  EXPECT_TRUE(has(simulated.text, "simulated Premium 1.5: a simulated arm: it has no motors")) << simulated.text;
   EXPECT_TRUE(has(simulated.text, "8.5 N")) << simulated.text;
   const Outcome real = run("device controls " HAPTICD_SOURCE_DIR "/config/devices/woodenhaptics.yaml", kShipped);
   EXPECT_EQ(real.exit_code, 0) << real.text;

@@ -195,7 +195,7 @@ TOGETHER = [
      {"arm.dh[0][3]": "90 degrees is 1.57", "arm.dh[1]": "theta, d, a, alpha"}),
     (WIRED, {"from: 0, to: 10}": "from: 0, to: 12}", SECOND: SECOND.replace("9.6e-5", "9.2e-2"), FIRST_OUT: FIRST_OUT.replace("i16", "u16"),
              SENT.format(2, 2): SENT.format(2, 2).replace("2.0e-5", "2.0e-2")},
-     {"wire.input.fields[5].at": "inside the bytes that it covers", "wire.input.fields[2].scale": "scale_degrees: 0.092",
+     {"wire.input.fields[5].to": "so the checksum covers itself", "wire.input.fields[2].scale": "scale_degrees: 0.092",
       "wire.output.fields[0].type": "expected both signs", "wire.output.fields[1].scale": "0.02 N mm is 2e-05 N m"}),
     (WIRED, {"usb_hid": "usb-hid", "1209:0a0a": "0x1209:0x0a0a", "pose: [0, 0, 0]": "pose: [0, 45, 30]"},
      {"module": "did you mean", "usb.id": "", "calibration.pose": "45 degrees is 0.7854 rad"}),
@@ -206,14 +206,14 @@ TOGETHER = [
      {"arm.lengths[1]": "17 mm is 0.017 m", "calibration.method": "no field of wire.input", "device.max_stiffness": "0.6 N/mm is 600 N/m",
       "device.mass": "100 g is 0.1 kg"}),
     (CHAIN, {"1.5707963": "90", "[-0.3, 0.9], [-1, 1]": "[0.9, -0.3]", "max_torque: [0.6]": "max_torque: [0.6, 0.6]"},
-     {"arm.dh[0][1]": "90 degrees is 1.57", "arm.limits": "2 rows, expected 3", "arm.limits[1]": "the smaller one first",
+     {"arm.dh[0][1]": "90 degrees is 1.57", "arm.limits": "2 rows, expected 3", "arm.limits[1]": "the smaller number first",
       "arm.max_torque": "2 numbers, expected 1 or 3"}),
     (WIRED, {"crc16-modbus, from: 0, to: 10": "crc-16, from: 0, to: 10", SECOND: SECOND.replace("9.6e-5", "1.6e-5")},
      {"wire.input.fields[5].method": "did you mean", "wire.input.fields[2].scale": "arm.limits of joint 2 go from"}),
     (WIRED, {"[0, 0, 0.09]}": "[0, 0, 0.09], orientation: [0, 180, 0, 0]}", "pose: [0, 0, 0]": "pose: [0, 1.57, 1.57]"},
      {"mount.orientation": "expected a unit quaternion", "calibration.pose[1]": "beyond arm.limits of joint 2"}),
     (WIRED, {"crc16-modbus, from: 0, to: 10": "crc, polynomial: 0x18005, from: 0, to: 10", SECOND: SECOND.replace("9.6e-5", "0.018")},
-     {"wire.input.fields[5].polynomial": "a whole number of 16 bits", "wire.input.fields[2].scale": "scale_degrees: 0.018"}),
+     {"wire.input.fields[5].polynomial": "a whole number of 16 bits; without its highest bit it is 0x8005", "wire.input.fields[2].scale": "scale_degrees: 0.018"}),
     (WIRED, {"module: usb_hid": "module: hid", "1209:0a0a": "1209-0a0a", "max_torque: [0.6]": "max_torque: [500]"},
      {"module": "judged as those of usb_hid", "usb.id": "vendor:product", "arm.max_torque": "500 N mm is 0.5 N m"}),
     (WIRED, {"usb_hid": "usb_bulk", "exchange: stream": "exchange: stream\n    framing: {start: 7e, end: 0x7e, escape: {mark: 0x7d}}"},
@@ -223,7 +223,7 @@ TOGETHER = [
      {"calibration.method": "expected one of none, device, pose", "calibration.pose": "90 degrees is 1.571 rad"}),
     (WIRED, {"method: pose, pose: [0, 0, 0]": "method: homing, pose: [0, 0]"}, {"calibration.pose": "2 numbers, expected 3"}),
     (WIRED, {"[[-1.2, 1.2], [-0.3, 0.9], [-1, 1]]": "[[1, -1], [-45, 45]]"},
-     {"arm.limits": "45 degrees is 0.7854 rad", "arm.limits[0]": "the smaller one first"}),
+     {"arm.limits": "45 degrees is 0.7854 rad", "arm.limits[0]": "the smaller number first"}),
     (WIRED, {"[[-1.2, 1.2], [-0.3, 0.9], [-1, 1]]": "[[1, -1], [-0.8, 0.8]]"}, {"arm.limits": "2 rows, expected 3"}),
     (WIRED, {"parameters:": "hd: {joints: [[0], [1], [3]], buttons: [2]}\nparameters:", "  calibration:": "  health: {stale: 0.001}\n  calibration:"},
      {"hd.joints[2][0]": "expected 0 to 2", "hd.buttons[0]": "its only button"}),
@@ -235,9 +235,9 @@ TOGETHER = [
     (WIRED, {READ.format(3, 6): READ.format(2, 6)},
      {"wire.input.fields[3].joint": "fields[2] is the position of joint 2 already", "wire.input.fields": "no position of joint 3"}),
     (CHAIN, {ROWS: "", "    dh:\n": "", READ.format(3, 6): READ.format(4, 6), FIRST_OUT: FIRST_OUT.replace("2.0e-5", "2.0")},
-     {"arm.dh": "empty", "wire.input.fields[3].joint": "from 1 to 3", "wire.output.fields[0].scale": "most torques would be sent as 0"}),
+     {"arm.dh": "has no rows", "wire.input.fields[3].joint": "from 1 to 3", "wire.output.fields[0].scale": "most torques would be sent as 0"}),
     (CHAIN, {ROWS: "", "    dh:\n": "", "    limits: [[-1.2, 1.2], [-0.3, 0.9], [-1, 1]]\n": "", READ.format(3, 6): READ.format(4, 6)},
-     {"arm.dh": "empty", "wire.input.fields": "no position of joint 3"}),
+     {"arm.dh": "has no rows", "wire.input.fields": "no position of joint 3"}),
     (WIRED, {"module: usb_hid": "module: vme_bus", "watchdog: 0.02": "watchdog: 20"},
      {"module": "judged as those of vme", "usb": "unknown parameter of vme", "vme.window": "missing", "wire.watchdog": "20 ms is 0.02 s"}),
     ("hapticd-device: 1\nmodule: haply\nname: mine\nlimits: {force: -2}\nparameters: {url: localhost, rate: 5}\n", {},
@@ -321,6 +321,17 @@ def refused(folder):
     new = subprocess.run([HAPTICD, "device", "new", "a3", "--no-questions", "--checksum", "crc9"], capture_output=True, text=True, timeout=120, cwd=folder)
     check("a checksum without a name writes nothing", new.returncode == 2 and "--checksum crc9: no checksum has this name" in new.stderr
           and not os.path.exists(os.path.join(folder, "a3.yaml")), new)
+    for given, meant in (("CRC16", "crc16"), ("modbus", "crc16-modbus"), ("crc-32", "crc32"), ("summ", "sum")):
+        new = subprocess.run([HAPTICD, "device", "new", "a3", "--no-questions", "--checksum", given], capture_output=True, text=True, timeout=120, cwd=folder)
+        check(f"for the checksum {given} a name is proposed", new.returncode == 2 and f'did you mean "{meant}"?' in new.stderr, new)
+    double = os.path.join(folder, "double.yaml")
+    with open(double, "w") as out:
+        out.write(WIRED.replace("exchange: stream", "exchange: pull").replace("joint: 2, at: 4", "joint: 1, at: 4"))
+    checked = subprocess.run([HAPTICD, "check", double], capture_output=True, text=True, timeout=120)
+    twin = subprocess.run([HAPTICD, "device", "twin", double], capture_output=True, text=True, timeout=120, cwd=folder)
+    problems = [line for line in checked.stdout.splitlines() if line.startswith(double) and ": warning: " not in line]
+    check("a twin of a faulty file is refused with the problems that check tells", twin.returncode == 2 and len(problems) == 3 and all(line in twin.stderr for line in problems)
+          and not os.path.exists(os.path.join(folder, "double-twin.yaml")), (problems, twin))
     soft, _ = written(os.path.join(folder, "soft.yaml"), WIRED, {"max_stiffness: 600": "max_stiffness: |0.6"})
     stiff = subprocess.run([HAPTICD, "check", os.path.join(SOURCE, "config", "scenes", "sphere.yaml"), "--device", soft], capture_output=True, text=True, timeout=120)
     check("a model is not blamed for an arm in N/mm", "as its device.max_stiffness says" in stiff.stdout and "nearest: 0.6" not in stiff.stdout, stiff.stdout)

@@ -46,6 +46,10 @@ check("an arm without a slip passes", code == 0 and len(tests) == 8 and all(r in
 code, tests = examined("absent")
 check("of an arm that is absent the kinematics are tried", code == 0 and tests["kinematics"][0] == "ok" and tests["open"][0] == "skip", tests)
 
+scene = put("scene.yaml", f"hapticd: 1\ndevice: {os.path.basename(arm('absent'))}\nmodels: []\n")
+code, text = run("run", scene, "--virtual-time", "--for", "0.2")
+check("an absent arm in virtual time is told that only simulated ones run so", code not in (0, -11) and "no arm on the bus" in text and "--virtual-time allows simulated" in text, (code, text[-400:]))
+
 # What no run may begin with: the same is said by check, doctor and run.
 REFUSED = {
     "no_joints": ("kinematics", "joint_count"),
@@ -73,6 +77,7 @@ for slip, (test, words) in {**REFUSED, **OPENED}.items():
     scene = put("scene.yaml", f"hapticd: 1\ndevice: {slip}.yaml\nmodels:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {SOURCE}/config/models/sphere.yaml, stiffness: 300}}}}\n")
     code, text = run("run", scene, "--virtual-time", "--for", "0.2")
     check(f"{slip}: run refuses it", code not in (0, -11) and words in text, (code, text[-400:]))
+    check(f"{slip}: and does not blame the virtual time", "--virtual-time allows" not in text, text[-400:])
     if slip in REFUSED:
         for file in (arm(slip), scene):
             code, text = run("check", file)

@@ -55,7 +55,7 @@ def told(**changed):
 code, text = told()
 check("the arm is in order", code == 0, text)
 code, text = told(LIMITS="[1.6, -0.4]")
-check("limits the wrong way round are told at their row", code == 2 and "arm.yaml:11:14: parameters.arm.limits[0]: 1.6 to -0.4, expected the smaller one first" in text, text)
+check("limits the wrong way round are told at their row", code == 2 and "arm.yaml:11:14: parameters.arm.limits[0]: [1.6, -0.4], expected the smaller number first" in text, text)
 code, text = told(FIRST="50, 1.57")
 check("millimetres", code == 2 and "dh[0][0]: 50 m is out of range, expected -10 to 10 m; 50 mm is 0.05 m" in text, text)
 code, text = told(FIRST="0.05, 90")

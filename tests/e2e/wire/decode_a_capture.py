@@ -171,7 +171,7 @@ with tempfile.TemporaryDirectory() as folder:
     check("a scale in degrees is told by the stops", "joint 1: from -57 to 57 rad" in err and "scale_degrees" in err and "joint 2" not in err, err)
     open(other, "w").write(stops.replace("joint: 1, at: 2, type: i24, scale", "joint: 1, at: 2, type: i24, endian: big, scale"))
     code, out, err = run("decode", other, given=swing.encode())
-    check("a wrong order of bytes is told by its jumps", "joint 1: jumps by up to" in err and "endian" in err and "joint 2" not in err, err)
+    check("a wrong order of bytes is told", "joint 1: moves far more smoothly" in err and "give endian: little" in err and "joint 2" not in err, err)
     # One report in 256 has equal bytes in its checksum: right in the wrong order, and no reason to say nothing.
     swapped = ARM.replace("type: u32, method: crc32, from: 0, to: 14", "type: u16, method: crc16-modbus, from: 0, to: 14")
     open(other, "w").write(swapped)
@@ -300,7 +300,7 @@ with tempfile.TemporaryDirectory() as folder:
     # At a terminal: a wrong answer is asked for again, at once, and no other answer is lost.
     asked = os.path.join(folder, "asked.yaml")
     keyboard, screen = pty.openpty()
-    answers = "HID\nhid\nhello\n16c0:0486\nphantom\n0.21;0.17\n0.2\n0.21, 0.17\nmany\n4000\n-10\n9.5\n99\n24\n2\n\n\n"
+    answers = "HID\nhid\nhello\n16c0:0486\n256\n7\nphantom\n0.21;0.17\n0.2\n0.21, 0.17\nmany\n4000\n-10\n9.5\n99\n24\n2\nCRC8\ncrc8\n\n\n"
     os.write(keyboard, answers.encode())
     done = subprocess.run([HAPTICD, "device", "new", "asked", "-o", asked], stdin=screen, capture_output=True, text=True, timeout=120)
     os.close(keyboard), os.close(screen)
@@ -309,6 +309,8 @@ with tempfile.TemporaryDirectory() as folder:
           "\"many\" is not a list of numbers" in done.stdout and done.stdout.count("Lengths of upper arm") == 3, (done.stdout, done.stderr))
     check("and the right ones are in the file", "16c0:0486" in text and f"scale: {2 * 3.14159265358979 / 38000:.6g}"[:14] in text and "type: i24" in text and
           "button: 2" in text and "lengths: [0.21, 0.17, 0, 0, 0]" in text, text)
+    check("the report id and the checksum are asked for too", text.count("      id: 7\n") == 2 and "method: crc8, from: 0, to: 12, over_id: true" in text and
+          'did you mean "crc8"?' in done.stdout and done.stdout.count("HID report id") == 2, (text, done.stdout))
     for command in ("calibrate", "record"):
         code, out, err = run(command, asked)
         check(f"{command} of an arm that is not there says so once", code == 1 and err.count("fix:") == 1 and err.count("error:") == 1,

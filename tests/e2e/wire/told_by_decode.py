@@ -147,6 +147,36 @@ with tempfile.TemporaryDirectory() as folder:
     code, err, _ = told(text([hid(i, order="big") for i in range(COUNT)]))
     check("a counter in the other byte order is told", "the counter counts with endian: big" in err, err)
 
+    # The motion that is decoded is not one of an arm.
+    for order, wraps in (("the first", ", wraps: true"), ("another", "")):
+        joint_ = 1 if wraps else 2
+        right = f"joint: {joint_}, at: {2 * joint_}, type: i16, scale: 4.0e-5{wraps}"
+        code, err, _ = told(capture, change=(right, right + ", endian: big"))
+        check(f"the wrong byte order of {order} position is told", f"joint {joint_}: moves far more smoothly" in err and "give endian: little" in err, err)
+    code, err, _ = told(capture, HID.replace("scale: 4.0e-5", "scale: 4.0e-7"))
+    check("and a scale a hundred times too small", code == 0 and "no joint moved by more than" in err and "scale is far too small" in err, err)
+    limited = HID.replace("max_torque: [0.5]}", "max_torque: [0.5], limits: [[0, 1.5], [0, 1], [-0.6, 0.6]]}")
+    code, err, _ = told(capture, limited)
+    check("but not the right one, with limits", code == 0 and err.count("\n") == 1, err)
+    code, err, _ = told(capture, limited.replace("scale: 4.0e-5", "scale: 4.0e-7"))
+    check("a scale a hundred times too small is told with limits too", "% of the distance between their arm.limits" in err and "times too small" in err, err)
+    still = text([hid(0)] * COUNT)
+    code, err, _ = told(still)
+    check("an arm at rest is not remarked on", "joint" not in err, err)
+
+    # Numbers that a report cannot carry would be sent as others.
+    names = b"position1,sequence,fault,calibrated,starts\n"
+    code, out, err = run("encode", "--from-arm", arm, given=names + b"0.1,65536,2,1,256\n0.1,-1,0,0.5,1\n0.1,70000,3,1,1.5\n")
+    check("a counter, a flag and a count of starts beyond their fields are refused", code == 2 and out == b"" and err.count("\n") == 4 and
+          "-:2:1: sequence: 65536, expected a whole number from 0 to 65535" in err and "-:2:1: fault: 2, expected 0 (no) or 1 (yes)" in err and
+          "-:3:1: calibrated: 0.5" in err and "-:2:1: starts: 256, expected a whole number from 0 to 255" in err, err)
+    code, out, err = run("encode", "--from-arm", arm, given=names + b"0.1,65535,1,1,255\n")
+    check("and what fits is sent", code == 0 and err == "" and len(out.splitlines()) == 1, err)
+    open(arm, "w").write(HID.replace("{is: fault, at: 8, type: u1}", "{is: button, button: 2, at: 8, type: u1}"))
+    code, out, err = run("encode", "--from-arm", arm, given=b"position1,buttons\n0.1,1\n")
+    check("buttons that the report lacks are refused", code == 2 and "-:2:1: buttons: 1, expected 0 or a sum of these numbers: 2 for button 2" in err, err)
+    open(arm, "w").write(HID)
+
     # A stream.
     stream = b"".join(serial(i) for i in range(COUNT))
     code, err, _ = told(stream, SERIAL)

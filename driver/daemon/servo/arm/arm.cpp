@@ -87,7 +87,7 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   auto device = host::DeviceInstance::create(described, log);
   if (!device) return Error{device.error()};
   (*device)->playBack(options.playback);
-  if (auto opened = (*device)->open(); !opened) return Error{opened.error()};
+  if (auto opened = (*device)->open(); !opened) return Error{opened.error(), opened.kind()};
   const Limiter limiter(limitsOf(described.limits, (*device)->info(), options), (*device)->info().max_force);
   std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter, options));
   arm->as_found_ = options.found_pressed;

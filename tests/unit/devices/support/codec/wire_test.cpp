@@ -96,10 +96,10 @@ TEST(Wire, EveryMistakeIsNamedByItsPath) {
        "more"},
       {"\"at\":0", "\"at\":-1", "wire.input.fields[0].at: -1"},
       {"\"joint\":1", "\"joint\":2", "wire.input.fields[0].joint: 2, expected 1"},
-      {"\"position\"", "\"enable\"", "wire.input.fields[0].is: \"enable\" in an input report"},
-      {"\"scale\":0.1", "\"scale\":0", "wire.input.fields[0].scale: 0, expected the SI value"},
+      {"\"position\"", "\"enable\"", "wire.input.fields[0].is: \"enable\" cannot be a field of an input report"},
+      {"\"scale\":0.1", "\"scale\":0", "wire.input.fields[0].scale: 0, expected the value of one raw unit in SI units"},
       {"\"scale\":0.1", "\"scala\":1", "wire.input.fields[0].scala: unknown key"},
-      {"\"size\":2", "\"size\":1", "wire.input.fields[0].type: takes 2 bytes"},
+      {"\"size\":2", "\"size\":1", "wire.input.fields[0].type: \"i16\" takes 2 bytes, but the report has only 1"},
       {"\"size\":2", "\"size\":100000", "wire.input.size: 100000"},
       {"\"rate\":1000", "\"rate\":\"fast\"", "wire.rate: \"fast\", expected a number"},
       {"\"rate\":1000", "\"rate\":1000,\"endpoints\":{\"in\":1,\"out\":2}", "wire.endpoints.in: 1"},
@@ -172,7 +172,7 @@ TEST(Wire, ATorqueHasBothSigns) {
                            R"("type":"u16","scale":0.001,"offset":-32.768)"})
     EXPECT_EQ(complaintOf(positionAnd(""), good), "") << good;
   EXPECT_EQ(complaintOf(positionAnd(""), R"("type":"u16","scale":0.001)"),
-            "wire.output.fields[0].type: \"u16\" is 0 to 65.535 N m with this scale and offset; expected both signs: "
+            "wire.output.fields[0].type: \"u16\" can only express 0 to 65.535 N m with this scale and offset; expected both signs: "
             "use a signed type such as i16, or an offset that puts zero in the middle");
   EXPECT_NE(complaintOf(positionAnd(""), R"("type":"i16","scale":0.001,"offset":33)").find("expected both signs"),
             std::string::npos);
@@ -236,8 +236,9 @@ TEST(Wire, AllMistakesAreToldAtOnce) {
         "wire.framing.escape.codes[0]: expected a byte", "wire.startup[0].wait: 99", "wire.startup[0]: is empty",
         "wire.endpoints.in: 1", "wire.endpoints: lacks the key \"out\"", "wire.input.id: 0",
         "wire.input.fields[0].joint: 4", "wire.input.fields[0].at: 9", "wire.input.fields[0].type: \"i99\"",
-        "wire.input.fields[1].type: \"u8\", expected u16", "wire.input.fields[1].at: the checksum lies inside",
-        "wire.input.fields[1].initial: expected only with", "wire.input.fields[2].is: \"nothing\"",
+        "wire.input.fields[1].type: \"u8\", expected u16",
+        "wire.input.fields[1].from: 0, so the checksum covers itself",
+        "wire.input.fields[1].initial: cannot be used with method: crc16-modbus, only with", "wire.input.fields[2].is: \"nothing\"",
         "wire.output.fields[0].at: 1", "wire.output.fields[1].bit: 4"})
     EXPECT_NE(said.find(expected), std::string::npos) << expected << "\n  in:\n" << said;
   EXPECT_LE(lines(said), 24u) << said;
@@ -266,6 +267,83 @@ TEST(Wire, OneMistakeIsOneLine) {
                                                                                  {"\"scale\":0.1", "\"scale\":\"x\""},
                                                                                  {"\"at\":0,", ""}})
     EXPECT_EQ(lines(complaint(changed(from, to))), 1u) << complaint(changed(from, to));
+}
+
+/// Fields of an arm with three joints and a button; the text of one of them is replaced.
+std::string arm(const std::string& from, const std::string& to, const std::string& more = "") {
+  std::string text =
+      R"({"rate":1000,"input":{"size":9,"fields":[{"is":"position","joint":1,"at":0,"type":"i16","scale":0.1},)"
+      R"({"is":"position","joint":2,"at":2,"type":"i16","scale":0.1},{"is":"position","joint":3,"at":4,"type":"i16","scale":0.1},)"
+      R"({"is":"button","button":1,"at":6,"type":"u8"},{"is":"checksum","at":7,"type":"u16","method":"crc16","from":0,"to":7})" +
+      more +
+      R"(]},"output":{"size":6,"fields":[{"is":"torque","joint":1,"at":0,"type":"i16","scale":0.1},)"
+      R"({"is":"torque","joint":2,"at":2,"type":"i16","scale":0.1},{"is":"torque","joint":3,"at":4,"type":"i16","scale":0.1}]}})";
+  const size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(Wire, OneWrongFieldHidesNoOtherProblem) {
+  const auto said = [](const std::string& json) {
+    try {
+      readWire(json, 3);
+      return std::string();
+    } catch (const std::invalid_argument& e) {
+      return std::string(e.what());
+    }
+  };
+  ASSERT_EQ(said(arm("\"at\":0", "\"at\":0")), "");
+  // A field that is no position cannot be the missing one, and a second field of a joint is told beside it.
+  const std::string twice = R"("joint":1,"at":2,"type":"i16")";
+  std::string both = arm(R"("joint":2,"at":2,"type":"i16")", twice);
+  both.replace(both.find(R"("button":1)"), 10, R"("button":0)");
+  for (const char* words : {"fields[3].button: ", "fields[1].joint: 1, but fields[0] is", "no position of joint 2"})
+    EXPECT_NE(said(both).find(words), std::string::npos) << words << "\n" << said(both);
+  // Fields overlap, although the size is wrong or another field is.
+  for (const auto& [right, wrong] :
+       {std::pair{R"("size":9)", R"("size":"x")"}, std::pair{R"("button":1)", R"("button":0)"}}) {
+    std::string overlap = arm(R"("joint":2,"at":2)", R"("joint":2,"at":1)");
+    overlap.replace(overlap.find(right), std::string(right).size(), wrong);
+    EXPECT_NE(said(overlap).find("fields[1].at: takes bits of byte 1, which fields[0] (position of joint 1)"),
+              std::string::npos)
+        << said(overlap);
+  }
+  // A position of an unknown joint may be the missing one: one mistake is one line.
+  EXPECT_EQ(lines(said(arm("\"joint\":2", "\"joint\":9"))), 1u) << said(arm("\"joint\":2", "\"joint\":9"));
+  // A number is not judged by the range of a type that is unknown.
+  EXPECT_EQ(lines(said(arm("\"at\":7,\"type\":\"u16\"", "\"at\":7,\"type\":\"uint16\""))), 1u);
+  EXPECT_EQ(
+      lines(said(arm("\"rate\":1000", "\"rate\":1000", R"(,{"is":"constant","at":8,"type":"word","value":40000})"))),
+      1u);
+}
+
+TEST(Wire, AMarkIsJudgedAlthoughAnotherFieldIsWrong) {
+  const std::string said = complaint(
+      R"({"rate":1000,"framing":{"start":126},"input":{"size":4,"fields":[)"
+      R"({"is":"position","joint":1,"at":0,"type":"i16","scale":0.1},{"is":"button","button":0,"at":3,"type":"u8"}]},)"
+      R"("output":{"size":2,"fields":[{"is":"torque","joint":1,"at":0,"type":"i16","scale":0.1}]}})");
+  EXPECT_NE(said.find("fields[0].at: takes bits of byte 0, where framing.start puts its mark 0x7e"), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("fields[1].button: "), std::string::npos) << said;
+}
+
+TEST(Wire, AChecksumOverItselfIsToldAtTheKeyThatIsWrong) {
+  const auto sum = [](const char* range) {
+    return complaintOf(
+        positionAnd(std::string(R"({"is":"checksum","at":8,"type":"u16","method":"crc16",)") + range + "}"));
+  };
+  EXPECT_EQ(sum(R"("from":0,"to":8)"), "");
+  EXPECT_NE(sum(R"("from":0,"to":10)").find("fields[1].to: 10, so the checksum covers itself (bytes 8 to 9)"),
+            std::string::npos)
+      << sum(R"("from":0,"to":10)");
+  EXPECT_NE(sum(R"("from":8,"to":10)").find("fields[1].from: 8, so the checksum covers itself"), std::string::npos)
+      << sum(R"("from":8,"to":10)");
+}
+
+TEST(Wire, AClockWithoutAScaleIsOneLine) {
+  const std::string said = complaintOf(positionAnd(R"({"is":"time","at":8,"type":"u16"})"));
+  EXPECT_EQ(lines(said), 1u) << said;
+  EXPECT_NE(said.find("lacks the key \"scale\", expected the length of one raw unit in s"), std::string::npos) << said;
 }
 
 TEST(Wire, EveryShippedDescriptionIsRight) {

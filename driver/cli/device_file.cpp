@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#include "cli/device_file.hpp"
+
+#include "cli/command.hpp"
+#include "diagnostics/device_trial.hpp"
+
+namespace hapticd::cli {
+
+document::Problems problemsOfDevice(const std::string& file) {
+  document::Problems problems = scene::loadDevice(file, catalog()).problems;
+  const document::Problems more = diagnostics::tryDevice(file, catalog(), problems);
+  problems.insert(problems.end(), more.begin(), more.end());
+  document::sortByPlace(problems);
+  return problems;
+}
+
+std::optional<scene::Device> loadDeviceOrReport(const std::string& file) {
+  const document::Problems problems = problemsOfDevice(file);
+  printProblems(problems, stderr);
+  return problems.empty() ? scene::loadDevice(file, catalog()).device : std::nullopt;
+}
+
+}  // namespace hapticd::cli
