@@ -35,7 +35,7 @@ Error cannot(const std::string& file, const std::string& what) {
 Result<std::unique_ptr<Server>> Server::listen(const std::string& file, const std::string& group) {
   sockaddr_un address{};
   if (!socketAddress(file, address)) return cannot(file, "the path is too long for a socket");
-  if (connectTo(file)) return cannot(file, "another daemon serves it\n  fix: hapticd run --name OTHER");
+  if (connectTo(file)) return cannot(file, "another daemon has this socket\n  fix: hapticd run --name OTHER");
   struct stat old{};
   if (lstat(file.c_str(), &old) == 0 && !S_ISSOCK(old.st_mode))
     return cannot(file, "a file that is not a socket has this name\n  fix: move it away, or hapticd run --name OTHER");
@@ -244,7 +244,9 @@ void Server::answerLines(Client& client) {
   }
   if (client.in.empty()) client.given.clear();  // no line is left to which they could belong
   if (client.in.size() > kMaxRequestBytes && client.in.find('\n') == std::string::npos) {
-    queue(client, refusal("the request is longer than " + std::to_string(kMaxRequestBytes) + " bytes") + "\n");
+    queue(client, refusal("the request is longer than " + std::to_string(kMaxRequestBytes) +
+                          " bytes, expected a shorter line") +
+                      "\n");
     client.in.clear();
     client.closing = true;
   }

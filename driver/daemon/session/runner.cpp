@@ -25,7 +25,7 @@ constexpr uint64_t kReadyTicks = 2;  ///< after this many ticks the service mana
 constexpr uint64_t kLongestRunUs = 100'000;  ///< longest CPU time without sleep [us]; a tick takes a hundredth of it
 
 std::string readyMessage(const Loop& loop) {
-  return "READY=1\nSTATUS=the servo ticks; " + std::to_string(loop.lateDryCycles()) + " of " +
+  return "READY=1\nSTATUS=the servo ticks; before, " + std::to_string(loop.lateDryCycles()) + " of " +
          std::to_string(kDryCycles) + " dry cycles woke a period late";
 }
 

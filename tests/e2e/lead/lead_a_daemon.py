@@ -100,7 +100,7 @@ def leads_a_model(daemon):
                 time.sleep(1 / 60)
             check("a second leader is refused, and told who leads",
                   refused(lambda: daemon.connect().lead_model("door"), f"process {os.getpid()}"))
-            check("a move of a led model is refused", refused(lambda: client.models["door"].move([0, 0, 0]), "is led by"))
+            check("a move of a led model is refused", refused(lambda: client.models["door"].move([0, 0, 0]), "only that process can move it"))
             check("a record of another shape is refused before it is written", raised(lambda: lead.put([0, 0]), ValueError, "3 numbers"))
             check("list tells who leads", client.models["door"].leader == os.getpid())
         position, velocity, _ = door(client.streams["poses"].read(first)[1])
@@ -112,7 +112,7 @@ def leads_a_model(daemon):
         check("a name that is none is refused", refused(lambda: client.lead_model("dor"), "door"))
         for what, names in (("model", client.models), ("stream", client.streams), ("parameter", client.models["ball"].parameters)):
             check(f"a {what} that is not there is named, and those that are", raised(lambda: names["dor"], KeyError, "one of"))
-        check("an end without a lead is refused", refused(lambda: client.ask(do="unlead", model="door"), "not led"))
+        check("an end without a lead is refused", refused(lambda: client.ask(do="unlead", model="door"), "does not lead"))
 
 
 def leader_dies(daemon, how):

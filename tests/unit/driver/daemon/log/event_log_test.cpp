@@ -78,12 +78,12 @@ TEST_F(EventWords, OfAHoldAndOfItsEndMatch) {
   event.kind = HAPTICD_FAULT;
   event.model = -1;
   event.code = static_cast<uint32_t>(Fault::kStopped);
-  EXPECT_NE(log_.messageOf(event).text.find("it is held"), std::string::npos) << log_.messageOf(event).text;
+  EXPECT_NE(log_.messageOf(event).text.find("the arm is held"), std::string::npos) << log_.messageOf(event).text;
   log_.note(event);
-  EXPECT_EQ(of(HAPTICD_CLEARED).text, "the hold is over; its forces come back");
+  EXPECT_EQ(of(HAPTICD_CLEARED).text, "the hold is over; the forces come back");
   event.kind = HAPTICD_CLEARED;
   log_.note(event);
-  EXPECT_EQ(of(HAPTICD_CLEARED).text, "the fault is over; its forces come back");
+  EXPECT_EQ(of(HAPTICD_CLEARED).text, "the fault is over; the forces come back");
 }
 
 /// Texts of one look at the programs on an arm.
