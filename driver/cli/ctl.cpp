@@ -72,7 +72,7 @@ int showSocket(const CtlArguments& options) {
 int show(const CtlArguments& options, const Result<std::string>& answer) {
   if (!answer) return fail(kFailed, answer.error());
   Json json = document::parseJson(*answer);
-  if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
+  if (!json.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + *answer);
   if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
   if (!options.obj.empty()) return saveObj(json, options.obj);
   if (options.tells_socket) json["name"] = options.name, json["socket"] = socketOf(options);
@@ -134,7 +134,7 @@ int follow(const CtlArguments& options) {
     const auto answer = client->ask(lineOf({{"do", word}, {"model", options.model}}));
     const Json json = answer ? document::parseJson(*answer) : Json();
     if (!answer) return fail(kFailed, answer.error());
-    if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
+    if (!json.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + *answer);
     if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
     if (word == std::string("geometry")) std::printf("%s\n", answer->c_str());
   }
@@ -234,7 +234,7 @@ int showEvents(const CtlArguments& options) {
     const auto answer = client->ask(lineOf({{"do", word}}));
     const Json json = answer ? document::parseJson(*answer) : Json();
     if (!answer) return fail(kFailed, answer.error());
-    if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
+    if (!json.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + *answer);
     if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
     if (!json.contains("events")) {
       end = json.value("next", end);
