@@ -243,7 +243,7 @@ std::optional<Node> parseRepaired(const std::string& text, const std::string& fi
     const Place place = placeOf(error.mark, file);
     const std::string meant = withCorrectedAlias(text, place, error.msg);
     const bool again = repairs > 0 && !meant.empty();
-    if (again) problems.resize(before);  // they are found again
+    if (again) problems.resize(before);  // the corrected text will give the same problems again
     problems.push_back(findSyntaxError(text, place, error.msg));
     if (again) return parseRepaired(meant, file, problems, repairs - 1);
   } catch (const std::exception& error) {

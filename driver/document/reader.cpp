@@ -246,7 +246,7 @@ std::string belongsTo(const Table& table, const std::string& name, bool near) {
   return may_be_parameter ? parameter : "";
 }
 
-/// Returns true if the key itself, as it is spelt, has another place.
+/// Returns true if a key of exactly this name belongs in another place. @param place the hint of belongsTo()
 bool hasAnotherPlace(const std::string& place, const std::string& name) {
   return place.find(" " + name + " belongs ") != place.npos;
 }
@@ -259,7 +259,8 @@ std::string tooDeep(const Table& table, const Node& value) {
   return all ? "; its keys (" + value.entries[0].key.scalar + ", ...) belong one level up, without this key" : "";
 }
 
-/// Returns the key that a misspelt one means, if it is not given as well and the word has no other place; else nullptr.
+/// Returns the key of the table that a misspelt key probably stands for. Returns nullptr if there is none, if that key
+/// is given as well, or if the word as it is spelt belongs in another place.
 const Key* meantKey(const Node& node, const Entry& entry, const Table& table) {
   const std::string& name = entry.key.scalar;
   const std::string meant = nearest(name, table.names());

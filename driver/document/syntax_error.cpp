@@ -162,7 +162,7 @@ char charAt(const std::string& text, const Place& place) {
   return offset < text.size() ? text[offset] : '\0';
 }
 
-/// Returns the characters of a name from an offset on: the name of an anchor or an alias.
+/// Returns the name of the anchor or alias that begins at an offset.
 std::string nameAt(const std::string& text, size_t offset) {
   return text.substr(offset, text.find_first_of(" \t\r\n,[]{}", offset) - offset);
 }
