@@ -79,7 +79,7 @@ std::string oddPushesText(const ModelReport& model) {
   const std::string untraced = told("warning", c.untraced(), "without HSP_OUT_TRACED", "these do not count as contact");
   const std::string outside =
       told("outside", c.outside(), "from outside (depth_m below 0)", "only ticks inside count as contact");
-  // The shape does fill depth_m in. A short push from outside, as by friction, need not be reported.
+  // There was contact, so the shape sets depth_m. A short push from outside, as by friction, is not reported.
   if (c.contactTicks() > 0) return untraced + (c.outside().ticks > c.contactTicks() ? outside : "");
   return untraced + told("warning", c.depthless(), "with depth_m left at 0", "these do not count as contact") + outside;
 }

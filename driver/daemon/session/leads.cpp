@@ -65,7 +65,7 @@ Result<Descriptor> Leads::begin(Target target, const control::Peer& peer) {
   if (programs_.size() >= kMostPrograms) programs_.clear();
   programs_[peer.pid] = programOf(peer.pid);  // set before the servo reports the new leader
   const auto given = post_order_(order);
-  // kept also if the servo did not obey in time, because it may obey later
+  // The lead is kept even if the servo did not obey in time, because the servo may obey later.
   leads_.push_back({target, peer, std::move(*memory), programs_[peer.pid]});
   notify(leads_.back(), PushEvent::kBegins);
   if (given) return std::move(*shared);
@@ -112,7 +112,7 @@ Result<void> Leads::endOfModel(uint32_t model) {
 void Leads::endPushes() {
   const auto pushes = [](const Lead& lead) { return lead.target.led == Order::Led::kForce; };
   for (auto found = leads_.begin(); (found = std::find_if(leads_.begin(), leads_.end(), pushes)) != leads_.end();)
-    // An error only means that the servo is late: it will still obey.
+    // An error only means that the servo is late: the servo will still end the push.
     (void)end(Target(found->target), control::Peer(found->peer), PushEvent::kEnds);
 }
 

@@ -181,7 +181,7 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
     order.model = prepared_.back().get();
     const auto given = post(order);
     places_[place] = {models[i], true, true};
-    // The shape is kept also if the servo did not obey in time, because it may obey later.
+    // The shape is kept even if the servo did not obey in time, because the servo may obey later.
     runner_.world().store(place, std::move(shapes[i]), models[i]);
     if (!given) return given;
     prepared_.pop_back();

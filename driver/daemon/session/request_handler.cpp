@@ -33,7 +33,7 @@ const hsp_param* parameterOf(const hsp_class& plugin, const std::string& id, uin
   return nullptr;
 }
 
-/// Returns the allowed values, such as "0 to 3000 N/m", or the words of a choice.
+/// Returns the allowed values, such as "a number from 0 to 3000 N/m", or the words of a choice.
 std::string expectedOf(const hsp_param& param) {
   if (param.kind == HSP_BOOL) return "true or false";
   const std::string unit = host::textOf(param.unit);

@@ -32,7 +32,7 @@ struct Target {
   Descriptor fd;
 };
 
-/// Claims a USB interface. While the daemon lives, the interface belongs to it; this takes it over after its end.
+/// Claims a USB interface. The interface belongs to the daemon while it lives, so it can be claimed only afterwards.
 bool claim(int fd, unsigned interface) noexcept {
   if (ioctl(fd, USBDEVFS_CLAIMINTERFACE, &interface) == 0) return true;
   usbdevfs_ioctl disconnect{static_cast<int>(interface), USBDEVFS_DISCONNECT, nullptr};
