@@ -22,10 +22,10 @@ using namespace diagnostics;
 
 namespace {
 
-/// What a device file says about its arm, which is not opened; 0 means unknown.
+/// Returns what a device file says about its arm, without opening the arm. 0 means unknown.
 hdv_info infoOf(const scene::Device& device) {
   hdv_info info{};
-  info.capabilities = HDV_C_PACING;  // unknown, so there is no warning about it
+  info.capabilities = HDV_C_PACING;  // unknown: with this flag there is no warning that the arm cannot drive the loop
   for (const scene::Value& value : device.parameters) {
     if (value.id == "device.max_stiffness") info.max_stiffness = value.number;
     if (value.id == "device.mass") info.mass_kg = value.number;
@@ -131,7 +131,7 @@ void addImplausible(const scene::Scene& scene, const ModelBoxes& boxes, const Un
                     document::Problems& warnings) {
   document::Problems more = implausibleValues(scene, boxes, catalog(), unread);
   for (const document::Problem& one : implausibleSettings(scene, boxes))
-    // What is judged of arms is read: checkDraft() leaves out arms with problems.
+    // Warnings about arms can be trusted, because checkDraft() leaves out arms with problems.
     if ((one.key.starts_with("devices[") || !unread.has(one.key)) &&
         !(one.key == "clients.answer_time" && unread.has("servo.rate")))
       more.push_back(one);
