@@ -56,7 +56,7 @@ bool allOfOneSize(const Decoded& decoded) {
          });
 }
 
-/// Declared here because paddingHint() uses it; described at its definition.
+/// Declared before paddingHint(), which calls it; its definition has the description.
 std::optional<double> goodWith(codec::Wire wire, int id, size_t size, const Capture& capture);
 
 /// Returns true if the bytes from `from` on are the same in all reports of this size, so that they are probably
@@ -100,7 +100,7 @@ std::string textHint(const codec::Wire& wire, const Capture& capture, const Deco
                                 [&](const BadReport& bad) { return bad.bytes.front() == bytes.front(); });
   if (size == expected + 1 && same && wire.input.id < 0 && bytes.front() != 0) return idLacks(bytes.front());
   if (size + 1 == expected && wire.input.id >= 0) return idIsMissing(wire.input.id);
-  // If whole reports share a line, those that are filled up with one byte must not count as reports.
+  // If the rest of a line repeats one byte, it is padding and not further reports.
   const bool one_byte = size > expected && std::all_of(bytes.begin() + static_cast<long>(expected), bytes.end(),
                                                        [&](uint8_t byte) { return byte == bytes.back(); });
   const std::string padded = size % expected != 0 || one_byte ? paddingHint(wire, capture, size) : "";

@@ -48,7 +48,7 @@ hdv_info infoOf(const scene::Device& device, host::DeviceInstance* arm) {
 }
 
 void checkForce(const ArmUnderCheck& arm_file, const Node* at, const char* key, double force) {
-  // [N] most arms have as much friction; more than a hand can hold against
+  // [N] less than the friction of most arms; more than a hand can resist
   constexpr double kUnfelt = 0.05, kMost = 300;
   if (at == nullptr || force <= 0) return;
   if (force < kUnfelt)
@@ -83,7 +83,8 @@ void checkForces(const ArmUnderCheck& arm_file) {
 }
 
 void checkStiffness(const ArmUnderCheck& arm_file) {
-  constexpr double kUnfelt = 5, kMost = 2e5;  // N/m: 10 mm of it give 0.05 N; twice what arms of steel gears reach
+  // [N/m] 0.05 N at a depth of 10 mm; twice the stiffness of arms with steel gears
+  constexpr double kUnfelt = 5, kMost = 2e5;
   const Node* at = find(arm_file.root, {"parameters", "device", "max_stiffness"});
   const double given = arm_file.info.max_stiffness;
   if (at == nullptr || given <= 0) return;

@@ -38,7 +38,7 @@ std::vector<Row> tableOf(const Node* dh) {
   return rows;
 }
 
-/// Returns true if the table gives sense when its columns are read as theta, d, a, alpha, and gives no link as it is.
+/// Returns true if no link has a length a, but some have one if the columns are read as theta, d, a, alpha.
 bool seemsTurnedRound(const std::vector<Row>& rows) {
   const auto has = [&rows](size_t column) {
     return std::any_of(rows.begin(), rows.end(), [column](const Row& row) { return std::abs(row[column]) > 1e-6; });

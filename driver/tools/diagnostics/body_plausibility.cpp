@@ -15,11 +15,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kWeightless = 1e-3;  ///< [m/s^2] of gravity
+constexpr double kWeightless = 1e-3;  ///< [m/s^2] a weaker gravity counts as none
 
 /// Warns of a body that its weight would move too far, because nothing holds it or its tether is too soft.
 void checkContactHold(const GivenModel& given) {
-  constexpr double kSizes = 2, kUnknownSize = 0.25;  // sizes of the body that it may hang below its place; [m]
+  constexpr double kSizes = 2, kUnknownSize = 0.25;  // sizes of the body by which it may sag; [m] size if it is unknown
   const std::string joint = given.choice("joint");
   Vector3d pull = given.gravity();
   const Vector3d axis = given.vector("axis");
@@ -40,7 +40,7 @@ void checkContactHold(const GivenModel& given) {
 
 /// Warns of a centre of mass far outside of the body's surfaces.
 void checkCenter(const GivenModel& given) {
-  constexpr double kOutside = 0.5;  // of the size
+  constexpr double kOutside = 0.5;  // share of the size
   const scene::Value* center = given.find("center");
   if (center == nullptr || center->numbers.size() != 3 || !given.box()) return;
   if (const double away = given.box()->exteriorDistance(Vector3d(center->numbers.data()));
@@ -133,8 +133,8 @@ double farthestCorner(const Eigen::AlignedBox3d& box, const Vector3d& from) {
   return ((from - box.center()).cwiseAbs() + box.sizes() / 2).norm();
 }
 
-/// Returns the direction in which a pendulum hangs: that of gravity across its axis. Along gravity, the axis is wrong,
-/// and the direction is that of gravity. Nothing is returned without weight.
+/// Returns the direction in which a pendulum hangs: the part of gravity across its axis. If the axis is along gravity,
+/// it warns and returns the direction of gravity. It returns nothing if there is no gravity or no axis.
 std::optional<Vector3d> hangingOf(const GivenModel& given) {
   constexpr double kAcross = 0.02;  // share of gravity
   const Vector3d gravity = given.gravity(), axis = given.vector("axis").stableNormalized();

@@ -177,8 +177,8 @@ std::string partOf(const std::string& key) {
   return isBelow(key, "parameters.arm.lengths") ? "parameters.arm.lengths" : key;
 }
 
-/// Returns true if a list of angles has a wrong number of rows, or rows in the wrong order, while each number of it is
-/// one that the parameter allows. Its unit can be judged then.
+/// Returns true if a problem is about a list of angles whose numbers are all within the parameter's range. Then only
+/// the number or the order of its rows is wrong, and the unit of the angles can still be judged.
 bool hasAllowedAngles(const Node& root, const document::Problem& known) {
   constexpr double kMost = 100;  // the range of both parameters
   const Node* list = isBelow(known.key, "parameters.arm.limits") ? find(root, {"parameters", "arm", "limits"})

@@ -31,7 +31,7 @@ struct Side {
   document::Problems& warnings;
 
   size_t count() const { return std::min(report.fields.size(), fields.items.size()); }
-  /// Adds a warning, unless the key has one already, which says more.
+  /// Adds a warning, unless the key has one already: earlier checks give more exact warnings.
   void warn(size_t i, const char* key, const std::string& what) const {
     const Node *given = fields.items[i].find(key), *at = given != nullptr ? given : &fields.items[i];
     const std::string path = fmt::format("parameters.wire.{}.fields[{}].{}", name, i, key);
@@ -45,7 +45,7 @@ struct Side {
                   [this](size_t i) { return report.fields[i].bits <= 8 || codec::isText(report.fields[i].type); });
     return found;
   }
-  /// Returns all fields of more than one byte, of any kind: in a report with both orders, somebody chose them.
+  /// Returns all fields of more than one byte, of any kind. If they have both byte orders, the author chose them.
   std::vector<size_t> ordered() const {
     std::vector<size_t> found;
     for (size_t i = 0; i < count(); ++i)
@@ -62,7 +62,8 @@ struct Side {
   }
 };
 
-/// Returns the fields that differ from most others; if they are half of all, those of the later half.
+/// Returns the fields that differ from most others. If each group has half of the fields, it returns the group that
+/// begins later.
 std::vector<size_t> minorityOf(const std::vector<size_t>& all, const std::function<bool(size_t)>& is) {
   std::vector<size_t> yes, no;
   for (const size_t i : all) (is(i) ? yes : no).push_back(i);

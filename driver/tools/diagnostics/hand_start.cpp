@@ -252,7 +252,7 @@ document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog
   const auto& given = loaded.device->parameters;
   const bool own_hand =
       std::any_of(given.begin(), given.end(), [](const scene::Value& value) { return value.id.starts_with("hand."); });
-  if (!own_hand)  // a scene gives it one
+  if (!own_hand)  // a scene gives the arm a hand, so what is wrong with the default one does not matter
     std::erase_if(problems, [](const document::Problem& one) { return one.key.starts_with("hand"); });
   for (const document::Problem& one : fastHands(alone)) warnings.push_back(one);
   return problems;

@@ -178,8 +178,8 @@ struct Joint {
   }
 };
 
-/// Warns of a delay with which contacts swing up. A spring that answers late is stable only while its stiffness is less
-/// than the damping over the time that it is late, and only the hand damps a simulated arm.
+/// Warns of a delay with which contacts swing up. A spring with a delay is stable only while its stiffness is less than
+/// the damping divided by the delay, and only the hand damps a simulated arm.
 void checkDelay(const Bounds& of) {
   constexpr double kRate = 1000, kHold = 0.5, kSoft = 800;  // [Hz] of a servo; [ticks]; [N/m] as most models
   const double late = of.number("delay", 0), damping = of.number("hand.damping", 5);
@@ -232,7 +232,7 @@ void warnOfImplausibleLimits(const Node& root, const scene::Device& device, cons
   for (const scene::Value& value : device.parameters)
     if (value.id == "device.max_force" && value.number > 0)
       force = force > 0 ? std::min(force, value.number) : value.number;
-  if (!(force > 0)) force = 5;  // [N] what a hand's arm gives, where nobody says it
+  if (!(force > 0)) force = 5;  // [N] a usual force of such arms, if no key gives one
   const Bounds bounds{root, device, force, warnings};
   checkDynamics(bounds);
   checkCarried(bounds);

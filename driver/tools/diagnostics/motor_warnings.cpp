@@ -14,7 +14,7 @@ namespace hapticd::diagnostics {
 
 using document::Node;
 
-/// 0 is taken for not known: such a joint has no bound of its own.
+/// Warns of a largest torque of 0: it means that the torque is unknown, so the torque of the joint is not bounded.
 static void noTorque(const Node& root, const scene::Device& device, document::Problems& warnings) {
   const Node* list = find(root, {"parameters", "arm", "max_torque"});
   if (list == nullptr || !list->isSequence()) return;
@@ -45,7 +45,7 @@ struct Motors {
 
 /// Warns of values that no motor of an arm for a hand has. @return true if the motor has such a value
 static bool oddMotor(const Motors& motors, size_t i) {
-  constexpr double kStrong = 8, kResists = 200, kReduces = 0.5;  // [N m/A] also of motors with gears; [ohm]; share
+  constexpr double kStrong = 8, kResists = 200, kReduces = 0.5;  // [N m/A] with its gear; [ohm]; ratio of a gear
   const scene::Motor& motor = motors.device.limits.motors[i];
   const size_t before = motors.warnings.size();
   if (motor.torque_constant > kStrong)

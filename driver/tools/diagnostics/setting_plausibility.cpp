@@ -119,9 +119,9 @@ void checkTwoArms(const scene::Scene& scene, document::Problems& warnings) {
     }
 }
 
-/// The base of a chain is where its first link turns: within a model nothing else has room.
+/// Warns of an arm whose base is inside a model. The base of a chain is the place about which its first link turns.
 void checkBases(const scene::Scene& scene, const ModelBoxes& boxes, document::Problems& warnings) {
-  constexpr double kOpen = 0.6;  // of a box's half widths: its corners may be free, and models have rooms
+  constexpr double kOpen = 0.6;  // share of a box's half widths, because a model may leave the corners of its box free
   for (const scene::Device& device : scene.devices) {
     const document::Place place = device.place.file.empty() ? document::Place{device.file.string()} : device.place;
     const scene::Value *links = nullptr, *base = nullptr;

@@ -73,7 +73,7 @@ void linkTooLong(const Node* lengths, const std::string& file, document::Problem
           most, most / 10));
 }
 
-/// The same of a chain, whose lengths are in two columns.
+/// Warns of such a link of a chain, whose lengths are in two columns.
 void chainTooLong(const Node* rows, const std::string& file, document::Problems& warnings) {
   constexpr double kLong = 2;  // m, as above
   if (rows == nullptr || !rows->isSequence()) return;
@@ -91,7 +91,7 @@ void chainTooLong(const Node* rows, const std::string& file, document::Problems&
     }
 }
 
-/// A link that points the other way has a twist, not a negative length.
+/// Warns of a negative length: the direction of a link is given by its signs or angles, not by its length.
 void lengthBelowZero(const Node* lengths, const std::string& file, document::Problems& warnings) {
   for (const double length : numbersIn(lengths))
     if (length < 0)
@@ -129,7 +129,7 @@ void mountFarAway(const Node* position, const std::string& file, document::Probl
 
 void quaternionTurnedRound(const Node* orientation, const std::string& key, const std::string& file,
                            document::Problems& warnings) {
-  constexpr double kMost = 0.7;  // part of z: the other order then is a turn of at most 91 degrees
+  constexpr double kMost = 0.7;  // least last number; read as w, it means a turn of at most 91 degrees
   const std::vector<double> q = numbersIn(orientation);
   const bool read =
       orientation != nullptr && std::all_of(orientation->items.begin(), orientation->items.end(),
