@@ -54,9 +54,10 @@ document::Problems farModels(const scene::Scene& scene) {
     double away = position.norm();
     for (const scene::Device& device : scene.devices) away = std::min(away, (position - device.mount.position).norm());
     if (away > kFar)
-      document::report(warnings, scene.models[i].place, "models[" + std::to_string(i) + "].pose.position",
-                       fmt::format("{:.4g} m from the world's origin, where no arm reaches; the position must be in m",
-                                   position.norm()));
+      document::report(
+          warnings, scene.models[i].place, "models[" + std::to_string(i) + "].pose.position",
+          fmt::format("the model is {:.4g} m from the world's origin, where no arm reaches; the position must be in m",
+                      position.norm()));
   }
   return warnings;
 }
@@ -94,7 +95,7 @@ document::Problems unstableContacts(const scene::Scene& scene, const std::vector
       document::report(
           warnings, device.place.file.empty() ? document::Place{device.file.string()} : device.place,
           "parameters.device.max_stiffness",
-          "not given, so it is unknown whether " + device.name +
+          "the value is not given, so it is unknown whether " + device.name +
               " is stable with these models; give the stiffness that was found stable, and begin with 100 N/m");
   }
   return warnings;

@@ -14,7 +14,7 @@ using Bytes = std::vector<uint8_t>;
 constexpr size_t kRepeated = 3;  ///< [reports] fewer than this may look alike by chance
 
 std::string idLacks(int id) {
-  return "each begins with " + hexByte(id) + " and has one byte too many: if this is the report id, give " +
+  return "each bad report begins with " + hexByte(id) + " and has one byte too many: if this is the report id, give " +
          "wire.input id: " + std::to_string(id) + "; size and offsets do not count it\n";
 }
 
@@ -27,13 +27,13 @@ std::string idOrMarkLacks(int id) {
 }
 
 std::string idIsMissing(int id) {
-  return "each has one byte too few: if they were captured without the report id, put " + hexByte(id) +
+  return "each bad report has one byte too few: if they were captured without the report id, put " + hexByte(id) +
          " in front of each, or leave wire.input id out\n";
 }
 
 /// Returns the hint for reports that begin with the id, if the size in the file counts the id by mistake.
 std::string sizeCountsTheId(const codec::Wire& wire) {
-  return "each begins with " + hexByte(wire.input.id) +
+  return "each bad report begins with " + hexByte(wire.input.id) +
          ", the report id, and has one byte too few: wire.input size must not "
          "include the id; give wire.input size: " +
          std::to_string(wire.input.size - 1) + " (it is " + std::to_string(wire.input.size) + ")\n";
@@ -177,7 +177,7 @@ std::string withAnId(const codec::Wire& wire, const Capture& capture, const Byte
 std::string otherIdHint(const codec::Wire& wire, const Decoded& decoded) {
   if (!decoded.reports.empty() || decoded.other_ids.size() != 1 || decoded.others < kRepeated) return "";
   const int id = *decoded.other_ids.begin();
-  return "each begins with " + hexByte(id) + ", expected " + hexByte(wire.input.id) +
+  return "each report begins with " + hexByte(id) + ", expected " + hexByte(wire.input.id) +
          ": if this is the report id, give wire.input id: " + std::to_string(id) + "\n";
 }
 

@@ -135,8 +135,7 @@ void checkWeight(const ArmUnderCheck& arm_file, const host::DeviceInstance& arm)
   if (!(share > 0))
     return arm_file.warn(*masses, "parameters.arm.masses",
                          "no force at the tip holds the weight of these masses at rest, because no joint carries it "
-                         "there; expected the columns of arm.dh, the pose of the calibration and the masses [kg] of "
-                         "this arm");
+                         "there; check the columns of arm.dh, calibration.pose and the masses, which must be in kg");
   arm_file.warn(
       *masses, "parameters.arm.masses",
       fmt::format("these masses weigh {:.3g} N at the tip at rest, but the motors may carry only {:g} N of it "
@@ -153,8 +152,8 @@ void checkCounts(const ArmUnderCheck& arm_file) {
   const Node& at = counts != nullptr ? *counts : *joint;
   arm_file.warn(
       at, "parameters.joint.counts",
-      fmt::format("one count moves the tip by {:.3g} mm; expected counts of a motor turn, such as 4000, and as "
-                  "joint.gear the motor turns of one joint turn, such as 10",
+      fmt::format("one count moves the tip by {:.3g} mm; expected the counts of one motor turn, such as 4000; "
+                  "joint.gear must be the motor turns of one joint turn, such as 10",
                   arm_file.info.resolution_m * 1e3));
 }
 
@@ -171,9 +170,10 @@ void checkLengths(const ArmUnderCheck& arm_file) {
   const Node& at = lengths->items[a < b ? 0 : 1];
   arm_file.warn(
       at, fmt::format("parameters.arm.lengths[{}]", a < b ? 0 : 1),
-      fmt::format("{:g} m, but the other link has {:g} m: the tip never comes nearer to its shoulder than {:.3g} "
-                  "m; expected links of about the same length, in m",
-                  less, more, more - less));
+      fmt::format(
+          "this link has {:g} m, but the other one has {:g} m: the tip never comes nearer to its shoulder than {:.3g} "
+          "m; expected links of about the same length, in m",
+          less, more, more - less));
 }
 
 }  // namespace

@@ -33,9 +33,10 @@ void checkContactHold(const GivenModel& given) {
                           "tether, a hinge, or gravity: false");
   const double size = given.box() ? given.size() : kUnknownSize;
   if (const double sag = weight / tether; sag > kSizes * size)
-    given.warn({"tether", "mass"}, fmt::format("{:g} N/m under a weight of {:.4g} N: {} hangs {:.3g} m below its pose; "
-                                               "expected a stiffer tether, mass in kg, or gravity: false",
-                                               tether, weight, given.model().name, sag));
+    given.warn({"tether", "mass"},
+               fmt::format("a tether of {:g} N/m bears a weight of {:.4g} N, so {} hangs {:.3g} m below its pose; "
+                           "expected a stiffer tether, mass in kg, or gravity: false",
+                           tether, weight, given.model().name, sag));
 }
 
 /// Warns of a centre of mass far outside of the body's surfaces.
@@ -83,14 +84,15 @@ void checkDrag(const GivenModel& given) {
   constexpr double kMost = 1000, kCalm = 0.1;      // [N s/m]; [m/s]
   constexpr double kMostTurn = 20, kSlowTurn = 1;  // [N m s/rad]; [rad/s]
   if (const double drag = given.number("drag"); drag > kMost)
-    given.warn({"drag"}, fmt::format("{0:g} N s/m hold {1} so that {2:g} N move it at only {3:g} m/s; the value must "
+    given.warn({"drag"}, fmt::format("with {0:g} N s/m, a force of {2:g} N moves {1} at only {3:g} m/s; the value must "
                                      "be in N s/m (1 N s/mm is 1000 N s/m)",
                                      drag, given.model().name, drag * kCalm, kCalm));
   given.begin();
   if (const double drag = given.number("angular_drag"); drag > kMostTurn)
-    given.warn({"angular_drag"}, fmt::format("{0:g} N m s/rad hold {1} so that {2:g} N m turn it at only {3:g} rad/s; "
-                                             "the value must be in N m s/rad (1 mN m s/rad is 0.001)",
-                                             drag, given.model().name, drag * kSlowTurn, kSlowTurn));
+    given.warn({"angular_drag"},
+               fmt::format("with {0:g} N m s/rad, a torque of {2:g} N m turns {1} at only {3:g} rad/s; "
+                           "the value must be in N m s/rad (1 mN m s/rad is 0.001)",
+                           drag, given.model().name, drag * kSlowTurn, kSlowTurn));
 }
 
 /// Warns of a drag against which the spring of a body brings it back so slowly that nobody waits for it.
@@ -99,8 +101,8 @@ void checkTetherCreep(const GivenModel& given) {
   const double tether = given.number("tether"), drag = given.number("drag"), mass = given.number("mass");
   if (!(tether > 0) || drag * drag < 4 * mass * tether || drag < kLong * tether) return;
   given.warn({"drag"},
-             fmt::format("{:g} N s/m against a tether of {:g} N/m: {} takes {:.3g} s to come back by two thirds; it "
-                         "swings below {:.2g} N s/m",
+             fmt::format("with {:g} N s/m and a tether of {:g} N/m, {} takes {:.3g} s to come back by two thirds; "
+                         "below {:.2g} N s/m it swings",
                          drag, tether, given.model().name, drag / tether, 2 * std::sqrt(mass * tether)));
 }
 
@@ -176,8 +178,8 @@ void checkCreep(const GivenModel& given) {
   const double inertia = given_inertia > 0 ? given_inertia : given.number("mass") * length * length;
   if (!(restoring > 0) || damping * damping < 4 * inertia * restoring || damping < kLong * restoring) return;
   given.warn({"damping"},
-             fmt::format("{:g} N m s/rad hold {} so that it creeps: it takes {:.3g} s to come back by two thirds; it "
-                         "swings below {:.2g} N m s/rad; the value must be in N m s/rad (1 mN m s/rad is 0.001)",
+             fmt::format("{:g} N m s/rad hold {} so that it creeps: it takes {:.3g} s to come back by two thirds; "
+                         "below {:.2g} N m s/rad it swings; the value must be in N m s/rad (1 mN m s/rad is 0.001)",
                          damping, given.model().name, damping / restoring, 2 * std::sqrt(inertia * restoring)));
 }
 

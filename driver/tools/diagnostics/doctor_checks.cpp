@@ -42,7 +42,8 @@ Finding checkScheduler() {
   std::thread([&code] { code = os::setFifo(os::kServoPriority); }).join();
   if (!code) return ok("scheduler", "SCHED_FIFO " + std::to_string(os::kServoPriority) + " granted");
   return {"scheduler", Verdict::kFail,
-          "SCHED_FIFO " + std::to_string(os::kServoPriority) + ": " + code.message() + "; " + os::realTimeRights(),
+          "SCHED_FIFO " + std::to_string(os::kServoPriority) + " is refused: " + code.message() + "; " +
+              os::realTimeRights(),
           "the servo thread waits for other programs, and the hand feels late ticks",
           "sudo usermod -aG haptic $USER, then log in again (limits.d/70-hapticd.conf grants rtprio 80)"};
 }
@@ -72,7 +73,7 @@ Finding checkMemory() {
     if (!code) os::unlockMemory();
   }
   if (!code) return ok("memory", "can be locked");
-  return {"memory", Verdict::kFail, "mlockall: " + code.message() + "; " + os::realTimeRights(),
+  return {"memory", Verdict::kFail, "mlockall() is refused: " + code.message() + "; " + os::realTimeRights(),
           "a page fault can delay a tick by milliseconds",
           std::string(kInstallLimits) + ", then log in again: it raises memlock to 524288 KiB for the group haptic"};
 }

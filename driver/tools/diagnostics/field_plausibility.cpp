@@ -80,8 +80,8 @@ const char* orderOf(bool big) {
 void mixedOrder(const Side& side) {
   for (const size_t i : minorityOf(side.wide(), [&](size_t at) { return side.report.fields[at].big_endian; }))
     side.warn(i, "endian",
-              fmt::format("{}, but most other numbers of this report are {}; expected one byte order for all, unless "
-                          "the firmware mixes them",
+              fmt::format("the byte order of this number is {}, but most other numbers of this report are {}; expected "
+                          "one byte order for all, unless the firmware mixes them",
                           orderOf(side.report.fields[i].big_endian), orderOf(!side.report.fields[i].big_endian)));
 }
 
@@ -93,10 +93,11 @@ void otherOrderOut(const Side& in, const Side& out) {
   for (const auto& [side, fields, order] : {std::tuple(&in, &read, !big), std::tuple(&out, &sent, big)})
     for (const size_t i : *fields)
       if (side->report.fields[i].big_endian != order) return;
-  out.warn(sent[0], "endian",
-           fmt::format("{} in all of wire.output, but {} in all of wire.input; expected one byte order for both, "
-                       "unless the firmware mixes them",
-                       orderOf(big), orderOf(!big)));
+  out.warn(
+      sent[0], "endian",
+      fmt::format("the byte order is {} in all of wire.output, but {} in all of wire.input; expected one for both, "
+                  "unless the firmware mixes them",
+                  orderOf(big), orderOf(!big)));
 }
 
 /// Warns of, for example, u16 for one joint and i16 for the others, because below zero its position would jump by the
@@ -112,10 +113,12 @@ void mixedSigns(const Side& side, Role role) {
   for (const size_t i :
        minorityOf(whole, [&](size_t at) { return side.report.fields[at].type == codec::Type::kUnsigned; })) {
     const bool plain = side.report.fields[i].type == codec::Type::kUnsigned;
-    side.warn(i, "type",
-              fmt::format("{}signed, but the types of the other joints are {}; expected one type for all, unless the "
-                          "firmware mixes them",
-                          plain ? "un" : "", plain ? "signed" : "unsigned"));
+    side.warn(
+        i, "type",
+        fmt::format(
+            "this type is {}signed, but the types of the other joints are {}; expected one type for all, unless the "
+            "firmware mixes them",
+            plain ? "un" : "", plain ? "signed" : "unsigned"));
   }
 }
 
@@ -139,7 +142,7 @@ void unlikeOthers(const Side& side, Role role, const std::vector<double>& motors
     const bool finer = coarseness(i) > 0 && coarseness(i) * kFiner <= least;
     if (coarseness(i) < kTimes * next && !finer) continue;
     side.warn(i, "scale",
-              fmt::format("{:.3g} times as {} as that of any other joint{}: is the decimal point wrong?",
+              fmt::format("this scale is {:.3g} times as {} as that of any other joint{}: is the decimal point wrong?",
                           finer ? least / coarseness(i) : coarseness(i) / next, finer ? "fine" : "coarse",
                           role == Role::kTorque ? ", measured by arm.max_torque" : ""));
   }

@@ -21,11 +21,11 @@ static void noTorque(const Node& root, const scene::Device& device, document::Pr
   for (size_t i = 0; i < list->items.size(); ++i) {
     const Node& item = list->items[i];
     if (document::toNumber(item.scalar).value_or(1) != 0) continue;
-    document::report(warnings, device.file.string(), item.line, item.column,
-                     fmt::format("parameters.arm.max_torque[{}]", i),
-                     fmt::format("0 is no bound: joint {} gets whatever a force asks of it; expected the N m that its "
-                                 "motor gives at the joint",
-                                 i + 1));
+    document::report(
+        warnings, device.file.string(), item.line, item.column, fmt::format("parameters.arm.max_torque[{}]", i),
+        fmt::format("0 is no bound: nothing limits the torque of joint {}; expected the torque in N m that its "
+                    "motor gives at the joint",
+                    i + 1));
   }
 }
 
@@ -60,7 +60,7 @@ static bool oddMotor(const Motors& motors, size_t i) {
   if (motor.ratio > 0 && motor.ratio < kReduces)
     motors.warn(i, "ratio",
                 fmt::format("with {:g} the joint would be weaker than its motor; the value must be the torque at the "
-                            "joint divided by the torque at the motor: {:.3g} if it was turned round",
+                            "joint divided by the torque at the motor: {:.3g} if it was inverted",
                             motor.ratio, 1 / motor.ratio));
   if (motor.housing_time <= motor.winding_time)
     motors.warn(

@@ -29,7 +29,7 @@ void checkGravity(const scene::Scene& scene, document::Problems& warnings) {
                      fmt::format("[{:g}, {:g}, {:g}] {}; expected [0, -9.81, 0] m/s^2, or [0, 0, 0] for none", g.x(),
                                  g.y(), g.z(), what));
   };
-  if (g.norm() > kStrong * kEarth) tell(fmt::format("is {:.3g} times the Earth's", g.norm() / kEarth));
+  if (g.norm() > kStrong * kEarth) tell(fmt::format("is {:.3g} times the Earth's gravity", g.norm() / kEarth));
   if (g.y() > kLow * g.norm()) return tell("points up, as +y is up in the world: bodies fall upwards");
   if (g.norm() > 0 && -g.y() < kLow * g.norm()) tell("pulls aside, as +y is up in the world");
 }
@@ -54,10 +54,11 @@ void checkAnswerTime(const scene::Scene& scene, document::Problems& warnings) {
   constexpr double kShare = 0.25, kRounding = 1e-9;  // share of the period, as in a run
   const double period = 1 / scene.servo.rate, most = kShare * period;
   if (scene.clients.answer_time > (1 + kRounding) * most)
-    document::report(warnings, placeIn(scene, "clients.answer_time"), "clients.answer_time",
-                     fmt::format("{:g} s, but at {:g} Hz the servo waits at most a quarter of its period of {:g} s; "
-                                 "nearest: {:g} s",
-                                 scene.clients.answer_time, scene.servo.rate, period, most));
+    document::report(
+        warnings, placeIn(scene, "clients.answer_time"), "clients.answer_time",
+        fmt::format("the wait is {:g} s, but at {:g} Hz the servo waits at most a quarter of its period of {:g} s; "
+                    "nearest: {:g} s",
+                    scene.clients.answer_time, scene.servo.rate, period, most));
 }
 
 /// Warns of settings of programs that push, where no program may.

@@ -121,10 +121,11 @@ void mountFarAway(const Node* position, const std::string& file, document::Probl
   constexpr double kFar = 5;  // m: farther than anybody reaches
   const double most = largest(numbersIn(position));
   if (most <= kFar) return;
-  document::report(warnings, file, position->line, position->column, "mount.position",
-                   fmt::format("{:g} m from the world's origin, where the scenes have their shapes; the value must be "
-                               "in m: {:g} mm is {:g} m",
-                               most, most, most / 1000));
+  document::report(
+      warnings, file, position->line, position->column, "mount.position",
+      fmt::format("the arm stands {:g} m from the world's origin, where scenes have their shapes; the value must be "
+                  "in m: {:g} mm is {:g} m",
+                  most, most, most / 1000));
 }
 
 void quaternionTurnedRound(const Node* orientation, const std::string& key, const std::string& file,
@@ -138,11 +139,11 @@ void quaternionTurnedRound(const Node* orientation, const std::string& key, cons
   if (q[1] == 0 && q[2] == 0)
     return document::report(
         warnings, file, orientation->line, orientation->column, key,
-        "is w, x, y, z, so this is a half turn about z; expected [1, 0, 0, 0] where no turn was meant; "
+        "the order is w, x, y, z, so this is a half turn about z; expected [1, 0, 0, 0] where no turn was meant; "
         "[0, 0, 0, -1] is the same half turn without this warning");
   document::report(
       warnings, file, orientation->line, orientation->column, key,
-      fmt::format("is w, x, y, z, so this is a half turn about [{0:g}, {1:g}, {2:g}]; if it was written as "
+      fmt::format("the order is w, x, y, z, so this is a half turn about [{0:g}, {1:g}, {2:g}]; if it was written as "
                   "x, y, z, w, write [{2:g}, 0, {0:g}, {1:g}]; if not, reverse all signs",
                   q[1], q[2], q[3]));
 }

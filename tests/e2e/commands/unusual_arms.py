@@ -82,7 +82,7 @@ SECOND, FIRST_OUT = READ.format(2, 4), SENT.format(1, 0)
 
 # What is given, what for, its key and a word that is told of it; a bar stands in front of the place.
 CASES = [
-    (WIRED, {SECOND: SECOND.replace("i16", "i16, endian: |big")}, f"{IN}[2].endian", "but most other numbers of this report are little"),
+    (WIRED, {SECOND: SECOND.replace("i16", "i16, endian: |big")}, f"{IN}[2].endian", "is big, but most other numbers of this report are little"),
     (WIRED, {SENT.format(n + 1, 2 * n): SENT.format(n + 1, 2 * n).replace("i16", "i16, endian: " + "|" * (n == 0) + "big") for n in range(3)},
      f"{OUT}[0].endian", "big in all of wire.output, but little in all of wire.input"),
     (WIRED, {SECOND: SECOND.replace("i16", "|u16")}, f"{IN}[2].type", "the types of the other joints are signed"),
@@ -156,7 +156,7 @@ CASES += [
     (WIRED, {"[[-1.2, 1.2]": "[|[0, 0]"}, "parameters.arm.limits[0]", "joint 1 cannot move"),
     (WIRED, {"workspace: 0.3": "workspace: |0.01"}, "limits.workspace", "a hand is beyond that at once"),
     (WIRED, {"force: 2, ": "force: 2, " + MOTORS.replace("0.0259", "|25.9", 1)}, "limits.motors[0].torque_constant", "25.9 mN m/A is 0.0259 N m/A"),
-    (WIRED, {"force: 2, ": "force: 2, " + MOTORS.replace("ratio: 12", "ratio: |0.0833", 1)}, "limits.motors[0].ratio", "12 if it was turned round"),
+    (WIRED, {"force: 2, ": "force: 2, " + MOTORS.replace("ratio: 12", "ratio: |0.0833", 1)}, "limits.motors[0].ratio", "12 if it was inverted"),
     (PREMIUM, {"force: 8.5": "force: 8.5, " + MOTORS.replace("2.3", "|2300", 1).rstrip(", ")}, "limits.motors[0].resistance", "2300 mohm is 2.3 ohm"),
     (WIRED, {"force: 2, ": "force: 2, " + MOTORS.replace("ratio: 12", "ratio: 12, housing_time: |10", 1)}, "limits.motors[0].housing_time", "10 min is 600 s"),
     (TWIN, {"hand:": "  delay: |16\nhand:"}, "parameters.delay", "stiffer than about 303 N/m may bounce"),
