@@ -231,7 +231,8 @@ std::string parentOf(const std::string& path) {
 }
 
 /// Returns a hint where an unknown key belongs: under another key, in another file, or under `parameters`; else "".
-/// @param near the key is probably a misspelt one of this table, and not one from deep within another
+/// @param near true if a key of this table has a similar name, so that the key is probably misspelt: then keys within
+/// the mappings of other tables are not suggested
 std::string belongsTo(const Table& table, const std::string& name, bool near) {
   if (const std::string path = pathIn(table, name); !path.empty())
     return "; " + name + " belongs under the key " + parentOf(path);
@@ -284,7 +285,7 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
     problem(node, key, describe(node) + ", expected a mapping with " + listed(table.names()) + suggestMapping(node));
     return;
   }
-  std::vector<const Key*> misspelt;    // keys that are read from a misspelt one, so that all problems come at once
+  std::vector<const Key*> misspelt;    // keys that were given misspelt: their values are checked too
   const std::string* empty = nullptr;  // a key without a value: unknown keys after it probably belong under it
   for (const Entry& entry : node.entries) {
     const std::string path = joined(key, entry.key.scalar);

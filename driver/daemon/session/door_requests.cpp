@@ -19,7 +19,7 @@ Result<uint32_t> RequestHandler::armOf(const std::string& device) const {
   return refuse("unknown", noSuchDevice(runner_.scene(), device));
 }
 
-/// Passes the news of a pushing program to the status page, the log and the report of the run.
+/// Reports to the status page, the log and the report of the run that a program has begun or ended to push.
 void RequestHandler::reportPusher(uint32_t arm, const Leads::Pusher& pusher, Leads::PushEvent news) {
   if (news == Leads::PushEvent::kBegins) return runner_.namePusher(arm, pusher.place, pusher.pid, pusher.program);
   runner_.forgetPusher(arm, pusher.place,
