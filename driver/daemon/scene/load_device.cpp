@@ -71,7 +71,7 @@ HdArm readHd(const HdText& text, Reader& in) {
   return arm;
 }
 
-/// Refuses a limit of 0 N: who writes it means "no force", but elsewhere 0 means "no limit".
+/// Refuses a limit of 0 N, because it may mean "no force", while 0 means "no limit" for other limits.
 void refuseNoForce(const Node& root, Reader& in) {
   const Node* limits = root.find("limits");
   const Node* force = limits != nullptr && limits->isMap() ? limits->find("force") : nullptr;
@@ -126,8 +126,8 @@ void nameModules(const std::string& as, host::Catalog& catalog, Reader& in) {
       one.what += ": one of " + document::listed(catalog.names(host::Kind::kDevice)) + as;
 }
 
-/// Finds the module of a device file. If its name is unknown or missing, this is reported, and the module that is
-/// probably meant is returned, to find the other problems, too. @return nullptr if there is none
+/// Finds the module of a device file. If its name is unknown or missing, this function reports that, and returns the
+/// module that is probably meant, so that the other problems are found too. @return nullptr if there is none
 const host::ClassInfo* moduleOf(const Node& root, const DeviceText& text, Reader& in, host::Catalog& catalog) {
   std::string unknown;
   if (!text.module.empty()) {

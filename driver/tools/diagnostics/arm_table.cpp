@@ -46,8 +46,8 @@ bool seemsTurnedRound(const std::vector<Row>& rows) {
   return !has(0) && has(2);
 }
 
-/// Warns of two joints with the same axis. The tip of such an arm moves in one direction less than it has joints, so
-/// somebody has written the columns in another order.
+/// Warns of two joints with the same axis. One of these joints would be useless, so the columns were probably written
+/// in another order.
 void sameAxis(const Node* dh, const std::string& file, document::Problems& warnings) {
   constexpr double kLength = 1e-6, kAngle = 1e-3;  // [m]; [rad]
   const std::vector<Row> rows = tableOf(dh);

@@ -95,7 +95,7 @@ void checkDrag(const GivenModel& given) {
                            drag, given.model().name, drag * kSlowTurn, kSlowTurn));
 }
 
-/// Warns of a drag against which the spring of a body brings it back so slowly that nobody waits for it.
+/// Warns of a drag so strong that the tether brings the body back only in many seconds.
 void checkTetherCreep(const GivenModel& given) {
   constexpr double kLong = 3;  // [s]
   const double tether = given.number("tether"), drag = given.number("drag"), mass = given.number("mass");
@@ -169,7 +169,7 @@ void checkHanging(const GivenModel& given) {
                     given.box()->center().z()));
 }
 
-/// Warns of a damping with which a pendulum creeps back to its place so slowly that nobody waits for it.
+/// Warns of a damping so strong that a pendulum creeps back to its place only in many seconds.
 void checkCreep(const GivenModel& given) {
   constexpr double kLong = 3;  // [s] to come back by two thirds
   const double length = given.number("length"), damping = given.number("damping");

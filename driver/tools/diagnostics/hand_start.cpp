@@ -191,8 +191,8 @@ std::string tryStart(const scene::Scene& scene, const scene::Device& device, boo
   return started ? "=" : started.error();
 }
 
-/// Reports a refusal at the place of the key that it names. The key stands at the beginning, or after what could not be
-/// done: "device 'name': cannot be opened: hand.axis is zero, expected a direction".
+/// Reports a refusal at the place of the key that it names. The key stands at the beginning, or after the name of
+/// the device and what failed: "device 'name': cannot be opened: hand.axis is zero, expected a direction".
 void reportRefused(const scene::Scene& scene, const scene::Device& device, const std::string& told,
                    document::Problems& problems) {
   const std::string before = "device '" + device.name + "': ";

@@ -73,7 +73,7 @@ void linkTooLong(const Node* lengths, const std::string& file, document::Problem
           most, most / 10));
 }
 
-/// Warns of such a link of a chain, whose lengths are in two columns.
+/// Warns of a link of a chain that is too long. The lengths are in two columns of its table.
 void chainTooLong(const Node* rows, const std::string& file, document::Problems& warnings) {
   constexpr double kLong = 2;  // m, as above
   if (rows == nullptr || !rows->isSequence()) return;

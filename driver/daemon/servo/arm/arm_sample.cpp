@@ -98,8 +98,8 @@ void Arm::trip(Fault fault, double measured) noexcept HSP_RT {
   limiter_.trip(fault, measured);
 }
 
-/// Gives a device that was unplugged, silent or at fault its force back once it has been well for a while, and if the
-/// force surprises nobody: the tip rests, or no force acts on it now.
+/// Gives the force back to a device that was unplugged, silent or at fault. The device must have worked for a while,
+/// and the force must surprise nobody: the tip must rest, or no force may act on it now.
 void Arm::recover(double dt, bool pushes) noexcept HSP_RT {
   const bool moved = pushes && !((probe_.position - calm_at_).norm() <= kCalmTravel);
   if (!well_ || !probe_.valid || moved || !limiter_.silent()) {
