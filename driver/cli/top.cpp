@@ -357,6 +357,10 @@ void addTop(const Command& app, int& exit_code) {
   command.addFlag("--json", options->json, "print JSON: one line per interval; with --once, one line");
   command.footer(
       "Keys: s, f, d and n sort by step time, force, depth and name; q quits.\n\n"
+      "late: how long after their deadlines the ticks began; tick: how long they took. ITER: how often the last step\n"
+      "evaluated a surface. KNOWN: share of the ticks in which the foot point surely was the nearest, or was kept by "
+      "a\n"
+      "contact.\n\n"
       "Examples:\n  hapticd top --sort force\n  hapticd top --json --every 1 | jq .models[0].force_n");
   command.callback([options, &exit_code] { exit_code = top(*options); });
 }
