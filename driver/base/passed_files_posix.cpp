@@ -105,7 +105,7 @@ std::string PassedFiles::named(std::string text) const {
     const std::string path = pathTo(copy);
     for (size_t at = 0; (at = text.find(path, at)) != std::string::npos;) {
       const size_t end = at + path.size();
-      const bool longer = end < text.size() && text[end] >= '0' && text[end] <= '9';  // such as 12 for 1
+      const bool longer = end < text.size() && text[end] >= '0' && text[end] <= '9';  // such as 12 in place of 1
       if (!longer) text.replace(at, path.size(), name);
       at += longer ? path.size() : name.size();
     }

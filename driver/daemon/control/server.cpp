@@ -242,7 +242,7 @@ void Server::answerLines(Client& client) {
     reply->line += '\n';
     queue(client, std::move(*reply));
   }
-  if (client.in.empty()) client.given.clear();  // no line is left to which they could belong
+  if (client.in.empty()) client.given.clear();  // no line is left to which the descriptors could belong
   if (client.in.size() > kMaxRequestBytes && client.in.find('\n') == std::string::npos) {
     queue(client, refusal("the request is longer than " + std::to_string(kMaxRequestBytes) +
                           " bytes, expected a shorter line") +
@@ -273,7 +273,7 @@ std::vector<Descriptor> Server::takeGiven(Client& client, const std::string& lin
   const size_t count = request ? std::min(request->files.size(), client.given.size()) : 0;
   for (size_t i = 0; i < count; ++i) taken.push_back(std::move(client.given[i]));
   client.given.erase(client.given.begin(), client.given.begin() + static_cast<std::ptrdiff_t>(count));
-  if (client.in.empty()) client.given.clear();  // no line is left to which they could belong
+  if (client.in.empty()) client.given.clear();  // no line is left to which the descriptors could belong
   return taken;
 }
 

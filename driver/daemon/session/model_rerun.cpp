@@ -21,7 +21,7 @@ const Column* reals(const record::RecordedStream& stream, const std::string& nam
 }
 
 constexpr int kSettle = 50;     ///< ticks without a touch, after which a soft body is at rest
-constexpr double kTick = 1e-3;  ///< [s] length of these ticks
+constexpr double kTick = 1e-3;  ///< [s] length of the ticks of kSettle
 
 }  // namespace
 

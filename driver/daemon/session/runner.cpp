@@ -111,7 +111,7 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
     ended();
   } else {
     done = runReal(watched, every, ended);
-    stopArms();  // tries again if it failed
+    stopArms();  // again, if the first attempt failed
   }
   guard_.reset();
   resident_bytes_ = os::residentBytes();
@@ -256,7 +256,7 @@ std::vector<std::string> Runner::enterRealTime() const {
       refused.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " + code.message());
   if (const auto code = os::setFifo(options_.priority))
     refused.push_back(noFifo(options_.priority, code, !onlySimulated()));
-  [[maybe_unused]] const auto limited = os::limitRealTimeRun(kLongestRunUs);  // if this fails, it is lower already
+  [[maybe_unused]] const auto limited = os::limitRealTimeRun(kLongestRunUs);  // fails only if it is lower already
   return refused;
 }
 

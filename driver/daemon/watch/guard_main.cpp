@@ -145,7 +145,7 @@ void guardMain(int count, char** arguments) {
   constexpr int kMostPriority = 98;
   const int priority = count > 2 ? std::atoi(arguments[2]) : 0;
   if (priority > 0)
-    (void)os::setFifo(priority < kMostPriority ? priority : kMostPriority);  // if refused, it is an ordinary thread
+    (void)os::setFifo(priority < kMostPriority ? priority : kMostPriority);  // otherwise it is an ordinary thread
   (void)os::lockMemory();
   void* mapped = mmap(nullptr, sizeof(Heartbeat), PROT_READ, MAP_SHARED, kGuardMemory, 0);
   if (mapped == MAP_FAILED || count < 4) _exit(2);

@@ -154,7 +154,7 @@ std::string withoutAnId(const codec::Wire& wire, const Capture& capture, const B
         goodWith(wire, -1, other, capture).value_or(0) > kNearlyAll)
       return "as reports of " + std::to_string(other) +
              " bytes they are good: give wire.input size: " + std::to_string(other) + "\n";
-  for (const size_t padded : {8, 16, 32, 64, 128, 256, 512})  // USB fills reports and packets up to this
+  for (const size_t padded : {8, 16, 32, 64, 128, 256, 512})  // sizes to which USB devices pad their packets
     if (padded > size)
       if (const std::string told = paddingHint(wire, capture, padded); !told.empty()) return told;
   return "";

@@ -116,7 +116,7 @@ void checkMass(const ArmUnderCheck& arm_file) {
 /// Warns of a weight far above limits.weight, because the motors carry the weight of the arm only up to that limit, and
 /// the hand must carry the rest.
 void checkWeight(const ArmUnderCheck& arm_file, const host::DeviceInstance& arm) {
-  constexpr double kMostly = 0.5;  // share of the weight that is carried: if it is less, the masses are in another unit
+  constexpr double kMostly = 0.5;  // if a smaller share of the weight is carried, the masses are in another unit
   const Node* masses = find(arm_file.root, {"parameters", "arm", "masses"});
   const scene::Limits& limits = arm_file.device.limits;
   const double force = limits.force > 0 ? limits.force : arm_file.info.max_force, most = limits.weight.value_or(force);

@@ -52,8 +52,8 @@ std::optional<std::array<double, HDV_MAX_JOINTS>> firstJoints(const scene::Scene
 /// One arm at the first tick.
 struct Hand {
   uint32_t device = 0;  ///< index of the arm in the scene
-  servo::Probe probe;   ///< its tip in the world
-  double reach = 0;     ///< [m] how far its joints can move the tip from there
+  servo::Probe probe;   ///< tip of the arm in the world frame
+  double reach = 0;     ///< [m] how far the joints can move the tip from its place at the first tick
 };
 
 std::optional<Hand> handOf(const scene::Scene& scene, uint32_t index) {

@@ -73,7 +73,7 @@ static bool oddMotor(const Motors& motors, size_t i) {
 
 /// Warns of a motor whose winding gets far too hot, or not at all warm, at the largest torque of its joint.
 static void oddHeat(const Motors& motors, size_t i, double torque) {
-  constexpr double kCold = 1e-3, kHot = 200;  // W in the winding: less warms nothing, more melts those of a hand's arm
+  constexpr double kCold = 1e-3, kHot = 200;  // [W] less does not warm a winding; more melts that of an arm for a hand
   const scene::Motor& motor = motors.device.limits.motors[i];
   if (!(motor.torque_constant > 0) || !(motor.ratio > 0)) return;
   const double current = torque / (motor.torque_constant * motor.ratio);

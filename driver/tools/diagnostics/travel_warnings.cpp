@@ -102,7 +102,7 @@ double extentOf(const host::DeviceInstance& arm, const std::vector<PositionRange
 /// Warns of a workspace that the arm can never leave, because millimetres were meant.
 void workspaceBeyondReach(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                           document::Problems& warnings) {
-  constexpr size_t kMostJoints = 6;  // 729 poses
+  constexpr size_t kMostJoints = 6;  // three positions of each of six joints are 729 poses
   constexpr double kTimes = 3;
   const Node* given = find(root, {"limits", "workspace"});
   const size_t joints = arm.kinematics().joint_count;
@@ -125,7 +125,7 @@ void workspaceBeyondReach(const Node& root, const scene::Device& device, const h
 /// workspace shows how far the arm should move.
 void narrowWorkspace(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                      const codec::Wire& wire, document::Problems& warnings) {
-  constexpr size_t kMostJoints = 6;  // 729 poses
+  constexpr size_t kMostJoints = 6;  // three positions of each of six joints are 729 poses
   constexpr double kSmall = 0.35;    // share of the workspace's width
   const Node* given = find(root, {"limits", "workspace"});
   const size_t joints = arm.kinematics().joint_count;

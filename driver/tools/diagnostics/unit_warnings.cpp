@@ -62,7 +62,7 @@ void twistInDegrees(const Node* rows, const std::string& file, document::Problem
 
 /// Warns of a link that is too long, because its length is not in metres or its decimal point is wrong.
 void linkTooLong(const Node* lengths, const std::string& file, document::Problems& warnings) {
-  constexpr double kLong = 2;  // m: longer than a person's arm, and than any device for one
+  constexpr double kLong = 2;  // [m] longer than a person's arm, and than any haptic arm
   const double most = largest(numbersIn(lengths));
   if (most <= kLong) return;
   document::report(
@@ -75,7 +75,7 @@ void linkTooLong(const Node* lengths, const std::string& file, document::Problem
 
 /// Warns of a link of a chain that is too long. The lengths are in two columns of its table.
 void chainTooLong(const Node* rows, const std::string& file, document::Problems& warnings) {
-  constexpr double kLong = 2;  // m, as above
+  constexpr double kLong = 2;  // [m] as for other links
   if (rows == nullptr || !rows->isSequence()) return;
   for (size_t row = 0; row < rows->items.size(); ++row)
     for (const size_t column : {size_t{0}, size_t{2}}) {
@@ -118,7 +118,7 @@ void offsetBeyondATurn(const Node* fields, const std::string& file, document::Pr
 }
 
 void mountFarAway(const Node* position, const std::string& file, document::Problems& warnings) {
-  constexpr double kFar = 5;  // m: farther than anybody reaches
+  constexpr double kFar = 5;  // [m] farther than anybody reaches
   const double most = largest(numbersIn(position));
   if (most <= kFar) return;
   document::report(
