@@ -58,9 +58,10 @@ void checkForce(const ArmUnderCheck& arm_file, const Node* at, const char* key, 
             "{0:g} N cannot be felt, because most arms have more friction; the value must be in N: {0:g} kN is {1:g} N",
             force, force * 1000));
   if (force > kMost && !arm_file.knows(key))
-    arm_file.warn(*at, key,
-                  fmt::format("{0:g} N throws the hand that holds the arm; the value must be in N: {0:g} mN is {1:g} N",
-                              force, force / 1000));
+    arm_file.warn(
+        *at, key,
+        fmt::format("{0:g} N would throw the hand that holds the arm; the value must be in N: {0:g} mN is {1:g} N",
+                    force, force / 1000));
 }
 
 void checkForces(const ArmUnderCheck& arm_file) {

@@ -45,7 +45,7 @@ void countsWithoutScale(const Node& root, const std::string& file, document::Pro
     if (!whole || field.find("scale") != nullptr || field.find("scale_degrees") != nullptr) continue;
     document::report(warnings, file, field.line, field.column, fmt::format("parameters.wire.input.fields[{}].scale", i),
                      "not given, so each count of this " + type->scalar +
-                         " is 1 rad (or 1 m); expected 2 pi / (counts a motor turn * motor turns of one joint turn)");
+                         " is 1 rad (or 1 m); expected 2 pi / (counts per motor turn * motor turns per joint turn)");
   }
 }
 

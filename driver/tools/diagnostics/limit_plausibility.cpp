@@ -65,10 +65,11 @@ void checkDynamics(const Bounds& of) {
                         "{:g} N); the value must be in N s, such as {:.2g}",
                         limits.impulse, limits.impulse / 0.1, of.force, 0.1 * of.force));
   if (limits.workspace > 0 && limits.workspace < kSmall && !of.knows("limits.workspace"))
-    of.warn({"limits", "workspace"},
-            fmt::format("forces end {0:g} m from the origin of the arm's frame, and a hand is beyond that at once; the "
-                        "value must be the radius of the workspace in m, such as 0.15",
-                        limits.workspace));
+    of.warn(
+        {"limits", "workspace"},
+        fmt::format("forces end {0:g} m from the origin of the arm's frame, and a hand is farther away at once; the "
+                    "value must be the radius of the workspace in m, such as 0.15",
+                    limits.workspace));
   const double velocity = limits.velocity.value_or(0);
   if (velocity > 0 && velocity < kStill)
     of.warn({"limits", "velocity"},
@@ -171,10 +172,11 @@ struct Joint {
                   "the value must be in N m s/rad, such as 0.005",
                   joint + 1, drag, kHand, of.force));
     if (mass > kHeavy)
-      of.warn({"parameters", "joint", "rotor"}, fmt::format("with joint.gear {:g} the motor of joint {} weighs as much "
-                                                            "as {:.3g} kg at the tip; the value must be in kg "
-                                                            "m^2 before the gear: 1 g cm^2 is 1e-7",
-                                                            gear, joint + 1, mass));
+      of.warn({"parameters", "joint", "rotor"},
+              fmt::format(
+                  "with joint.gear {:g} the motor of joint {} feels like {:.3g} kg at the tip; the value must be in kg "
+                  "m^2 before the gear: 1 g cm^2 is 1e-7",
+                  gear, joint + 1, mass));
   }
 };
 

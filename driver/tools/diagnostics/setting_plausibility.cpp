@@ -57,7 +57,7 @@ void checkAnswerTime(const scene::Scene& scene, document::Problems& warnings) {
     document::report(
         warnings, placeIn(scene, "clients.answer_time"), "clients.answer_time",
         fmt::format("the wait is {:g} s, but at {:g} Hz the servo waits at most a quarter of its period of {:g} s; "
-                    "nearest: {:g} s",
+                    "expected at most {:g} s",
                     scene.clients.answer_time, scene.servo.rate, period, most));
 }
 
@@ -199,7 +199,7 @@ document::Problems lightAdmittance(const scene::Scene& scene, const scene::Devic
     if (const auto found = placeOfKey(device.file, key)) place = *found;
   document::report(warnings, place, key,
                    fmt::format("{:g} kg is {:.3g} times less than the {:.3g} kg of {}, which cannot follow so light a "
-                               "mass; the value must be in kg; nearest: {:.2g} kg",
+                               "mass; the value must be in kg; expected {:.2g} kg or more",
                                device.admittance->mass, info.mass_kg / device.admittance->mass, info.mass_kg,
                                device.name, kLightest * info.mass_kg));
   return warnings;

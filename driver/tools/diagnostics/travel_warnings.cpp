@@ -43,8 +43,8 @@ std::string wrapsTooOften(const Field& field, const PositionRange& stops) {
   const double around = std::ldexp(std::abs(field.scale), static_cast<int>(field.bits));
   if (around >= stops.length()) return "";
   return fmt::format(
-      "one count of joint {} is {:.3g} rad, {:.3g} counts a turn of the joint, and its {} bits would wrap within "
-      "arm.limits; expected 2 pi / (counts a motor turn * motor turns of one joint turn)",
+      "one count of joint {} is {:.3g} rad, {:.3g} counts per turn of the joint, and its {} bits would wrap within "
+      "arm.limits; expected 2 pi / (counts per motor turn * motor turns per joint turn)",
       field.index + 1, std::abs(field.scale), 2 * M_PI / std::abs(field.scale), field.bits);
 }
 
