@@ -114,7 +114,8 @@ TEST(PusherWords, TellWhoAskedFallsSilentAndDies) {
   EXPECT_NE(update(log, forces, 0).find("(spring) asked for 100 N and gets 4 N at most"), std::string::npos);
   tick(std::numeric_limits<double>::quiet_NaN());
   tick(2e6);
-  EXPECT_EQ(update(log, forces, 0), "2 answers of process 4711 (spring) were refused so far: a number is beyond 1e6\n");
+  EXPECT_EQ(update(log, forces, 0),
+            "2 answers of process 4711 (spring) were refused so far: a force or torque is beyond 1e6 N or N m\n");
   tick(3);
   for (int i = 0; i < 300; ++i) forces.collect(now++, kTick);
   EXPECT_EQ(update(log, forces, 1),
