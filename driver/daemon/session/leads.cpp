@@ -78,7 +78,7 @@ Result<void> Leads::end(const Target& target, const control::Peer& peer, PushEve
     return same(lead.target, target) && lead.peer.id == peer.id;
   });
   if (found == leads_.end())
-    return Error{"this connection does not lead " + target.name + ", or push on it, so there is nothing to end"};
+    return Error{"this connection neither leads " + target.name + " nor pushes on it, so there is nothing to end"};
   Lead lead = std::move(*found);
   leads_.erase(found);
   return finish(std::move(lead), how);

@@ -112,7 +112,7 @@ def leads_a_model(daemon):
         check("a name that is none is refused", refused(lambda: client.lead_model("dor"), "door"))
         for what, names in (("model", client.models), ("stream", client.streams), ("parameter", client.models["ball"].parameters)):
             check(f"a {what} that is not there is named, and those that are", raised(lambda: names["dor"], KeyError, "one of"))
-        check("an end without a lead is refused", refused(lambda: client.ask(do="unlead", model="door"), "does not lead"))
+        check("an end without a lead is refused", refused(lambda: client.ask(do="unlead", model="door"), "neither leads"))
 
 
 def leader_dies(daemon, how):

@@ -36,5 +36,5 @@ class Named(dict):  # type: ignore[type-arg]
         self._what = what
 
     def __missing__(self, name: object) -> None:
-        known = f"expected one of: {', '.join(map(str, self))}{meant(name, self)}" if self else f"and no other {self._what} either"
-        raise KeyError(f"there is no {self._what} {name!r}; {known}")
+        known = f"expected one of: {', '.join(map(str, self))}{meant(name, self)}" if self else "nor any other"
+        raise KeyError(f"there is no {self._what} {name!r}, {known}")
