@@ -25,7 +25,7 @@ constexpr uint64_t kReadyTicks = 2;  ///< after this many ticks the service mana
 constexpr uint64_t kLongestRunUs = 100'000;  ///< longest CPU time without sleep [us]; a tick takes a hundredth of it
 
 std::string readyMessage(const Loop& loop) {
-  return "READY=1\nSTATUS=the servo ticks; " + std::to_string(loop.lateDryCycles()) + " of " +
+  return "READY=1\nSTATUS=the servo ticks; before, " + std::to_string(loop.lateDryCycles()) + " of " +
          std::to_string(kDryCycles) + " dry cycles woke a period late";
 }
 
@@ -111,7 +111,7 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
     ended();
   } else {
     done = runReal(watched, every, ended);
-    stopArms();  // tries again if it failed
+    stopArms();  // again, if the first attempt failed
   }
   guard_.reset();
   resident_bytes_ = os::residentBytes();
@@ -256,7 +256,7 @@ std::vector<std::string> Runner::enterRealTime() const {
       refused.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " + code.message());
   if (const auto code = os::setFifo(options_.priority))
     refused.push_back(noFifo(options_.priority, code, !onlySimulated()));
-  [[maybe_unused]] const auto limited = os::limitRealTimeRun(kLongestRunUs);  // if this fails, it is lower already
+  [[maybe_unused]] const auto limited = os::limitRealTimeRun(kLongestRunUs);  // fails only if it is lower already
   return refused;
 }
 

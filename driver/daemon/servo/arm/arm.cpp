@@ -269,7 +269,7 @@ void Arm::sendsNothing() noexcept HSP_RT {
 }
 
 void Arm::send(Nanoseconds now) noexcept HSP_RT {
-  if (taken_.exchange(true)) return;  // the watchdog is writing its zero force
+  if (taken_.exchange(true)) return;  // the watchdog is writing a zero force
   if (cut_in_write_) cut_.store(true);
   cut_in_write_ = false;
   if (cut_.load()) {  // the motors are off until this tick has acknowledged the cut
