@@ -48,7 +48,7 @@ const Owner* keepsTheEnd() {
 /// if late ticks are normal on this machine
 std::unique_ptr<watch::Watchdog> watchdogOf(watch::WatchTarget& watched, bool may_lag) {
   using watch::Watchdog;
-  const auto hung = [&watched] { watch::endByFault("a step that did not come back", watched.inServo()); };
+  const auto hung = [&watched] { watch::endByFault("a step that did not return", watched.inServo()); };
   auto watchdog =
       std::make_unique<Watchdog>(watched, hung, may_lag ? Watchdog::kMissedInVirtualMachine : Watchdog::kMissedAfter,
                                  may_lag ? Watchdog::kStuckInVirtualMachine : Watchdog::kStuckAfter);
@@ -59,13 +59,13 @@ std::unique_ptr<watch::Watchdog> watchdogOf(watch::WatchTarget& watched, bool ma
 /// Ends the process if a call of a module after the last tick did not return. If no module is in a call, it returns,
 /// and is called again later.
 void dieOfStop() {
-  if (const Owner* keeps = keepsTheEnd()) watch::endByFault("a stop() that did not come back", keeps);
+  if (const Owner* keeps = keepsTheEnd()) watch::endByFault("a call after the last tick that did not return", keeps);
 }
 
 /// Runs the loop in virtual time. @param after called after the last tick; it calls modules, which may hang as well
 Result<void> runInVirtualTime(Loop& loop, const watch::WatchTarget& watched, const std::function<void()>& after) {
   const auto hung = [] {
-    if (const Owner* keeps = keepsTheEnd()) watch::endByFault("a step that did not come back", keeps);
+    if (const Owner* keeps = keepsTheEnd()) watch::endByFault("a step that did not return", keeps);
   };
   watch::EndWatch end(watched, [] { watch::forceEnd(keepsTheEnd()); }, hung);
   if (const auto code = end.start()) return Error{"cannot start the thread that watches the end: " + code.message()};

@@ -148,7 +148,7 @@ void forceEnd(const Owner* keeps) noexcept {
   Line line;
   line.add("\nwarning: the run was told to end, and ");
   if (keeps != nullptr)
-    addOwner(line, *keeps).add(" did not come back");
+    addOwner(line, *keeps).add(" did not return");
   else
     line.add("its last work took too long");
   line.add("\n  ").add(servo->drives() ? "the motors are off; " : "").add("the process ends without its report\n");

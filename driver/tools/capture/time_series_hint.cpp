@@ -52,8 +52,8 @@ std::string flags(const codec::Wire& wire, const DecodedReports& reports) {
   return text;
 }
 
-/// Returns a hint if the device seems to restart in each report, because the field `starts` is then a counter or a
-/// clock.
+/// Returns a hint if the field `starts` changes in many reports, as if the device restarted each time. The field then
+/// probably counts reports (`counter`), or is a clock (`time`), and was described wrongly.
 std::string starts(const codec::Wire& wire, const DecodedReports& reports) {
   if (fieldOf(wire, Role::kStarts) == nullptr) return "";
   size_t changes = 0;

@@ -77,7 +77,7 @@ Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& desc
       weight_(described.limits, fullForce(described.limits, device_->info())),
       name_(described.name),
       stuck_words_(
-          "a tick did not end, as its module did not come back, and the watchdog cut the motors; find the cause "
+          "a tick did not end, as its module did not return, and the watchdog cut the motors; find the cause "
           "with: hapticd device check " +
           described.file.string()),
       former_passivity_(options.former_passivity) {}
