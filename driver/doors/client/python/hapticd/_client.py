@@ -15,7 +15,7 @@ import warnings
 from collections import deque
 from typing import Any, Callable, Iterator, Optional, Sequence
 
-from ._error import HapticdError, Named, NoForceWarning, Refused
+from ._error import CLOSED, HapticdError, Named, NoForceWarning, Refused
 from ._lead import ForceLead, PoseLead
 from ._models import Model
 from ._push import ForceThread
@@ -79,6 +79,8 @@ class _Line:
             line = json.dumps(request, allow_nan=False)
         except ValueError:
             raise ValueError(f"a number of the request is not finite: {request}") from None
+        if self.closed():
+            raise HapticdError(CLOSED)
         try:
             self._socket.sendall(line.encode() + b"\n")
         except OSError as error:
@@ -88,7 +90,7 @@ class _Line:
         """Returns the next line, or None if none came in time."""
         end = None if timeout is None else time.monotonic() + timeout
         while not self._lines:
-            if self._socket.fileno() < 0:
+            if self.closed():
                 return None
             left = None if end is None else max(end - time.monotonic(), 0)
             ready = select.poll()  # select.select() cannot wait for a descriptor above 1023
@@ -122,9 +124,13 @@ class _Line:
         if rest:
             self._begun_with += fds
 
+    def closed(self) -> bool:
+        """Tells whether this end is closed."""
+        return self._socket.fileno() < 0
+
     def ended(self) -> bool:
         """Tells whether the other end is closed. The kernel reports this at once, even if the process was killed."""
-        if self._socket.fileno() < 0:
+        if self.closed():
             return False
         socket_ = select.poll()
         socket_.register(self._socket, 0)
@@ -258,8 +264,9 @@ class Client:
             return None
 
     def ended(self) -> bool:
-        """Tells whether the daemon of this client has ended, even if another daemon has its name now."""
-        return self._line.ended() and (self._file_of_box() != self._box_file or not self.alive())
+        """Tells whether the daemon of this client has ended, even if another daemon has its name now. It also does so after
+        `close`."""
+        return (self._line.closed() or self._line.ended()) and (self._file_of_box() != self._box_file or not self.alive())
 
     def died(self) -> bool:
         """Tells whether the daemon ended without removing its files, because it was killed or crashed."""
@@ -270,6 +277,8 @@ class Client:
                 + "\n  fix: start it again with hapticd run, then connect again")
 
     def _check(self) -> None:
+        if self._line.closed():
+            raise HapticdError(CLOSED)
         if self.ended():
             raise HapticdError(self._gone())
 
@@ -448,7 +457,7 @@ class Client:
             pass  # it has ended with the model
 
     def close(self) -> None:
-        """Ends all leads of this connection."""
+        """Ends all leads of this connection. After it only `about`, `devices`, `alive`, `ended` and `died` can be asked."""
         self._line.close()
         for memory in (self._states, self._rings):
             if memory is not None:
