@@ -15,6 +15,7 @@
 #include "cli/output_file.hpp"
 #include "control/client.hpp"
 #include "control/liveness.hpp"
+#include "document/absent_file.hpp"
 #include "document/json_text.hpp"
 #include "document/node.hpp"
 #include "status/page_file.hpp"
@@ -69,11 +70,13 @@ int showSocket(const CtlArguments& options) {
 }
 
 /// Prints an answer.
-int show(const CtlArguments& options, const Result<std::string>& answer) {
+/// @param scene file that was sent with the request; "" if there was none
+int show(const CtlArguments& options, const Result<std::string>& answer, const std::string& scene = "") {
   if (!answer) return fail(kFailed, answer.error());
   Json json = document::parseJson(*answer);
   if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
-  if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
+  if (!json.value("ok", false))
+    return fail(kFailed, document::withAbsentFiles(json.value("error", std::string("refused")), scene));
   if (!options.obj.empty()) return saveObj(json, options.obj);
   if (options.tells_socket) json["name"] = options.name, json["socket"] = socketOf(options);
   std::printf("%s\n", json.dump(2).c_str());
@@ -96,12 +99,13 @@ int sendScene(const CtlArguments& options, Json request) {
     if (!status.is_object()) return show(options, answer);
     request["file"] = status.value("scene", "");
   }
-  auto files = openNamed(request["file"].get<std::string>());
+  const std::string scene = request["file"].get<std::string>();
+  auto files = openNamed(scene);
   if (!files && !again) return fail(kFailed, files.error());
   if (!files) request.erase("file");  // the daemon may read its own scene, even if only the daemon's user may
   if (files) request["files"] = files->names;
   const std::vector<int> numbers = files ? files->numbers() : std::vector<int>();
-  return show(options, client->askWith(lineOf(request), numbers));
+  return show(options, client->askWith(lineOf(request), numbers), scene);
 }
 
 /// Returns the exit code after a stream of answers has ended. Reports an error if the daemon was killed or crashed.

@@ -133,6 +133,12 @@ def scene_without_an_arm(environment, folder):
     done = subprocess.run([HAPTICD, "ctl", "--name", "owner", "add", os.path.join(folder, "no-arm.yaml")], env=environment, capture_output=True,
                           text=True, timeout=60)
     check("a scene that names no arm can be added", done.returncode == 0, done)
+    with open(os.path.join(folder, "slip.yaml"), "w") as file:
+        file.write("hapticd: 1\nmodels:\n" + BALL.format(source=SOURCE, name="slip", x=0.1).replace("sphere.yaml", "sphre.yaml"))
+    done = subprocess.run([HAPTICD, "ctl", "--name", "owner", "add", os.path.join(folder, "slip.yaml")], env=environment, capture_output=True,
+                          text=True, timeout=60)
+    check("a misspelt file is told as check tells it", done.returncode == 1 and "there is no file /" in done.stderr and
+          '(did you mean "sphere.yaml"?)' in done.stderr and "passed along" not in done.stderr, done)
     run.terminate()
     run.wait(timeout=30)
 
