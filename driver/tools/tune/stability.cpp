@@ -166,7 +166,8 @@ document::Problems fastPaths(const scene::Scene& scene) {
   return problems;
 }
 
-std::string overheating(const std::string& device, double sustained, const std::vector<double>& forces, double rate) {
+std::string overheating(const std::string& device, double sustained, const std::vector<double>& forces, double rate,
+                        const std::string& pusher) {
   if (sustained <= 0 || forces.empty()) return "";
   double heat = 0;
   for (const double force : forces) heat += force * force;
@@ -174,8 +175,12 @@ std::string overheating(const std::string& device, double sustained, const std::
   if (effective <= sustained) return "";
   return device + " gave " + text(effective) + " N (root of the mean square of the last " +
          text(std::round(static_cast<double>(forces.size()) / rate)) + " s) and sustains " + text(sustained) +
-         " N: real motors would overheat; use a softer model, or limits.force: " + text(sustained) +
-         " in the device file, which they sustain";
+         " N: real motors would overheat; " +
+         (pusher.empty()
+              ? "use a softer model, or limits.force: " + text(sustained) + " in the device file"
+              : "no model was touched, and " + pusher +
+                    " pushed: let it push less, or write clients.max_force: " + text(sustained) + " in the scene") +
+         ", which they sustain";
 }
 
 }  // namespace hapticd::tune

@@ -130,5 +130,12 @@ TEST(Overheating, IsToldOfTheRootOfTheMeanSquareBeyondWhatIsSustained) {
   EXPECT_EQ(overheating("arm", 0, pulses, 1), "");  // unknown
 }
 
+TEST(Overheating, NamesTheProgramThatPushedWhereNoModelWasTouched) {
+  const std::string text = overheating("arm", 1.4, {2, 2}, 1, "process 12 (spring.py)");
+  EXPECT_NE(text.find("process 12 (spring.py) pushed"), std::string::npos) << text;
+  EXPECT_NE(text.find("clients.max_force: 1.4"), std::string::npos) << text;
+  EXPECT_EQ(text.find("softer model"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace hapticd::tune
