@@ -172,7 +172,8 @@ TEST(Wire, ATorqueHasBothSigns) {
                            R"("type":"u16","scale":0.001,"offset":-32.768)"})
     EXPECT_EQ(complaintOf(positionAnd(""), good), "") << good;
   EXPECT_EQ(complaintOf(positionAnd(""), R"("type":"u16","scale":0.001)"),
-            "wire.output.fields[0].type: \"u16\" can only express 0 to 65.535 N m with this scale and offset; expected both signs: "
+            "wire.output.fields[0].type: \"u16\" can only express 0 to 65.535 N m with this scale and offset; expected "
+            "both signs: "
             "use a signed type such as i16, or an offset that puts zero in the middle");
   EXPECT_NE(complaintOf(positionAnd(""), R"("type":"i16","scale":0.001,"offset":33)").find("expected both signs"),
             std::string::npos);
@@ -238,8 +239,8 @@ TEST(Wire, AllMistakesAreToldAtOnce) {
         "wire.input.fields[0].joint: 4", "wire.input.fields[0].at: 9", "wire.input.fields[0].type: \"i99\"",
         "wire.input.fields[1].type: \"u8\", expected u16",
         "wire.input.fields[1].from: 0, so the checksum covers itself",
-        "wire.input.fields[1].initial: cannot be used with method: crc16-modbus, only with", "wire.input.fields[2].is: \"nothing\"",
-        "wire.output.fields[0].at: 1", "wire.output.fields[1].bit: 4"})
+        "wire.input.fields[1].initial: cannot be used with method: crc16-modbus, only with",
+        "wire.input.fields[2].is: \"nothing\"", "wire.output.fields[0].at: 1", "wire.output.fields[1].bit: 4"})
     EXPECT_NE(said.find(expected), std::string::npos) << expected << "\n  in:\n" << said;
   EXPECT_LE(lines(said), 24u) << said;
 }
@@ -283,15 +284,33 @@ std::string arm(const std::string& from, const std::string& to, const std::strin
   return text.replace(at, from.size(), to);
 }
 
+/// Returns what is wrong with an arm with three joints.
+std::string said(const std::string& json) {
+  try {
+    readWire(json, 3);
+    return "";
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+}
+
+TEST(Wire, AFieldThatIsTooWideIsToldAtItsTypeAndNotAtTheFieldsInIt) {
+  const std::string exchanged = said(arm(R"("at":0,"type":"i16")", R"("at":0,"type":"i61")"));
+  EXPECT_NE(exchanged.find("fields[0].type: \"i61\" takes the bytes 0 to 7, but fields[1] (position of joint 2) begins "
+                           "at byte 2 (the first of 4 fields in it); expected a narrower type (did you mean \"i16\"?)"),
+            std::string::npos)
+      << exchanged;
+  EXPECT_EQ(lines(exchanged), 1u) << exchanged;
+  const std::string last = said(arm(R"("at":4,"type":"i16")", R"("at":4,"type":"i61")"));
+  EXPECT_EQ(lines(last), 1u) << last;  // the report has no so many bytes
+  const std::string wide = said(arm(R"("at":2,"type":"i16")", R"("at":2,"type":"i40")"));
+  EXPECT_NE(wide.find("fields[1].type: \"i40\""), std::string::npos) << wide;
+  EXPECT_EQ(lines(wide), 1u) << wide;
+  const std::string place = said(arm(R"("at":4,"type":"i16")", R"("at":5,"type":"i16")"));
+  EXPECT_EQ(place.find("type"), place.find("type of one of the two")) << place;  // a place is as likely
+}
+
 TEST(Wire, OneWrongFieldHidesNoOtherProblem) {
-  const auto said = [](const std::string& json) {
-    try {
-      readWire(json, 3);
-      return std::string();
-    } catch (const std::invalid_argument& e) {
-      return std::string(e.what());
-    }
-  };
   ASSERT_EQ(said(arm("\"at\":0", "\"at\":0")), "");
   // A field that is no position cannot be the missing one, and a second field of a joint is told beside it.
   const std::string twice = R"("joint":1,"at":2,"type":"i16")";
