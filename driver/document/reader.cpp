@@ -69,7 +69,7 @@ static std::string inOtherUnits(double value, const Range& range) {
   static constexpr UnitSlip kSlips[] = {{"m", "mm", 1e-3, 0.1},     {"rad", "degrees", M_PI / 180, 0.1},
                                         {"s", "ms", 1e-3, 0.02},    {"s", "us", 1e-6, 1},
                                         {"kg", "g", 1e-3, 0.1},     {"N", "mN", 1e-3, 1},
-                                        {"N m", "N mm", 1e-3, 0.1}};
+                                        {"N m", "N mm", 1e-3, 0.1}, {"Hz", "kHz", 1e3, 0.1}};
   for (const UnitSlip& slip : kSlips)
     if (const double meant = value * slip.factor; std::string_view(range.unit) == slip.unit &&
                                                   std::abs(value) >= slip.least && meant >= range.min &&

@@ -107,6 +107,13 @@ TEST_F(Load, ReportsTheProblemsOfADeviceBesideAListOfDevices) {
   EXPECT_EQ(same.find("serail"), same.rfind("serail")) << same;
 }
 
+TEST_F(Load, SaysThatARateSeemsToBeInKilohertz) {
+  const Loaded loaded =
+      load(put("scene.yaml", "hapticd: 1\ndevice: arm.yaml\nservo: {rate: 1}\nmodels: []\n"), catalog_);
+  ASSERT_FALSE(loaded.problems.empty());
+  EXPECT_NE(loaded.problems[0].text().find("; 1 kHz is 1000 Hz"), std::string::npos) << loaded.problems[0].text();
+}
+
 TEST_F(Load, FillsEveryKindOfParameter) {
   const Scene scene = good(
       "device: arm.yaml\nmodels:\n  - name: cup\n    plugin: test_shape\n"
