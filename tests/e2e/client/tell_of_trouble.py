@@ -53,14 +53,7 @@ class Daemon:
         with open(self.log, "w") as log:
             self.run = subprocess.Popen([HAPTICD, "run", scene, "--name", "trouble"], env=self.environment,
                                         stdout=subprocess.DEVNULL, stderr=log)
-        until(lambda: os.path.exists(os.path.join(folder, "trouble.sock")) and self.connects(), 30)
-
-    def connects(self):
-        try:
-            self.connect().close()
-            return True
-        except hapticd.HapticdError:
-            return False
+        hapticd.connect("trouble", folder=folder, wait=30).close()
 
     def connect(self):
         return hapticd.connect("trouble", folder=self.folder)

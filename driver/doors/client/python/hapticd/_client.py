@@ -474,7 +474,14 @@ class Client:
             raise HapticdError(gone)
 
 
-def connect(name: str = "hapticd", folder: Optional[str] = None, timeout: float = 10) -> Client:
+def connect(name: str = "hapticd", folder: Optional[str] = None, timeout: float = 10, wait: float = 0) -> Client:
     """Connects to the daemon `name`. `folder` is its runtime folder, which is found if it is not given; `timeout` is
-    the longest time for an answer in seconds."""
-    return Client(name, folder, timeout)
+    the longest time for an answer in seconds. If no daemon of this name runs yet, it tries again for `wait` seconds."""
+    end = time.monotonic() + wait
+    while True:
+        try:
+            return Client(name, folder, timeout)
+        except HapticdError:
+            if time.monotonic() >= end:
+                raise
+        time.sleep(0.02)
