@@ -96,7 +96,8 @@ class Overlaps {
   /// "" if its width is no likelier mistake than a place.
   std::string narrower(size_t wide, size_t first, size_t within) const {
     const size_t room = startOf(all_[first]) - startOf(all_[wide]), bits = all_[wide].bits;
-    const size_t exchanged = 10 * (bits % 10) + bits / 10;  // such as 16 of 61
+    if (all_[wide].type == Type::kFloat) return room == 32 ? "32" : "";  // the only narrower one
+    const size_t exchanged = 10 * (bits % 10) + bits / 10;               // such as 16 of 61
     if (exchanged >= 8 && exchanged <= room && exchanged % 8 == 0) return std::to_string(exchanged);
     return within > 1 && room % 8 == 0 ? std::to_string(room) : "";
   }
