@@ -53,7 +53,7 @@ TEST(KinematicPath, ReportsEveryProblemOfAFile) {
       "t,x,y,z,qw,qx,qy,qz\n0,a,0,b,1,0,0,0\n1,0,0,0,2,0,0,0\n1,0,0,0,1,0,0,0\n2,0,0,0,1,1,0,0\n0.5,0,c,0,1,0,0,0\n",
       "p.csv", problems);
   std::string all;
-  for (const Problem& problem : problems) all += problem.text() + "\n";
+  for (const document::Problem& problem : problems) all += problem.text() + "\n";
   for (const char* one : {"p.csv:2:3: x: \"a\"", "p.csv:2:7: z: \"b\"", "p.csv:3:1: qw: the quaternion has length 2",
                           "p.csv:4:1: t: 1 does not grow", "p.csv:5:1: qw:", "p.csv:6:5: y: \"c\"",
                           "p.csv:6:1: t: 0.5 does not grow from row to row, expected more than 2"})
