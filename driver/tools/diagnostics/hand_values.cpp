@@ -51,6 +51,14 @@ bool isRepeated(const HandScript& hand) {
   return hand.kind == HandScript::Kind::kStroke || hand.kind == HandScript::Kind::kCircle || hand.presses();
 }
 
+/// Returns true if the script beside this key is known. Of a misspelt script it is the one that was probably meant; if
+/// there is none, the script of another file may be given.
+bool knowsScriptOf(const scene::Device& device, const char* id, const UnreadKeys& unread) {
+  const scene::Value *script = givenIn(device.parameters, "hand.script"), *value = givenIn(device.parameters, id);
+  if (!unread.has("hand.script")) return true;
+  return script != nullptr && value != nullptr && script->place.file == value->place.file;
+}
+
 void checkHandRate(const HandValues& values, const HandScript& hand) {
   constexpr double kOften = 12;  // [Hz] nobody moves a hand so often
   if (!isRepeated(hand) || !values.isAbove("hand.rate", kOften)) return;
@@ -139,10 +147,8 @@ void checkHandValues(const scene::Scene& scene, const scene::Device& device, con
     values.tell("hand.lead_in", fmt::format("{0:g} s pass before the script begins; the value must be in s: {0:g} ms "
                                             "is {1:g} s",
                                             hand.lead_in, hand.lead_in * kThousandth));
-  // Of a misspelt script, the one that was probably meant is given.
-  if (unread.has("hand.script") && givenIn(device.parameters, "hand.script") == nullptr) return;
-  checkHandRate(values, hand);
-  checkSpring(values, hand);
+  if (knowsScriptOf(device, "hand.rate", unread)) checkHandRate(values, hand);
+  if (knowsScriptOf(device, "hand.stiffness", unread)) checkSpring(values, hand);
 }
 
 }  // namespace hapticd::diagnostics
