@@ -55,7 +55,7 @@ TEST(KinematicPath, ReportsEveryProblemOfAFile) {
   std::string all;
   for (const document::Problem& problem : problems) all += problem.text() + "\n";
   for (const char* one : {"p.csv:2:3: x: \"a\"", "p.csv:2:7: z: \"b\"", "p.csv:3:1: qw: the quaternion has length 2",
-                          "p.csv:4:1: t: 1 does not grow", "p.csv:5:1: qw:", "p.csv:6:5: y: \"c\"",
+                          "p.csv:4:1: t: 1 does not grow", "p.csv:5:1: qw:", "p.csv:6:7: y: \"c\"",
                           "p.csv:6:1: t: 0.5 does not grow from row to row, expected more than 2"})
     EXPECT_NE(all.find(one), std::string::npos) << one << "\n" << all;
   EXPECT_EQ(problems.size(), 7u) << all;
