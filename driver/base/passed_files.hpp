@@ -13,6 +13,10 @@
 
 namespace hapticd {
 
+/// What whereToOpen() says of a file that is neither passed nor allowed.
+inline constexpr const char* kNotPassed =
+    "was not passed along, expected a file that exists and that the asking user may read";
+
 class PassedFiles {
  public:
   static constexpr size_t kMostBytes = 256u << 20;  ///< largest size of all files together

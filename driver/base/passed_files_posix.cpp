@@ -122,7 +122,7 @@ PassedFiles::Scope::~Scope() {
 Result<std::string> whereToOpen(const std::string& file) {
   if (in_force == nullptr) return file;
   std::string path = in_force->pathOf(file);
-  if (path.empty()) return Error{"was not passed along, expected a file that exists and that the asking user may read"};
+  if (path.empty()) return Error{kNotPassed};
   return path;
 }
 

@@ -15,6 +15,7 @@
 #include "cli/output_file.hpp"
 #include "control/client.hpp"
 #include "control/liveness.hpp"
+#include "document/absent_file.hpp"
 #include "document/json_text.hpp"
 #include "document/node.hpp"
 #include "status/page_file.hpp"
@@ -29,7 +30,7 @@ struct CtlArguments {
   std::string name = "hapticd", model, device, hand, parameter, value, file, line, obj;
   std::vector<double> position, orientation;
   std::optional<double> seconds;
-  double tolerance = 0, hold = 1;
+  double tolerance = 0, hold = 1, wait = 0;
   uint32_t number = 0;
   bool consent = false, follow = false, tells_socket = false;
 };
@@ -55,6 +56,11 @@ std::string socketOf(const CtlArguments& options) {
   return status::runtimeFolder(false) + "/" + options.name + ".sock";
 }
 
+/// Waits for the start of the daemon as long as --wait allows. If there is none then, the request says so.
+void awaitDaemon(const CtlArguments& options) {
+  if (options.wait > 0) control::waitForStart([&options] { return socketOf(options); }, options.wait);
+}
+
 std::string lineOf(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -69,11 +75,13 @@ int showSocket(const CtlArguments& options) {
 }
 
 /// Prints an answer.
-int show(const CtlArguments& options, const Result<std::string>& answer) {
+/// @param scene file that was sent with the request; "" if there was none
+int show(const CtlArguments& options, const Result<std::string>& answer, const std::string& scene = "") {
   if (!answer) return fail(kFailed, answer.error());
   Json json = document::parseJson(*answer);
   if (!json.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + *answer);
-  if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
+  if (!json.value("ok", false))
+    return fail(kFailed, document::withAbsentFiles(json.value("error", std::string("refused")), scene));
   if (!options.obj.empty()) return saveObj(json, options.obj);
   if (options.tells_socket) json["name"] = options.name, json["socket"] = socketOf(options);
   std::printf("%s\n", json.dump(2).c_str());
@@ -96,12 +104,13 @@ int sendScene(const CtlArguments& options, Json request) {
     if (!status.is_object()) return show(options, answer);
     request["file"] = status.value("scene", "");
   }
-  auto files = openNamed(request["file"].get<std::string>());
+  const std::string scene = request["file"].get<std::string>();
+  auto files = openNamed(scene);
   if (!files && !again) return fail(kFailed, files.error());
   if (!files) request.erase("file");  // the daemon may read its own scene, even if only the daemon's user may
   if (files) request["files"] = files->names;
   const std::vector<int> numbers = files ? files->numbers() : std::vector<int>();
-  return show(options, client->askWith(lineOf(request), numbers));
+  return show(options, client->askWith(lineOf(request), numbers), scene);
 }
 
 /// Returns the exit code after a stream of answers has ended. Reports an error if the daemon was killed or crashed.
@@ -186,6 +195,7 @@ const Command addRequest(const Command& parent, const char* word, const char* do
   command.callback([options, &exit_code, build, word] {
     Json json = {{"do", word}};
     build(json);
+    awaitDaemon(*options);
     const bool scene = std::string(word) == "add" || std::string(word) == "reload";
     const bool stops = std::string(word) == "stop";
     exit_code = options->follow ? follow(*options)
@@ -260,7 +270,7 @@ void addEvents(const Command& ctl, const std::shared_ptr<CtlArguments>& options,
       "events", "Show what happened: clicks, touches, faults, models and programs that came and left.");
   events.addFlag("--follow", options->follow, "do not end; print each new event as one line of JSON");
   events.footer(exampleOf("events"));
-  events.callback([options, &exit_code] { exit_code = showEvents(*options); });
+  events.callback([options, &exit_code] { awaitDaemon(*options), exit_code = showEvents(*options); });
 }
 
 void addLead(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
@@ -278,6 +288,7 @@ void addLead(const Command& ctl, const std::shared_ptr<CtlArguments>& options, i
     if (options->model.empty() == options->hand.empty()) {
       exit_code = fail(kBadInput, "lead: expected either a model or --hand DEVICE");
     } else {
+      awaitDaemon(*options);
       exit_code = leadByLines({socketOf(*options), options->model, options->hand, options->hold});
     }
   });
@@ -365,12 +376,13 @@ void addCtl(const Command& app, int& exit_code) {
   const Command ctl = app.addSubcommand("ctl", "Control a running daemon: status, models, parameters, black box.");
   ctl.requireSubcommand();
   ctl.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`; default: hapticd");
+  ctl.addOption("--wait", options->wait, "how long to wait for the daemon to start [s]; default: 0").within(0, 1e6);
   const auto nothing = [](Json&) {};
   addRequest(ctl, "status", "Show the daemon's status.", options, exit_code,
              [options](Json&) { options->tells_socket = true; });
   const Command socket = ctl.addSubcommand("socket", "Print the path of the daemon's socket.");
   socket.footer(exampleOf("socket"));
-  socket.callback([options, &exit_code] { exit_code = showSocket(*options); });
+  socket.callback([options, &exit_code] { awaitDaemon(*options), exit_code = showSocket(*options); });
   addRequest(ctl, "list", "List the models and their live parameters.", options, exit_code, nothing);
   addModelRequests(ctl, options, exit_code);
   addSceneRequests(ctl, options, exit_code);

@@ -58,16 +58,28 @@ record::LimitReport limitsOf(const std::string& device, const servo::Limiter& li
   return report;
 }
 
+/// Returns the program whose force the first arm gave, if no model of these rows was touched; else "". Of several
+/// programs, it is the one that pushed hardest.
+std::string onlyPusher(const std::vector<servo::BlackBoxRow>& rows, const record::RunReport& report) {
+  for (const servo::BlackBoxRow& row : rows)
+    if (row.model != UINT32_MAX && row.depth_m > 0) return "";
+  const record::ClientReport* hardest = nullptr;
+  for (const record::ClientReport& client : report.clients)
+    if (client.device == report.limits[0].device && client.largest_n > (hardest == nullptr ? 0 : hardest->largest_n))
+      hardest = &client;
+  return hardest == nullptr ? "" : "process " + std::to_string(hardest->pid) + " (" + hardest->program + ")";
+}
+
 /// Warns if the first arm gave more force over the last seconds than it sustains. The black box keeps the forces of the
 /// first arm.
-void warnOfHeat(const servo::Runner& runner, double rate) {
+void warnOfHeat(const servo::Runner& runner, const record::RunReport& report) {
   constexpr double kHeatSeconds = 5;  // a shorter time does not heat a winding
   std::vector<double> forces;
-  for (const servo::BlackBoxRow& row : runner.telemetry().blackBox())
-    forces.push_back(std::hypot(row.force[0], row.force[1], row.force[2]));
-  if (runner.arms().empty() || static_cast<double>(forces.size()) < kHeatSeconds * rate) return;
-  const std::string text =
-      tune::overheating(runner.scene().devices[0].name, runner.arms()[0]->info().continuous_force, forces, rate);
+  const std::vector<servo::BlackBoxRow> rows = runner.telemetry().blackBox();
+  for (const servo::BlackBoxRow& row : rows) forces.push_back(std::hypot(row.force[0], row.force[1], row.force[2]));
+  if (runner.arms().empty() || static_cast<double>(forces.size()) < kHeatSeconds * report.rate_hz) return;
+  const std::string text = tune::overheating(runner.scene().devices[0].name, runner.arms()[0]->info().continuous_force,
+                                             forces, report.rate_hz, onlyPusher(rows, report));
   if (!text.empty()) log::write(HSP_LOG_WARNING, "", text);
 }
 
@@ -105,7 +117,7 @@ int conclude(const RunOutcome& outcome, servo::Runner& runner) {
                  .c_str(),
              stdout);
   std::fflush(stdout);  // the summary is printed even if a plugin crashes while it is deactivated
-  warnOfHeat(runner, report.rate_hz);
+  warnOfHeat(runner, report);
   if (const record::Recorder* recorder = runner.recorder())
     std::printf("  recorded  %s: %llu ticks, %llu rows lost\n", outcome.record.c_str(),
                 static_cast<unsigned long long>(recorder->rows(servo::kTicks)),

@@ -129,18 +129,26 @@ class Parser {
                      countText(fields.size()) + ", expected " + std::to_string(table_.columns) +
                          separators(fields, table_.columns) +
                          (fields.size() > table_.columns ? "; write decimals with a point: 0.5, not 0,5" : ""));
-    for (size_t i = 0; i < fields.size(); ++i)
-      if (!take(fields[i], i)) return table_.values.resize(table_.lines.size() * table_.columns);
+    const size_t wrong_before = wrong_;
+    const bool begun = take(fields[0], 0);
+    for (size_t i = 1; i < fields.size() && !tooWrong(); ++i) take(fields[i], i);
+    if (!begun || tooWrong()) return rejectRow();
     const double* now = table_.values.data() + table_.lines.size() * table_.columns;
-    if (rules_.growing && !table_.lines.empty() && *now <= *(now - table_.columns)) {
+    if (rules_.growing && last_ && *now <= *last_)
       problem(0, nameOf(0),
-              numberText(*now) + " does not grow from row to row, expected more than " +
-                  numberText(*(now - table_.columns)));
-      return table_.values.resize(table_.lines.size() * table_.columns);
-    }
+              numberText(*now) + " does not grow from row to row, expected more than " + numberText(*last_));
+    else
+      last_ = *now;
+    if (rules_.wrongIn != nullptr && wrong_ == wrong_before)
+      if (const std::string what = rules_.wrongIn(now, table_.columns); !what.empty())
+        problem(0, rules_.column_of_wrong, what);
+    if (wrong_ != wrong_before) return rejectRow();
     table_.lines.push_back(line_);
   }
 
+  void rejectRow() { table_.values.resize(table_.lines.size() * table_.columns); }
+
+  /// Adds the number to the table, or notes why it is none.
   bool take(const Field& field, size_t column) {
     const std::optional<double> value = numberIn(field.text);
     const bool finite = rules_.finite || (rules_.growing && column == 0);
@@ -161,6 +169,7 @@ class Parser {
   Problems& problems_;
   CsvTable table_;
   std::string names_;
+  std::optional<double> last_;  ///< first number of the last row in which it grew
   size_t wrong_ = 0;
   int line_ = 0;
 };

@@ -21,6 +21,9 @@ struct CsvRules {
   bool finite = true;  ///< true: nan and inf are errors. In the first column of a growing table they are always errors
   bool growing = false;       ///< true: the first column must grow from row to row
   double largest = HUGE_VAL;  ///< largest magnitude of a finite number
+  /// If given: returns what is wrong with a row whose numbers are all valid, or "". It is reported for this column.
+  std::string (*wrongIn)(const double* row, size_t columns) = nullptr;
+  std::string column_of_wrong{};
 };
 
 struct CsvTable {

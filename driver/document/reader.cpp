@@ -8,6 +8,7 @@
 
 #include "base/passed_files.hpp"
 #include "base/regular_file.hpp"
+#include "document/absent_file.hpp"
 #include "document/correction.hpp"
 #include "document/suggestion.hpp"
 #include "document/table.hpp"
@@ -57,18 +58,18 @@ static std::string shortText(double value) {
   return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 10).ptr};
 }
 
-/// Guesses that a number that is too large is in millimetres, degrees, milliseconds or microseconds. Returns advice if
-/// the converted number is in the range, and was a likely number to write, else "".
+/// Guesses that a number that is out of range is in another unit, such as millimetres, degrees or kHz. Returns advice
+/// if the converted number is in the range, and was a likely number to write, else "".
 static std::string inOtherUnits(double value, const Range& range) {
   struct UnitSlip {
     const char *unit, *meant;
     double factor;
     double least;  ///< smallest number that people write in this unit
   };
-  static constexpr UnitSlip kSlips[] = {{"m", "mm", 1e-3, 0.1},    {"rad", "degrees", M_PI / 180, 0.1},
-                                        {"s", "ms", 1e-3, 0.02},   {"s", "us", 1e-6, 1},
-                                        {"kg", "g", 1e-3, 0.1},    {"N", "mN", 1e-3, 1},
-                                        {"N m", "N mm", 1e-3, 0.1}};
+  static constexpr UnitSlip kSlips[] = {{"m", "mm", 1e-3, 0.1},     {"rad", "degrees", M_PI / 180, 0.1},
+                                        {"s", "ms", 1e-3, 0.02},    {"s", "us", 1e-6, 1},
+                                        {"kg", "g", 1e-3, 0.1},     {"N", "mN", 1e-3, 1},
+                                        {"N m", "N mm", 1e-3, 0.1}, {"Hz", "kHz", 1e3, 0.1}};
   for (const UnitSlip& slip : kSlips)
     if (const double meant = value * slip.factor; std::string_view(range.unit) == slip.unit &&
                                                   std::abs(value) >= slip.least && meant >= range.min &&
@@ -157,14 +158,10 @@ std::optional<std::filesystem::path> Reader::existingFile(const Node& node, cons
     if (other.empty()) return full;
     problem(node, key, full.string() + " " + other);
   } else {
-    std::vector<std::string> neighbours;
-    for (fs::directory_iterator entry(full.parent_path(), error), end; !error && entry != end; entry.increment(error))
-      if (entry->path().filename() != file_.filename()) neighbours.push_back(entry->path().filename().string());
     problem(node, key,
             "there is no file " + full.string() + ", expected the path of a file" +
                 (written.is_absolute() ? "" : ", relative to the file that names it") +
-                (toNumber(node.scalar) ? "" : suggestion(full.filename().string(), neighbours)) +
-                suggestPath(node.scalar));
+                (toNumber(node.scalar) ? "" : neighbourMeant(full, file_)) + suggestPath(node.scalar));
   }
   return std::nullopt;
 }

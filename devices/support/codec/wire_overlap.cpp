@@ -20,8 +20,8 @@ bool isNumber(Role role) {
          role == Role::kChecksum;
 }
 
-/// Bits that two fields may not share. Flags may share a status byte, and constants may cover anything. A clock may also
-/// count the reports; a second counter of the same bytes adds nothing, and `hapticd check` warns of it.
+/// Bits that two fields may not share. Flags may share a status byte, and constants may cover anything. A clock may
+/// also count the reports; a second counter of the same bytes adds nothing, and `hapticd check` warns of it.
 bool exclusive(Role a, Role b) {
   const auto counts = [](Role role) { return role == Role::kTime || role == Role::kSequence; };
   if (counts(a) && counts(b)) return false;
@@ -41,6 +41,85 @@ size_t firstShared(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b)
   while (byte < a.size() && (a[byte] & b[byte]) == 0) ++byte;
   return byte;
 }
+
+/// Returns the bit of the report at which a field begins.
+size_t startOf(const Field& field) {
+  return size_t{8} * field.at + field.bit_skip;
+}
+
+/// Finds fields that share bits, and says at which of them the mistake is.
+class Overlaps {
+ public:
+  Overlaps(const Tree& fields, const Report& report, const std::vector<FieldFacts>& known)
+      : fields_(fields), all_(report.fields), size_(report.size), known_(known), too_wide_(all_.size()) {
+    for (const Field& field : all_) taken_.push_back(bitsTaken(field, size_));
+  }
+
+  /// Notes a problem for the type of each field in which others begin, if its width is the likelier mistake: it has
+  /// its digits exchanged, or several fields begin in it.
+  void checkWidths() {
+    for (size_t wide = 0; wide < all_.size(); ++wide) {
+      size_t within = 0, first = wide;
+      for (size_t i = 0; i < all_.size(); ++i) {
+        if (startOf(all_[i]) <= startOf(all_[wide]) || shared(wide, i) == size_) continue;
+        if (within++ == 0 || startOf(all_[i]) < startOf(all_[first])) first = i;
+      }
+      const std::string meant = within == 0 || isText(all_[wide].type) ? "" : narrower(wide, first, within);
+      if (!meant.empty()) blame(wide, first, within, meant);
+    }
+  }
+
+  /// Notes a problem for each other field that shares a bit with an earlier one.
+  void checkPlaces() const {
+    for (size_t later = 1; later < all_.size(); ++later)
+      for (size_t i = 0; i < later; ++i) {
+        const size_t byte = shared(i, later);
+        if (byte == size_ || too_wide_[i] || too_wide_[later]) continue;
+        const Tree tree = fields_.item(later);
+        tree.at(tree.has("at") ? "at" : "bit_offset")
+            .fail("takes bits of byte " + std::to_string(byte) + ", which " + nameOf(fields_, all_[i], known_[i], i) +
+                  " uses already; correct at, bit_offset or type of one of the two fields");
+        break;
+      }
+  }
+
+ private:
+  /// Returns the first byte in which two fields share a bit that they may not share; the size of the report if there is
+  /// none, or if too little is known about them.
+  size_t shared(size_t a, size_t b) const {
+    const auto usable = [this](size_t i) { return known_[i].role && known_[i].placed; };
+    if (a == b || !exclusive(all_[a].role, all_[b].role) || !usable(a) || !usable(b)) return size_;
+    return firstShared(taken_[a], taken_[b]);
+  }
+
+  /// Returns the number of bits that was probably meant, so that the field ends where the first of the others begins;
+  /// "" if its width is no likelier mistake than a place.
+  std::string narrower(size_t wide, size_t first, size_t within) const {
+    const size_t room = startOf(all_[first]) - startOf(all_[wide]), bits = all_[wide].bits;
+    if (all_[wide].type == Type::kFloat) return room == 32 ? "32" : "";  // the only narrower one
+    const size_t exchanged = 10 * (bits % 10) + bits / 10;               // such as 16 of 61
+    if (exchanged >= 8 && exchanged <= room && exchanged % 8 == 0) return std::to_string(exchanged);
+    return within > 1 && room % 8 == 0 ? std::to_string(room) : "";
+  }
+
+  void blame(size_t wide, size_t first, size_t within, const std::string& bits) {
+    too_wide_[wide] = true;
+    const Tree type = fields_.item(wide).at("type");
+    const std::string others = within == 1 ? "" : " (the first of " + std::to_string(within) + " fields in it)";
+    type.fail("\"" + type.text() + "\" takes the bytes " + std::to_string(all_[wide].at) + " to " +
+              std::to_string(all_[wide].at + all_[wide].bytes() - 1) + ", but " +
+              nameOf(fields_, all_[first], known_[first], first) + " begins at byte " +
+              std::to_string(startOf(all_[first]) / 8) + others + "; expected a narrower type (did you mean \"" +
+              type.text().substr(0, 1) + bits + "\"?), or other values of at");
+  }
+
+  const Tree& fields_;
+  const std::vector<Field>& all_;
+  const size_t size_;
+  const std::vector<FieldFacts>& known_;
+  std::vector<bool> too_wide_;
+  std::vector<std::vector<uint8_t>> taken_;
+};
 
 }  // namespace
 
@@ -76,22 +155,9 @@ std::vector<const Field*> outsideChecksum(const Report& report) {
 }
 
 void checkOverlaps(const Tree& fields, const Report& report, const std::vector<FieldFacts>& known) {
-  const auto usable = [&known](size_t i) { return known[i].role && known[i].placed; };
-  std::vector<std::vector<uint8_t>> taken;
-  for (const Field& field : report.fields) taken.push_back(bitsTaken(field, report.size));
-  for (size_t later = 1; later < taken.size(); ++later)
-    for (size_t i = 0; i < later; ++i) {
-      const bool matters = exclusive(report.fields[i].role, report.fields[later].role);
-      if (!matters || !usable(i) || !usable(later)) continue;
-      const size_t byte = firstShared(taken[i], taken[later]);
-      if (byte == report.size) continue;
-      const Tree tree = fields.item(later);
-      tree.at(tree.has("at") ? "at" : "bit_offset")
-          .fail("takes bits of byte " + std::to_string(byte) + ", which " +
-                nameOf(fields, report.fields[i], known[i], i) +
-                " uses already; correct at, bit_offset or type of one of the two fields");
-      break;
-    }
+  Overlaps overlaps(fields, report, known);
+  overlaps.checkWidths();
+  overlaps.checkPlaces();
 }
 
 }  // namespace hapticd::codec

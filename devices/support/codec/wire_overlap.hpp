@@ -30,8 +30,8 @@ std::vector<uint8_t> bitsTaken(const Field& field, size_t report_bytes);
 /// has no checksum.
 std::vector<const Field*> outsideChecksum(const Report& report);
 
-/// [main] Notes a problem for each field of a joint that shares a bit with another field. Flags may share a status
-/// byte.
+/// [main] Notes a problem for each field of a joint that shares a bit with another field: at its place, or at the type
+/// of a field that is so wide that others begin in it. Flags may share a status byte.
 /// @param known for each field of the report; a field whose role or position is unknown is not checked
 void checkOverlaps(const Tree& fields, const Report& report, const std::vector<FieldFacts>& known);
 

@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "base/clock.hpp"
+#include "control/client.hpp"
 
 namespace hapticd::control {
 
@@ -47,6 +48,10 @@ bool isAlive(const std::string& socket) {
 
 bool waitForEnd(const std::string& socket, double seconds) {
   return within(seconds, [&] { return !isAlive(socket); });
+}
+
+bool waitForStart(const std::function<std::string()>& socket, double seconds) {
+  return within(seconds, [&] { return connectTo(socket()); });
 }
 
 bool wasKilled(const std::string& socket) {

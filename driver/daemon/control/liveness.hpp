@@ -2,6 +2,7 @@
 /// Finds out which daemons run, by their files. A daemon holds a lock on NAME.lock as long as it lives, and NAME.sock
 /// exists while it serves. A daemon that was killed leaves both files, but no lock.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,10 @@ bool isAlive(const std::string& socket);
 /// [main] Waits until the daemon of this socket has ended and its name is free. @return false if it still lives after
 /// `seconds`
 bool waitForEnd(const std::string& socket, double seconds);
+
+/// [main] Waits until a daemon answers at a socket. @param socket returns its path, which may depend on folders that
+/// the daemon makes @return false if none answers after `seconds`
+bool waitForStart(const std::function<std::string()>& socket, double seconds);
 
 /// [main] Called after the connection to a daemon has ended. True if the daemon ended without removing its files. If
 /// the daemon is just ending normally, the call waits for its end.

@@ -153,16 +153,25 @@ class SceneLoader {
       addDevice({options_.device_file, "", {}, nullptr});
       return;
     }
-    if (text_.device != nullptr && text_.devices != nullptr)
-      in_.problem(*text_.device, "device", "both device and devices are given, expected one of them");
     if (text_.device != nullptr && text_.devices == nullptr) addNamed(*text_.device, "device");
     if (text_.devices != nullptr) addList(*text_.devices);
+    if (text_.device != nullptr && text_.devices != nullptr) refuseBoth(*text_.device);
     if (text_.device == nullptr && text_.devices == nullptr && options_.default_device) addDefault(root);
     if (text_.hand != nullptr && !scene_.devices.empty() && !hand_used_)
       in_.problem(*text_.hand, "hand",
                   "none of the scene's devices has a simulated hand; remove this key, or use a device whose module has "
                   "hand.* parameters");
     if (text_.hand != nullptr && scene_.devices.empty() && !hand_used_) checkHandPath(*text_.hand);
+  }
+
+  /// Refuses a device beside a list of devices, and reports the problems of its file, unless the list names it too.
+  void refuseBoth(const Node& node) {
+    in_.problem(node, "device", "both device and devices are given, expected one of them");
+    DeviceReference reference;
+    if (!readReference(node, "device", reference) || device_files_.contains(reference.file)) return;
+    const size_t count = scene_.devices.size();
+    addDevice(reference);
+    scene_.devices.erase(scene_.devices.begin() + static_cast<std::ptrdiff_t>(count), scene_.devices.end());
   }
 
   /// Checks that the file of the hand's path exists. Without a device, nothing else of the hand can be checked.
@@ -182,14 +191,19 @@ class SceneLoader {
   /// Adds a device: the node is a path, or a mapping with a path and the settings that this scene replaces.
   void addNamed(const Node& node, const std::string& key) {
     DeviceReference reference;
+    const bool is_right = readReference(node, key, reference);
+    const std::string name = is_right ? addDevice(reference) : reference.name;
+    if (!name.empty()) checkDeviceName(name, node, key);
+  }
+
+  /// Returns false if the reference has problems.
+  bool readReference(const Node& node, const std::string& key, DeviceReference& reference) {
     const size_t before = in_.problems().size();
     if (node.isMap())
       in_.object(node, key, kDeviceReferenceTable, &reference);
     else if (const auto file = in_.existingFile(node, key))
       reference.file = *file;
-    const bool is_right = in_.problems().size() == before;
-    const std::string name = is_right ? addDevice(reference) : reference.name;
-    if (!name.empty()) checkDeviceName(name, node, key);
+    return in_.problems().size() == before;
   }
 
   void checkDeviceName(const std::string& name, const Node& node, const std::string& key) {
@@ -212,6 +226,7 @@ class SceneLoader {
   /// Adds a device. @return its name; "" if its file has problems
   std::string addDevice(const DeviceReference& reference) {
     bool has_hand = false;
+    device_files_.insert(reference.file);
     auto device = loadDeviceFile(reference, catalog_, in_.problems(), &in_, text_.hand, &has_hand);
     hand_used_ = hand_used_ || has_hand;
     if (!device) return "";
@@ -231,7 +246,8 @@ class SceneLoader {
   Scene scene_;
   std::unordered_map<std::string, int> names_;
   std::map<std::string, Known> plugins_;
-  std::set<std::string> device_names_;  ///< also of devices that have problems
+  std::set<std::string> device_names_;            ///< also of devices that have problems
+  std::set<std::filesystem::path> device_files_;  ///< also of these
   bool hand_used_ = false;
 };
 

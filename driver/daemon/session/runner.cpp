@@ -59,7 +59,7 @@ std::unique_ptr<watch::Watchdog> watchdogOf(watch::WatchTarget& watched, bool ma
 /// Ends the process if a call of a module after the last tick did not return. If no module is in a call, it returns,
 /// and is called again later.
 void dieOfStop() {
-  if (const Owner* keeps = keepsTheEnd()) watch::endByFault("a call after the last tick that did not return", keeps);
+  if (const Owner* keeps = keepsTheEnd()) watch::endByFault("a stop() that did not return", keeps);
 }
 
 /// Runs the loop in virtual time. @param after called after the last tick; it calls modules, which may hang as well

@@ -177,22 +177,18 @@ std::string partOf(const std::string& key) {
   return isBelow(key, "parameters.arm.lengths") ? "parameters.arm.lengths" : key;
 }
 
-/// Returns true if a problem is about a list of angles whose numbers are all within the parameter's range. Then only
-/// the number or the order of its rows is wrong, and the unit of the angles can still be judged.
-bool hasAllowedAngles(const Node& root, const document::Problem& known) {
-  constexpr double kMost = 100;  // largest number of both parameters
+/// Returns true if a list of angles has a wrong number of rows, rows in the wrong order, or a number out of range,
+/// while all of it are numbers. The unit of the others can be judged then.
+bool hasAngles(const Node& root, const document::Problem& known) {
   const Node* list = isBelow(known.key, "parameters.arm.limits") ? find(root, {"parameters", "arm", "limits"})
                      : isBelow(known.key, "parameters.calibration.pose")
                          ? find(root, {"parameters", "calibration", "pose"})
                          : nullptr;
   if (list == nullptr || !list->isSequence()) return false;
-  const auto allowed = [](const Node& item) {
-    const auto number = item.isScalar() ? document::toNumber(item.scalar) : std::nullopt;
-    return number && std::abs(*number) <= kMost;
-  };
-  return std::all_of(list->items.begin(), list->items.end(), [&allowed](const Node& item) {
-    return item.isSequence() ? item.items.size() == 2 && std::all_of(item.items.begin(), item.items.end(), allowed)
-                             : allowed(item);
+  const auto number = [](const Node& item) { return item.isScalar() && document::toNumber(item.scalar); };
+  return std::all_of(list->items.begin(), list->items.end(), [&number](const Node& item) {
+    return item.isSequence() ? item.items.size() == 2 && std::all_of(item.items.begin(), item.items.end(), number)
+                             : number(item);
   });
 }
 
@@ -201,7 +197,7 @@ void dropKnown(const Node& root, const document::Problems& known, document::Prob
   std::erase_if(warnings, [&root, &known](const document::Problem& warning) {
     return std::any_of(known.begin(), known.end(), [&root, &warning](const document::Problem& one) {
       if (warning.key == "parameters.arm.limits" || warning.key == "parameters.calibration.pose")
-        if (hasAllowedAngles(root, one)) return false;
+        if (hasAngles(root, one)) return false;
       const std::string part = partOf(one.key);
       return !part.empty() && part != "parameters" && (isBelow(warning.key, part) || isBelow(part, warning.key));
     });

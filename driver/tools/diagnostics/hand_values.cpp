@@ -51,6 +51,14 @@ bool isRepeated(const HandScript& hand) {
   return hand.kind == HandScript::Kind::kStroke || hand.kind == HandScript::Kind::kCircle || hand.presses();
 }
 
+/// Returns true if the script beside this key is known. Of a misspelt script it is the one that was probably meant; if
+/// there is none, the script of another file may be given.
+bool knowsScriptOf(const scene::Device& device, const char* id, const UnreadKeys& unread) {
+  const scene::Value *script = givenIn(device.parameters, "hand.script"), *value = givenIn(device.parameters, id);
+  if (!unread.has("hand.script")) return true;
+  return script != nullptr && value != nullptr && script->place.file == value->place.file;
+}
+
 void checkHandRate(const HandValues& values, const HandScript& hand) {
   constexpr double kOften = 12;  // [Hz] nobody moves a hand so often
   if (!isRepeated(hand) || !values.isAbove("hand.rate", kOften)) return;
@@ -62,12 +70,14 @@ void checkHandRate(const HandValues& values, const HandScript& hand) {
 void checkSpring(const HandValues& values, const HandScript& hand) {
   constexpr double kSoft = 5, kAway = 0.01;  // [N/m]; [m]
   const scene::Value* spring = values.read("hand.stiffness");
-  const bool moves = isRepeated(hand) || hand.kind == HandScript::Kind::kPath;
+  const bool led = hand.kind == HandScript::Kind::kGuided;
+  const bool moves = isRepeated(hand) || hand.kind == HandScript::Kind::kPath || led;
   if (!moves || spring == nullptr || spring->number >= kSoft) return;
   values.tell("hand.stiffness",
-              fmt::format("{0:g} N/m is so soft that the hand does not follow its script: {1:g} mm away from it, the "
+              fmt::format("{0:g} N/m is so soft that the hand does not follow {3}: {1:g} mm away from it, the "
                           "spring pulls with {2:g} N; the value must be in N/m (1 N/mm is 1000 N/m)",
-                          spring->number, kAway / kThousandth, spring->number * kAway));
+                          spring->number, kAway / kThousandth, spring->number * kAway,
+                          led ? "the program that leads it" : "its script"));
 }
 
 const char* wordOf(HandScript::Kind script) {
@@ -124,7 +134,7 @@ void checkHandValues(const scene::Scene& scene, const scene::Device& device, con
   constexpr double kTremor = 1, kWander = 2;                 // [N]
   constexpr double kUsualTremor = 0.05, kUsualWander = 0.1;  // [N] the module's defaults
   checkIdleKeys(device, hand, unread, warnings);
-  if (!hand.moves()) return;
+  if (hand.kind == HandScript::Kind::kNone) return;
   const HandValues values(scene, device, unread, warnings);
   if (values.isAbove("hand.mass", kHeavy))
     values.tell("hand.mass",
@@ -133,13 +143,12 @@ void checkHandValues(const scene::Scene& scene, const scene::Device& device, con
                             values.read("hand.mass")->number, values.read("hand.mass")->number * kThousandth));
   values.checkTremor("hand.tremor", kTremor, kUsualTremor);
   values.checkTremor("hand.wander", kWander, kUsualWander);
-  if (values.isAbove("hand.lead_in", kLong))
+  if (hand.moves() && values.isAbove("hand.lead_in", kLong))
     values.tell("hand.lead_in", fmt::format("{0:g} s pass before the script begins; the value must be in s: {0:g} ms "
                                             "is {1:g} s",
                                             hand.lead_in, hand.lead_in * kThousandth));
-  if (unread.has("hand.script")) return;
-  checkHandRate(values, hand);
-  checkSpring(values, hand);
+  if (knowsScriptOf(device, "hand.rate", unread)) checkHandRate(values, hand);
+  if (knowsScriptOf(device, "hand.stiffness", unread)) checkSpring(values, hand);
 }
 
 }  // namespace hapticd::diagnostics

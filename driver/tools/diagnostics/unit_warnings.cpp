@@ -30,13 +30,32 @@ double largest(const std::vector<double>& numbers) {
   return most;
 }
 
-void beyondATurn(const Node* list, const char* key, const std::string& file, document::Problems& warnings) {
-  const double most = largest(numbersIn(list));
-  if (most <= 2 * M_PI) return;
+/// Returns the angles of more than a whole turn, each once, the largest first. Those beyond the parameters' range have
+/// an error.
+std::vector<double> beyondATurn(const Node* list) {
+  constexpr double kMost = 100;  // [rad]
+  std::vector<double> angles;
+  for (const double angle : numbersIn(list)) {
+    const bool known = std::find(angles.begin(), angles.end(), angle) != angles.end();
+    if (!known && std::abs(angle) > 2 * M_PI && std::abs(angle) <= kMost) angles.push_back(angle);
+  }
+  const auto largest = std::max_element(angles.begin(), angles.end(), [](double a, double b) {
+    return std::abs(a) != std::abs(b) ? std::abs(a) < std::abs(b) : a < b;
+  });
+  if (largest != angles.end()) std::rotate(angles.begin(), largest, largest + 1);
+  return angles;
+}
+
+void warnOfAngles(const Node* list, const char* key, const std::string& file, document::Problems& warnings) {
+  const std::vector<double> angles = beyondATurn(list);
+  if (angles.empty()) return;
+  std::string others;
+  for (size_t i = 1; i < angles.size(); ++i)
+    others += fmt::format("{}{:g}", i == 1 ? ", and so are " : ", ", angles[i]);
   document::report(
       warnings, file, list->line, list->column, key,
-      fmt::format("{:g} rad is more than a whole turn; the value must be in rad: {:g} degrees is {:.4g} rad", most,
-                  most, most * M_PI / 180));
+      fmt::format("{0:g} rad is more than a whole turn{1}; the value{2} must be in rad: {0:g} degrees is {3:.4g} rad",
+                  angles[0], others, others.empty() ? "" : "s", angles[0] * M_PI / 180));
 }
 
 /// Warns of angles in degrees. Below 10, they are within the range of the parameter, which ends at 10 rad; but the
@@ -157,6 +176,10 @@ bool idleZero(const std::string& text) {
 
 }  // namespace
 
+bool hasLimitsBeyondATurn(const Node& root) {
+  return !beyondATurn(find(root, {"parameters", "arm", "limits"})).empty();
+}
+
 void warnOfZeros(const Node& root, const std::string& file, document::Problems& warnings) {
   if (root.isScalar() && !root.quoted && idleZero(root.scalar))
     document::report(warnings, file, root.line, root.column, "",
@@ -179,8 +202,8 @@ void warnOfTurns(const Node& root, const std::string& file, document::Problems& 
 
 void warnOfUnits(const Node& root, const std::string& file, document::Problems& warnings) {
   warnOfZeros(root, file, warnings);
-  beyondATurn(find(root, {"parameters", "arm", "limits"}), "parameters.arm.limits", file, warnings);
-  beyondATurn(find(root, {"parameters", "calibration", "pose"}), "parameters.calibration.pose", file, warnings);
+  warnOfAngles(find(root, {"parameters", "arm", "limits"}), "parameters.arm.limits", file, warnings);
+  warnOfAngles(find(root, {"parameters", "calibration", "pose"}), "parameters.calibration.pose", file, warnings);
   twistInDegrees(find(root, {"parameters", "arm", "dh"}), file, warnings);
   chainTooLong(find(root, {"parameters", "arm", "dh"}), file, warnings);
   linkTooLong(find(root, {"parameters", "arm", "lengths"}), file, warnings);

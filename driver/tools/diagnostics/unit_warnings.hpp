@@ -12,6 +12,9 @@ namespace hapticd::diagnostics {
 /// that was probably written x, y, z, w.
 void warnOfUnits(const document::Node& root, const std::string& file, document::Problems& warnings);
 
+/// [main] Returns true if the limits of a joint are beyond a whole turn, so that warnOfUnits() warns of them.
+bool hasLimitsBeyondATurn(const document::Node& root);
+
 /// [main] Warns of whole numbers that begin with a zero, as in [0,05, 0], where a comma was meant as a decimal point.
 void warnOfZeros(const document::Node& root, const std::string& file, document::Problems& warnings);
 

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
+#include "document/csv.hpp"
 #include "document/node.hpp"
 #include "servo/core/minimum_jerk.hpp"
 #include "servo/safety/passivity/isolated.hpp"
@@ -97,28 +99,57 @@ void checkLoopRate(const scene::Scene& scene, const scene::Device& device, const
         rates + " is faster than the samples of " + device.name + own + ": some ticks get no new sample" + nearest);
 }
 
-/// Returns the place where a model's path is given, or the model's own place if its file no longer has the path.
-document::Place placeOfPath(const scene::Model& model) {
+/// Where a scene gives the path of a model, and the file of this path.
+struct PathKey {
+  document::Place place;
+  std::filesystem::path csv;  ///< empty if the scene no longer has the path
+};
+
+PathKey keyOfPath(const scene::Model& model) {
   document::Problems unread;
   const auto root = document::parseFile(model.place.file, unread);
   const document::Node* models = root ? root->find("models") : nullptr;
-  if (models == nullptr) return model.place;
+  if (models == nullptr) return {model.place, {}};
   for (const document::Node& node : models->items) {
     if (node.line != model.place.line || node.column != model.place.column) continue;
     const document::Node *path = node.find("path"), *parameters = node.find("parameters");
     if (path == nullptr && parameters != nullptr) path = parameters->find("path");
-    if (path != nullptr) return {model.place.file, path->line, path->column};
+    if (path != nullptr)
+      return {{model.place.file, path->line, path->column},
+              std::filesystem::path(model.place.file).parent_path() / path->scalar};
   }
-  return model.place;
+  return {model.place, {}};
 }
 
-/// The largest of several speeds or turning rates, and the time at which it begins.
+/// Returns " (ball.csv:3)" for a row of the file of a path, or "" if the file does not have this row any more.
+/// @param t [s] time in this row
+std::string lineOf(const std::filesystem::path& csv, size_t row, double t) {
+  constexpr size_t kMostBytes = 256u << 20;
+  document::Problems unread;
+  const document::CsvRules rules{{"t,x,y,z,qw,qx,qy,qz", "t,x,y,z"}, true, true};
+  const auto table = csv.empty() ? std::nullopt : document::readCsv(csv, kMostBytes, rules, unread);
+  if (!table || row >= table->rows() || table->row(row)[0] != t) return "";
+  return " (" + csv.filename().string() + ":" + std::to_string(table->lines[row]) + ")";
+}
+
+/// Returns advice if the positions of a path that is too fast seem to be in mm; else "".
+std::string seemInMillimetres(const std::vector<scene::PathPoint>& path, double speed) {
+  constexpr double kFar = 1, kThousandth = 1e-3;  // [m] no hand feels a model that is farther away
+  double farthest = 0;
+  for (const scene::PathPoint& point : path)
+    farthest = std::max(farthest, point.pose.position.lpNorm<Eigen::Infinity>());
+  if (farthest <= kFar || speed * kThousandth > servo::MinimumJerk::kMostSpeed) return "";
+  return "; positions must be in m: " + text(farthest) + " mm is " + text(farthest * kThousandth) + " m";
+}
+
+/// The largest of several speeds or turning rates, and the point of the path at which it begins.
 struct Fastest {
-  double rate = 0, at = 0;
-  void take(double now, double t) {
+  double rate = 0;
+  size_t point = 0;
+  void take(double now, size_t from) {
     if (now <= rate * (1 + 1e-9)) return;  // the first among equals
     rate = now;
-    at = t;
+    point = from;
   }
 };
 
@@ -150,24 +181,28 @@ document::Problems fastPaths(const scene::Scene& scene) {
     for (size_t k = 1; k < path.size(); ++k) {
       const scene::PathPoint &from = path[k - 1], &to = path[k];
       const double time = to.t - from.t;
-      speed.take((to.pose.position - from.pose.position).norm() / time, from.t);
-      turn.take(to.pose.orientation.angularDistance(from.pose.orientation) / time, from.t);
+      speed.take((to.pose.position - from.pose.position).norm() / time, k - 1);
+      turn.take(to.pose.orientation.angularDistance(from.pose.orientation) / time, k - 1);
     }
     const std::string key = "models[" + std::to_string(i) + "].path";
-    const auto judge = [&](const char* does, const Fastest& fastest, double most, const char* unit) {
+    const auto judge = [&](const char* does, const Fastest& fastest, double most, const char* unit,
+                           const std::string& advice) {
       if (fastest.rate <= most * 1.001) return;
-      document::report(problems, placeOfPath(scene.models[i]), key,
+      const PathKey at = keyOfPath(scene.models[i]);
+      document::report(problems, at.place, key,
                        scene.models[i].name + " " + does + " at up to " + text(fastest.rate) + unit + ", from t = " +
-                           text(fastest.at) + " s, and a path does not yield to a hand; expected at most " +
-                           text(most) + unit + ", the limit of ctl move");
+                           text(path[fastest.point].t) + " s" + lineOf(at.csv, fastest.point, path[fastest.point].t) +
+                           ", and a path does not yield to a hand; expected at most " + text(most) + unit +
+                           ", the limit of ctl move" + advice);
     };
-    judge("moves", speed, servo::MinimumJerk::kMostSpeed, " m/s");
-    judge("turns", turn, servo::MinimumJerk::kMostTurn, " rad/s");
+    judge("moves", speed, servo::MinimumJerk::kMostSpeed, " m/s", seemInMillimetres(path, speed.rate));
+    judge("turns", turn, servo::MinimumJerk::kMostTurn, " rad/s", "");
   }
   return problems;
 }
 
-std::string overheating(const std::string& device, double sustained, const std::vector<double>& forces, double rate) {
+std::string overheating(const std::string& device, double sustained, const std::vector<double>& forces, double rate,
+                        const std::string& pusher) {
   if (sustained <= 0 || forces.empty()) return "";
   double heat = 0;
   for (const double force : forces) heat += force * force;
@@ -175,8 +210,12 @@ std::string overheating(const std::string& device, double sustained, const std::
   if (effective <= sustained) return "";
   return device + " gave " + text(effective) + " N (root of the mean square of the last " +
          text(std::round(static_cast<double>(forces.size()) / rate)) + " s) and sustains " + text(sustained) +
-         " N: real motors would overheat; use a softer model, or limits.force: " + text(sustained) +
-         " in the device file, which they sustain";
+         " N: real motors would overheat; " +
+         (pusher.empty()
+              ? "use a softer model, or limits.force: " + text(sustained) + " in the device file"
+              : "no model was touched, and " + pusher +
+                    " pushed: let it push less, or write clients.max_force: " + text(sustained) + " in the scene") +
+         ", which they sustain";
 }
 
 }  // namespace hapticd::tune

@@ -30,7 +30,9 @@ document::Problems fastPaths(const scene::Scene& scene);
 
 /// [main] Returns a sentence for the user if an arm was asked for more force than it sustains, or "".
 /// @param sustained [N] force that the arm sustains for any length of time; 0 if unknown @param forces [N] forces of
-/// successive ticks; their mean square heats the motors @param rate [Hz] rate of these ticks
-std::string overheating(const std::string& device, double sustained, const std::vector<double>& forces, double rate);
+/// successive ticks; their mean square heats the motors @param rate [Hz] rate of these ticks @param pusher program
+/// whose force this was, because no model was touched; "" if models gave it
+std::string overheating(const std::string& device, double sustained, const std::vector<double>& forces, double rate,
+                        const std::string& pusher = "");
 
 }  // namespace hapticd::tune

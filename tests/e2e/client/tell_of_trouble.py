@@ -53,14 +53,7 @@ class Daemon:
         with open(self.log, "w") as log:
             self.run = subprocess.Popen([HAPTICD, "run", scene, "--name", "trouble"], env=self.environment,
                                         stdout=subprocess.DEVNULL, stderr=log)
-        until(lambda: os.path.exists(os.path.join(folder, "trouble.sock")) and self.connects(), 30)
-
-    def connects(self):
-        try:
-            self.connect().close()
-            return True
-        except hapticd.HapticdError:
-            return False
+        hapticd.connect("trouble", folder=folder, wait=30).close()
 
     def connect(self):
         return hapticd.connect("trouble", folder=self.folder)
@@ -218,6 +211,19 @@ def many_files(daemon):
     resource.setrlimit(resource.RLIMIT_NOFILE, limits)
 
 
+def closed(daemon):
+    """Who reads from a client that is closed is told so."""
+    with daemon.connect() as h:
+        follow, stream = h.follow("ticks"), h.streams["ticks"]
+        next(follow)
+        h.state(ARM)
+    check("a daemon that runs has not ended, also for a closed client", not h.ended() and not h.died() and h.alive())
+    for name, action in (("rows", lambda: h.rows("ticks")), ("rows of a stream", lambda: stream.last(1)),
+                         ("rows that it follows", lambda: next(follow)), ("the state", lambda: h.state(ARM)),
+                         ("a tick that it waits for", lambda: h.wait(1 << 40)), ("requests", h.status)):
+        check(f"a closed client says so of {name}", raises(action, "this client is closed"))
+
+
 def told_by_ctl(daemon):
     """`ctl lead` outlives its daemon."""
     line = subprocess.Popen([HAPTICD, "ctl", "--name", "trouble", "lead", "door"], env=daemon.environment, stdin=subprocess.PIPE,
@@ -258,6 +264,7 @@ def dies(daemon):
     check("who follows gets the last rows, then the news", raises(lambda: [None for _ in rows]))
     check("who waits for events too", raises(lambda: [None for _ in events]))
     check("leaving the with tells it", raises(lambda: h.__exit__(None, None, None)))
+    check("and a closed client knows that its daemon ended", h.ended() and h.died())
     another = Daemon(daemon.folder)  # of the same name
     rest, _ = program.communicate("\n", timeout=120)
     told_by_ctl(another)
@@ -268,7 +275,7 @@ def dies(daemon):
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     one = Daemon(scratch)
     try:
-        for case in (held, logged, refused, pushed_again, late, forgotten, many_files, dies):
+        for case in (held, logged, refused, pushed_again, late, forgotten, many_files, closed, dies):
             case(one)
     finally:
         one.run.kill()  # also where a case did not come to its end

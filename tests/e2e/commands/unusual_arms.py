@@ -338,6 +338,18 @@ def refused(folder):
     check("a scene tells all of its device", done.returncode == 2 and len(told) == 2 and all("parameters.wire." in line for line in told), done.stdout)
 
 
+def degrees(folder):
+    """Limits in degrees are told at once, and nothing is told that follows from them."""
+    rad = "[[-1.2, 1.2], [-0.3, 0.9], [-1, 1]]"
+    for i, (limits, words) in enumerate((("[[-70, 70], [10, 50], [-60, 60]]", ("70 rad is more than a whole turn, and so are -70, 10, 50, -60, 60; the values",)),
+                                         ("[[-120, 120], [10, 50], [-60, 60]]", ("[0][0]: -120 rad is out of range", "60 rad is more than a whole turn, and so are 10, 50, -60;")))):
+        file = os.path.join(folder, f"degrees{i}.yaml")
+        with open(file, "w") as out:
+            out.write(WIRED.replace(rad, limits))
+        done = subprocess.run([HAPTICD, "check", file], capture_output=True, text=True, timeout=120)
+        check(f"limits in degrees are told at once: {limits}", all(word in done.stdout for word in words) and "inverse()" not in done.stdout, done.stdout)
+
+
 def written(file, text, changes):
     """The file without its bar, and the place of it."""
     for old, new in changes.items():
@@ -376,6 +388,7 @@ def main():
             odd = [w["what"] for w in told[file]["warnings"] if "sustains" not in w["what"]]
             check(f"{os.path.basename(file)} is as it should be", told[file]["ok"] and not odd, odd)
         refused(folder)
+        degrees(folder)
         together(folder)
         strict(folder)
     finish()

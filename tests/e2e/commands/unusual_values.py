@@ -105,6 +105,8 @@ SCENES = [
      "60 times a minute is 1 Hz"),
     ("a hand on a spring in N/mm", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{radius: 0.046, stiffness: |0.5}}\n"), "hand.stiffness",
      "does not follow its script"),
+    ("a guided hand on such a spring", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{script: guided, stiffness: |0.5}}\n"), "hand.stiffness",
+     "does not follow the program that leads it"),
     ("a hand of 70 kg", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{radius: 0.046, mass: |70}}\n"), "hand.mass", "70 g is 0.07 kg"),
     ("a tremor in mN", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{radius: 0.046, tremor: |5}}\n"), "hand.tremor", "5 mN is 0.005 N"),
     ("unrest in mN", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{radius: 0.046, wander: |10}}\n"), "hand.wander", "10 mN is 0.01 N"),
@@ -259,6 +261,8 @@ LATE = [
     ("what a plugin refuses, and a wave in mm", scene(model("friction_dynamic: |0.3, texture: {amplitude: 0.0001, wavelength: |0.5}")),
      ["more than friction_static", "0.5 mm is 0.0005 m"]),
     ("what is stiff beside a typo", scene(model("dampnig: 3, stiffness: |80000")), ["stable up to"]),
+    ("a spring in N/mm beside a misspelt script", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{script: |guidet, stiffness: |0.5}}\n"),
+     ["expected one of", "does not follow the program that leads it"]),
 ]
 # What follows only from a value that was not read is not told.
 FOLLOWS = [
@@ -272,6 +276,7 @@ FOLLOWS = [
     ("a place that is wrong", scene(model("stiffness: 800"), model("stiffness: 800", name="two") + "    pose: {position: [1, 2]}\n"), "the same geometry"),
     ("a rate that is wrong", scene(model("stiffness: 3000"), top=f"device: {ARM}\nservo: {{rate: 100 Hz}}\n"), "is stable up to"),
     ("a hand whose length is wrong", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{script: circle, radius: 46, rate: 100}}\n"), "faster than a human"),
+    ("a hand's script that is none", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{script: zzzzzz, stiffness: 0.5}}\n"), "so soft"),
     ("a joint misspelt", body(MASS + "tether: 20, gravity: false, joint: hinges, pivot: [0.05, 0, 0]"), "add joint"),
     ("a stiffness misspelt", scene(model("axis: [0, 0, -1], stifness: 100, end_stiffness: 800", "push_button", BOX)), "too soft for a stop"),
 ]

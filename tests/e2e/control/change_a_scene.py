@@ -129,10 +129,19 @@ def scene_without_an_arm(environment, folder):
         file.write("hapticd: 1\ndevice: own-arm.yaml\nmodels: []\n")
     run = subprocess.Popen([HAPTICD, "run", os.path.join(folder, "owner.yaml"), "--name", "owner"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     atexit.register(run.kill)
-    until(lambda: os.path.exists(os.path.join(folder, "owner.sock")), 30)
+    waited = subprocess.run([HAPTICD, "ctl", "--name", "owner", "--wait", "30", "status"], env=environment, capture_output=True, text=True, timeout=60)
+    check("ctl waits for a daemon that starts", waited.returncode == 0 and '"ok": true' in waited.stdout, waited)
+    absent = subprocess.run([HAPTICD, "ctl", "--name", "nobody", "--wait", "0.2", "status"], env=environment, capture_output=True, text=True, timeout=60)
+    check("but not for ever", absent.returncode == 1 and "no daemon answers" in absent.stderr, absent)
     done = subprocess.run([HAPTICD, "ctl", "--name", "owner", "add", os.path.join(folder, "no-arm.yaml")], env=environment, capture_output=True,
                           text=True, timeout=60)
     check("a scene that names no arm can be added", done.returncode == 0, done)
+    with open(os.path.join(folder, "slip.yaml"), "w") as file:
+        file.write("hapticd: 1\nmodels:\n" + BALL.format(source=SOURCE, name="slip", x=0.1).replace("sphere.yaml", "sphre.yaml"))
+    done = subprocess.run([HAPTICD, "ctl", "--name", "owner", "add", os.path.join(folder, "slip.yaml")], env=environment, capture_output=True,
+                          text=True, timeout=60)
+    check("a misspelt file is told as check tells it", done.returncode == 1 and "there is no file /" in done.stderr and
+          '(did you mean "sphere.yaml"?)' in done.stderr and "passed along" not in done.stderr, done)
     run.terminate()
     run.wait(timeout=30)
 

@@ -15,7 +15,7 @@ import warnings
 from collections import deque
 from typing import Any, Callable, Iterator, Optional, Sequence
 
-from ._error import HapticdError, Named, NoForceWarning, Refused, meant
+from ._error import CLOSED, HapticdError, Named, NoForceWarning, Refused, meant
 from ._lead import ForceLead, PoseLead
 from ._models import Model
 from ._push import ForceThread
@@ -86,6 +86,8 @@ class _Line:
             line = json.dumps(request, allow_nan=False, default=_plain)
         except ValueError:
             raise ValueError(f"a number of the request is not finite, expected finite numbers: {request}") from None
+        if self.closed():
+            raise HapticdError(CLOSED)
         try:
             self._socket.sendall(line.encode() + b"\n")
         except OSError as error:
@@ -95,7 +97,7 @@ class _Line:
         """Returns the next line, or None if none came in time."""
         end = None if timeout is None else time.monotonic() + timeout
         while not self._lines:
-            if self._socket.fileno() < 0:
+            if self.closed():
                 return None
             left = None if end is None else max(end - time.monotonic(), 0)
             ready = select.poll()  # select.select() cannot wait for a descriptor above 1023
@@ -129,9 +131,13 @@ class _Line:
         if rest:
             self._begun_with += fds
 
+    def closed(self) -> bool:
+        """Tells whether this end is closed."""
+        return self._socket.fileno() < 0
+
     def ended(self) -> bool:
         """Tells whether the other end is closed. The kernel reports this at once, even if the process was killed."""
-        if self._socket.fileno() < 0:
+        if self.closed():
             return False
         socket_ = select.poll()
         socket_.register(self._socket, 0)
@@ -267,8 +273,9 @@ class Client:
             return None
 
     def ended(self) -> bool:
-        """Tells whether the daemon of this client has ended, even if another daemon has its name now."""
-        return self._line.ended() and (self._file_of_box() != self._box_file or not self.alive())
+        """Tells whether the daemon of this client has ended, even if another daemon has its name now. It also does so after
+        `close`."""
+        return (self._line.closed() or self._line.ended()) and (self._file_of_box() != self._box_file or not self.alive())
 
     def died(self) -> bool:
         """Tells whether the daemon ended without removing its files, because it was killed or crashed."""
@@ -279,6 +286,8 @@ class Client:
                 + "\n  fix: start it again with hapticd run, then connect again")
 
     def _check(self) -> None:
+        if self._line.closed():
+            raise HapticdError(CLOSED)
         if self.ended():
             raise HapticdError(self._gone())
 
@@ -458,7 +467,7 @@ class Client:
             pass  # it has ended with the model
 
     def close(self) -> None:
-        """Ends all leads of this connection."""
+        """Ends all leads of this connection. After it only `about`, `devices`, `alive`, `ended` and `died` can be asked."""
         self._line.close()
         for memory in (self._states, self._rings):
             if memory is not None:
@@ -475,7 +484,14 @@ class Client:
             raise HapticdError(gone)
 
 
-def connect(name: str = "hapticd", folder: Optional[str] = None, timeout: float = 10) -> Client:
+def connect(name: str = "hapticd", folder: Optional[str] = None, timeout: float = 10, wait: float = 0) -> Client:
     """Connects to the daemon `name`. `folder` is its runtime folder, which is found if it is not given; `timeout` is
-    the longest time for an answer in seconds."""
-    return Client(name, folder, timeout)
+    the longest time for an answer in seconds. If no daemon of this name runs yet, it tries again for `wait` seconds."""
+    end = time.monotonic() + wait
+    while True:
+        try:
+            return Client(name, folder, timeout)
+        except HapticdError:
+            if time.monotonic() >= end:
+                raise
+        time.sleep(0.02)

@@ -5,6 +5,10 @@ from __future__ import annotations
 from typing import Iterable
 
 
+CLOSED = ("this client is closed, by close() or because its with block has ended"
+          "\n  fix: read within the block, or connect again")
+
+
 class HapticdError(Exception):
     """There is no daemon, it has ended, or its answer cannot be understood."""
 

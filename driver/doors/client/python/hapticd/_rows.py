@@ -10,7 +10,7 @@ import struct
 from dataclasses import dataclass
 from typing import Any, Optional
 
-from ._error import HapticdError, Named
+from ._error import CLOSED, HapticdError, Named
 
 try:
     import numpy
@@ -78,6 +78,8 @@ class Stream:
     @property
     def written(self) -> int:
         """The number of rows written so far, which is also the number of the next row."""
+        if self._memory.closed:
+            raise HapticdError(CLOSED)
         return struct.unpack_from("<Q", self._memory, self._count_at)[0]
 
     def _kept(self, first: int, written: int) -> int:

@@ -172,7 +172,8 @@ TEST(Wire, ATorqueHasBothSigns) {
                            R"("type":"u16","scale":0.001,"offset":-32.768)"})
     EXPECT_EQ(complaintOf(positionAnd(""), good), "") << good;
   EXPECT_EQ(complaintOf(positionAnd(""), R"("type":"u16","scale":0.001)"),
-            "wire.output.fields[0].type: \"u16\" can only express 0 to 65.535 N m with this scale and offset; expected both signs: "
+            "wire.output.fields[0].type: \"u16\" can only express 0 to 65.535 N m with this scale and offset; expected "
+            "both signs: "
             "use a signed type such as i16, or an offset that puts zero in the middle");
   EXPECT_NE(complaintOf(positionAnd(""), R"("type":"i16","scale":0.001,"offset":33)").find("expected both signs"),
             std::string::npos);
@@ -238,8 +239,8 @@ TEST(Wire, AllMistakesAreToldAtOnce) {
         "wire.input.fields[0].joint: 4", "wire.input.fields[0].at: 9", "wire.input.fields[0].type: \"i99\"",
         "wire.input.fields[1].type: \"u8\", expected u16",
         "wire.input.fields[1].from: 0, so the checksum covers itself",
-        "wire.input.fields[1].initial: cannot be used with method: crc16-modbus, only with", "wire.input.fields[2].is: \"nothing\"",
-        "wire.output.fields[0].at: 1", "wire.output.fields[1].bit: 4"})
+        "wire.input.fields[1].initial: cannot be used with method: crc16-modbus, only with",
+        "wire.input.fields[2].is: \"nothing\"", "wire.output.fields[0].at: 1", "wire.output.fields[1].bit: 4"})
     EXPECT_NE(said.find(expected), std::string::npos) << expected << "\n  in:\n" << said;
   EXPECT_LE(lines(said), 24u) << said;
 }
@@ -283,38 +284,57 @@ std::string arm(const std::string& from, const std::string& to, const std::strin
   return text.replace(at, from.size(), to);
 }
 
+/// Returns what is wrong with an arm with three joints.
+std::string wrongOfThree(const std::string& json) {
+  try {
+    readWire(json, 3);
+    return "";
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+}
+
+TEST(Wire, AFieldThatIsTooWideIsToldAtItsTypeAndNotAtTheFieldsInIt) {
+  const std::string exchanged = wrongOfThree(arm(R"("at":0,"type":"i16")", R"("at":0,"type":"i61")"));
+  EXPECT_NE(exchanged.find("fields[0].type: \"i61\" takes the bytes 0 to 7, but fields[1] (position of joint 2) begins "
+                           "at byte 2 (the first of 4 fields in it); expected a narrower type (did you mean \"i16\"?)"),
+            std::string::npos)
+      << exchanged;
+  EXPECT_EQ(lines(exchanged), 1u) << exchanged;
+  const std::string last = wrongOfThree(arm(R"("at":4,"type":"i16")", R"("at":4,"type":"i61")"));
+  EXPECT_EQ(lines(last), 1u) << last;  // the report has no so many bytes
+  const std::string wide = wrongOfThree(arm(R"("at":2,"type":"i16")", R"("at":2,"type":"i40")"));
+  EXPECT_NE(wide.find("fields[1].type: \"i40\""), std::string::npos) << wide;
+  EXPECT_EQ(lines(wide), 1u) << wide;
+  const std::string place = wrongOfThree(arm(R"("at":4,"type":"i16")", R"("at":5,"type":"i16")"));
+  EXPECT_EQ(place.find("type"), place.find("type of one of the two")) << place;  // a place is as likely
+}
+
 TEST(Wire, OneWrongFieldHidesNoOtherProblem) {
-  const auto said = [](const std::string& json) {
-    try {
-      readWire(json, 3);
-      return std::string();
-    } catch (const std::invalid_argument& e) {
-      return std::string(e.what());
-    }
-  };
-  ASSERT_EQ(said(arm("\"at\":0", "\"at\":0")), "");
+  ASSERT_EQ(wrongOfThree(arm("\"at\":0", "\"at\":0")), "");
   // A field that is no position cannot be the missing one, and a second field of a joint is told beside it.
   const std::string twice = R"("joint":1,"at":2,"type":"i16")";
   std::string both = arm(R"("joint":2,"at":2,"type":"i16")", twice);
   both.replace(both.find(R"("button":1)"), 10, R"("button":0)");
   for (const char* words : {"fields[3].button: ", "fields[1].joint: 1, but fields[0] is", "no position of joint 2"})
-    EXPECT_NE(said(both).find(words), std::string::npos) << words << "\n" << said(both);
+    EXPECT_NE(wrongOfThree(both).find(words), std::string::npos) << words << "\n" << wrongOfThree(both);
   // Fields overlap, although the size is wrong or another field is.
   for (const auto& [right, wrong] :
        {std::pair{R"("size":9)", R"("size":"x")"}, std::pair{R"("button":1)", R"("button":0)"}}) {
     std::string overlap = arm(R"("joint":2,"at":2)", R"("joint":2,"at":1)");
     overlap.replace(overlap.find(right), std::string(right).size(), wrong);
-    EXPECT_NE(said(overlap).find("fields[1].at: takes bits of byte 1, which fields[0] (position of joint 1)"),
+    EXPECT_NE(wrongOfThree(overlap).find("fields[1].at: takes bits of byte 1, which fields[0] (position of joint 1)"),
               std::string::npos)
-        << said(overlap);
+        << wrongOfThree(overlap);
   }
   // A position of an unknown joint may be the missing one: one mistake is one line.
-  EXPECT_EQ(lines(said(arm("\"joint\":2", "\"joint\":9"))), 1u) << said(arm("\"joint\":2", "\"joint\":9"));
+  EXPECT_EQ(lines(wrongOfThree(arm("\"joint\":2", "\"joint\":9"))), 1u)
+      << wrongOfThree(arm("\"joint\":2", "\"joint\":9"));
   // A number is not judged by the range of a type that is unknown.
-  EXPECT_EQ(lines(said(arm("\"at\":7,\"type\":\"u16\"", "\"at\":7,\"type\":\"uint16\""))), 1u);
-  EXPECT_EQ(
-      lines(said(arm("\"rate\":1000", "\"rate\":1000", R"(,{"is":"constant","at":8,"type":"word","value":40000})"))),
-      1u);
+  EXPECT_EQ(lines(wrongOfThree(arm("\"at\":7,\"type\":\"u16\"", "\"at\":7,\"type\":\"uint16\""))), 1u);
+  EXPECT_EQ(lines(wrongOfThree(
+                arm("\"rate\":1000", "\"rate\":1000", R"(,{"is":"constant","at":8,"type":"word","value":40000})"))),
+            1u);
 }
 
 TEST(Wire, AMarkIsJudgedAlthoughAnotherFieldIsWrong) {

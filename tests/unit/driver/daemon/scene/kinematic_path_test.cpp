@@ -47,6 +47,20 @@ TEST(KinematicPath, NamesLineColumnAndReason) {
             "p.csv:1:1: there are no rows, expected a header t,x,y,z,qw,qx,qy,qz or t,x,y,z and at least one row");
 }
 
+TEST(KinematicPath, ReportsEveryProblemOfAFile) {
+  Problems problems;
+  parseKinematicPath(
+      "t,x,y,z,qw,qx,qy,qz\n0,a,0,b,1,0,0,0\n1,0,0,0,2,0,0,0\n1,0,0,0,1,0,0,0\n2,0,0,0,1,1,0,0\n0.5,0,c,0,1,0,0,0\n",
+      "p.csv", problems);
+  std::string all;
+  for (const document::Problem& problem : problems) all += problem.text() + "\n";
+  for (const char* one : {"p.csv:2:3: x: \"a\"", "p.csv:2:7: z: \"b\"", "p.csv:3:1: qw: the quaternion has length 2",
+                          "p.csv:4:1: t: 1 does not grow", "p.csv:5:1: qw:", "p.csv:6:7: y: \"c\"",
+                          "p.csv:6:1: t: 0.5 does not grow from row to row, expected more than 2"})
+    EXPECT_NE(all.find(one), std::string::npos) << one << "\n" << all;
+  EXPECT_EQ(problems.size(), 7u) << all;
+}
+
 TEST(KinematicPath, StopsReportingAFileThatIsWrongThroughout) {
   std::string text = "t,x,y,z\n";
   for (int i = 0; i < 100000; ++i) text += "what is this\n";

@@ -89,6 +89,31 @@ TEST_F(Load, RefusesWrongHdKeysByName) {
   refused("", "clients: {mode: add, origin: [0, 0]}\n", "clients.origin");
 }
 
+TEST_F(Load, ReportsTheProblemsOfADeviceBesideAListOfDevices) {
+  const auto told = [&](const std::string& top) {
+    std::string all;
+    for (const auto& problem : load(put("scene.yaml", "hapticd: 1\n" + top + "models: []\n"), catalog_).problems)
+      all += problem.text() + "\n";
+    return all;
+  };
+  const std::string wrong = "hapticd-device: 1\nmodule: test_device\nparameters: {gain: 2, port: /dev/nothing}\n";
+  put("one.yaml", wrong + "hd: {modell: x}\n"), put("two.yaml", wrong + "hd: {serail: 1}\n");
+  const std::string both = told("device: one.yaml\ndevices: [two.yaml]\n");
+  for (const char* one : {"both device and devices", "did you mean \"model\"", "did you mean \"serial\""})
+    EXPECT_NE(both.find(one), std::string::npos) << one << "\n" << both;
+  const std::string absent = told("device: absent.yaml\ndevices: [two.yaml]\n");
+  EXPECT_NE(absent.find("there is no file"), std::string::npos) << absent;
+  const std::string same = told("device: two.yaml\ndevices: [two.yaml]\n");
+  EXPECT_EQ(same.find("serail"), same.rfind("serail")) << same;
+}
+
+TEST_F(Load, SaysThatARateSeemsToBeInKilohertz) {
+  const Loaded loaded =
+      load(put("scene.yaml", "hapticd: 1\ndevice: arm.yaml\nservo: {rate: 1}\nmodels: []\n"), catalog_);
+  ASSERT_FALSE(loaded.problems.empty());
+  EXPECT_NE(loaded.problems[0].text().find("; 1 kHz is 1000 Hz"), std::string::npos) << loaded.problems[0].text();
+}
+
 TEST_F(Load, FillsEveryKindOfParameter) {
   const Scene scene = good(
       "device: arm.yaml\nmodels:\n  - name: cup\n    plugin: test_shape\n"

@@ -61,12 +61,25 @@ TEST(FastPaths, AreToldOnceWithTheirPlaceAndTheirFastestPiece) {
   std::ofstream(file) << "models:\n  - name: door\n    path: slow.csv\n  - name: ball\n    path: fast.csv\n";
   scene.models[1].place = {file, 4, 5};
   scene.models[1].path = {pointOf(0, 0, 0), pointOf(1, 0.1, 0), pointOf(1.1, 0.6, 0), pointOf(1.3, 0.6, 2)};
+  std::ofstream(testing::TempDir() + "fast.csv")
+      << "# made by hand\nt,x,y,z\n0,0,0,0\n1,0.1,0,0\n1.1,0.6,0,0\n1.3,0.6,0,0\n";
   const document::Problems found = fastPaths(scene);
   ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(found[0].text().find(file + ":5:11: models[1].path: ball moves at up to 5 m/s, from t = 1 s, and a path"),
+  EXPECT_EQ(found[0].text().find(file + ":5:11: models[1].path: ball moves at up to 5 m/s, from t = 1 s (fast.csv:4), "
+                                        "and a path"),
             0u)
       << found[0].text();
+  EXPECT_EQ(found[0].text().find("must be in m"), std::string::npos) << found[0].text();
   EXPECT_NE(found[1].text().find("turns at up to 10 rad/s, from t = 1.1 s"), std::string::npos) << found[1].text();
+}
+
+TEST(FastPaths, AreToldOfPositionsThatSeemToBeInMillimetres) {
+  scene::Scene scene;
+  scene.models.resize(1);
+  scene.models[0].path = {pointOf(0, 0, 0), pointOf(1, 50, 0)};
+  const document::Problems found = fastPaths(scene);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].text().find("positions must be in m: 50 mm is 0.05 m"), std::string::npos) << found[0].text();
 }
 
 TEST(UnstableSettings, AreNoneWhereTheArmBearsThem) {
@@ -129,6 +142,13 @@ TEST(Overheating, IsToldOfTheRootOfTheMeanSquareBeyondWhatIsSustained) {
   EXPECT_NE(overheating("arm", 1.4, pulses, 1).find("the last 4 s"), std::string::npos);
   EXPECT_EQ(overheating("arm", 2.1, pulses, 1), "");
   EXPECT_EQ(overheating("arm", 0, pulses, 1), "");  // unknown
+}
+
+TEST(Overheating, NamesTheProgramThatPushedWhereNoModelWasTouched) {
+  const std::string text = overheating("arm", 1.4, {2, 2}, 1, "process 12 (spring.py)");
+  EXPECT_NE(text.find("process 12 (spring.py) pushed"), std::string::npos) << text;
+  EXPECT_NE(text.find("clients.max_force: 1.4"), std::string::npos) << text;
+  EXPECT_EQ(text.find("softer model"), std::string::npos) << text;
 }
 
 }  // namespace
