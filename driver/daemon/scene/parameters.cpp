@@ -226,10 +226,21 @@ static std::vector<std::string> unitsOf(const host::ParamInfo& param) {
   return units.size() == param.columns ? units : std::vector<std::string>{param.unit};
 }
 
+/// Returns advice for a list of which some numbers are beyond the range because their decimal commas separate numbers.
+static std::string suggestDecimalsBeyond(const Node& list, const host::ParamInfo& param) {
+  const bool beyond = std::any_of(list.items.begin(), list.items.end(), [&param](const Node& item) {
+    const auto number = item.isScalar() ? toNumber(item.scalar) : std::nullopt;
+    return number && (*number < param.min || *number > param.max);
+  });
+  return beyond ? suggestDecimals(list, 2) : "";
+}
+
 bool ParameterReader::readArray(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value) {
   const size_t before = in_->problems().size();
   bool shaped = true;  // a list of right shape with wrong numbers is kept for drafts, so that its length can be judged
   const std::vector<std::string> units = unitsOf(param);
+  if (const std::string advice = suggestDecimalsBeyond(node, param); !advice.empty())
+    return in_->problem(node, key, "zeros and whole numbers take turns" + advice), false;
   const auto add = [&](const Node& item, const std::string& path, size_t column) {
     const Range of_column{param.min, param.max, units[column % units.size()].c_str()};
     const bool shown = in_->problems().size() - before < kShownProblems;
@@ -266,7 +277,8 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
   const bool ragged = param.columns > 1 && count % param.columns != 0;
   if (!ragged && count >= param.min_count && count <= param.max_count) return true;
   in_->problem(node, key,
-               std::to_string(count) + (count == 1 ? " number" : " numbers") + ", expected " + countText(param));
+               std::to_string(count) + (count == 1 ? " number" : " numbers") + ", expected " + countText(param) +
+                   document::suggestDecimals(node, 1));
   return false;
 }
 
