@@ -172,7 +172,8 @@ TEST(Wire, ATorqueHasBothSigns) {
                            R"("type":"u16","scale":0.001,"offset":-32.768)"})
     EXPECT_EQ(complaintOf(positionAnd(""), good), "") << good;
   EXPECT_EQ(complaintOf(positionAnd(""), R"("type":"u16","scale":0.001)"),
-            "wire.output.fields[0].type: \"u16\" can only express 0 to 65.535 N m with this scale and offset; expected both signs: "
+            "wire.output.fields[0].type: \"u16\" can only express 0 to 65.535 N m with this scale and offset; expected "
+            "both signs: "
             "use a signed type such as i16, or an offset that puts zero in the middle");
   EXPECT_NE(complaintOf(positionAnd(""), R"("type":"i16","scale":0.001,"offset":33)").find("expected both signs"),
             std::string::npos);
@@ -225,6 +226,32 @@ TEST(Wire, AMisspeltWordIsUnderstoodInside) {
   EXPECT_NE(complaint(changed("\"position\"", "\"positon\"")).find("(did you mean \"position\"?)"), std::string::npos);
 }
 
+TEST(Wire, ABlockUnderAMisspeltKeyIsReadAsTheOneThatIsMeant) {
+  std::string text = changed("\"output\"", "\"ouput\"");
+  EXPECT_EQ(lines(complaint(text)), 1u) << complaint(text);
+  for (size_t at = 0; (at = text.find("\"fields\"", at)) != std::string::npos;) text.replace(at, 8, "\"feilds\"");
+  text.replace(text.find("i16"), 3, "i65");
+  const std::string said = complaint(text);
+  for (const char* expected : {"wire.ouput: unknown key", "wire.ouput.feilds: unknown key",
+                               "wire.input.feilds: unknown", "wire.input.feilds[0].type: \"i65\""})
+    EXPECT_NE(said.find(expected), std::string::npos) << expected << "\n  in:\n" << said;
+  EXPECT_EQ(lines(said), 4u) << said;
+  EXPECT_EQ(draftOfWire(text, 1).output.fields.size(), 1u);
+  const auto moved = misplacedInWire(text, 1);
+  ASSERT_EQ(moved.size(), 3u);
+  EXPECT_EQ(moved[0].written + " " + moved[0].meant, "wire.ouput wire.output");
+}
+
+TEST(Wire, ABlockOneLevelTooDeepIsReadWhereItBelongs) {
+  std::string text = kGood;
+  const size_t output = text.find(",\"output\""), close = text.rfind("}", output);
+  const std::string block = text.substr(output, text.rfind("}") - output);
+  text.erase(output, block.size()).insert(close, block);
+  EXPECT_EQ(complaint(text), "wire.input.output: belongs one level up, beside input, not inside of it");
+  text.replace(text.find("\"output\":"), std::string::npos, "\"output\":null}}");  // its keys were indented no further
+  EXPECT_EQ(complaint(text), "wire.input.output: belongs one level up, beside input, not inside of it");
+}
+
 TEST(Wire, AllMistakesAreToldAtOnce) {
   const std::string said = complaint(
       R"({"rat":1000,"watchdog":-1,"framing":{"start":300,"escape":{"mark":125,"codes":[[1]]}},"startup":[{"wait":99}],)"
@@ -238,8 +265,8 @@ TEST(Wire, AllMistakesAreToldAtOnce) {
         "wire.input.fields[0].joint: 4", "wire.input.fields[0].at: 9", "wire.input.fields[0].type: \"i99\"",
         "wire.input.fields[1].type: \"u8\", expected u16",
         "wire.input.fields[1].from: 0, so the checksum covers itself",
-        "wire.input.fields[1].initial: cannot be used with method: crc16-modbus, only with", "wire.input.fields[2].is: \"nothing\"",
-        "wire.output.fields[0].at: 1", "wire.output.fields[1].bit: 4"})
+        "wire.input.fields[1].initial: cannot be used with method: crc16-modbus, only with",
+        "wire.input.fields[2].is: \"nothing\"", "wire.output.fields[0].at: 1", "wire.output.fields[1].bit: 4"})
     EXPECT_NE(said.find(expected), std::string::npos) << expected << "\n  in:\n" << said;
   EXPECT_LE(lines(said), 24u) << said;
 }
@@ -281,6 +308,17 @@ std::string arm(const std::string& from, const std::string& to, const std::strin
   const size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
+}
+
+TEST(Wire, AChecksumOfAnOddWidthHasTheTypeOfItsMethod) {
+  const std::string wide = arm(R"("type":"u16","method":"crc16")", R"("type":"u61","method":"crc16")");
+  EXPECT_THROW(readWire(wide, 3), std::invalid_argument);
+  try {
+    readWire(wide, 3);
+  } catch (const std::invalid_argument& e) {
+    EXPECT_EQ(std::string(e.what()), "wire.input.fields[4].type: \"u61\", expected u16 for crc16");
+  }
+  EXPECT_TRUE(draftOfWire(wide, 3).input.placed);
 }
 
 TEST(Wire, OneWrongFieldHidesNoOtherProblem) {
