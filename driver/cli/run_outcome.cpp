@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/run_outcome.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -58,6 +59,20 @@ record::LimitReport limitsOf(const std::string& device, const servo::Limiter& li
   return report;
 }
 
+/// [N] Returns the force that an arm sustains; 0 if nobody says it: a simulated arm of another kind than the
+/// Premium 1.5 has the Premium's force, unless its file gives one.
+double sustainedBy(const scene::Device& device, double stated) {
+  const auto given = [&device](const char* id) {
+    return std::find_if(device.parameters.begin(), device.parameters.end(),
+                        [id](const scene::Value& value) { return value.id == id; });
+  };
+  const auto kind = given("arm.kind");
+  const bool premium = kind == device.parameters.end() || kind->number == 0;
+  return device.module == "simulated" && !premium && given("device.continuous_force") == device.parameters.end()
+             ? 0
+             : stated;
+}
+
 /// Warns if the first arm gave more force over the last seconds than it sustains. The black box keeps the forces of the
 /// first arm.
 void warnOfHeat(const servo::Runner& runner, double rate) {
@@ -66,8 +81,9 @@ void warnOfHeat(const servo::Runner& runner, double rate) {
   for (const servo::BlackBoxRow& row : runner.telemetry().blackBox())
     forces.push_back(std::hypot(row.force[0], row.force[1], row.force[2]));
   if (runner.arms().empty() || static_cast<double>(forces.size()) < kHeatSeconds * rate) return;
+  const scene::Device& device = runner.scene().devices[0];
   const std::string text =
-      tune::overheating(runner.scene().devices[0].name, runner.arms()[0]->info().continuous_force, forces, rate);
+      tune::overheating(device.name, sustainedBy(device, runner.arms()[0]->info().continuous_force), forces, rate);
   if (!text.empty()) log::write(HSP_LOG_WARNING, "", text);
 }
 
