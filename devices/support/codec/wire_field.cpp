@@ -126,18 +126,21 @@ void readPlace(const Tree& tree, const Report& report, Field& field) {
   field.bit_skip = static_cast<uint8_t>(static_cast<size_t>(skip) % 8);
 }
 
-/// Notes a problem if the type of a checksum is wider than its method and of a width that no checksum has, as in u61
-/// for u16; then takes the type of the method, so that the place of the field is judged with it.
-void fitToMethod(const Tree& tree, Field& field) {
-  if (field.role != Role::kChecksum || field.type != Type::kUnsigned || field.bits % 8 == 0 || !tree.has("method"))
-    return;
+/// Notes a problem if the type of a checksum is wider than its method and does not fit into the report, as u61 for u16;
+/// then takes the type of the method, so that the place of the field is judged with it. @return true if it noted this
+/// problem
+bool fitToMethod(const Tree& tree, const Report& report, Field& field) {
+  if (field.role != Role::kChecksum || !tree.has("method") || !tree.has("at") || tree.has("bit_offset")) return false;
+  if (static_cast<size_t>(tree.at("at").whole(0, kMaxReportBytes)) + (field.bits + 7U) / 8 <= report.size) return false;
   const std::string method = tree.at("method").text();
   for (const NamedCrc& named : namedCrcs())
     if (method == named.name && field.bits > named.check.bits) {
       tree.at("type").fail("\"" + tree.at("type").text() + "\", expected u" + std::to_string(named.check.bits) +
                            " for " + method);
       field.bits = named.check.bits;
+      return true;
     }
+  return false;
 }
 
 /// Reads where the bits of the field are, and the number that they encode. While the type is unknown, every number is
@@ -343,10 +346,10 @@ ReadField readField(const Tree& tree, const Report& report, size_t joints, bool 
   if (!tree.only(kKeys) && !tree.has("is")) return read;
   readTarget(tree, joints, input, field, read.known);
   read.known.type = readType(tree.at("type"), field);
-  if (read.known.type) fitToMethod(tree, field);
   const size_t before = tree.problems();
+  const size_t of_type = read.known.type && fitToMethod(tree, report, field) ? 1 : 0;
   readNumber(tree, report, read.known.type, field);
-  read.known.placed = read.known.type && tree.problems() == before;
+  read.known.placed = read.known.type && tree.problems() == before + of_type;
   if (!read.known.role) return read;  // the role decides which other keys a field needs
   const size_t before_scale = tree.problems();
   if (ofJoint(field.role)) readScale(tree, field);
