@@ -235,6 +235,17 @@ static std::string suggestDecimalsBeyond(const Node& list, const host::ParamInfo
   return beyond ? suggestDecimals(list, 2) : "";
 }
 
+static std::string numbersText(size_t count) {
+  return std::to_string(count) + (count == 1 ? " number" : " numbers");
+}
+
+/// Returns what is wrong with a text in the place of a list.
+static std::string notAList(const Node& node, const host::ParamInfo& param) {
+  const std::string hint = suggestList(node, param.min_count);
+  return describe(node) + " is not a number, expected a list of " + countText(param) + hint +
+         (hint.empty() && param.def_text ? "; such as " + *param.def_text : "");
+}
+
 bool ParameterReader::readArray(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value) {
   const size_t before = in_->problems().size();
   bool shaped = true;  // a list of right shape with wrong numbers is kept for drafts, so that its length can be judged
@@ -248,10 +259,7 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
     value.numbers.push_back(number.value_or(heldIn(item, of_column)));
   };
   if (node.isScalar() && param.min_count > 1 && !toNumber(node.scalar)) {
-    const std::string hint = suggestList(node, param.min_count);
-    in_->problem(node, key,
-                 describe(node) + " is not a number, expected a list of " + countText(param) + hint +
-                     (hint.empty() && param.def_text ? "; such as " + *param.def_text : ""));
+    in_->problem(node, key, notAList(node, param));
   } else if (node.isScalar()) {
     add(node, key, 0);
   } else if (node.isSequence()) {
@@ -261,8 +269,7 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
       if (item.isSequence() && param.columns > 1 && item.items.size() != param.columns) {
         shaped = false;
         in_->problem(item, path,
-                     "it has " + std::to_string(item.items.size()) + (item.items.size() == 1 ? " number" : " numbers") +
-                         ", expected " + std::to_string(param.columns));
+                     "it has " + numbersText(item.items.size()) + ", expected " + std::to_string(param.columns));
       } else if (item.isSequence())
         for (size_t j = 0; j < item.items.size(); ++j) add(item.items[j], path + "[" + std::to_string(j) + "]", j);
       else
@@ -276,9 +283,7 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
   const size_t count = value.numbers.size();
   const bool ragged = param.columns > 1 && count % param.columns != 0;
   if (!ragged && count >= param.min_count && count <= param.max_count) return true;
-  in_->problem(node, key,
-               std::to_string(count) + (count == 1 ? " number" : " numbers") + ", expected " + countText(param) +
-                   document::suggestDecimals(node, 1));
+  in_->problem(node, key, numbersText(count) + ", expected " + countText(param) + document::suggestDecimals(node, 1));
   return false;
 }
 
