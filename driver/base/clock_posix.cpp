@@ -21,7 +21,7 @@ Nanoseconds RealClock::waitUntil(Nanoseconds deadline) noexcept HSP_RT {
     const Nanoseconds wake = deadline - spin_;
     const timespec ts{static_cast<time_t>(wake / kNanosecondsPerSecond),
                       static_cast<long>(wake % kNanosecondsPerSecond)};
-    // clock_nanosleep returns its error; only an interruption by a signal is worth another try.
+    // clock_nanosleep returns its error instead of setting errno. It is called again only if a signal interrupted it.
     while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &ts, nullptr) == EINTR) {
     }
   }

@@ -53,8 +53,8 @@ Result<Descriptor> copied(int from, size_t& room) {
     if (got < 0) return Error{std::string("cannot be read: ") + std::strerror(errno)};
     if (got == 0) break;
     if (static_cast<size_t>(got) > room)
-      return Error{"is too large, expected at most " + std::to_string(PassedFiles::kMostBytes >> 20) +
-                   " MiB of files in one request"};
+      return Error{"the files of the request are too large, expected at most " +
+                   std::to_string(PassedFiles::kMostBytes >> 20) + " MiB together"};
     room -= static_cast<size_t>(got);
     at += got;
     if (!writeAll(copy.get(), part, static_cast<size_t>(got)))
@@ -84,8 +84,9 @@ Result<PassedFiles> PassedFiles::copy(const std::vector<std::string>& names, std
     const auto type = std::filesystem::status(pathTo(given), ignored).type();
     if (const std::string other = notAFile(type); !other.empty()) return Error{names[i] + ": " + other};
     if (answersReaders(given.get()))
-      return Error{names[i] +
-                   ": is provided by a program or by the kernel (FUSE, proc), expected a copy of it on a disk"};
+      return Error{
+          names[i] +
+          ": the file is provided by a program or by the kernel (FUSE, proc), expected a copy of it on a disk"};
     auto copy = copied(given.get(), room);
     if (!copy) return Error{names[i] + ": " + copy.error()};
     if (!files.copies_.emplace(names[i], std::move(*copy)).second) return Error{names[i] + ": is named twice"};
@@ -104,7 +105,7 @@ std::string PassedFiles::named(std::string text) const {
     const std::string path = pathTo(copy);
     for (size_t at = 0; (at = text.find(path, at)) != std::string::npos;) {
       const size_t end = at + path.size();
-      const bool longer = end < text.size() && text[end] >= '0' && text[end] <= '9';  // such as 12 for 1
+      const bool longer = end < text.size() && text[end] >= '0' && text[end] <= '9';  // such as 12 in place of 1
       if (!longer) text.replace(at, path.size(), name);
       at += longer ? path.size() : name.size();
     }

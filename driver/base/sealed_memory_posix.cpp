@@ -41,7 +41,7 @@ Result<std::unique_ptr<SealedMemory>> SealedMemory::create(const char* name, siz
     if (data != MAP_FAILED) munmap(data, whole);
     return cannotShare(whole, code);
   }
-  (void)mlock(data, whole);  // if it is refused, the run has already reported that it may not lock memory
+  (void)mlock(data, whole);  // a refusal was reported at the start of the run
   return std::unique_ptr<SealedMemory>(new SealedMemory(std::move(fd), static_cast<std::byte*>(data), whole));
 }
 

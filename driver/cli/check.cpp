@@ -67,7 +67,7 @@ bool tells(const document::Problems& told, const document::Problem& one) {
   });
 }
 
-/// Adds warnings about what is allowed but was hardly meant, or cannot be stable.
+/// Adds warnings about settings that are allowed, but cannot be stable or are probably a mistake.
 void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckArguments& options,
                  CheckResult& result) {
   document::Problems more = unstableContacts(full, trial.stiffness);
@@ -79,15 +79,16 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
     warnOfZeros(*root, result.file, more);
     warnOfTurns(*root, result.file, more);
   }
-  if (!options.files_only)  // a scene without problems runs, which says more of its hands
+  if (!options.files_only)  // only a scene without problems can run, and a run shows more of its hands
     for (const document::Problems& found :
          {result.problems.empty() ? unreachableRows(full) : document::Problems(),
           result.problems.empty() ? warnOfHands(full, strayModels(full, trial.boxes, catalog())) : fastHands(full)})
       more.insert(more.end(), found.begin(), found.end());
-  if (!options.files_only || !options.device.empty())  // what the check of the device file itself says
+  if (!options.files_only || !options.device.empty())  // the warnings that a check of the device file alone gives
     for (const scene::Device& device : full.devices)
       for (const document::Problem& one : warnOfDevice(device.file, catalog()))
-        if (!tells(more, one) && one.key != "mount") more.push_back(one);  // scenes have their own check of the place
+        // The mount is checked with the scene instead.
+        if (!tells(more, one) && one.key != "mount") more.push_back(one);
   result.warnings.insert(result.warnings.end(), more.begin(), more.end());
 }
 
@@ -101,7 +102,7 @@ document::Problems badModules(const scene::Scene& scene) {
     if (trial.error.empty()) continue;
     const document::Problems placed = tryDevice(device.file, catalog());
     problems.insert(problems.end(), placed.begin(), placed.end());
-    if (!placed.empty()) continue;  // otherwise the problem is in the scene
+    if (!placed.empty()) continue;  // the device file itself is wrong; otherwise the scene is
     const document::Place place =
         device.place.file.empty() ? document::Place{device.file.string()} : document::Place(device.place);
     document::report(
@@ -128,8 +129,8 @@ void addRefusals(const scene::Scene& full, bool needs_velocity, CheckResult& res
     result.problems.insert(result.problems.end(), problems.begin(), problems.end());
 }
 
-/// Asks the modules of the device files that a scene with problems names for the rest of their problems, and judges
-/// their values, so that the user sees all at once. @param named the scene's own devices are used, and no other
+/// Checks the device files of a scene with problems, with their modules and values, so that the user sees all problems
+/// at once. @param named true if the devices that the scene names are used, and not the one of the option --device
 void addOfDevices(CheckResult& result, bool named) {
   std::set<std::string> others;
   for (const document::Problem& one : result.problems)
@@ -184,7 +185,7 @@ void placeWarnings(document::Problems& warnings) {
   warnings = std::move(once);
 }
 
-/// Checks a file that is no scene, or one with problems: a device file, or what can be read of a scene.
+/// Checks a device file, or as much as can be read of a scene that has problems.
 void checkTheRest(const std::string& file, const CheckArguments& options, CheckResult& result) {
   document::Problems& found = result.problems;
   if (!found.empty()) {
@@ -202,7 +203,7 @@ CheckResult checkOne(const std::string& file, const CheckArguments& options) {
   std::optional<scene::Scene> scene;
   CheckResult result{file, scene::checkFile(file, catalog(), &scene), {}};
   document::Problems& found = result.problems;
-  if (scene && !options.device.empty()) {  // as run takes it
+  if (scene && !options.device.empty()) {  // the same replacement as in hapticd run --device
     scene::Loaded other = scene::load(file, catalog(), {true, options.device});
     scene = std::move(other.scene);
     found = std::move(other.problems);

@@ -46,7 +46,7 @@ bool armsAreRead(const scene::Scene& draft, const document::Problems& problems) 
   });
 }
 
-/// Judges the models of a draft.
+/// Judges the models of a draft, which is as much of a scene with problems as could be read.
 class Models {
  public:
   Models(const scene::Scene& draft, const UnreadKeys& unread) : draft_(draft), left_out_(draft.models.size()) {

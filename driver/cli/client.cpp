@@ -155,19 +155,19 @@ int client(const ClientArguments& options, const std::vector<std::string>& words
 void addClient(const Command& app, int& exit_code) {
   auto options = std::make_shared<ClientArguments>();
   const Command command = app.addSubcommand("client", "Run an OpenHaptics (HDAPI) program on a daemon's arm.");
-  command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
+  command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`; default: hapticd");
   command.addOption("--scene", options->scene, "scene for the daemon that this command starts if none runs");
   command.addFlag("--env", options->env,
                   "print the environment variables that the program needs, as commands of a shell");
   command.takesForeignCommandLine();  // the options after PROGRAM belong to that program
   command.footer(
-      "The program uses hapticd's libHD.so and connects to the daemon of --name. If no such daemon runs, this command\n"
-      "starts one with the simulated arm. That daemon ends with the program, even if this command is killed. Options "
-      "of\n"
-      "this command stand before PROGRAM; its exit code is the program's.\n\n"
-      "With real-time priority, the program's servo loop looks for each tick without sleeping from 100 us before it "
-      "is\n"
-      "due (a tenth of the period at most). HAPTICD_LISTEN in the environment sets this time: 0 to 200 us.\n\n"
+      "Form: hapticd client [OPTIONS] PROGRAM [ARGUMENTS]\n\n"
+      "The program uses hapticd's libHD.so and connects to the daemon of --name. If no such daemon runs, this\n"
+      "command starts one with the simulated arm. That daemon ends with the program, even if this command is\n"
+      "killed. Options of this command stand before PROGRAM; its exit code is the program's.\n\n"
+      "With real-time priority, the program's servo loop does not sleep from 100 us before each tick is due (at\n"
+      "most a tenth of the period), but polls for the tick. HAPTICD_LISTEN in the environment sets this time [us],\n"
+      "0 to 200.\n\n"
       "Examples:\n  hapticd client ./my_program --its-own option\n  eval \"$(hapticd client --env)\"");
   command.callback([command, options, &exit_code] { exit_code = client(*options, command.foreignCommandLine()); });
 }

@@ -104,7 +104,7 @@ void addGlobalOptions(const Command& app) {
   app.addOption("--plugin-path", settings().plugin_path,
                 "folders that are searched first for plugins and device modules")
       .delimiter(':')
-      .oneValueEach();  // what follows is the subcommand, or its file
+      .oneValueEach();  // the next word is the subcommand, or its file
 }
 
 const scene::Daemon& daemonSettings() {

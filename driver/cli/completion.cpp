@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -99,6 +100,7 @@ const std::vector<Named>& namedArguments() {
       {"plugins", {"plugin info", "plugin clear"}},
       {"models",
        {"ctl enable", "ctl disable", "ctl remove", "ctl set", "ctl get", "ctl move", "ctl geometry", "ctl lead"}},
+      {"parameters", {"ctl set", "ctl get"}},
       {"devices", {"ctl hold", "ctl clear"}},
       {"scenes", {"run", "trace", "explain", "tune", "check", "ctl reload", "ctl add"}},
       {"device-files",
@@ -127,11 +129,11 @@ std::string bash(const std::vector<CommandNode>& nodes) {
     for (const CompletionWord& word : node.words) words.push_back(word.text);
     text += "        '" + node.path + "') known_='" + joined(words) + "'" + (node.files ? " files_=-f" : "") + " ;;\n";
   }
-  text += "      esac\n      case \"$path_\" in\n";
+  text += "      esac\n";
   for (const Named& named : namedArguments())
-    text += "        " + pattern(named) + ") known_+=\" $(hapticd completion --names " + named.kind +
-            " 2>/dev/null)\" ;;\n";
-  text += "      esac ;;\n  esac\n";
+    text += "      case \"$path_\" in " + pattern(named) + ") known_+=\" $(hapticd completion --names " + named.kind +
+            " 2>/dev/null)\" ;; esac\n";
+  text += "      ;;\n  esac\n";
   text +=
       "  mapfile -t COMPREPLY < <(compgen -W \"$known_\" -- \"${COMP_WORDS[COMP_CWORD]}\")\n"
       "  [[ -z $files_ || ${COMP_WORDS[COMP_CWORD]} == -* ]] || mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < "
@@ -154,11 +156,11 @@ std::string zsh(const std::vector<CommandNode>& nodes) {
     for (const CompletionWord& word : node.words) text += "      '" + word.text + ":" + quoted(word.doc, true) + "'\n";
     text += node.files ? "    ); files_=1 ;;\n" : "    ) ;;\n";
   }
-  text += "  esac\n  case \"$path_\" in\n";
+  text += "  esac\n";
   for (const Named& named : namedArguments())
-    text += "    " + pattern(named) + ") compadd -- ${(f)\"$(hapticd completion --names " + named.kind +
-            " 2>/dev/null)\"} ;;\n";
-  return text + "  esac\n  _describe -o hapticd known_\n  [[ -z $files_ ]] || _files\n}\n_hapticd \"$@\"\n";
+    text += "  case \"$path_\" in " + pattern(named) + ") compadd -- ${(f)\"$(hapticd completion --names " +
+            named.kind + " 2>/dev/null)\"} ;; esac\n";
+  return text + "  _describe -o hapticd known_\n  [[ -z $files_ ]] || _files\n}\n_hapticd \"$@\"\n";
 }
 
 std::string fishCondition(const std::string& path) {
@@ -190,13 +192,26 @@ std::string fish(const std::vector<CommandNode>& nodes) {
   return text;
 }
 
+/// Returns the list of this name in a running daemon's answer, or an empty list.
+nlohmann::json listOfDaemon(const char* request, const std::string& name) {
+  const auto answer = control::ask(status::runtimeFolder(false) + "/hapticd.sock", request);
+  const auto json = answer ? nlohmann::json::parse(*answer, nullptr, false) : nlohmann::json();
+  return json.is_object() && json.contains(name) ? json[name] : nlohmann::json::array();
+}
+
 /// Returns the names of the "models" or "devices" of the running daemon.
 std::vector<std::string> namesOfDaemon(const std::string& kind) {
   std::vector<std::string> names;
-  const auto answer = control::ask(status::runtimeFolder(false) + "/hapticd.sock", R"({"do":"snapshot"})");
-  const auto json = answer ? nlohmann::json::parse(*answer, nullptr, false) : nlohmann::json();
-  if (!json.is_object() || !json.contains(kind)) return names;
-  for (const auto& one : json[kind]) names.push_back(one.value("name", ""));
+  for (const auto& one : listOfDaemon(R"({"do":"snapshot"})", kind)) names.push_back(one.value("name", ""));
+  return names;
+}
+
+/// Returns the live parameters of all models of the running daemon, each once.
+std::set<std::string> parametersOfDaemon() {
+  std::set<std::string> names;
+  for (const auto& model : listOfDaemon(R"({"do":"list"})", "models"))
+    for (const auto& parameter : model.value("live_parameters", nlohmann::json::array()))
+      names.insert(parameter.value("id", ""));
   return names;
 }
 
@@ -214,6 +229,8 @@ std::vector<std::string> filesIn(const char* one_of_them) {
 int printNames(const std::string& kind) {
   std::vector<std::string> names;
   if (kind == "models" || kind == "devices") names = namesOfDaemon(kind);
+  if (kind == "parameters")
+    for (const std::string& name : parametersOfDaemon()) names.push_back(name);
   if (kind == "scenes") names = filesIn("scenes/teapot.yaml");
   if (kind == "device-files") names = filesIn(scene::kDefaultDevice);
   if (kind == "plugins")
@@ -231,7 +248,7 @@ void addCompletion(const Command& app, int& exit_code) {
   command.addOption("shell", *shell, "bash, zsh or fish").oneOf({"bash", "zsh", "fish"});
   auto kind = std::make_shared<std::string>();
   command.addOption("--names", *kind, "print only the names that the script completes, not the script")
-      .oneOf({"plugins", "models", "devices", "scenes", "device-files"})
+      .oneOf({"plugins", "models", "parameters", "devices", "scenes", "device-files"})
       .excludes("shell");
   command.footer("Example:\n  source <(hapticd completion bash)");
   command.callback([shell, kind, app, &exit_code] {

@@ -72,7 +72,7 @@ int showSocket(const CtlArguments& options) {
 int show(const CtlArguments& options, const Result<std::string>& answer) {
   if (!answer) return fail(kFailed, answer.error());
   Json json = document::parseJson(*answer);
-  if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
+  if (!json.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + *answer);
   if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
   if (!options.obj.empty()) return saveObj(json, options.obj);
   if (options.tells_socket) json["name"] = options.name, json["socket"] = socketOf(options);
@@ -134,7 +134,7 @@ int follow(const CtlArguments& options) {
     const auto answer = client->ask(lineOf({{"do", word}, {"model", options.model}}));
     const Json json = answer ? document::parseJson(*answer) : Json();
     if (!answer) return fail(kFailed, answer.error());
-    if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
+    if (!json.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + *answer);
     if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
     if (word == std::string("geometry")) std::printf("%s\n", answer->c_str());
   }
@@ -197,8 +197,8 @@ const Command addRequest(const Command& parent, const char* word, const char* do
 }
 
 void addGeometryRequest(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
-  const Command geometry = addRequest(ctl, "geometry", "Print the triangles of a model in its current shape.", options,
-                                      exit_code, [options](Json& json) {
+  const Command geometry = addRequest(ctl, "geometry", "Print the triangles of a model in its current shape, as JSON.",
+                                      options, exit_code, [options](Json& json) {
                                         json["model"] = options->model;
                                         if (options->tolerance > 0) json["tolerance"] = options->tolerance;
                                       });
@@ -214,13 +214,15 @@ void addGeometryRequest(const Command& ctl, const std::shared_ptr<CtlArguments>&
 }
 
 void addFeatureRequest(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
-  const Command feature = addRequest(ctl, "feature", "Print what a feature of a model's contacts is called.", options,
-                                     exit_code, [options](Json& json) {
-                                       json["model"] = options->model;
-                                       json["number"] = options->number;
-                                     });
+  const Command feature = addRequest(
+      ctl, "feature", "Print the name of a feature: the surface, face or element of a model that a contact is on.",
+      options, exit_code, [options](Json& json) {
+        json["model"] = options->model;
+        json["number"] = options->number;
+      });
   feature.addOption("model", options->model, "name of the model").required();
-  feature.addOption("number", options->number, "feature of a trace or recording, counted from 0").required();
+  feature.addOption("number", options->number, "number of the feature in a trace or recording, counted from 0")
+      .required();
 }
 
 /// Prints the events so far, one line of JSON each. With `follow` it also prints the events from now on, until the
@@ -234,7 +236,7 @@ int showEvents(const CtlArguments& options) {
     const auto answer = client->ask(lineOf({{"do", word}}));
     const Json json = answer ? document::parseJson(*answer) : Json();
     if (!answer) return fail(kFailed, answer.error());
-    if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
+    if (!json.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + *answer);
     if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
     if (!json.contains("events")) {
       end = json.value("next", end);
@@ -270,7 +272,7 @@ void addLead(const Command& ctl, const std::shared_ptr<CtlArguments>& options, i
       .within(0, 1e9);
   lead.footer(
       "A line is \"x y z\" in m, or \"x y z qw qx qy qz\", world frame. The model follows with at most 1 m/s and\n"
-      "20 m/s^2. When the lead ends it brakes and stays.\n"
+      "20 m/s^2. When the lead ends, the model or the hand brakes and stays.\n"
       "Example:\n  echo 0.1 0 0 | hapticd ctl lead door");
   lead.callback([options, &exit_code] {
     if (options->model.empty() == options->hand.empty()) {
@@ -288,7 +290,7 @@ std::string absolute(const std::string& file) {
 void addModelRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
   const auto model = [options](Json& json) { json["model"] = options->model; };
   for (const auto& [word, doc] : {std::pair{"enable", "Enable a model; its force fades in."},
-                                  std::pair{"disable", "Disable a model: its force fades out, tracing goes on."},
+                                  std::pair{"disable", "Disable a model: its force fades out, but it is still traced."},
                                   std::pair{"remove", "Remove a model; its force fades out first."}})
     addRequest(ctl, word, doc, options, exit_code, model)
         .addOption("model", options->model, "name of the model")
@@ -322,7 +324,9 @@ void addModelRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& o
   });
   move.addOption("model", options->model, "name of the model").required();
   move.addOption("--position", options->position, "x y z [m], world frame").required().expected(3);
-  move.addOption("--orientation", options->orientation, "w x y z, a unit quaternion").expected(4);
+  move.addOption("--orientation", options->orientation,
+                 "w x y z, a unit quaternion; default: the model keeps its orientation")
+      .expected(4);
   move.addOption("--seconds", options->seconds,
                  "duration of the motion [s]; the daemon takes longer if this would be too fast; default: a speed of "
                  "at most 0.2 m/s");
@@ -335,12 +339,12 @@ void addSceneRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& o
         if (!options->model.empty()) json["model"] = options->model;
       });
   add.addOption("file", options->file, "scene file").required();
-  add.addOption("model", options->model, "name of the only model to add");
+  add.addOption("model", options->model, "name of the only model to add; default: all models of the scene");
   const Command reload = addRequest(ctl, "reload", "Load the scene again, or another scene, with a cross-fade.",
                                     options, exit_code, [options](Json& json) {
                                       if (!options->file.empty()) json["file"] = absolute(options->file);
                                     });
-  reload.addOption("file", options->file, "scene file with the same devices");
+  reload.addOption("file", options->file, "scene file with the same devices; default: the scene of the daemon");
 }
 
 void addDeviceRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
@@ -360,7 +364,7 @@ void addCtl(const Command& app, int& exit_code) {
   auto options = std::make_shared<CtlArguments>();
   const Command ctl = app.addSubcommand("ctl", "Control a running daemon: status, models, parameters, black box.");
   ctl.requireSubcommand();
-  ctl.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
+  ctl.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`; default: hapticd");
   const auto nothing = [](Json&) {};
   addRequest(ctl, "status", "Show the daemon's status.", options, exit_code,
              [options](Json&) { options->tells_socket = true; });

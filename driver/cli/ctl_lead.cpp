@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/ctl_lead.hpp"
 
+#include <fmt/format.h>
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -33,9 +34,10 @@ Result<hapticd_target> checked(const hapticd_target& target) {
     for (size_t i = 0; i < count; ++i) square += of[i] * of[i];
     return std::sqrt(square);
   };
-  if (!(length(target.position, 3) <= kFarthest)) return Error{"expected a position within 10 m of the origin, in m"};
-  if (!(std::abs(length(target.orientation, 4) - 1) <= kUnitWithin))
-    return Error{"expected a unit quaternion qw qx qy qz behind the position"};
+  if (const double far = length(target.position, 3); !(far <= kFarthest))
+    return Error{fmt::format("the position is {:g} m from the world's origin, expected at most 10 m", far)};
+  if (const double size = length(target.orientation, 4); !(std::abs(size - 1) <= kUnitWithin))
+    return Error{fmt::format("the quaternion has length {:g}, expected 1 (qw qx qy qz behind the position)", size)};
   return target;
 }
 
@@ -51,9 +53,9 @@ Result<hapticd_target> targetOf(std::string line) {
   }
   const bool rest = std::strspn(at, " \t\r") != std::strlen(at);
   if (rest || (numbers.size() != 3 && numbers.size() != 7))
-    return Error{"expected \"x y z\" in m, or \"x y z qw qx qy qz\""};
+    return Error{"\"" + line.substr(0, 60) + "\" is not a pose, expected \"x y z\" in m, or \"x y z qw qx qy qz\""};
   for (const double number : numbers)
-    if (!std::isfinite(number)) return Error{"expected finite numbers"};
+    if (!std::isfinite(number)) return Error{"a number is not finite, expected finite numbers"};
   hapticd_target target{};
   target.orientation[0] = 1;
   std::copy_n(numbers.begin(), 3, target.position);
@@ -62,7 +64,7 @@ Result<hapticd_target> targetOf(std::string line) {
 }
 
 int reportEnd() {
-  return fail(kFailed, "the daemon has ended, or it ended this lead: nothing is led any more");
+  return fail(kFailed, "the daemon has ended, or it has ended this lead: the model or hand comes to rest");
 }
 
 /// Sends each line of standard input as one target, as soon as the line is read. @return the exit code

@@ -12,7 +12,8 @@ namespace hapticd::cli {
 /// The columns of a table that become numbers of a report.
 struct EncodeColumns {
   std::vector<std::string> names;  ///< name of each number of a row, as encodeRow() expects it
-  /// column of the table for each of these names; joints that are computed from the tip have none
+  /// from[i] is the column of the table for names[i]. It is shorter than `names` if the joints are computed from the
+  /// tip: their names come last and have no entry here.
   std::vector<size_t> from;
   /// columns x, y and z of the tip; the joints that are computed from it come last in a row. Empty if not used
   std::vector<size_t> tip;

@@ -15,8 +15,8 @@ namespace {
 
 struct Kind {
   std::string_view begins, name;
-  std::string_view endings;  ///< with a dot before and a space behind each, the usual one first; "" if none is read
-  std::string_view fix;      ///< what to do if no ending helps
+  std::string_view endings;  ///< such as ".step .stp ", the usual one first; "" if hapticd reads no such file
+  std::string_view fix;      ///< what the user can do with a file that hapticd does not read
 };
 
 constexpr Kind kKinds[] = {

@@ -72,7 +72,8 @@ int main(int argc, char** argv) {
     hapticd::host::describeForParent(argv[2]);
   if (argc == 4 && argv[1] == std::string_view(hapticd::watch::kGuardArgument)) hapticd::watch::guardMain(argc, argv);
   const hapticd::command_line::Program app(
-      "hapticd: a real-time haptic servo daemon. It traces NURBS and medial-axis shapes and pushes back.");
+      "hapticd: a real-time haptic servo daemon. It traces NURBS and medial-axis shapes, and a haptic arm "
+      "gives the forces of their contacts to the hand.");
   int exit_code = kWorked;
   hapticd::command_line::suggestBy(hapticd::document::suggestion);
   app.requireSubcommand();

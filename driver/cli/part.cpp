@@ -183,7 +183,8 @@ void print(const std::string& file, const Json& info) {
 int printFeature(const std::string& file, const Part& part, std::uint32_t feature) {
   const std::string name = brep::featureName(part, feature);
   if (name.empty())
-    return fail(kBadInput, file + ": has no feature " + std::to_string(feature) + "; hapticd part info lists them");
+    return fail(kBadInput, file + ": has no feature " + std::to_string(feature) + "; hapticd part info " + file +
+                               " lists its features");
   std::printf("%s\n", name.c_str());
   return kWorked;
 }

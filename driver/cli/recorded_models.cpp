@@ -131,7 +131,7 @@ class RecordedModelsImpl final : public RecordedModels {
   }
 
   std::unique_ptr<record::Recording> recording_;
-  std::vector<Built> models_;  // declared after what the models read, so that they are destroyed first
+  std::vector<Built> models_;  // declared after the recording that the models read, so that they are destroyed first
   std::string folder_, socket_;
   std::unique_ptr<control::Server> server_;
 };

@@ -2,6 +2,8 @@
 /// `hapticd replay`: runs a recording again and says where it first differs.
 #include "session/replay.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -93,8 +95,10 @@ Result<void> change(scene::Scene& scene, const std::string& text) {
                  (found ? document::suggestion(id, (*found)->paramIds()) : "")};
   const host::ParamInfo& param = (*found)->params[static_cast<size_t>(index)];
   const bool is_number = param.kind >= HSP_REAL && param.kind <= HSP_ENUM;
-  if (!is_number || !(*number >= param.min && *number <= param.max))
-    return Error{"--set " + text + ": expected a number within the range of a numeric parameter"};
+  if (!is_number) return Error{"--set " + text + ": \"" + id + "\" has no number that could be changed"};
+  if (!(*number >= param.min && *number <= param.max))
+    return Error{fmt::format("--set {}: {:g} is out of range, expected {:g} to {:g} {}", text, *number, param.min,
+                             param.max, param.unit)};
   const auto same = [&](const scene::Value& v) { return v.index == static_cast<uint32_t>(index); };
   auto value = std::find_if(model->parameters.begin(), model->parameters.end(), same);
   if (value == model->parameters.end()) value = model->parameters.insert(value, scene::Value{});
@@ -107,10 +111,12 @@ Result<void> change(scene::Scene& scene, const std::string& text) {
 
 void warnOfChanges(const servo::RecordedRun& run) {
   if (run.version != HAPTICD_VERSION)
-    std::fprintf(stderr, "warning: recorded by hapticd %s, this is %s\n", run.version.c_str(), HAPTICD_VERSION);
+    std::fprintf(stderr, "warning: hapticd %s recorded this run, and this is hapticd %s: the results may differ\n",
+                 run.version.c_str(), HAPTICD_VERSION);
   for (const servo::Fingerprint& file : run.files)
     if (const std::string now = servo::fingerprint(file.path); !now.empty() && now != file.hash)
-      std::fprintf(stderr, "warning: %s has changed since the recording\n", file.path.c_str());
+      std::fprintf(stderr, "warning: %s has changed since the recording, so the results may differ\n",
+                   file.path.c_str());
 }
 
 /// Uses the processor instructions of the recorded run if this machine has them; otherwise prints a note.
@@ -120,7 +126,7 @@ void takeInstructions(servo::RecordedRun& run) {
   if (const std::string now = servo::takenInstructions(run.scene.servo); now != run.instructions)
     std::fprintf(
         stderr,
-        "note: recorded with the processor instructions %s, which are not available here: the last bits will differ\n"
+        "note: the run used the processor instructions %s, which are not available here: the last bits will differ\n"
         "  fix: record with servo: {instructions: portable}, which replays on every machine\n",
         run.instructions.c_str());
 }

@@ -140,7 +140,7 @@ std::string wrongFiles(const RunArguments& options) {
                                    std::pair(options.record, recordingKind())})
     if (const std::string wrong = whyNotWritten(file, kind, inputs); !wrong.empty()) return wrong;
   if (const std::string file = writtenTwice(options); !file.empty())
-    return file + ": named twice, expected different files for the scene, --report, --picture and --record";
+    return file + ": the file is named twice, expected different files for the scene, --report, --picture and --record";
   return "";
 }
 

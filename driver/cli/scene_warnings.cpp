@@ -22,10 +22,10 @@ using namespace diagnostics;
 
 namespace {
 
-/// What a device file says about its arm, which is not opened; 0 means unknown.
+/// Returns what a device file says about its arm, without opening the arm. 0 means unknown.
 hdv_info infoOf(const scene::Device& device) {
   hdv_info info{};
-  info.capabilities = HDV_C_PACING;  // unknown, so there is no warning about it
+  info.capabilities = HDV_C_PACING;  // unknown: with this flag there is no warning that the arm cannot drive the loop
   for (const scene::Value& value : device.parameters) {
     if (value.id == "device.max_stiffness") info.max_stiffness = value.number;
     if (value.id == "device.mass") info.mass_kg = value.number;
@@ -54,9 +54,10 @@ document::Problems farModels(const scene::Scene& scene) {
     double away = position.norm();
     for (const scene::Device& device : scene.devices) away = std::min(away, (position - device.mount.position).norm());
     if (away > kFar)
-      document::report(warnings, scene.models[i].place, "models[" + std::to_string(i) + "].pose.position",
-                       fmt::format("{:.4g} m from the world's origin, where no arm reaches; the position must be in m",
-                                   position.norm()));
+      document::report(
+          warnings, scene.models[i].place, "models[" + std::to_string(i) + "].pose.position",
+          fmt::format("the model is {:.4g} m from the world's origin, where no arm reaches; the position must be in m",
+                      position.norm()));
   }
   return warnings;
 }
@@ -94,7 +95,7 @@ document::Problems unstableContacts(const scene::Scene& scene, const std::vector
       document::report(
           warnings, device.place.file.empty() ? document::Place{device.file.string()} : device.place,
           "parameters.device.max_stiffness",
-          "not given, so it is unknown whether " + device.name +
+          "the value is not given, so it is unknown whether " + device.name +
               " is stable with these models; give the stiffness that was found stable, and begin with 100 N/m");
   }
   return warnings;
@@ -131,7 +132,7 @@ void addImplausible(const scene::Scene& scene, const ModelBoxes& boxes, const Un
                     document::Problems& warnings) {
   document::Problems more = implausibleValues(scene, boxes, catalog(), unread);
   for (const document::Problem& one : implausibleSettings(scene, boxes))
-    // What is judged of arms is read: checkDraft() leaves out arms with problems.
+    // Warnings about arms can be trusted, because checkDraft() leaves out arms with problems.
     if ((one.key.starts_with("devices[") || !unread.has(one.key)) &&
         !(one.key == "clients.answer_time" && unread.has("servo.rate")))
       more.push_back(one);

@@ -57,7 +57,8 @@ SetOption::SetOption(const std::vector<std::string>& pairs, const std::vector<ho
 
 std::vector<scene::Value> SetOption::valuesFor(const host::ClassInfo& info) {
   document::Problems wrong;
-  document::Reader in(std::filesystem::current_path() / "--set", wrong);  // paths are relative to its folder
+  // Paths are relative to the folder of the reader's file, which is the current folder here.
+  document::Reader in(std::filesystem::current_path() / "--set", wrong);
   scene::ParameterReader reader(in, info);
   for (const auto& [id, text] : given_) {
     const int index = info.indexOf(id);

@@ -29,7 +29,7 @@ class TickWatch {
   };
 
   static void end() noexcept {
-    if (const Owner* keeps = ownerOfWorker(Worker::kMain)) watch::endByFault("a step that did not come back", keeps);
+    if (const Owner* keeps = ownerOfWorker(Worker::kMain)) watch::endByFault("a step that did not return", keeps);
   }
 
   Ticks ticks_;

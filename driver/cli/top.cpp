@@ -349,13 +349,18 @@ void addTop(const Command& app, int& exit_code) {
   auto options = std::make_shared<TopArguments>();
   const Command command =
       app.addSubcommand("top", "Watch a running daemon: time, lateness, force and depth of each model and device.");
-  command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
-  command.addOption("--sort", options->sort, "order of the models").oneOf({"step", "force", "depth", "name"});
-  command.addOption("--every", options->every, "refresh interval [s]").within(0.05, 60.0);
+  command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`; default: hapticd");
+  command.addOption("--sort", options->sort, "quantity by which the models are sorted; default: step (time of a step)")
+      .oneOf({"step", "force", "depth", "name"});
+  command.addOption("--every", options->every, "time between two updates [s]; default: 0.5").within(0.05, 60.0);
   command.addFlag("--once", options->once, "print once and exit");
   command.addFlag("--json", options->json, "print JSON: one line per interval; with --once, one line");
   command.footer(
       "Keys: s, f, d and n sort by step time, force, depth and name; q quits.\n\n"
+      "late: how long after their deadlines the ticks began; tick: how long they took. ITER: how often the last step\n"
+      "evaluated a surface. KNOWN: share of the ticks in which the foot point surely was the nearest, or was kept by "
+      "a\n"
+      "contact.\n\n"
       "Examples:\n  hapticd top --sort force\n  hapticd top --json --every 1 | jq .models[0].force_n");
   command.callback([options, &exit_code] { exit_code = top(*options); });
 }

@@ -62,14 +62,15 @@ int view(const ViewArguments& options) {
 void addView(const Command& app, int& exit_code) {
   auto options = std::make_shared<ViewArguments>();
   const Command command = app.addSubcommand("view", "Show a running daemon or a recording in a browser.");
-  command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
+  command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`; default: hapticd");
   command.addOption("--port", options->port, "port on 127.0.0.1; 0: a free one").wholeWithin(0, 65535);
   command.addFlag("--control", options->control, "allow the page to change the run and to lead a simulated hand");
   command.addFlag("--open", options->open, "open the page in your browser");
   command.addOption("--file,recording", options->file, "show this recording or dump instead of a daemon");
   command.footer(
-      "The command prints the address of the page with a token. Everybody who has the token may look.\nFrom another "
-      "computer: ssh -L PORT:127.0.0.1:PORT.\n\nExample:\n  hapticd view --control --open\n  hapticd view run.h5 "
+      "The command prints the address of the page with a token. Everybody who has the token may look.\nTo look from "
+      "another computer, forward the port: ssh -L PORT:127.0.0.1:PORT HOST.\n\nExample:\n  hapticd view --control "
+      "--open\n  hapticd view run.h5 "
       "--open");
   command.callback([options, &exit_code] { exit_code = view(*options); });
 }

@@ -316,7 +316,7 @@ std::string missing(const CLI::App& app, std::string told) {
   if (told.ends_with(kEnd)) told.resize(told.size() - kEnd.size());
   std::vector<std::string> rest = app.remaining();
   for (const CLI::App* at = app.get_parent(); rest.empty() && at != nullptr; at = at->get_parent())
-    rest = at->remaining();  // a command leaves to its parent what it does not know
+    rest = at->remaining();  // a command passes words that it does not know to its parent
   const bool is_option = !rest.empty() && rest.front().size() > 1 && rest.front()[0] == '-' && rest.front() != "--";
   if (is_option || (told == "A subcommand" && !rest.empty())) return unexpected(app, rest);
   if (told == "A subcommand")

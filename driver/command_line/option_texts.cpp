@@ -26,9 +26,9 @@ std::string upper(std::string word) {
   return word;
 }
 
-/// Returns such as "--position: expected 3 numbers, got 2: 0.1 0".
+/// Returns a text such as "--position: expected 3 numbers, got 2: 0.1 0".
 std::string expectedCount(const OptionFacts& option) {
-  constexpr int kMany = 1 << 16;  // CLI11 means "any number" by a large one
+  constexpr int kMany = 1 << 16;  // CLI11 stands for "any number of values" with a large number
   std::string count = std::to_string(option.least);
   if (option.most >= kMany)
     count = "at least " + count;

@@ -174,7 +174,7 @@ std::optional<CsvTable> parseCsv(std::string_view text, const std::string& file,
     report(problems, file, 1, 1, "", "the file is in UTF-16, expected UTF-8: save it as CSV UTF-8");
     return std::nullopt;
   }
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // spreadsheets begin UTF-8 with it
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // spreadsheets write it before UTF-8
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   for (size_t start = 0; start < text.size() && !parser.tooWrong();) {
     const size_t end = std::min(text.find('\n', start), text.size());

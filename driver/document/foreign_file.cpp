@@ -13,8 +13,8 @@ struct Kind {
   std::string_view ending, begins, name;
 };
 
-/// A file is of the first kind here whose ending or first words it has. For kinds without first words, only the ending
-/// counts.
+/// The kinds of files, recognised by their ending or their first words; kinds without first words only by the ending.
+/// If several kinds match, the first one counts.
 constexpr Kind kKinds[] = {{".step", "ISO-10303-21", "a STEP file"},
                            {".stp", "ISO-10303-21", "a STEP file"},
                            {".iges", "", "an IGES file"},

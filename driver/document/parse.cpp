@@ -89,7 +89,8 @@ class Builder final : public YAML::EventHandler {
   void count(size_t nodes, const YAML::Mark& mark) {
     nodes_ += nodes;
     if (nodes_ > most_nodes_)
-      throw Refused{mark, "more than " + std::to_string(most_nodes_) + " values (with aliases expanded)"};
+      throw Refused{mark, "the file has more than " + std::to_string(most_nodes_) +
+                              " values (with aliases expanded), expected fewer"};
   }
   static size_t sizeOf(const Node& node) {
     size_t size = 1;
@@ -98,7 +99,9 @@ class Builder final : public YAML::EventHandler {
     return size;
   }
   void open(const YAML::Mark& mark, Node::Kind kind, YAML::anchor_t anchor) {
-    if (open_.size() >= kMaxDepth) throw Refused{mark, "nested deeper than " + std::to_string(kMaxDepth) + " levels"};
+    if (open_.size() >= kMaxDepth)
+      throw Refused{
+          mark, "lists and mappings are nested deeper than " + std::to_string(kMaxDepth) + " levels, expected fewer"};
     open_.push_back({make(mark, kind), anchor, std::nullopt, {}});
   }
   /// Adds the keys of other mappings (merge key << of YAML 1.1). If a key is in both, this mapping's own value counts.
@@ -231,7 +234,7 @@ std::optional<Node> parseRepaired(const std::string& text, const std::string& fi
     if (parser.HandleNextDocument(second)) {
       const std::optional<Node> next = second.take();
       report(problems, file, next ? next->line : 1, next ? next->column : 1, "",
-             "a second document (after ---), expected one");
+             "a second document begins here (after ---), expected one document in a file");
     }
     return root;
   } catch (const Refused& refused) {
@@ -240,7 +243,7 @@ std::optional<Node> parseRepaired(const std::string& text, const std::string& fi
     const Place place = placeOf(error.mark, file);
     const std::string meant = withCorrectedAlias(text, place, error.msg);
     const bool again = repairs > 0 && !meant.empty();
-    if (again) problems.resize(before);  // they are found again
+    if (again) problems.resize(before);  // the corrected text will give the same problems again
     problems.push_back(findSyntaxError(text, place, error.msg));
     if (again) return parseRepaired(meant, file, problems, repairs - 1);
   } catch (const std::exception& error) {

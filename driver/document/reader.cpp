@@ -206,7 +206,8 @@ std::string parentOf(const std::string& path) {
 }
 
 /// Returns a hint where an unknown key belongs: under another key, in another file, or under `parameters`; else "".
-/// @param near the key is probably a misspelt one of this table, and not one from deep within another
+/// @param near true if a key of this table has a similar name, so that the key is probably misspelt: then keys within
+/// the mappings of other tables are not suggested
 std::string belongsTo(const Table& table, const std::string& name, bool near) {
   if (const std::string path = pathIn(table, name); !path.empty())
     return "; " + name + " belongs under the key " + parentOf(path);
@@ -221,7 +222,7 @@ std::string belongsTo(const Table& table, const std::string& name, bool near) {
   return may_be_parameter ? parameter : "";
 }
 
-/// Returns true if the key itself, as it is spelt, has another place.
+/// Returns true if a key of exactly this name belongs in another place. @param place the hint of belongsTo()
 bool hasAnotherPlace(const std::string& place, const std::string& name) {
   return place.find(" " + name + " belongs ") != place.npos;
 }
@@ -234,7 +235,8 @@ std::string tooDeep(const Table& table, const Node& value) {
   return all ? "; its keys (" + value.entries[0].key.scalar + ", ...) belong one level up, without this key" : "";
 }
 
-/// Returns the key that a misspelt one means, if it is not given as well and the word has no other place; else nullptr.
+/// Returns the key of the table that a misspelt key probably stands for. Returns nullptr if there is none, if that key
+/// is given as well, or if the word as it is spelt belongs in another place.
 const Key* meantKey(const Node& node, const Entry& entry, const Table& table) {
   const std::string& name = entry.key.scalar;
   const std::string meant = nearest(name, table.names());
@@ -258,7 +260,7 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
     problem(node, key, describe(node) + ", expected a mapping with " + listed(table.names()) + suggestMapping(node));
     return;
   }
-  std::vector<const Key*> misspelt;    // keys that are read from a misspelt one, so that all problems come at once
+  std::vector<const Key*> misspelt;    // keys that were given misspelt: their values are checked too
   const std::string* empty = nullptr;  // a key without a value: unknown keys after it probably belong under it
   for (const Entry& entry : node.entries) {
     const std::string path = joined(key, entry.key.scalar);

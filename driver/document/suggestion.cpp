@@ -16,7 +16,8 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
   const size_t point = word.rfind('.');
   const bool decimal = point != word.npos && point > 0 && std::isdigit(static_cast<unsigned char>(word[point - 1]));
-  const std::string_view own = decimal ? word : word.substr(point + 1);  // without groups; premium1.5 has none
+  // The last part of a key such as "arm.kind". The point in "premium1.5" does not separate parts.
+  const std::string_view own = decimal ? word : word.substr(point + 1);
   for (const std::string_view key : {word, own})
     if (const std::string slip = suggestKey(key); !slip.empty()) return slip;
   const std::string meant = nearest(word, candidates);

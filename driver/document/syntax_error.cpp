@@ -65,9 +65,10 @@ std::optional<Problem> wrongBlank(const std::string& text, int last, const std::
     ++number;
     if (first == std::string::npos || line[first] == '#') continue;
     if (line[first] == '\t' && line.find_first_not_of(" \t\r") != std::string::npos)
-      return Problem{{file, number, static_cast<int>(first) + 1}, "", "not YAML: a tab, expected blanks to indent"};
+      return Problem{
+          {file, number, static_cast<int>(first) + 1}, "", "not YAML: a tab indents this line, expected blanks"};
     if (line.compare(first, 2, "//") == 0)
-      return Problem{{file, number, static_cast<int>(first) + 1}, "", "not YAML: //, expected # before a comment"};
+      return Problem{{file, number, static_cast<int>(first) + 1}, "", "not YAML: // begins no comment, expected #"};
     if (auto dash = gluedDash(line, first, number, file)) return dash;
     const size_t key = line.find_first_not_of("- ", first), end = line.find_first_not_of(kLetters, key);
     if (key == std::string::npos || end == std::string::npos || end == key || line[end] != ':') continue;
@@ -89,7 +90,7 @@ std::optional<Problem> wrongIndent(const std::string& text, int last, const std:
   const auto wrong = [&](const Line& line, const std::string& expected) {
     return Problem{{file, line.number, line.indent + 1},
                    "",
-                   "not YAML: indented by " + std::to_string(line.indent) + ", expected " + expected};
+                   "not YAML: the line is indented by " + std::to_string(line.indent) + ", expected " + expected};
   };
   std::vector<int> open;
   bool may_go_deeper = true;
@@ -161,7 +162,7 @@ char charAt(const std::string& text, const Place& place) {
   return offset < text.size() ? text[offset] : '\0';
 }
 
-/// Returns the characters of a name from an offset on: the name of an anchor or an alias.
+/// Returns the name of the anchor or alias that begins at an offset.
 std::string nameAt(const std::string& text, size_t offset) {
   return text.substr(offset, text.find_first_of(" \t\r\n,[]{}", offset) - offset);
 }

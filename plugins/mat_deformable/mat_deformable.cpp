@@ -18,9 +18,10 @@ constexpr double kShowPeriod = 1.0 / 60;  ///< [s] time between two sets of disp
 constexpr double kFinestMesh = 1e-6;      ///< [m] least chord error of a mesh for drawing
 /// if more ticks than this have passed since the last step, no probe was near in the meantime
 constexpr double kGapFactor = 1.5;
-/// share of the radius; a foot that moves farther in one tick than this plus kSweep times the probe's path has jumped
-constexpr double kHop = 0.2;
-constexpr double kSweep = 4;  ///< multiple of the probe's path that a foot may move on the inside of a bend
+/// A foot has jumped to another part of the skeleton if its centre moves farther in one tick than kHop times the radius
+/// of its sphere plus kSweep times the path of the probe in that tick. On the inside of a bend, a foot moves farther
+/// than the probe.
+constexpr double kHop = 0.2, kSweep = 4;
 
 bool hasHopped(const SkeletonFoot& foot, const Vector3d& center, const Vector3d& moved) noexcept {
   return (foot.center - center).norm() > kHop * foot.radius + kSweep * moved.norm();

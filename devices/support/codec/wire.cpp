@@ -51,7 +51,8 @@ struct ReadReport {
   std::vector<FieldFacts> known;  ///< of each field
   bool sized = false;             ///< true if its size is known
 
-  /// Returns how many fields with mistakes may be meant to have this role, of a joint that is unknown.
+  /// Returns how many fields could be the ones of this role that seem to be missing: those whose role could not be
+  /// read, and those of this role whose joint could not be read.
   size_t unknown(Role role) const {
     size_t count = 0;
     for (size_t i = 0; i < known.size(); ++i)

@@ -109,7 +109,7 @@ bool Client::receiveMore() {
   return got > 0 || (got < 0 && errno == EINTR);
 }
 
-/// Returns the next line, whether it is an answer or news.
+/// Returns the next line, which is an answer or an event.
 Result<Reply> Client::receive(double seconds) {
   const Nanoseconds end = monotonicNow() + static_cast<Nanoseconds>(seconds * 1e9);
   while (lines_.empty()) {

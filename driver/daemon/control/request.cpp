@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
@@ -90,11 +91,33 @@ std::string shown(const Json& value) {
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
 }
 
+/// Returns what a key must have as its value, with unit and range.
+std::string expected(const char* key) {
+  static const std::map<std::string_view, const char*> all = {
+      {"model", "the name of a model"},
+      {"device", "the name of a device"},
+      {"hand", "the name of the device whose simulated hand is led"},
+      {"force", "the name of the device to push on"},
+      {"parameter", "the name of a parameter"},
+      {"file", "the absolute path of a scene"},
+      {"files", "a list of at most 250 absolute paths, every path once"},
+      {"value", "a number without quotes, or a word in quotes such as \"true\""},
+      {"tolerance", "a number from 0.00001 to 1 m"},
+      {"after", "a whole number from 0 to 10^15"},
+      {"number", "the number of a surface or feature, a whole number from 0 to 4294967295"},
+      {"position", "a list of 3 numbers [x, y, z] from -10 to 10 m, world frame"},
+      {"orientation", "a unit quaternion, a list of 4 numbers [w, x, y, z] of length 1"},
+      {"seconds", "a number from 0.05 to 600 s"}};
+  return all.at(key);
+}
+static_assert(kMostDescriptors == 250 && kMaxPlace == 10 && kFinestDrawing == 1e-5 && kMostFrames == 1e15,
+              "the ranges in expected() are those that are checked");
+
 /// Returns a hint if the line contains what many programs write for a number that is not finite: JSON has no such
 /// numbers.
 std::string noJsonNumber(std::string_view line) {
   for (const char* word : {"NaN", "nan", "Infinity", "inf"})
-    if (line.find(word) != std::string_view::npos) return std::string("; ") + word + " is not a number in JSON";
+    if (line.find(word) != std::string_view::npos) return std::string("; JSON has no number ") + word;
   return "";
 }
 
@@ -102,11 +125,13 @@ std::string noJsonNumber(std::string_view line) {
 std::string placeOfError(std::string_view line) {
   try {
     const Json parsed = Json::parse(line.begin(), line.end());
-    return "this is " + std::string(parsed.type_name()) + ": ";
+    const std::string type = parsed.type_name();
+    const std::string article = parsed.is_null() ? "" : parsed.is_array() ? "an " : "a ";
+    return "the line is " + article + type + ": ";
   } catch (const Json::parse_error& error) {
-    return "column " + std::to_string(error.byte) + " is not valid JSON: ";
+    return "the line is not valid JSON at byte " + std::to_string(error.byte) + ": ";
   } catch (const Json::exception&) {
-    return "a number is too large for JSON: ";
+    return "a number of the line is too large for JSON (1.8e308 at most): ";
   }
 }
 
@@ -120,35 +145,34 @@ class FieldReader {
     if (value == nullptr) return;
     if (!value->is_string() || value->get_ref<const std::string&>().empty() ||
         value->get_ref<const std::string&>().size() > kMaxText)
-      return complain(key, "a text of 1 to " + std::to_string(kMaxText) + " bytes");
+      return complain(key, expected(key) + ", 1 to " + std::to_string(kMaxText) + " bytes of text");
     to = value->get<std::string>();
-    if (to.find('\0') != std::string::npos) complain(key, "a text without zero bytes");
+    if (to.find('\0') != std::string::npos) complain(key, expected(key) + ", without zero bytes");
   }
-  void number(const char* key, double low, double high, const char* unit, double& to) {
+  void number(const char* key, double low, double high, double& to) {
     const Json* value = find(key);
     if (value == nullptr) return;
     const double given = value->is_number() ? value->get<double>() : NAN;
-    if (!(given >= low && given <= high)) return complain(key, "a number " + range(low, high) + unit);
+    if (!(given >= low && given <= high)) return complain(key, expected(key));
     to = given;
   }
   void whole(const char* key, double high, double& to) {
     const Json* value = find(key);
     if (value == nullptr) return;
     const double given = value->is_number() ? value->get<double>() : NAN;
-    if (!(given >= 0 && given <= high && given == std::floor(given)))
-      return complain(key, "a whole number " + range(0, high));
+    if (!(given >= 0 && given <= high && given == std::floor(given))) return complain(key, expected(key));
     to = given;
   }
   void numberOrWord(const char* key, double low, double high, double& to, std::string& word) {
     const Json* value = find(key);
-    if (value == nullptr || !value->is_string()) return number(key, low, high, "", to);
+    if (value == nullptr || !value->is_string()) return number(key, low, high, to);
     text(key, word);
     char* end = nullptr;
     std::strtod(word.c_str(), &end);
-    if (end != word.c_str() && *end == '\0') complain(key, "a number without quotes, or a word");
+    if (end != word.c_str() && *end == '\0') complain(key, expected(key));
   }
   template <size_t N>
-  void numbers(const char* key, double bound, const char* unit, std::array<double, N>& to) {
+  void numbers(const char* key, double bound, std::array<double, N>& to) {
     const Json* value = find(key);
     if (value == nullptr) return;
     bool good = value->is_array() && value->size() == N;
@@ -156,7 +180,7 @@ class FieldReader {
       to[i] = (*value)[i].is_number() ? (*value)[i].template get<double>() : NAN;
       good = std::abs(to[i]) <= bound;
     }
-    if (!good) complain(key, "a list of " + std::to_string(N) + " numbers within " + shortest(bound) + unit + " of 0");
+    if (!good) complain(key, expected(key));
   }
   /// Reads a list of absolute paths without repetitions.
   void paths(const char* key, size_t most, std::vector<std::string>& to) {
@@ -170,7 +194,7 @@ class FieldReader {
              known.insert(path).second;
       to.push_back(path);
     }
-    if (!good) complain(key, "a list of at most " + std::to_string(most) + " absolute paths, each once");
+    if (!good) complain(key, expected(key));
   }
   /// Reads a key whose only permitted value is the word `only`. @param to becomes true if the key is there
   void word(const char* key, const char* only, bool& to) {
@@ -186,9 +210,9 @@ class FieldReader {
     to = value->get<bool>();
   }
   bool has(const char* key) const { return json_.contains(key); }
-  void complain(const std::string& key, const std::string& expected) {
+  void complain(const std::string& key, const std::string& wanted) {
     if (!complaints_.empty()) complaints_ += "; ";
-    complaints_ += "\"" + key + "\": expected " + expected;
+    complaints_ += "\"" + key + "\": expected " + wanted;
     if (const Json* given = find(key.c_str())) complaints_ += ", got " + shown(*given);
   }
   const std::string& complaints() const { return complaints_; }
@@ -198,29 +222,27 @@ class FieldReader {
     const auto it = json_.find(key);
     return it == json_.end() ? nullptr : &*it;
   }
-  /// Returns the number without ".0", such as "600".
-  static std::string shortest(double value) {
-    const bool whole = std::abs(value) < 1e15 && value == std::floor(value);
-    return whole ? std::to_string(static_cast<long long>(value)) : Json(value).dump();
-  }
-  static std::string range(double low, double high) { return "from " + shortest(low) + " to " + shortest(high); }
-
   const Json& json_;
   std::string complaints_;
 };
 
 /// Returns which keys of a request are missing, and which are not part of it; "" if there are none.
 std::string wrongKeys(const Json& json, const RequestForm& form) {
+  constexpr size_t kMostNamed = 5;  // so that the answer stays short, however many wrong keys a request has
   std::string wrong;
   const auto add = [&wrong](const std::string& what) { wrong += (wrong.empty() ? "" : "; ") + what; };
   std::vector<std::string> known(form.needs.begin(), form.needs.end());
   known.insert(known.end(), form.may.begin(), form.may.end());
   for (const std::string& key : form.needs)
-    if (!json.contains(key)) add("\"" + key + "\" is missing in \"" + form.word + "\"");
+    if (!json.contains(key))
+      add("\"" + key + "\" is missing in \"" + form.word + "\", expected " + expected(key.c_str()));
+  size_t unknown = 0;
   for (const auto& [key, value] : json.items())
-    if (key != "do" && key != "id" && form.needs.count(key) == 0 && form.may.count(key) == 0)
-      add(shown(key) + " is not part of \"" + form.word + "\", expected " +
-          (known.empty() ? "no other key" : listed(known)) + meant(key, known));
+    if (key != "do" && key != "id" && form.needs.count(key) == 0 && form.may.count(key) == 0 && ++unknown <= kMostNamed)
+      add(shown(key) + " is not a key of \"" + form.word + "\"" + meant(key, known));
+  if (unknown > kMostNamed) add("nor are " + std::to_string(unknown - kMostNamed) + " others");
+  if (unknown > 0)
+    wrong += ", expected " + (known.empty() ? "no other key than \"do\" and \"id\"" : "the keys " + listed(known));
   return wrong;
 }
 
@@ -231,7 +253,8 @@ std::string readId(const Json& json, std::string* id) {
   if (given == json.end()) return "";
   const std::string text = given->dump(-1, ' ', false, Json::error_handler_t::replace);
   if ((!given->is_number() && !given->is_string()) || text.size() > kLongest)
-    return "\"id\": expected a number or a text of at most " + std::to_string(kLongest) + " bytes";
+    return "\"id\": expected a number or a text of at most " + std::to_string(kLongest) + " bytes, got " +
+           shown(*given);
   if (id != nullptr) *id = text;
   return "";
 }
@@ -240,14 +263,13 @@ void readOrientation(FieldReader& take, Request& request) {
   request.turns = take.has("orientation");
   if (!request.turns) return;
   const size_t before = take.complaints().size();
-  take.numbers("orientation", 2, "", request.orientation);
+  take.numbers("orientation", 2, request.orientation);
   if (take.complaints().size() > before) return;
   double square = 0;
   for (const double part : request.orientation) square += part * part;
   const double length = std::sqrt(square);
   constexpr double kRounding = 1e-3;
-  if (!(std::abs(length - 1) <= kRounding))
-    return take.complain("orientation", "a unit quaternion [w, x, y, z], of length 1");
+  if (!(std::abs(length - 1) <= kRounding)) return take.complain("orientation", expected("orientation"));
   for (double& part : request.orientation) part /= length;
 }
 
@@ -279,31 +301,33 @@ void readValues(FieldReader& take, Request& request) {
   take.text("file", request.file);
   take.paths("files", kMostDescriptors, request.files);
   take.numberOrWord("value", -1e300, 1e300, request.value, request.word);
-  take.number("tolerance", kFinestDrawing, 1, " m", request.tolerance);
+  take.number("tolerance", kFinestDrawing, 1, request.tolerance);
   take.word("as", "memory", request.as_memory);
   take.whole("after", kMostFrames, request.after);
   double number = 0;
   take.whole("number", 4294967295.0, number);
   request.number = static_cast<uint32_t>(number);
   take.flag("consent", request.consent);
-  take.numbers("position", kMaxPlace, " m", request.position);
+  take.numbers("position", kMaxPlace, request.position);
   readOrientation(take, request);
-  if (take.has("seconds")) take.number("seconds", 0.05, 600, " s", request.seconds.emplace(0));
+  if (take.has("seconds")) take.number("seconds", 0.05, 600, request.seconds.emplace(0));
 }
 
 }  // namespace
 
 Result<Request> parseRequest(std::string_view line, std::string* id) {
   if (line.size() > kMaxRequestBytes)
-    return Error{"the request is longer than " + std::to_string(kMaxRequestBytes) + " bytes"};
+    return Error{"the request has " + std::to_string(line.size()) + " bytes, expected at most " +
+                 std::to_string(kMaxRequestBytes)};
   Watch watch;
   const Json json = Json::parse(line.begin(), line.end(), std::ref(watch), false);
   if (watch.deep || !json.is_object())
-    return Error{(watch.deep ? "it is nested too deeply: " : placeOfError(line)) +
-                 "expected a JSON object in one line, such as {\"do\": \"status\"}" + noJsonNumber(line)};
+    return Error{(watch.deep ? "lists and objects are nested more than " + std::to_string(kMaxDepth) + " deep: "
+                             : placeOfError(line)) +
+                 "expected one JSON object in one line, such as {\"do\": \"status\"}" + noJsonNumber(line)};
   if (!watch.twice.empty())
     return Error{Json(watch.twice.substr(0, 64)).dump(-1, ' ', true, Json::error_handler_t::replace) +
-                 " is given twice, expected each key once"};
+                 " is given twice, expected every key once"};
   if (const std::string wrong = readId(json, id); !wrong.empty()) return Error{wrong};
   const auto word = json.find("do");
   const RequestForm* form =
@@ -311,7 +335,7 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
   if (form == nullptr) {
     const bool text = word != json.end() && word->is_string();
     return Error{"\"do\": expected one of " + listed(words()) +
-                 (word != json.end() ? ", got " + shown(*word) : ", but it is missing") +
+                 (word != json.end() ? ", got " + shown(*word) : ", but the key is missing") +
                  (text ? meant(word->get_ref<const std::string&>(), words()) : "")};
   }
   if (const std::string wrong = wrongKeys(json, *form); !wrong.empty()) return Error{wrong};
@@ -319,10 +343,10 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
   request.kind = form->kind;
   FieldReader take(json);
   readValues(take, request);
-  if (!request.file.empty() && request.file[0] != '/') take.complain("file", "an absolute path");
+  if (!request.file.empty() && request.file[0] != '/') take.complain("file", expected("file"));
   const bool leads = form->kind == Kind::kLead || form->kind == Kind::kUnlead;
   if (leads && take.has("model") + take.has("hand") + take.has("force") != 1)
-    take.complain(form->word, "either a \"model\", a \"hand\" or a \"force\"");
+    take.complain(form->word, "exactly one of the keys \"model\", \"hand\" and \"force\"");
   if (!take.complaints().empty()) return Error{take.complaints()};
   return request;
 }

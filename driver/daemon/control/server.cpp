@@ -35,7 +35,7 @@ Error cannot(const std::string& file, const std::string& what) {
 Result<std::unique_ptr<Server>> Server::listen(const std::string& file, const std::string& group) {
   sockaddr_un address{};
   if (!socketAddress(file, address)) return cannot(file, "the path is too long for a socket");
-  if (connectTo(file)) return cannot(file, "another daemon serves it\n  fix: hapticd run --name OTHER");
+  if (connectTo(file)) return cannot(file, "another daemon has this socket\n  fix: hapticd run --name OTHER");
   struct stat old{};
   if (lstat(file.c_str(), &old) == 0 && !S_ISSOCK(old.st_mode))
     return cannot(file, "a file that is not a socket has this name\n  fix: move it away, or hapticd run --name OTHER");
@@ -242,9 +242,11 @@ void Server::answerLines(Client& client) {
     reply->line += '\n';
     queue(client, std::move(*reply));
   }
-  if (client.in.empty()) client.given.clear();  // no line is left to which they could belong
+  if (client.in.empty()) client.given.clear();  // no line is left to which the descriptors could belong
   if (client.in.size() > kMaxRequestBytes && client.in.find('\n') == std::string::npos) {
-    queue(client, refusal("the request is longer than " + std::to_string(kMaxRequestBytes) + " bytes") + "\n");
+    queue(client, refusal("the request is longer than " + std::to_string(kMaxRequestBytes) +
+                          " bytes, expected a shorter line") +
+                      "\n");
     client.in.clear();
     client.closing = true;
   }
@@ -271,7 +273,7 @@ std::vector<Descriptor> Server::takeGiven(Client& client, const std::string& lin
   const size_t count = request ? std::min(request->files.size(), client.given.size()) : 0;
   for (size_t i = 0; i < count; ++i) taken.push_back(std::move(client.given[i]));
   client.given.erase(client.given.begin(), client.given.begin() + static_cast<std::ptrdiff_t>(count));
-  if (client.in.empty()) client.given.clear();  // no line is left to which they could belong
+  if (client.in.empty()) client.given.clear();  // no line is left to which the descriptors could belong
   return taken;
 }
 

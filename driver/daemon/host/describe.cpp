@@ -35,9 +35,10 @@ ParamInfo copyParam(const hsp_param& given) {
 /// Returns "", or the reason why this entry of a table cannot be used to check files.
 std::string wrongIn(const ParamInfo& p) {
   if (p.id.empty()) return "a parameter has no id";
-  if (p.kind < HSP_REAL || p.kind > HSP_DATA) return p.id + ": kind " + std::to_string(p.kind) + " is unknown";
+  if (p.kind < HSP_REAL || p.kind > HSP_DATA)
+    return p.id + ": its kind " + std::to_string(p.kind) + " is unknown, expected HSP_REAL to HSP_DATA";
   const bool numeric = p.kind == HSP_REAL || p.kind == HSP_INT || p.kind == HSP_ARRAY;
-  if (numeric && !(p.min <= p.max)) return p.id + ": its smallest value is above its largest";
+  if (numeric && !(p.min <= p.max)) return p.id + ": its smallest value (min) is above its largest (max)";
   const bool given = (p.flags & HSP_P_REQUIRED) == 0 && (p.kind == HSP_REAL || p.kind == HSP_INT);
   if (given && !(p.def >= p.min && p.def <= p.max))
     return p.id + ": its default is outside of its range; expected a number between its smallest and its largest value";

@@ -103,7 +103,7 @@ std::string wrongAnswers(const KinematicsCalls& calls, const std::function<Joint
   const char* where = known_stops ? "between its stops" : "within 0.9 rad (or m) of zero";
   for (const Answers* one : {&forward, &jacobian, &gravity}) {
     if (one == &forward && !known_stops && one->refused == one->asked)
-      return "";  // the range of its joints may be elsewhere
+      return "";  // the stops are unknown, and all places that were tried may lie beyond them
     if (one == &gravity && one->refused == one->asked)
       continue;  // allowed: the weight is unknown then, and is not carried
     if (std::string wrong = one->wrong(n, !known_stops, where); !wrong.empty()) return wrong;

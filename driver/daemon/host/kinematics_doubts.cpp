@@ -121,7 +121,7 @@ bool pullsDown(const KinematicsCalls& calls) {
 /// Returns the name of an axis of gravity whose weight the torques of gravity() push aside at all places, and never
 /// lift, because components of gravity are exchanged; 0 if there is none.
 char pushesAside(const KinematicsCalls& calls) {
-  constexpr double kShare = 0.05;  // of the force: less is an error of rounding near a singular place
+  constexpr double kShare = 0.05;  // share of the force; a smaller one is a rounding error near a singular pose
   for (int axis = 0; axis < 3; ++axis) {
     int felt = 0, lifts = 0;
     for (int i = 0; i < kPlaces; ++i) {

@@ -49,8 +49,8 @@ void putText(std::byte* memory, uint64_t at, const std::string& bytes) {
   put(memory, at, bytes.data(), bytes.size());
 }
 
-/// Returns the places of the index and the rows of each stream, after the skeleton. @param end end of the file, which
-/// is moved behind them
+/// Returns the places of the index and the rows of each stream. @param end [bytes] end of the file; it is moved behind
+/// these places
 std::vector<Place> placesOf(const std::vector<StreamSpec>& streams, const std::vector<uint32_t>& rows, uint64_t& end) {
   std::vector<Place> places;
   for (size_t i = 0; i < streams.size(); ++i) {

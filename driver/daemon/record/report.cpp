@@ -79,7 +79,7 @@ std::string oddPushesText(const ModelReport& model) {
   const std::string untraced = told("warning", c.untraced(), "without HSP_OUT_TRACED", "these do not count as contact");
   const std::string outside =
       told("outside", c.outside(), "from outside (depth_m below 0)", "only ticks inside count as contact");
-  // The shape does fill depth_m in. A short push from outside, as by friction, need not be reported.
+  // There was contact, so the shape sets depth_m. A short push from outside, as by friction, is not reported.
   if (c.contactTicks() > 0) return untraced + (c.outside().ticks > c.contactTicks() ? outside : "");
   return untraced + told("warning", c.depthless(), "with depth_m left at 0", "these do not count as contact") + outside;
 }
@@ -136,8 +136,9 @@ std::string modelText(const ModelReport& model, const RunReport& report) {
         fmt::format("  degraded  {} ticks, down to accuracy level {} of 3, to keep the tick's budget; error up to {}\n",
                     model.degraded_ticks, model.coarsest, lengthText(model.residual_m));
   if (c.heldFeet() + c.degradedFeet() > 0)
-    text += fmt::format("  feet      nearest in {} ticks, held in contact in {}, not proved in {}\n", c.nearestFeet(),
-                        c.heldFeet(), c.degradedFeet());
+    text += fmt::format(
+        "  feet      the foot was the nearest point in {} ticks, held in contact in {}, not proved nearest in {}\n",
+        c.nearestFeet(), c.heldFeet(), c.degradedFeet());
   const Histogram& step = c.stepUs();
   if (step.total() > 0)
     text += fmt::format("  step      p50 {:.0f} ns   p99 {:.0f} ns   max {:.0f} ns\n", step.quantile(0.5) * 1e3,

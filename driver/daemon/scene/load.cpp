@@ -19,7 +19,7 @@ void checkRoot(const Node& root, Reader& in, host::Catalog& catalog, std::option
     detail::hasFormat(root, nullptr, in);
     const Node* models = root.isMap() ? root.find("models") : nullptr;
     if (models == nullptr || !models->isSequence()) return;
-    Problems others;  // a list of models is of a scene, so the rest of it can be judged, too
+    Problems others;  // only a scene has a list of models, so the rest of the file is judged as a scene
     Reader rest(in.file(), others);
     detail::loadScene(root, rest, catalog, {.default_device = root.find("hand") != nullptr, .device_file = {}});
     for (Problem& one : others)
@@ -51,7 +51,8 @@ bool detail::isMeantAsDevice(const Node& root) {
   return root.find("module") != nullptr || root.find("parameters") != nullptr;
 }
 
-/// Reports the missing version of a file that only a device file can be, at the key that stands in its place.
+/// Reports that the key `hapticd-device` is missing in a file that can only be a device file. If a similar key was
+/// given instead, the report stands at that key.
 static void reportNoDeviceVersion(const Node& root, Reader& in) {
   for (const Entry& entry : root.entries) {
     if (entry.key.scalar == "hapticd")

@@ -71,7 +71,7 @@ HdArm readHd(const HdText& text, Reader& in) {
   return arm;
 }
 
-/// Refuses a limit of 0 N: who writes it means "no force", but elsewhere 0 means "no limit".
+/// Refuses a limit of 0 N, because it may mean "no force", while 0 means "no limit" for other limits.
 void refuseNoForce(const Node& root, Reader& in) {
   const Node* limits = root.find("limits");
   const Node* force = limits != nullptr && limits->isMap() ? limits->find("force") : nullptr;
@@ -97,11 +97,12 @@ bool partOf(const std::string& a, const std::string& b) {
   return part.size() > 2 && (whole.starts_with(part) || whole.ends_with(part));
 }
 
-/// Returns the module that an unknown name probably means, to find the other problems of the file, too: the one with
-/// the nearest name, else one that shares a part of its name, else the one that knows most of the given parameters, if
-/// it knows at least three. A shared part alone counts less than three known parameters.
+/// Returns the module that an unknown name probably stands for, so that the other problems of the file are found too.
+/// It is the module with the nearest name. Otherwise it is the module that has most of the given parameters, at least
+/// three, and among these one that shares a part of its name. Otherwise it is any module that shares a part of its
+/// name.
 std::string suggestModule(const std::string& name, const Node* parameters, host::Catalog& catalog) {
-  constexpr size_t kEnough = 3, kAlike = 1000;  // known parameters; more than a file has
+  constexpr size_t kEnough = 3, kAlike = 1000;  // known parameters; more than any module has
   const std::vector<std::string> names = catalog.names(host::Kind::kDevice);
   std::string best = nearest(name, names);
   if (!best.empty() || parameters == nullptr) return best;
@@ -118,15 +119,15 @@ std::string suggestModule(const std::string& name, const Node* parameters, host:
   return best;
 }
 
-/// Adds the modules that there are to the problem that the key `module` is missing.
+/// Adds the names of the available modules to the message that the key `module` is missing.
 void nameModules(const std::string& as, host::Catalog& catalog, Reader& in) {
   for (Problem& one : in.problems())
     if (one.key == "module" && one.place.file == in.file().string())
       one.what += ": one of " + document::listed(catalog.names(host::Kind::kDevice)) + as;
 }
 
-/// Finds the module of a device file. If its name is unknown or missing, this is reported, and the module that is
-/// probably meant is returned, to find the other problems, too. @return nullptr if there is none
+/// Finds the module of a device file. If its name is unknown or missing, this function reports that, and returns the
+/// module that is probably meant, so that the other problems are found too. @return nullptr if there is none
 const host::ClassInfo* moduleOf(const Node& root, const DeviceText& text, Reader& in, host::Catalog& catalog) {
   std::string unknown;
   if (!text.module.empty()) {
@@ -134,10 +135,10 @@ const host::ClassInfo* moduleOf(const Node& root, const DeviceText& text, Reader
     if (found) return *found;
     unknown = found.error();
   }
-  // The parameters of a module that is not built here cannot be judged, and as those of another all would be wrong.
+  // If hapticd has this module but it is not built here, its parameters cannot be judged; no other module fits them.
   const std::string meant = host::shipsName(text.module) ? "" : suggestModule(text.module, text.parameters, catalog);
   const std::string as = meant.empty() ? "" : "\n  the parameters are judged as those of " + meant;
-  const Node* at = root.find("module");  // missing if the key is misspelt
+  const Node* at = root.find("module");  // nullptr if the key is misspelt
   if (text.module.empty())
     nameModules(as, catalog, in);
   else

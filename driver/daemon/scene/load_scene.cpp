@@ -39,10 +39,11 @@ class SceneLoader {
     model.plugin = text.plugin;
     model.pose = text.pose;
     model.place = in_.place(*text.node);
-    if (!text.node->isMap()) return scene_.models.push_back(std::move(model));  // reported; the others keep their index
+    // This mistake was reported before. The empty model keeps the indices of the other models right.
+    if (!text.node->isMap()) return scene_.models.push_back(std::move(model));
     checkName(text, key);
     if (const host::ClassInfo* info = pluginOf(text, key)) {
-      model.plugin = info->name;  // of a misspelt plugin the nearest, so that its parameters are judged at once
+      model.plugin = info->name;  // for a misspelt plugin the nearest name, so that its parameters are judged too
       model.library = info->file;
       addParameters(text, key, *info, model);
     }
@@ -164,7 +165,7 @@ class SceneLoader {
     if (text_.hand != nullptr && scene_.devices.empty() && !hand_used_) checkHandPath(*text_.hand);
   }
 
-  /// Without a device, nothing reads the keys of the hand, but whether the file of its path exists can be told.
+  /// Checks that the file of the hand's path exists. Without a device, nothing else of the hand can be checked.
   void checkHandPath(const Node& hand) {
     const Node* path = hand.isMap() ? hand.find("path") : nullptr;
     if (path != nullptr) in_.existingFile(*path, "hand.path");
@@ -220,7 +221,7 @@ class SceneLoader {
 
   struct Known {
     const host::ClassInfo* info = nullptr;
-    bool is_misspelt = false;  ///< info is that of the nearest name, or nullptr
+    bool is_misspelt = false;  ///< true if info belongs to the nearest name, or is nullptr
     int line = 0;
   };
   Reader& in_;

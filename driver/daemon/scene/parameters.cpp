@@ -69,8 +69,8 @@ static std::optional<double> suggestChoice(const std::string& word, const std::v
   return static_cast<double>(std::find(choices.begin(), choices.end(), meant) - choices.begin());
 }
 
-/// Returns the number in the range that is nearest to what was given, for drafts of files with problems; 0 for what is
-/// no number.
+/// Returns the number of the range that is nearest to the given one (to 0 if the node is not a number), so that the
+/// rest of a file with problems can still be judged.
 static double heldIn(const Node& node, const Range& range) {
   const auto given = node.isScalar() ? toNumber(node.scalar) : std::nullopt;
   return std::clamp(given && std::isfinite(*given) ? *given : 0.0, range.min, range.max);
@@ -184,7 +184,7 @@ bool ParameterReader::readValue(const Node& node, const std::string& key, const 
     case HSP_ENUM:
       if (const auto index = in_->choice(node, key, param.choices))
         number = static_cast<double>(*index);
-      else if (node.isScalar())  // for drafts of files with problems
+      else if (node.isScalar())  // reported; the likely choice lets the rest of the file be judged
         number = suggestChoice(node.scalar, param.choices);
       break;
     case HSP_PATH:
@@ -248,7 +248,7 @@ static std::string notAList(const Node& node, const host::ParamInfo& param) {
 
 bool ParameterReader::readArray(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value) {
   const size_t before = in_->problems().size();
-  bool shaped = true;  // a list of right shape with wrong numbers is kept for drafts, so that its length can be judged
+  bool shaped = true;  // a list of the right length is kept even if its numbers are wrong, so that it can be judged
   const std::vector<std::string> units = unitsOf(param);
   if (const std::string advice = suggestDecimalsBeyond(node, param); !advice.empty())
     return in_->problem(node, key, "zeros and whole numbers take turns" + advice), false;

@@ -217,13 +217,13 @@ Result<RecordedRun> readAbout(const std::string& json_text) {
         if (model.at("name") == other.name) useFormerDefaults(other, model.at("id"), model.at("version"));
     const bool possible = std::isfinite(run.facts.rate) && run.facts.rate > 0 && run.facts.period_ns > 0;
     if (!possible || run.devices.size() != run.scene.devices.size())
-      return Error{"its description has an impossible rate or impossible devices: the recording is damaged"};
+      return Error{"the recording is damaged: its description has an impossible rate or impossible devices"};
     for (const hdv_info& info : run.devices)
       if (info.joint_count > HDV_MAX_JOINTS)
-        return Error{"its description has a device with too many joints: the recording is damaged"};
+        return Error{"the recording is damaged: its description has a device with too many joints"};
     return run;
   } catch (const std::exception& error) {
-    return Error{std::string("its description cannot be read: ") + error.what()};
+    return Error{std::string("the description in the recording cannot be read: ") + error.what()};
   }
 }
 

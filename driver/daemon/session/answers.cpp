@@ -282,7 +282,7 @@ std::string noForceWhy(const Session& session, uint32_t index) {
   const Fault fault = arm.limiter().fault();
   const std::string clear = "\n  fix: hapticd ctl clear, once the person who holds the arm agrees";
   if (fault == Fault::kStopped)
-    return "device " + device + ": it is held; its forces ended and stay off until it is cleared" + clear;
+    return "device " + device + ": the arm is held; its forces ended and stay off until the hold is cleared" + clear;
   if (fault != Fault::kNone)
     return faultMessage(device, fault, arm.limiter().measured(), arm.troubleOf(fault)) +
            (endsByItself(fault) ? "" : clear);

@@ -2,6 +2,7 @@
 /// Requests of programs that read rows, subscribe to events, or lead.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -18,7 +19,7 @@ Result<uint32_t> RequestHandler::armOf(const std::string& device) const {
   return refuse("unknown", noSuchDevice(runner_.scene(), device));
 }
 
-/// Passes the news of a pushing program to the status page, the log and the report of the run.
+/// Reports to the status page, the log and the report of the run that a program has begun or ended to push.
 void RequestHandler::reportPusher(uint32_t arm, const Leads::Pusher& pusher, Leads::PushEvent news) {
   if (news == Leads::PushEvent::kBegins) return runner_.namePusher(arm, pusher.place, pusher.pid, pusher.program);
   runner_.forgetPusher(arm, pusher.place,
@@ -31,15 +32,18 @@ Result<Leads::Target> RequestHandler::pushOf(const std::string& device) const {
   const auto arm = armOf(device);
   if (!arm) return Error{arm.error()};
   if (!runner_.scene().clients.push)
-    return refuse("unsupported",
-                  "the scene lets programs watch, but not push\n  fix: write clients: {push: true} in the scene");
+    return refuse(
+        "unsupported",
+        "the scene lets programs watch, but not push\n  fix: write clients: {push: true} in the scene, and start "
+        "the daemon again");
   if (!leads_.mayPush())
     return refuse("unsupported", "the scene of the last reload does not let programs push: " + scene_file_ +
                                      "\n  fix: write clients: add (or instead) in the scene, then: hapticd ctl reload");
   if (!runner_.arms()[*arm]->clients().possible())
     return refuse(
         "unsupported",
-        "the scene does not let programs push on its arms\n  fix: write clients: add (or instead) in the scene");
+        "the scene does not let programs push on its arms\n  fix: write clients: add (or instead) in the scene, "
+        "and start the daemon again");
   return Leads::Target{Order::Led::kForce, *arm, "device \"" + device + "\""};
 }
 
@@ -80,18 +84,18 @@ Result<std::string> RequestHandler::lead(const control::Peer& peer, const Reques
   const auto target = leadOf(request);
   if (!target) return Error{target.error()};
   if (!stays(peer) && staying() >= control::Server::kMaxStaying)
-    return refuse(
-        "too_many",
-        "no further program can lead or listen\n  fix: end one of the programs that lead or listen; there are now " +
-            std::to_string(staying()));
+    return refuse("too_many", std::to_string(staying()) +
+                                  " programs lead or listen already, which is the most\n  fix: end one of them");
   runner_.nameLeader(peer.pid, programOf(peer.pid));
   auto memory = leads_.begin(*target, peer);
   if (!memory) return refuse("busy", memory.error());
   attached_ = std::move(*memory);
   const bool pushes = target->led == Order::Led::kForce;
   const std::string why = pushes ? noForceWhy(session(), target->index) : "";
-  return fmt::format(R"({{"ok":true,"bytes":{},"record":"{}"{}}})", HAPTICD_LEAD_BYTES,
+  const double most = pushes ? runner_.arms()[target->index]->clients().bound() : INFINITY;
+  return fmt::format(R"({{"ok":true,"bytes":{},"record":"{}"{}{}}})", HAPTICD_LEAD_BYTES,
                      pushes ? "hapticd_push" : "hapticd_target",
+                     std::isfinite(most) ? ",\"max_force\":" + nlohmann::json(most).dump() : "",
                      why.empty() ? "" : ",\"no_force\":" + nlohmann::json(why).dump());
 }
 
@@ -151,10 +155,8 @@ Result<std::string> RequestHandler::eventsAfter(double after) const {
 
 Result<std::string> RequestHandler::subscribe(const control::Peer& peer) {
   if (!stays(peer) && staying() >= control::Server::kMaxStaying)
-    return refuse(
-        "too_many",
-        "no further program can lead or listen\n  fix: end one of the programs that lead or listen; there are now " +
-            std::to_string(staying()));
+    return refuse("too_many", std::to_string(staying()) +
+                                  " programs lead or listen already, which is the most\n  fix: end one of them");
   const uint64_t next = runner_.telemetry().flight()->ring().written(kEvents);
   listeners_[peer.id] = next;
   return fmt::format(R"({{"ok":true,"next":{}}})", next);

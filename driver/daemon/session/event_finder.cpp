@@ -8,7 +8,7 @@ namespace hapticd::servo {
 namespace {
 
 constexpr double kStalled = 0.25;  ///< [s] a longer gap between two ticks means that the process was stopped
-constexpr uint32_t kWhy = 16;      ///< factor of the reason in the code of HAPTICD_REFUSED, see client.h
+constexpr uint32_t kWhy = 16;      ///< the code of HAPTICD_REFUSED is what is led + kWhy * the reason, see client.h
 
 uint32_t codeOf(Order::Led led, PoseFollower::Refusal why) noexcept HSP_RT {
   return static_cast<uint32_t>(led) + kWhy * static_cast<uint32_t>(why);

@@ -132,7 +132,7 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
       if (event.t < kBegins)
         return {HSP_LOG_WARNING, who,
                 device(event) +
-                    " is inside this model at the start, so a force begins with the run (it grows over "
+                    " has its tip inside this model at the start, so a force begins with the run (it grows over "
                     "limits.ramp_in)\n  fix: move "
                     "the model, the arm (mount) or the hand (hand), so that the tip starts outside"};
       return {HSP_LOG_DEBUG, who, fmt::format("{} touches it at {:.4f} s", device(event), event.t)};
@@ -148,12 +148,13 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
     case HAPTICD_LEFT:
       return {HSP_LOG_INFO, who, "has left the scene"};
     case HAPTICD_STALLED:
-      return {HSP_LOG_WARNING, "",
-              fmt::format(
-                  "no tick for {:.2f} s, until {:.2f} s: the process was stopped (SIGSTOP, a debugger), the "
-                  "machine was too busy, or a call of an arm's module took that long (see \"in arms\" in the report of "
-                  "the run, or try: hapticd device check FILE)",
-                  event.value, event.t)};
+      return {
+          HSP_LOG_WARNING, "",
+          fmt::format(
+              "no tick for {:.2f} s, until {:.2f} s: the process was stopped (SIGSTOP, a debugger), the "
+              "machine was too busy, or a call of an arm's module took that long (compare \"in arms\" in the report of "
+              "the run, or try: hapticd device check FILE)",
+              event.value, event.t)};
     default:
       return {HSP_LOG_DEBUG, "", ""};
   }
@@ -164,11 +165,11 @@ EventLog::Message EventLog::messageOfArm(const hapticd_event& event) const {
   const bool held = event.probe >= 0 && arm < held_.size() && held_[arm];
   if (event.kind == HAPTICD_CLEARED)
     return {HSP_LOG_INFO, device(event),
-            held ? "the hold is over; its forces come back" : "the fault is over; its forces come back"};
+            held ? "the hold is over; the forces come back" : "the fault is over; the forces come back"};
   const auto fault = static_cast<Fault>(event.code);
   if (fault == Fault::kStopped)  // from an order to hold; the end of a run makes no event
     return {HSP_LOG_WARNING, device(event),
-            "it is held; its forces ended and stay off until it is cleared\n  fix: hapticd ctl clear"};
+            "the arm is held; its forces ended and stay off until the hold is cleared\n  fix: hapticd ctl clear"};
   const char* trouble = event.probe >= 0 && arm < arms_.size() ? arms_[arm]->troubleOf(fault) : nullptr;
   return {HSP_LOG_ERROR, "", "fault: " + faultMessage(device(event), fault, event.value, trouble)};
 }

@@ -209,7 +209,8 @@ RowLayout eventColumns() {
   layout.add("model", ColumnType::kInt, "", "number of the model, -1 if there is none");
   layout.add("probe", ColumnType::kInt, "", "number of the arm, -1 if there is none");
   layout.add("code", ColumnType::kWord, "",
-             "number of the fault, of the reason why a model was silenced, or of what is led; see the header client.h");
+             "its meaning depends on kind: number of the fault, of the reason why a model was silenced, or of what a "
+             "program moves (0 a model, 1 a simulated hand, 2 a force); see the header client.h");
   layout.add("value", ColumnType::kReal, "", "measured value; see the header client.h");
   return layout;
 }

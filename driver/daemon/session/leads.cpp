@@ -30,26 +30,26 @@ bool same(const Leads::Target& a, const Leads::Target& b) {
 Result<void> Leads::findPlace(Target& target, const control::Peer& peer) {
   const auto others = pushers(target.index);
   if (exclusive_ && !others.empty())
-    return Error{target.name + " is pushed on by process " + std::to_string(others.front().pid) +
-                 " already, and the scene allows only one (clients.exclusive)"};
+    return Error{"process " + std::to_string(others.front().pid) + " pushes on " + target.name +
+                 " already, and the scene allows only one program at a time (clients: {exclusive: true})"};
   for (const Lead& lead : leads_)
     if (same(lead.target, target) && lead.peer.id == peer.id)
-      return Error{target.name + " is pushed on by this connection already"};
+      return Error{"this connection pushes on " + target.name + " already"};
   for (uint32_t i = 0; i < ClientForces::kMost; ++i) {
     target.place = last_place_ = (last_place_ + 1) % ClientForces::kMost;
     const bool taken =
         std::any_of(others.begin(), others.end(), [&](auto& other) { return other.place == target.place; });
     if (!taken) return {};
   }
-  return Error{target.name + " is pushed on by " + std::to_string(others.size()) +
-               " programs already, which is the most"};
+  return Error{std::to_string(others.size()) + " programs push on " + target.name +
+               " already, which is the most; expected one of them to end first"};
 }
 
 Result<Descriptor> Leads::begin(Target target, const control::Peer& peer) {
   if (target.led == Order::Led::kForce) {
     if (auto found = findPlace(target, peer); !found) return Error{found.error()};
   } else if (const auto pid = leader(target.led, target.index)) {
-    return Error{target.name + " is led by process " + std::to_string(*pid) +
+    return Error{"process " + std::to_string(*pid) + " leads " + target.name +
                  " already; that lead ends with the request unlead, or when the program's connection ends"};
   }
   auto memory = SealedMemory::create("hapticd-lead", HAPTICD_LEAD_BYTES, SealedMemory::Writers::kAll);
@@ -65,7 +65,7 @@ Result<Descriptor> Leads::begin(Target target, const control::Peer& peer) {
   if (programs_.size() >= kMostPrograms) programs_.clear();
   programs_[peer.pid] = programOf(peer.pid);  // set before the servo reports the new leader
   const auto given = post_order_(order);
-  // kept also if the servo did not obey in time, because it may obey later
+  // The lead is kept even if the servo did not obey in time, because the servo may obey later.
   leads_.push_back({target, peer, std::move(*memory), programs_[peer.pid]});
   notify(leads_.back(), PushEvent::kBegins);
   if (given) return std::move(*shared);
@@ -77,7 +77,8 @@ Result<void> Leads::end(const Target& target, const control::Peer& peer, PushEve
   const auto found = std::find_if(leads_.begin(), leads_.end(), [&](const Lead& lead) {
     return same(lead.target, target) && lead.peer.id == peer.id;
   });
-  if (found == leads_.end()) return Error{target.name + " is not led by this connection"};
+  if (found == leads_.end())
+    return Error{"this connection neither leads " + target.name + " nor pushes on it, so there is nothing to end"};
   Lead lead = std::move(*found);
   leads_.erase(found);
   return finish(std::move(lead), how);
@@ -111,7 +112,7 @@ Result<void> Leads::endOfModel(uint32_t model) {
 void Leads::endPushes() {
   const auto pushes = [](const Lead& lead) { return lead.target.led == Order::Led::kForce; };
   for (auto found = leads_.begin(); (found = std::find_if(leads_.begin(), leads_.end(), pushes)) != leads_.end();)
-    // An error only means that the servo is late: it will still obey.
+    // An error only means that the servo is late: the servo will still end the push.
     (void)end(Target(found->target), control::Peer(found->peer), PushEvent::kEnds);
 }
 

@@ -86,7 +86,7 @@ Result<scene::Scene> RequestHandler::loadOwn(const control::Peer& peer) {
 /// Loads a scene that a program sent. The daemon may read the files of its own arms for it, because the scene must name
 /// these arms, but shows nothing of their content. A scene that names no arm has the default one, which ships.
 Result<scene::Scene> RequestHandler::loadPassed(const control::Peer& peer, const std::string& file) {
-  if (!passed_) return Error{"no files were passed with the request"};
+  if (!passed_) return Error{"the request came without open files, expected those of \"files\""};
   std::vector<std::string> own;
   if (const auto usual = host::shippedFile(scene::kDefaultDevice)) own.push_back(usual->string());
   for (const scene::Device& device : runner_.scene().devices) {
@@ -100,15 +100,18 @@ Result<scene::Scene> RequestHandler::loadPassed(const control::Peer& peer, const
   if (scene) return scene;
   for (const std::string& name : own)
     if (isForeign(peer) && passed_->pathOf(name) == name && scene.error().find(name) != std::string::npos)
-      return refuse("failed", name + ": cannot be used with this scene");
+      return refuse("failed", name + ": the daemon cannot use this file of its own with the scene that was sent");
   return Error{passed_->named(scene.error())};
 }
 
 /// Returns an error that this peer may see: another user does not get quotes from the daemon's own scene.
 std::string RequestHandler::tellable(const control::Peer& peer, const std::string& why) const {
   if (passed_) return passed_->named(why);
-  return isForeign(peer) ? scene_file_ + ": cannot be used\n  fix: ask the daemon's user to test it with hapticd check"
-                         : why;
+  return isForeign(peer)
+             ? scene_file_ +
+                   ": the scene has problems, which only the daemon's user may see\n  fix: ask that user to "
+                   "test it with hapticd check"
+             : why;
 }
 
 Result<std::string> RequestHandler::add(const control::Peer& peer, const Request& request) {
@@ -120,13 +123,15 @@ Result<std::string> RequestHandler::add(const control::Peer& peer, const Request
   if (models.empty()) {
     std::vector<std::string> names;
     for (const scene::Model& model : scene->models) names.push_back(model.name);
-    return refuse("unknown", request.file + ": has no model" +
+    return refuse("unknown", request.file + ": the scene has no model" +
                                  (request.model.empty() ? std::string()
                                                         : " \"" + request.model.substr(0, 100) +
                                                               "\", expected one of " + document::listed(names, 20)));
   }
   for (const scene::Model& model : models)
-    if (placeOf(model.name)) return refuse("busy", "a model named \"" + model.name + "\" exists already");
+    if (placeOf(model.name))
+      return refuse("busy", "a model named \"" + model.name +
+                                "\" exists already\n  fix: remove it first, or rename one of the two");
   if (auto done = adopt(models); !done) return Error{tellable(peer, done.error())};
   auto json = cameAnswer(models);
   addReplaced(json, models, log_);
@@ -176,7 +181,7 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
     order.model = prepared_.back().get();
     const auto given = post(order);
     places_[place] = {models[i], true, true};
-    // The shape is kept also if the servo did not obey in time, because it may obey later.
+    // The shape is kept even if the servo did not obey in time, because the servo may obey later.
     runner_.world().store(place, std::move(shapes[i]), models[i]);
     if (!given) return given;
     prepared_.pop_back();

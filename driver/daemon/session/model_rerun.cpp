@@ -21,7 +21,7 @@ const Column* reals(const record::RecordedStream& stream, const std::string& nam
 }
 
 constexpr int kSettle = 50;     ///< ticks without a touch, after which a soft body is at rest
-constexpr double kTick = 1e-3;  ///< [s] length of these ticks
+constexpr double kTick = 1e-3;  ///< [s] length of the ticks of kSettle
 
 }  // namespace
 
@@ -30,7 +30,8 @@ Result<std::unique_ptr<ModelRerun>> ModelRerun::prepare(const record::Recording&
   if (ticks == nullptr || ticks->rows() == 0) return Error{"the recording has no ticks"};
   std::unique_ptr<ModelRerun> rerun(new ModelRerun(*ticks, world));
   rerun->time_ = ticks->find("t");
-  if (rerun->time_ == nullptr) return Error{"the recording has no times of ticks (column t)"};
+  if (rerun->time_ == nullptr)
+    return Error{"the stream ticks of the recording has no column t (the times of the ticks)"};
   rerun->probes_.resize(world.core().probeCount());
   for (size_t i = 0; i < rerun->probes_.size(); ++i) {
     const std::string arm = "arm" + std::to_string(i) + "_";

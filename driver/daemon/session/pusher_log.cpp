@@ -20,7 +20,7 @@ const char* describe(ClientForces::Refusal why) {
     case ClientForces::Refusal::kNotFinite:
       return "a number is not finite";
     case ClientForces::Refusal::kTooLarge:
-      return "a number is beyond 1e6";
+      return "a force or torque is beyond 1e6 N or N m";
     case ClientForces::Refusal::kAhead:
       return "it answers a tick that has not begun";
   }

@@ -64,18 +64,20 @@ std::string missingIn(const record::Recording& recording, const RecordedRun& run
       return "lacks " + std::to_string(stream->lost()) + " rows of " + spec.name +
              (recording.blackBox() ? ": a black box keeps only the newest rows; record with --record" : "");
     if (stream->rowBytes() != spec.layout.rowBytes())
-      return "has rows of " + spec.name + " with another size than in this build";
+      return "has rows of " + spec.name + " with " + std::to_string(stream->rowBytes()) + " bytes, expected " +
+             std::to_string(spec.layout.rowBytes()) + ": replay it with the hapticd that recorded it";
     for (const Column& column : spec.layout.columns()) {
       const Column* found = stream->find(column.name);
       if (found == nullptr || found->offset != column.offset || found->type != column.type)
-        return "has no column " + column.name + " of " + spec.name + " at the place where this build expects it";
+        return "has no column " + column.name + " of " + spec.name +
+               " at the place where this hapticd expects it: replay it with the hapticd that recorded it";
     }
   }
   const RecordedStream& ticks = *recording.stream("ticks");
   if (ticks.rows() == 0) return "has no ticks";
   if (ticks.number(0, *ticks.find("tick")) != 0)
     return "begins in the middle of a run; record from the start with --record";
-  return run.devices.empty() ? "has no device" : "";
+  return run.devices.empty() ? "names no device" : "";
 }
 
 }  // namespace
@@ -92,7 +94,7 @@ class Replay::Player final : public Clock {
     now_ = timeOf(0);
     end_ = std::min(ticks_.rows(), endOfScene());
     if (end_ < ticks_.rows())
-      outcome.note = "models were added or removed in tick " + std::to_string(end_) + ": the replay ends there";
+      outcome.note = "the replay ends at tick " + std::to_string(end_) + ", in which models were added or removed";
   }
 
   Nanoseconds now() noexcept HSP_RT override { return now_; }

@@ -33,12 +33,13 @@ const hsp_param* parameterOf(const hsp_class& plugin, const std::string& id, uin
   return nullptr;
 }
 
-/// Returns the allowed values, such as "0 to 3000 N/m", or the words of a choice.
+/// Returns the allowed values, such as "a number from 0 to 3000 N/m", or the words of a choice.
 std::string expectedOf(const hsp_param& param) {
   if (param.kind == HSP_BOOL) return "true or false";
+  const std::string unit = host::textOf(param.unit);
   if (param.kind != HSP_ENUM)
-    return fmt::format("{}{:g} to {:g} {}", param.kind == HSP_INT ? "a whole number from " : "", param.min, param.max,
-                       host::textOf(param.unit));
+    return fmt::format("a {}number from {:g} to {:g}{}{}", param.kind == HSP_INT ? "whole " : "", param.min, param.max,
+                       unit.empty() ? "" : " ", unit);
   std::vector<std::string> words;
   for (uint32_t i = 0; i < param.choice_count; ++i) words.push_back(host::textOf(param.choices[i]));
   return "one of " + document::listed(words, 40);
@@ -195,15 +196,20 @@ Result<uint32_t> RequestHandler::placeOf(const std::string& model) const {
     if (places_[i].taken && places_[i].model.name == model) return i;
     if (places_[i].taken) names.push_back(places_[i].model.name);
   }
-  return refuse("unknown", "there is no model \"" + model.substr(0, 100) + "\"" +
+  return refuse("unknown", "there is no model \"" + model.substr(0, 100) + "\", " +
+                               (names.empty() ? "nor any other" : "expected one of " + document::listed(names)) +
                                document::suggestion(model.substr(0, 100), names));
 }
 
 Result<void> RequestHandler::post(const Order& order) {
-  if (!runner_.postOrder(order)) return refuse("busy", "too many orders are waiting; the servo may have stopped");
+  if (!runner_.postOrder(order))
+    return refuse(
+        "busy",
+        "the servo has not carried out the orders before this one; it may have stopped: see hapticd ctl status");
   ++given_;
   if (!waitUntil([&] { return runner_.loop().ordersDone() >= given_; }))
-    return refuse("timeout", "the servo did not carry out the order within 2 s; it may have stopped: see status");
+    return refuse("timeout",
+                  "the servo did not carry out the order within 2 s; it may have stopped: see hapticd ctl status");
   return {};
 }
 
@@ -260,7 +266,8 @@ Result<void> RequestHandler::set(const Request& request) {
   const std::string what = "parameter \"" + request.parameter.substr(0, 100) + "\" of " + plugin.name;
   if (param == nullptr) return refuse("unknown", noSuchParameter(plugin, request.parameter, HSP_P_LIVE));
   if ((param->flags & HSP_P_LIVE) == 0 || param->kind > HSP_ENUM)
-    return refuse("unsupported", what + ": cannot change while the model runs\n  fix: change the scene and reload it");
+    return refuse("unsupported",
+                  what + " cannot change while the model runs\n  fix: change the scene, then: hapticd ctl reload");
   const auto meant = request.word.empty() ? request.value : numberOf(*param, request.word);
   if (!meant)
     return refuse("out_of_range", what + ": \"" + request.word.substr(0, 100) + "\" is not " +
@@ -289,9 +296,10 @@ Result<std::string> RequestHandler::move(const Request& request) {
   if (!model.kinematic)
     return refuse("unsupported",
                   "model \"" + model.name +
-                      "\" is not kinematic, so it cannot be moved; expected motion: kinematic in the scene");
+                      "\" is not kinematic, so it cannot be moved\n  fix: write motion: kinematic in the scene");
   if (const auto leader = leads_.leader(Order::Led::kModel, *place))
-    return refuse("busy", "model \"" + model.name + "\" is led by process " + std::to_string(*leader));
+    return refuse("busy", "process " + std::to_string(*leader) + " leads model \"" + model.name +
+                              "\", so only that process can move it; expected the end of this lead");
   Order order;
   order.kind = Order::Kind::kMove;
   order.target = *place;

@@ -134,7 +134,7 @@ Result<std::unique_ptr<RunFiles>> RunFiles::open(const std::string& name, RunOpt
   outside->folder_ = status::runtimeFolder(true);
   if (outside->folder_.empty()) {
     log::write(HSP_LOG_WARNING, "",
-               "/dev/shm/hapticd-" + std::to_string(geteuid()) +
+               "the folder /dev/shm/hapticd-" + std::to_string(geteuid()) +
                    " does not belong to you: no other program can watch or change this run, and a crash leaves no "
                    "black box\n  fix: remove it, or set RUNTIME_DIRECTORY to a folder in memory that only you may "
                    "write to");

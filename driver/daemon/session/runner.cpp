@@ -25,7 +25,7 @@ constexpr uint64_t kReadyTicks = 2;  ///< after this many ticks the service mana
 constexpr uint64_t kLongestRunUs = 100'000;  ///< longest CPU time without sleep [us]; a tick takes a hundredth of it
 
 std::string readyMessage(const Loop& loop) {
-  return "READY=1\nSTATUS=the servo ticks; " + std::to_string(loop.lateDryCycles()) + " of " +
+  return "READY=1\nSTATUS=the servo ticks; before, " + std::to_string(loop.lateDryCycles()) + " of " +
          std::to_string(kDryCycles) + " dry cycles woke a period late";
 }
 
@@ -48,7 +48,7 @@ const Owner* keepsTheEnd() {
 /// if late ticks are normal on this machine
 std::unique_ptr<watch::Watchdog> watchdogOf(watch::WatchTarget& watched, bool may_lag) {
   using watch::Watchdog;
-  const auto hung = [&watched] { watch::endByFault("a step that did not come back", watched.inServo()); };
+  const auto hung = [&watched] { watch::endByFault("a step that did not return", watched.inServo()); };
   auto watchdog =
       std::make_unique<Watchdog>(watched, hung, may_lag ? Watchdog::kMissedInVirtualMachine : Watchdog::kMissedAfter,
                                  may_lag ? Watchdog::kStuckInVirtualMachine : Watchdog::kStuckAfter);
@@ -59,13 +59,13 @@ std::unique_ptr<watch::Watchdog> watchdogOf(watch::WatchTarget& watched, bool ma
 /// Ends the process if a call of a module after the last tick did not return. If no module is in a call, it returns,
 /// and is called again later.
 void dieOfStop() {
-  if (const Owner* keeps = keepsTheEnd()) watch::endByFault("a stop() that did not come back", keeps);
+  if (const Owner* keeps = keepsTheEnd()) watch::endByFault("a call after the last tick that did not return", keeps);
 }
 
 /// Runs the loop in virtual time. @param after called after the last tick; it calls modules, which may hang as well
 Result<void> runInVirtualTime(Loop& loop, const watch::WatchTarget& watched, const std::function<void()>& after) {
   const auto hung = [] {
-    if (const Owner* keeps = keepsTheEnd()) watch::endByFault("a step that did not come back", keeps);
+    if (const Owner* keeps = keepsTheEnd()) watch::endByFault("a step that did not return", keeps);
   };
   watch::EndWatch end(watched, [] { watch::forceEnd(keepsTheEnd()); }, hung);
   if (const auto code = end.start()) return Error{"cannot start the thread that watches the end: " + code.message()};
@@ -111,7 +111,7 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
     ended();
   } else {
     done = runReal(watched, every, ended);
-    stopArms();  // tries again if it failed
+    stopArms();  // again, if the first attempt failed
   }
   guard_.reset();
   resident_bytes_ = os::residentBytes();
@@ -256,7 +256,7 @@ std::vector<std::string> Runner::enterRealTime() const {
       refused.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " + code.message());
   if (const auto code = os::setFifo(options_.priority))
     refused.push_back(noFifo(options_.priority, code, !onlySimulated()));
-  [[maybe_unused]] const auto limited = os::limitRealTimeRun(kLongestRunUs);  // if this fails, it is lower already
+  [[maybe_unused]] const auto limited = os::limitRealTimeRun(kLongestRunUs);  // fails only if it is lower already
   return refused;
 }
 

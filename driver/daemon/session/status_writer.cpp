@@ -87,7 +87,7 @@ void StatusWriter::models(uint64_t tick, const Core& core,
                           std::span<const record::ContactStatistics> books) noexcept HSP_RT {
   status::Page& page = file_->page();
   for (const uint32_t place : core.live()) {
-    if (place >= status::kMaxModels) break;  // places grow, so the rest has no entry either
+    if (place >= status::kMaxModels) break;  // places are in ascending order, so no later model has an entry either
     const ModelState& model = core.models()[place];
     status::ModelStatus now;
     now.depth = std::numeric_limits<double>::quiet_NaN();

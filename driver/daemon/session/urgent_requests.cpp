@@ -49,7 +49,8 @@ Result<std::string> RequestHandler::hold(const std::string& device, const char*&
   for (const Nanoseconds until = clock.now() + kPatience; !runner_.loop().holdsObeyed(arms) && clock.now() < until;)
     clock.waitUntil(clock.now() + kPause);
   if (runner_.loop().holdsObeyed(arms) || runner_.loop().finished()) return good();
-  return Error{"the servo did not obey within 0.1 s: it may have stopped, and then its motors were cut; see status"};
+  return Error{
+      "the servo did not obey within 0.1 s: it may have stopped, and then its motors were cut: see hapticd ctl status"};
 }
 
 }  // namespace hapticd::servo

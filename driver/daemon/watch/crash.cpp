@@ -50,7 +50,7 @@ void onFatal(int signal, siginfo_t* info, void* context) {
   if (servo != nullptr && other) {
     servo->stop();
     Line()
-        .add("\nwarning: the run ends by ")
+        .add("\nwarning: the run ends because of ")
         .add(signalName(signal).text())
         .add(", which another process sent\n")
         .write(STDERR_FILENO);
@@ -69,7 +69,8 @@ void onStop(int signal, siginfo_t* info, void* context) {
   const Owner* keeps = watchedHere() != nullptr ? currentOwner() : nullptr;
   if (keeps != nullptr) {
     Line line;
-    addOwner(line.add("\nwarning: ended by ").add(signalName(signal).text()).add(" while "), *keeps).add(" was");
+    addOwner(line.add("\nwarning: the program was ended by ").add(signalName(signal).text()).add(" while "), *keeps)
+        .add(" was");
     addCall(line, *keeps, callNameHere()).add("\n");
     line.write(STDERR_FILENO);
   }
@@ -147,7 +148,7 @@ void forceEnd(const Owner* keeps) noexcept {
   Line line;
   line.add("\nwarning: the run was told to end, and ");
   if (keeps != nullptr)
-    addOwner(line, *keeps).add(" did not come back");
+    addOwner(line, *keeps).add(" did not return");
   else
     line.add("its last work took too long");
   line.add("\n  ").add(servo->drives() ? "the motors are off; " : "").add("the process ends without its report\n");

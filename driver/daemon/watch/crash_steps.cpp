@@ -144,7 +144,8 @@ void printRemedy(Line& line, bool drives) noexcept {
         .add(" has ended\n  fix: repair the plugin; hapticd plugin check FILE.so looks for the cause\n");
   } else if (crash_steps.suspicion != Suspicion::kNone && foreignOwner(0) != nullptr) {
     line.add(
-            "it has ended\n  fix: test that code first (hapticd plugin check FILE.so); if it passes, report this with ")
+            "the program has ended\n  fix: test that code first (hapticd plugin check FILE.so); if it passes, report "
+            "this with ")
         .add("the output of: hapticd doctor --json\n");
   } else if (!drives) {
     line.add("the command has ended\n  fix: report it with the output of: hapticd doctor --json\n");

@@ -15,7 +15,8 @@ namespace hapticd::watch {
 
 namespace {
 
-/// The C library's last message before it aborted, if it keeps it: a length, and then the text.
+/// The C library's last message before it aborted the process: a length, and then the text. nullptr if the C library
+/// does not keep this message.
 const char* const* last_words = nullptr;
 
 /// True if malloc() or free() aborted because its own data were overwritten. The code that overwrote them has returned

@@ -32,7 +32,7 @@ struct Target {
   Descriptor fd;
 };
 
-/// Claims a USB interface. While the daemon lives, the interface belongs to it; this takes it over after its end.
+/// Claims a USB interface. The interface belongs to the daemon while it lives, so it can be claimed only afterwards.
 bool claim(int fd, unsigned interface) noexcept {
   if (ioctl(fd, USBDEVFS_CLAIMINTERFACE, &interface) == 0) return true;
   usbdevfs_ioctl disconnect{static_cast<int>(interface), USBDEVFS_DISCONNECT, nullptr};
@@ -145,7 +145,7 @@ void guardMain(int count, char** arguments) {
   constexpr int kMostPriority = 98;
   const int priority = count > 2 ? std::atoi(arguments[2]) : 0;
   if (priority > 0)
-    (void)os::setFifo(priority < kMostPriority ? priority : kMostPriority);  // if refused, it is an ordinary thread
+    (void)os::setFifo(priority < kMostPriority ? priority : kMostPriority);  // otherwise it is an ordinary thread
   (void)os::lockMemory();
   void* mapped = mmap(nullptr, sizeof(Heartbeat), PROT_READ, MAP_SHARED, kGuardMemory, 0);
   if (mapped == MAP_FAILED || count < 4) _exit(2);

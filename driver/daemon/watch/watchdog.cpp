@@ -9,7 +9,7 @@ namespace hapticd::watch {
 std::error_code Watchdog::start(int priority) {
   stop_ = false;
   return thread_.start("hapticd-watch", [this, priority] {
-    (void)os::setFifo(priority);  // if it is refused, the thread still watches, as an ordinary thread
+    (void)os::setFifo(priority);  // if this is refused, the thread watches as an ordinary thread
     RealClock clock(0);
     while (!stop_) {
       clock.waitUntil(clock.now() + kCheckEvery);

@@ -21,7 +21,7 @@ struct WorldOptions {
   uint32_t spare_models = 0;  ///< places for models that are added during the run
   bool measure = false;       ///< true: measure the CPU time of every step
   bool budgets = false;       ///< true: give every step the CPU time that is left in the tick
-  /// if > 0, the cost of a step is this value times the number of its evaluations, not its measured time
+  /// [ns] for tests: if > 0, a step costs this time for each evaluation of the surface, and not its measured time
   double evaluation_ns = 0;
   double max_force = 0;        ///< [N] largest force that any arm lets through to the hand; 0: unknown
   bool former_claims = false;  ///< for old recordings, see CoreSettings

@@ -124,7 +124,8 @@ Admission AccessPolicy::check(const RequestHead& head) const {
     return refused(403, "pages of another origin are refused");
   if (!by_token && !by_cookie) return refused(401, "open the address that hapticd view printed, with its token");
   if (head.upgrade && admission.protocol == Subprotocol::kNone)
-    return refused(400, "expected the WebSocket protocol hapticd.1, foxglove.sdk.v1 or foxglove.websocket.v1");
+    return refused(400,
+                   "the WebSocket protocol is not known, expected hapticd.1, foxglove.sdk.v1 or foxglove.websocket.v1");
   admission.give_cookie = by_token && !by_cookie;
   return admission;
 }

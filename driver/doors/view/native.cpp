@@ -210,7 +210,9 @@ void NativeSession::onText(std::string_view text) {
   Json request = document::parseJson(text);
   const bool good = request.is_object() && request.contains("do") && request["do"].is_string();
   const Json id = request.is_object() && request.contains("id") ? request["id"] : Json();
-  if (!good) return answer(id, {{"ok", false}, {"error", "expected a JSON object with \"do\" and \"id\""}});
+  if (!good)
+    return answer(id, {{"ok", false},
+                       {"error", "the message is no request, expected a JSON object with the keys \"do\" and \"id\""}});
   const std::string word = request["do"];
   request.erase("id");
   if (word == "geometry") return draw(id, request);
@@ -221,7 +223,7 @@ void NativeSession::onText(std::string_view text) {
   }
   if (contains(kReads, word)) return pass(id, std::move(request));
   if (!contains(kControls, word))
-    return answer(id, {{"ok", false}, {"error", "unknown request \"" + word.substr(0, 40) + "\""}});
+    return answer(id, {{"ok", false}, {"error", "the view does not know the request \"" + word.substr(0, 40) + "\""}});
   if (!stage_.options().control)
     return answer(id, {{"ok", false}, {"error", "this view may not change the run\n  fix: hapticd view --control"}});
   if (word == "lead") return lead(id, request);
@@ -257,7 +259,8 @@ void NativeSession::lead(const Json& id, const Json& request) {
 void NativeSession::unlead(const Json& id, const Json& request) {
   const auto it = request.find("lead");
   const bool known = it != request.end() && it->is_number_unsigned() && leads_.erase(it->get<uint32_t>()) == 1;
-  answer(id, known ? Json({{"ok", true}}) : Json({{"ok", false}, {"error", "there is no such lead"}}));
+  answer(id, known ? Json({{"ok", true}})
+                   : Json({{"ok", false}, {"error", "\"lead\": expected the number of a lead of this page"}}));
 }
 
 void NativeSession::answer(const Json& id, Json answer) {
@@ -269,7 +272,7 @@ void NativeSession::answer(const Json& id, Json answer) {
 /// Answers a request for triangles. The mesh is sent as bytes, directly before the answer that names it.
 void NativeSession::draw(const Json& id, const Json& request) {
   if (!request.contains("model") || !request["model"].is_string())
-    return answer(id, {{"ok", false}, {"error", "geometry needs a model"}});
+    return answer(id, {{"ok", false}, {"error", "\"model\" is missing in \"geometry\", expected the name of a model"}});
   stage_.draw(request["model"], [this, id, alive = alive_](const DrawnModel& drawn) {
     if (!*alive) return;
     if (!drawn.mesh) return answer(id, {{"ok", false}, {"error", drawn.error}});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "playback.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -94,7 +96,8 @@ std::string Playback::execute(const Json& request) {
   }
   if (word == "play") {
     const double speed = number("speed", speed_);
-    if (!(speed >= kSlowest && speed <= kFastest)) return "speed: expected 0.01 to 100";
+    if (!(speed >= kSlowest && speed <= kFastest))
+      return "\"speed\": expected a number from 0.01 to 100 (1 is real time)";
     speed_ = speed;
     loop_ = request.contains("loop") && request["loop"].is_boolean() ? request["loop"].get<bool>() : loop_;
     jumped_ = jumped_ || t_ >= to_;
@@ -104,7 +107,8 @@ std::string Playback::execute(const Json& request) {
     return "";
   }
   const double t = number("t", NAN);
-  if (!(t >= from_ - 1e-9 && t <= to_ + 1e-9)) return "seek: expected a time within the recording";
+  if (!(t >= from_ - 1e-9 && t <= to_ + 1e-9))
+    return fmt::format("\"t\": expected a time of the recording, from {:g} to {:g} s", from_, to_);
   t_ = std::clamp(t, from_, to_);
   jumped_ = true;
   place();

@@ -198,10 +198,11 @@ void Connection::read() {
 }
 
 void Connection::onRead(ErrorCode error) {
-  if (error == http::error::header_limit) return refuse(431, "the head of a request may have at most 8 KiB");
-  if (error == http::error::body_limit) return refuse(413, "a request must have no body");
+  if (error == http::error::header_limit)
+    return refuse(431, "the head of the request is larger than 8 KiB, expected less");
+  if (error == http::error::body_limit) return refuse(413, "the request has a body, expected none");
   if (error.category() == make_error_code(http::error::bad_method).category() && error != http::error::end_of_stream)
-    return refuse(400, "this is not HTTP");
+    return refuse(400, "the request is not HTTP");
   if (error) return;  // the client is gone, or too slow: the socket closes with this object
   const RequestHead head = headOf(parser_->get());
   const Admission admission = server_.accessPolicy().check(head);
@@ -214,7 +215,8 @@ void Connection::onRead(ErrorCode error) {
 
 void Connection::answer(const Admission& admission) {
   const Request& request = parser_->get();
-  if (request.method() != http::verb::get && request.method() != http::verb::head) return refuse(405, "expected GET");
+  if (request.method() != http::verb::get && request.method() != http::verb::head)
+    return refuse(405, "this method is not served, expected GET or HEAD");
   const Asset asset = assetOf(pathOf(text(request.target())));
   if (asset.bytes.empty()) return refuse(404, "there is no such file");
   response_ = Response(http::status::ok, request.version());

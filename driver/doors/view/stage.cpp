@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kFindEvery(500), kPollEvery(1000);
 constexpr std::chrono::milliseconds kGeometryEvery(60),
-    /// Time after a touch in which the shape of a body is requested, because the body may still swing.
+    /// For this time after a touch, the shape of a body is requested, because the body may still swing.
     kRestless(1500);
 constexpr uint64_t kContactsAtOnce = 512;
 

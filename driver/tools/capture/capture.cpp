@@ -70,7 +70,8 @@ std::string shown(const std::string& line) {
 
 /// Returns advice for a text that cannot be read, or "" if its format is not recognised.
 std::string otherForm(const std::string& text) {
-  if (!std::all_of(text.begin(), text.end(), isPrintable)) return "; this is not text, leave --hex out";
+  if (!std::all_of(text.begin(), text.end(), isPrintable))
+    return "; the capture is binary, but --hex says that it is text with two digits a byte: leave --hex out";
   const bool dump = text.rfind("00000000", 0) == 0;  // as at the beginning of the output of xxd and hexdump -C
   return dump ? "; this is a dump with addresses: give the dumped file itself, or the output of `xxd -p -c SIZE`" : "";
 }

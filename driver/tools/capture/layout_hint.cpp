@@ -14,7 +14,7 @@ using Bytes = std::vector<uint8_t>;
 constexpr size_t kRepeated = 3;  ///< [reports] fewer than this may look alike by chance
 
 std::string idLacks(int id) {
-  return "each begins with " + hexByte(id) + " and has one byte too many: if this is the report id, give " +
+  return "each bad report begins with " + hexByte(id) + " and has one byte too many: if this is the report id, give " +
          "wire.input id: " + std::to_string(id) + "; size and offsets do not count it\n";
 }
 
@@ -27,13 +27,13 @@ std::string idOrMarkLacks(int id) {
 }
 
 std::string idIsMissing(int id) {
-  return "each has one byte too few: if they were captured without the report id, put " + hexByte(id) +
+  return "each bad report has one byte too few: if they were captured without the report id, put " + hexByte(id) +
          " in front of each, or leave wire.input id out\n";
 }
 
 /// Returns the hint for reports that begin with the id, if the size in the file counts the id by mistake.
 std::string sizeCountsTheId(const codec::Wire& wire) {
-  return "each begins with " + hexByte(wire.input.id) +
+  return "each bad report begins with " + hexByte(wire.input.id) +
          ", the report id, and has one byte too few: wire.input size must not "
          "include the id; give wire.input size: " +
          std::to_string(wire.input.size - 1) + " (it is " + std::to_string(wire.input.size) + ")\n";
@@ -56,7 +56,7 @@ bool allOfOneSize(const Decoded& decoded) {
          });
 }
 
-/// Declared here because paddingHint() uses it; described at its definition.
+/// Declared before paddingHint(), which calls it; its definition has the description.
 std::optional<double> goodWith(codec::Wire wire, int id, size_t size, const Capture& capture);
 
 /// Returns true if the bytes from `from` on are the same in all reports of this size, so that they are probably
@@ -100,7 +100,7 @@ std::string textHint(const codec::Wire& wire, const Capture& capture, const Deco
                                 [&](const BadReport& bad) { return bad.bytes.front() == bytes.front(); });
   if (size == expected + 1 && same && wire.input.id < 0 && bytes.front() != 0) return idLacks(bytes.front());
   if (size + 1 == expected && wire.input.id >= 0) return idIsMissing(wire.input.id);
-  // If whole reports share a line, those that are filled up with one byte must not count as reports.
+  // If the rest of a line repeats one byte, it is padding and not further reports.
   const bool one_byte = size > expected && std::all_of(bytes.begin() + static_cast<long>(expected), bytes.end(),
                                                        [&](uint8_t byte) { return byte == bytes.back(); });
   const std::string padded = size % expected != 0 || one_byte ? paddingHint(wire, capture, size) : "";
@@ -154,7 +154,7 @@ std::string withoutAnId(const codec::Wire& wire, const Capture& capture, const B
         goodWith(wire, -1, other, capture).value_or(0) > kNearlyAll)
       return "as reports of " + std::to_string(other) +
              " bytes they are good: give wire.input size: " + std::to_string(other) + "\n";
-  for (const size_t padded : {8, 16, 32, 64, 128, 256, 512})  // USB fills reports and packets up to this
+  for (const size_t padded : {8, 16, 32, 64, 128, 256, 512})  // sizes to which USB devices pad their packets
     if (padded > size)
       if (const std::string told = paddingHint(wire, capture, padded); !told.empty()) return told;
   return "";
@@ -177,7 +177,7 @@ std::string withAnId(const codec::Wire& wire, const Capture& capture, const Byte
 std::string otherIdHint(const codec::Wire& wire, const Decoded& decoded) {
   if (!decoded.reports.empty() || decoded.other_ids.size() != 1 || decoded.others < kRepeated) return "";
   const int id = *decoded.other_ids.begin();
-  return "each begins with " + hexByte(id) + ", expected " + hexByte(wire.input.id) +
+  return "each report begins with " + hexByte(id) + ", expected " + hexByte(wire.input.id) +
          ": if this is the report id, give wire.input id: " + std::to_string(id) + "\n";
 }
 

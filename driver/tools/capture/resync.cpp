@@ -30,7 +30,7 @@ size_t skipOddBytes(const codec::Wire& wire, std::span<const uint8_t> bytes, siz
                       });
   const size_t size = wire.input.bytes();
   if (!judged || goodAt(wire, bytes, at) || goodAt(wire, bytes, at + size)) return at;
-  constexpr size_t kReports = 8;  // how many reports ahead the search goes; the caller repeats it one report farther on
+  constexpr size_t kReports = 8;  // [reports] length of the search; the caller repeats it one report farther on
   for (size_t other = at + 1; other < std::min(at + kReports * size, bytes.size()); ++other) {
     if (!begins(wire, bytes, other)) continue;
     if ((other - at) % size == 0) return at;  // no bytes are missing: the reports in between are bad

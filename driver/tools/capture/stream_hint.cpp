@@ -82,7 +82,7 @@ double tellingBits(const codec::Report& report) {
 
 /// A byte of the capture from which on reports are good.
 struct Beginning {
-  size_t before = 0, good = 0, all = 0;  ///< bytes before it; reports from it on
+  size_t before = 0, good = 0, all = 0;  ///< [bytes] before this place; good reports and all reports after it
 };
 
 /// Returns the places from which on more reports are good than by chance, the best one first.

@@ -42,27 +42,27 @@ std::string flags(const codec::Wire& wire, const DecodedReports& reports) {
   std::string text;
   const Field *fault = fieldOf(wire, Role::kFault), *calibrated = fieldOf(wire, Role::kCalibrated);
   if (fault != nullptr && howMany(reports, [](const codec::State& state) { return state.fault; }) == reports.size())
-    text += "fault is set in " + all + ", so no torque would go out: " +
+    text += "the field fault is set in " + all + ", so no torque would go out: " +
             (fault->inverted ? "if 0 means that all is well, remove inverted: true"
                              : "if 1 means that all is well, give inverted: true") +
             "\n";
   if (calibrated != nullptr && howMany(reports, [](const codec::State& state) { return state.calibrated; }) == 0)
-    text += "calibrated is 0 in " + all + ": no torque goes out before it is 1" +
+    text += "the field calibrated is 0 in " + all + ": no torque goes out before it is 1" +
             (calibrated->inverted ? "; if 1 means that the arm knows its zero, remove inverted: true"
                                   : "; if 0 means that the arm knows its zero, give inverted: true") +
             "\n";
   return text;
 }
 
-/// Returns a hint if the device seems to restart in each report, because the field `starts` is then a counter or a
-/// clock.
+/// Returns a hint if the field `starts` changes in many reports, as if the device restarted each time. The field then
+/// probably counts reports (`counter`), or is a clock (`time`), and was described wrongly.
 std::string starts(const codec::Wire& wire, const DecodedReports& reports) {
   if (fieldOf(wire, Role::kStarts) == nullptr) return "";
   size_t changes = 0;
   for (size_t i = 1; i < reports.size(); ++i)
     changes += reports[i]->state.starts != reports[i - 1]->state.starts ? 1 : 0;
   if (10 * changes < reports.size()) return "";
-  return "starts is another number in " + std::to_string(changes) + " of " + std::to_string(reports.size()) +
+  return "the field starts has another number in " + std::to_string(changes) + " of " + std::to_string(reports.size()) +
          " reports, as if the device restarted each time; is the field a counter ({is: counter}) or a clock ({is: "
          "time})?\n";
 }

@@ -58,7 +58,8 @@ std::string fuzzOnce(const Recipe& recipe, uint64_t seed) {
     if (std::string wrong = wrongStatus((*made)->step({q}, dt, flags)); !wrong.empty())
       return "at step " + std::to_string(i) + ", " + placed(wrong, q);
     if ((*made)->allocations() > 0) return "at step " + std::to_string(i) + ", " + placed("it allocates", q);
-    // [ns] a step that waits longer than this sleeps or blocks; only waits by its own choice count
+    // [ns] If a step waits for longer than this, it sleeps or blocks, which fails the test. Waits that the system
+    // forced on it (preemption) do not count.
     constexpr uint64_t kLong = 2'000'000;
     const StepCost& cost = (*made)->cost();
     if (cost.waited && cost.wall_ns > cost.cpu_ns + kLong)

@@ -215,7 +215,7 @@ std::string toldStiffness(Subject& subject, const Place& place) {
 Verdict stiffnessClaim(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (made.subject->moves()) return skipped("it moves, so its force changes by itself");
+  if (made.subject->moves()) return skipped("the shape moves by itself, so its force changes by itself");
   const double claimed = made.subject->report().max_stiffness;
   // factors by which the claim may be exceeded, because a force law may be a little steeper in places; [N/m]
   constexpr double kFails = 1.5, kWarns = 1.1, kNoise = 10;
@@ -247,7 +247,7 @@ Verdict noStep(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   const hsp_report& report = made.subject->report();
-  if (made.subject->moves()) return skipped("it moves, so its force changes by itself");
+  if (made.subject->moves()) return skipped("the shape moves by itself, so its force changes by itself");
   const double stiffness = report.max_stiffness > 0 ? report.max_stiffness : servo::Claim::kUnclaimed;
   const double jumps = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
   return atEachPlace(recipe, [stiffness, jumps](Subject& subject, const Place& place) {

@@ -79,7 +79,7 @@ std::string gives(Subject& subject, const Place& place, const Vector3d& aside) {
 Verdict loopsGiveNoEnergy(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (made.subject->moves()) return skipped("it moves, so gravity may give it energy too");
+  if (made.subject->moves()) return skipped("the shape moves by itself, so gravity may give it energy too");
   int left = 6;  // [places] at all of them, a slow shape would take too long
   Verdict verdict = atEachPlace(recipe, [&left](Subject& subject, const Place& place) {
     if (left-- <= 0) return std::string();

@@ -157,7 +157,7 @@ class LengthsInMetres {
 Verdict depthOutward(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (made.subject->moves()) return skipped("it moves, so its depth changes by itself");
+  if (made.subject->moves()) return skipped("the shape moves by itself, so its depth changes by itself");
   double agrees = 0, depth = 0;
   Vector3d last = Vector3d::Zero();
   bool known = false;

@@ -26,7 +26,7 @@ ControlState onIf(bool has) {
 }
 
 /// Returns the control (safety measure) for a limit of the device file. It is off if the limit is not given.
-/// @param without its text in that case
+/// @param without text of the control if the limit is not given
 Control bound(const char* hazards, const char* name, double value, const char* unit, const std::string& without) {
   return {hazards, name, onIf(value > 0), value > 0 ? numberText(value) + " " + unit : without};
 }
@@ -83,7 +83,7 @@ void addReports(const std::optional<codec::Wire>& wire, std::vector<Control>& to
                         : "no counter in wire.input: firmware that hangs may send the last one for ever"});
 }
 
-/// @param buttons number of buttons of the arm
+/// Returns the control for limits.enable. @param buttons number of buttons of the arm
 Control enableSwitch(const scene::Enable& enable, uint32_t buttons) {
   if (!enable.button)
     return {"H20", "enable switch", ControlState::kOff,

@@ -48,7 +48,7 @@ hdv_info infoOf(const scene::Device& device, host::DeviceInstance* arm) {
 }
 
 void checkForce(const ArmUnderCheck& arm_file, const Node* at, const char* key, double force) {
-  // [N] most arms have as much friction; more than a hand can hold against
+  // [N] less than the friction of most arms; more than a hand can resist
   constexpr double kUnfelt = 0.05, kMost = 300;
   if (at == nullptr || force <= 0) return;
   if (force < kUnfelt)
@@ -58,9 +58,10 @@ void checkForce(const ArmUnderCheck& arm_file, const Node* at, const char* key, 
             "{0:g} N cannot be felt, because most arms have more friction; the value must be in N: {0:g} kN is {1:g} N",
             force, force * 1000));
   if (force > kMost && !arm_file.knows(key))
-    arm_file.warn(*at, key,
-                  fmt::format("{0:g} N throws the hand that holds the arm; the value must be in N: {0:g} mN is {1:g} N",
-                              force, force / 1000));
+    arm_file.warn(
+        *at, key,
+        fmt::format("{0:g} N would throw the hand that holds the arm; the value must be in N: {0:g} mN is {1:g} N",
+                    force, force / 1000));
 }
 
 void checkForces(const ArmUnderCheck& arm_file) {
@@ -83,7 +84,8 @@ void checkForces(const ArmUnderCheck& arm_file) {
 }
 
 void checkStiffness(const ArmUnderCheck& arm_file) {
-  constexpr double kUnfelt = 5, kMost = 2e5;  // N/m: 10 mm of it give 0.05 N; twice what arms of steel gears reach
+  // [N/m] 0.05 N at a depth of 10 mm; twice the stiffness of arms with steel gears
+  constexpr double kUnfelt = 5, kMost = 2e5;
   const Node* at = find(arm_file.root, {"parameters", "device", "max_stiffness"});
   const double given = arm_file.info.max_stiffness;
   if (at == nullptr || given <= 0) return;
@@ -115,7 +117,7 @@ void checkMass(const ArmUnderCheck& arm_file) {
 /// Warns of a weight far above limits.weight, because the motors carry the weight of the arm only up to that limit, and
 /// the hand must carry the rest.
 void checkWeight(const ArmUnderCheck& arm_file, const host::DeviceInstance& arm) {
-  constexpr double kMostly = 0.5;  // share of the weight that is carried: if it is less, the masses are in another unit
+  constexpr double kMostly = 0.5;  // if a smaller share of the weight is carried, the masses are in another unit
   const Node* masses = find(arm_file.root, {"parameters", "arm", "masses"});
   const scene::Limits& limits = arm_file.device.limits;
   const double force = limits.force > 0 ? limits.force : arm_file.info.max_force, most = limits.weight.value_or(force);
@@ -134,8 +136,7 @@ void checkWeight(const ArmUnderCheck& arm_file, const host::DeviceInstance& arm)
   if (!(share > 0))
     return arm_file.warn(*masses, "parameters.arm.masses",
                          "no force at the tip holds the weight of these masses at rest, because no joint carries it "
-                         "there; expected the columns of arm.dh, the pose of the calibration and the masses [kg] of "
-                         "this arm");
+                         "there; check the columns of arm.dh, calibration.pose and the masses, which must be in kg");
   arm_file.warn(
       *masses, "parameters.arm.masses",
       fmt::format("these masses weigh {:.3g} N at the tip at rest, but the motors may carry only {:g} N of it "
@@ -152,8 +153,8 @@ void checkCounts(const ArmUnderCheck& arm_file) {
   const Node& at = counts != nullptr ? *counts : *joint;
   arm_file.warn(
       at, "parameters.joint.counts",
-      fmt::format("one count moves the tip by {:.3g} mm; expected counts of a motor turn, such as 4000, and as "
-                  "joint.gear the motor turns of one joint turn, such as 10",
+      fmt::format("one count moves the tip by {:.3g} mm; expected the counts of one motor turn, such as 4000; "
+                  "joint.gear must be the motor turns of one joint turn, such as 10",
                   arm_file.info.resolution_m * 1e3));
 }
 
@@ -170,9 +171,10 @@ void checkLengths(const ArmUnderCheck& arm_file) {
   const Node& at = lengths->items[a < b ? 0 : 1];
   arm_file.warn(
       at, fmt::format("parameters.arm.lengths[{}]", a < b ? 0 : 1),
-      fmt::format("{:g} m, but the other link has {:g} m: the tip never comes nearer to its shoulder than {:.3g} "
-                  "m; expected links of about the same length, in m",
-                  less, more, more - less));
+      fmt::format(
+          "this link has {:g} m, but the other one has {:g} m: the tip never comes nearer to its shoulder than {:.3g} "
+          "m; expected links of about the same length, in m",
+          less, more, more - less));
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ std::vector<Row> tableOf(const Node* dh) {
   return rows;
 }
 
-/// Returns true if the table gives sense when its columns are read as theta, d, a, alpha, and gives no link as it is.
+/// Returns true if no link has a length a, but some have one if the columns are read as theta, d, a, alpha.
 bool seemsTurnedRound(const std::vector<Row>& rows) {
   const auto has = [&rows](size_t column) {
     return std::any_of(rows.begin(), rows.end(), [column](const Row& row) { return std::abs(row[column]) > 1e-6; });
@@ -46,8 +46,8 @@ bool seemsTurnedRound(const std::vector<Row>& rows) {
   return !has(0) && has(2);
 }
 
-/// Warns of two joints with the same axis. The tip of such an arm moves in one direction less than it has joints, so
-/// somebody has written the columns in another order.
+/// Warns of two joints with the same axis. One of these joints would be useless, so the columns were probably written
+/// in another order.
 void sameAxis(const Node* dh, const std::string& file, document::Problems& warnings) {
   constexpr double kLength = 1e-6, kAngle = 1e-3;  // [m]; [rad]
   const std::vector<Row> rows = tableOf(dh);

@@ -15,11 +15,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kWeightless = 1e-3;  ///< [m/s^2] of gravity
+constexpr double kWeightless = 1e-3;  ///< [m/s^2] a weaker gravity counts as none
 
 /// Warns of a body that its weight would move too far, because nothing holds it or its tether is too soft.
 void checkContactHold(const GivenModel& given) {
-  constexpr double kSizes = 2, kUnknownSize = 0.25;  // sizes of the body that it may hang below its place; [m]
+  constexpr double kSizes = 2, kUnknownSize = 0.25;  // sizes of the body by which it may sag; [m] size if it is unknown
   const std::string joint = given.choice("joint");
   Vector3d pull = given.gravity();
   const Vector3d axis = given.vector("axis");
@@ -33,14 +33,15 @@ void checkContactHold(const GivenModel& given) {
                           "tether, a hinge, or gravity: false");
   const double size = given.box() ? given.size() : kUnknownSize;
   if (const double sag = weight / tether; sag > kSizes * size)
-    given.warn({"tether", "mass"}, fmt::format("{:g} N/m under a weight of {:.4g} N: {} hangs {:.3g} m below its pose; "
-                                               "expected a stiffer tether, mass in kg, or gravity: false",
-                                               tether, weight, given.model().name, sag));
+    given.warn({"tether", "mass"},
+               fmt::format("a tether of {:g} N/m bears a weight of {:.4g} N, so {} hangs {:.3g} m below its pose; "
+                           "expected a stiffer tether, mass in kg, or gravity: false",
+                           tether, weight, given.model().name, sag));
 }
 
 /// Warns of a centre of mass far outside of the body's surfaces.
 void checkCenter(const GivenModel& given) {
-  constexpr double kOutside = 0.5;  // of the size
+  constexpr double kOutside = 0.5;  // share of the size
   const scene::Value* center = given.find("center");
   if (center == nullptr || center->numbers.size() != 3 || !given.box()) return;
   if (const double away = given.box()->exteriorDistance(Vector3d(center->numbers.data()));
@@ -83,24 +84,25 @@ void checkDrag(const GivenModel& given) {
   constexpr double kMost = 1000, kCalm = 0.1;      // [N s/m]; [m/s]
   constexpr double kMostTurn = 20, kSlowTurn = 1;  // [N m s/rad]; [rad/s]
   if (const double drag = given.number("drag"); drag > kMost)
-    given.warn({"drag"}, fmt::format("{0:g} N s/m hold {1} so that {2:g} N move it at only {3:g} m/s; the value must "
+    given.warn({"drag"}, fmt::format("with {0:g} N s/m, a force of {2:g} N moves {1} at only {3:g} m/s; the value must "
                                      "be in N s/m (1 N s/mm is 1000 N s/m)",
                                      drag, given.model().name, drag * kCalm, kCalm));
   given.begin();
   if (const double drag = given.number("angular_drag"); drag > kMostTurn)
-    given.warn({"angular_drag"}, fmt::format("{0:g} N m s/rad hold {1} so that {2:g} N m turn it at only {3:g} rad/s; "
-                                             "the value must be in N m s/rad (1 mN m s/rad is 0.001)",
-                                             drag, given.model().name, drag * kSlowTurn, kSlowTurn));
+    given.warn({"angular_drag"},
+               fmt::format("with {0:g} N m s/rad, a torque of {2:g} N m turns {1} at only {3:g} rad/s; "
+                           "the value must be in N m s/rad (1 mN m s/rad is 0.001)",
+                           drag, given.model().name, drag * kSlowTurn, kSlowTurn));
 }
 
-/// Warns of a drag against which the spring of a body brings it back so slowly that nobody waits for it.
+/// Warns of a drag so strong that the tether brings the body back only in many seconds.
 void checkTetherCreep(const GivenModel& given) {
   constexpr double kLong = 3;  // [s]
   const double tether = given.number("tether"), drag = given.number("drag"), mass = given.number("mass");
   if (!(tether > 0) || drag * drag < 4 * mass * tether || drag < kLong * tether) return;
   given.warn({"drag"},
-             fmt::format("{:g} N s/m against a tether of {:g} N/m: {} takes {:.3g} s to come back by two thirds; it "
-                         "swings below {:.2g} N s/m",
+             fmt::format("with {:g} N s/m and a tether of {:g} N/m, {} takes {:.3g} s to come back by two thirds; "
+                         "below {:.2g} N s/m it swings",
                          drag, tether, given.model().name, drag / tether, 2 * std::sqrt(mass * tether)));
 }
 
@@ -133,8 +135,8 @@ double farthestCorner(const Eigen::AlignedBox3d& box, const Vector3d& from) {
   return ((from - box.center()).cwiseAbs() + box.sizes() / 2).norm();
 }
 
-/// Returns the direction in which a pendulum hangs: that of gravity across its axis. Along gravity, the axis is wrong,
-/// and the direction is that of gravity. Nothing is returned without weight.
+/// Returns the direction in which a pendulum hangs: the part of gravity across its axis. If the axis is along gravity,
+/// it warns and returns the direction of gravity. It returns nothing if there is no gravity or no axis.
 std::optional<Vector3d> hangingOf(const GivenModel& given) {
   constexpr double kAcross = 0.02;  // share of gravity
   const Vector3d gravity = given.gravity(), axis = given.vector("axis").stableNormalized();
@@ -167,7 +169,7 @@ void checkHanging(const GivenModel& given) {
                     given.box()->center().z()));
 }
 
-/// Warns of a damping with which a pendulum creeps back to its place so slowly that nobody waits for it.
+/// Warns of a damping so strong that a pendulum creeps back to its place only in many seconds.
 void checkCreep(const GivenModel& given) {
   constexpr double kLong = 3;  // [s] to come back by two thirds
   const double length = given.number("length"), damping = given.number("damping");
@@ -176,8 +178,8 @@ void checkCreep(const GivenModel& given) {
   const double inertia = given_inertia > 0 ? given_inertia : given.number("mass") * length * length;
   if (!(restoring > 0) || damping * damping < 4 * inertia * restoring || damping < kLong * restoring) return;
   given.warn({"damping"},
-             fmt::format("{:g} N m s/rad hold {} so that it creeps: it takes {:.3g} s to come back by two thirds; it "
-                         "swings below {:.2g} N m s/rad; the value must be in N m s/rad (1 mN m s/rad is 0.001)",
+             fmt::format("{:g} N m s/rad hold {} so that it creeps: it takes {:.3g} s to come back by two thirds; "
+                         "below {:.2g} N m s/rad it swings; the value must be in N m s/rad (1 mN m s/rad is 0.001)",
                          damping, given.model().name, damping / restoring, 2 * std::sqrt(inertia * restoring)));
 }
 

@@ -125,7 +125,8 @@ std::string madeInChild(const scene::Device& device, host::ChildProgress& trail)
 
 }  // namespace
 
-/// Of an arm that a file describes, what its kinematics lack is in the file; else in the module.
+/// Reports a doubt about the kinematics at the key of the device file that causes it, if it is known; otherwise at the
+/// name of the module.
 static void placeDoubt(const std::string& doubt, const Node& root, const std::string& file,
                        document::Problems& warnings) {
   if (const auto stuck = stuckJoint(root, file); stuck && doubt.find("inverse()") != std::string::npos)

@@ -17,7 +17,7 @@ namespace {
 
 using document::Node;
 
-/// As a person writes it: no quotes where the file had none.
+/// Returns a node as one line of YAML in the form in which a person writes it, without quotes that the file lacks.
 std::string flowText(const Node& node) {
   std::string text;
   if (node.isMap()) {
@@ -141,7 +141,7 @@ TwinPose standOfFlat(const RestPose& rest, const std::string& pose) {
   return stand;
 }
 
-/// Returns where the twin stands: at the mount of its arm, or for a chain without a mount, so that its tip is where
+/// Returns where the twin stands: at the mount of its arm. A chain without a mount gets one that puts its tip where
 /// scenes expect a hand.
 TwinPose standOf(const Node& mount, const Node& arm, bool chain) {
   TwinPose stand;

@@ -47,7 +47,7 @@ void countsWithoutScale(const Node& root, const std::string& file, document::Pro
     if (!whole || field.find("scale") != nullptr || field.find("scale_degrees") != nullptr) continue;
     document::report(warnings, file, field.line, field.column, fmt::format("parameters.wire.input.fields[{}].scale", i),
                      "not given, so each count of this " + type->scalar +
-                         " is 1 rad (or 1 m); expected 2 pi / (counts a motor turn * motor turns of one joint turn)");
+                         " is 1 rad (or 1 m); expected 2 pi / (counts per motor turn * motor turns per joint turn)");
   }
 }
 
@@ -135,7 +135,7 @@ size_t jointsIn(const Node& root) {
   if (kind == nullptr) return 0;
   if (kind->scalar == "phantom" || kind->scalar == "premium15" || kind->scalar == "delta") return kOfOthers;
   if (kind->scalar != "chain") return 0;
-  if (rows == nullptr)  // a mistake, but arm.limits may tell how many joints were meant
+  if (rows == nullptr)  // the table is missing, but arm.limits may show the number of joints
     return limits != nullptr && limits->isSequence() ? std::min<size_t>(limits->items.size(), HDV_MAX_JOINTS) : 0;
   const double more = others != nullptr ? document::toNumber(others->scalar).value_or(0) : 0;
   return std::min<size_t>(rows->items.size() + static_cast<size_t>(std::clamp(more, 0.0, 16.0)), HDV_MAX_JOINTS);
@@ -179,10 +179,10 @@ std::string partOf(const std::string& key) {
   return isBelow(key, "parameters.arm.lengths") ? "parameters.arm.lengths" : key;
 }
 
-/// Returns true if a list of angles has a wrong number of rows, or rows in the wrong order, while each number of it is
-/// one that the parameter allows. Its unit can be judged then.
+/// Returns true if a problem is about a list of angles whose numbers are all within the parameter's range. Then only
+/// the number or the order of its rows is wrong, and the unit of the angles can still be judged.
 bool hasAllowedAngles(const Node& root, const document::Problem& known) {
-  constexpr double kMost = 100;  // the range of both parameters
+  constexpr double kMost = 100;  // largest number of both parameters
   const Node* list = isBelow(known.key, "parameters.arm.limits") ? find(root, {"parameters", "arm", "limits"})
                      : isBelow(known.key, "parameters.calibration.pose")
                          ? find(root, {"parameters", "calibration", "pose"})

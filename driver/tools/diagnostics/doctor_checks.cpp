@@ -42,7 +42,8 @@ Finding checkScheduler() {
   std::thread([&code] { code = os::setFifo(os::kServoPriority); }).join();
   if (!code) return ok("scheduler", "SCHED_FIFO " + std::to_string(os::kServoPriority) + " granted");
   return {"scheduler", Verdict::kFail,
-          "SCHED_FIFO " + std::to_string(os::kServoPriority) + ": " + code.message() + "; " + os::realTimeRights(),
+          "SCHED_FIFO " + std::to_string(os::kServoPriority) + " is refused: " + code.message() + "; " +
+              os::realTimeRights(),
           "the servo thread waits for other programs, and the hand feels late ticks",
           "sudo usermod -aG haptic $USER, then log in again (limits.d/70-hapticd.conf grants rtprio 80)"};
 }
@@ -72,7 +73,7 @@ Finding checkMemory() {
     if (!code) os::unlockMemory();
   }
   if (!code) return ok("memory", "can be locked");
-  return {"memory", Verdict::kFail, "mlockall: " + code.message() + "; " + os::realTimeRights(),
+  return {"memory", Verdict::kFail, "mlockall() is refused: " + code.message() + "; " + os::realTimeRights(),
           "a page fault can delay a tick by milliseconds",
           std::string(kInstallLimits) + ", then log in again: it raises memlock to 524288 KiB for the group haptic"};
 }
@@ -276,7 +277,7 @@ Finding checkLatency(double seconds) {
   constexpr Nanoseconds kPeriod = 1'000'000;
   std::vector<double> late_us(static_cast<size_t>(seconds * 1e9 / static_cast<double>(kPeriod)));
   std::thread([&late_us] {
-    os::setFifo(os::kServoPriority);  // without the right this measures what the user would get
+    os::setFifo(os::kServoPriority);  // if this is refused, the test measures what this user would get
     RealClock clock(0);
     Nanoseconds deadline = clock.now();
     for (double& late : late_us) {

@@ -28,8 +28,8 @@ std::string where(const document::Place& place, const std::string& key) {
   return place.line > 0 ? fmt::format("{}:{} {}", place.file, place.line, key) : place.file + " " + key;
 }
 
-/// Returns the mean of all times but the longest hundredth, because interruptions of those do not belong to the cost of
-/// the part.
+/// Returns the mean of the times without the longest hundredth of them: those contain interruptions, which are not a
+/// cost of the part.
 double meanOf(std::vector<double>& times) {
   if (times.empty()) return 0;
   std::sort(times.begin(), times.end());

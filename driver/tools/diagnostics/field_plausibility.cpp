@@ -31,7 +31,7 @@ struct Side {
   document::Problems& warnings;
 
   size_t count() const { return std::min(report.fields.size(), fields.items.size()); }
-  /// Adds a warning, unless the key has one already, which says more.
+  /// Adds a warning, unless the key has one already: earlier checks give more exact warnings.
   void warn(size_t i, const char* key, const std::string& what) const {
     const Node *given = fields.items[i].find(key), *at = given != nullptr ? given : &fields.items[i];
     if (!warned(i, key))
@@ -49,7 +49,7 @@ struct Side {
                   [this](size_t i) { return report.fields[i].bits <= 8 || codec::isText(report.fields[i].type); });
     return found;
   }
-  /// Returns all fields of more than one byte, of any kind: in a report with both orders, somebody chose them.
+  /// Returns all fields of more than one byte, of any kind. If they have both byte orders, the author chose them.
   std::vector<size_t> ordered() const {
     std::vector<size_t> found;
     for (size_t i = 0; i < count(); ++i)
@@ -66,7 +66,8 @@ struct Side {
   }
 };
 
-/// Returns the fields that differ from most others; if they are half of all, those of the later half.
+/// Returns the fields that differ from most others. If each group has half of the fields, it returns the group that
+/// begins later.
 std::vector<size_t> minorityOf(const std::vector<size_t>& all, const std::function<bool(size_t)>& is) {
   std::vector<size_t> yes, no;
   for (const size_t i : all) (is(i) ? yes : no).push_back(i);
@@ -83,8 +84,8 @@ const char* orderOf(bool big) {
 void mixedOrder(const Side& side) {
   for (const size_t i : minorityOf(side.wide(), [&](size_t at) { return side.report.fields[at].big_endian; }))
     side.warn(i, "endian",
-              fmt::format("{}, but most other numbers of this report are {}; expected one byte order for all, unless "
-                          "the firmware mixes them",
+              fmt::format("the byte order of this number is {}, but most other numbers of this report are {}; expected "
+                          "one byte order for all, unless the firmware mixes them",
                           orderOf(side.report.fields[i].big_endian), orderOf(!side.report.fields[i].big_endian)));
 }
 
@@ -96,10 +97,11 @@ void otherOrderOut(const Side& in, const Side& out) {
   for (const auto& [side, fields, order] : {std::tuple(&in, &read, !big), std::tuple(&out, &sent, big)})
     for (const size_t i : *fields)
       if (side->report.fields[i].big_endian != order) return;
-  out.warn(sent[0], "endian",
-           fmt::format("{} in all of wire.output, but {} in all of wire.input; expected one byte order for both, "
-                       "unless the firmware mixes them",
-                       orderOf(big), orderOf(!big)));
+  out.warn(
+      sent[0], "endian",
+      fmt::format("the byte order is {} in all of wire.output, but {} in all of wire.input; expected one for both, "
+                  "unless the firmware mixes them",
+                  orderOf(big), orderOf(!big)));
 }
 
 /// Warns of, for example, u16 for one joint and i16 for the others, because below zero its position would jump by the
@@ -115,10 +117,12 @@ void mixedSigns(const Side& side, Role role) {
   for (const size_t i :
        minorityOf(whole, [&](size_t at) { return side.report.fields[at].type == codec::Type::kUnsigned; })) {
     const bool plain = side.report.fields[i].type == codec::Type::kUnsigned;
-    side.warn(i, "type",
-              fmt::format("{}signed, but the types of the other joints are {}; expected one type for all, unless the "
-                          "firmware mixes them",
-                          plain ? "un" : "", plain ? "signed" : "unsigned"));
+    side.warn(
+        i, "type",
+        fmt::format(
+            "this type is {}signed, but the types of the other joints are {}; expected one type for all, unless the "
+            "firmware mixes them",
+            plain ? "un" : "", plain ? "signed" : "unsigned"));
   }
 }
 
@@ -144,12 +148,13 @@ void unlikeOthers(const Side& side, Role role, const std::vector<double>& motors
     if (coarseness(i) < kTimes * next && !finer) continue;
     const double times = coarseness(i) / next, degrees = times * M_PI / 180;
     const bool in_degrees = role == Role::kPosition && degrees > 0.9 && degrees < 1.1;
-    side.warn(i, "scale",
-              fmt::format("{:.3g} times as {} as that of any other joint{}: {}", finer ? least / coarseness(i) : times,
-                          finer ? "fine" : "coarse", role == Role::kTorque ? ", measured by arm.max_torque" : "",
-                          in_degrees ? fmt::format("if it is in degrees, write scale_degrees: {:g}",
-                                                   side.report.fields[i].scale)
-                                     : "is the decimal point wrong?"));
+    side.warn(
+        i, "scale",
+        fmt::format(
+            "this scale is {:.3g} times as {} as that of any other joint{}: {}", finer ? least / coarseness(i) : times,
+            finer ? "fine" : "coarse", role == Role::kTorque ? ", measured by arm.max_torque" : "",
+            in_degrees ? fmt::format("if it is in degrees, write scale_degrees: {:g}", side.report.fields[i].scale)
+                       : "is the decimal point wrong?"));
   }
 }
 

@@ -40,8 +40,8 @@ void reportInside(const scene::Scene& scene, const InsideTip& inside, document::
   const scene::Model& model = scene.models[inside.model];
   const scene::Device& device = scene.devices[inside.device];
   const std::string where =
-      fmt::format("the hand starts inside {}: at [{:.4g}, {:.4g}, {:.4g}] the tip is {:.3g} mm deep", model.name,
-                  inside.tip.x(), inside.tip.y(), inside.tip.z(), inside.depth * 1e3);
+      fmt::format("the hand starts inside {}: the tip is at [{:.4g}, {:.4g}, {:.4g}] m in the world, {:.3g} mm deep",
+                  model.name, inside.tip.x(), inside.tip.y(), inside.tip.z(), inside.depth * 1e3);
   if (inside.beyond_box) return reportTurned(scene, inside, where, warnings);
   const scene::Value* radius = givenIn(device.parameters, "hand.radius");
   if (inside.round && radius != nullptr && radius->place.file == scene.file.string())

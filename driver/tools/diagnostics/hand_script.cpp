@@ -175,7 +175,7 @@ document::Problems fastHands(const scene::Scene& scene, const UnreadKeys& unread
     if (!hand) continue;
     const bool wide = checkSweep(device, *hand, unread, warnings);
     const size_t before = warnings.size();
-    if (wide && hand->sweep <= 360 && !unread.has("hand")) {  // judged as it is once its sweep is mended
+    if (wide && hand->sweep <= 360 && !unread.has("hand")) {  // judged with the sweep that was probably meant
       HandScript mended = *hand;
       mended.sweep *= std::numbers::pi / 180;
       checkSpeed(scene, device, mended, warnings);

@@ -52,8 +52,8 @@ std::optional<std::array<double, HDV_MAX_JOINTS>> firstJoints(const scene::Scene
 /// One arm at the first tick.
 struct Hand {
   uint32_t device = 0;  ///< index of the arm in the scene
-  servo::Probe probe;   ///< its tip in the world
-  double reach = 0;     ///< [m] how far its joints can move the tip from there
+  servo::Probe probe;   ///< tip of the arm in the world frame
+  double reach = 0;     ///< [m] how far the joints can move the tip from its place at the first tick
 };
 
 std::optional<Hand> handOf(const scene::Scene& scene, uint32_t index) {
@@ -191,8 +191,8 @@ std::string tryStart(const scene::Scene& scene, const scene::Device& device, boo
   return started ? "=" : started.error();
 }
 
-/// Reports a refusal at the place of the key that it names. The key stands at the beginning, or after what could not be
-/// done: "device 'name': cannot be opened: hand.axis is zero, expected a direction".
+/// Reports a refusal at the place of the key that it names. The key stands at the beginning, or after the name of
+/// the device and what failed: "device 'name': cannot be opened: hand.axis is zero, expected a direction".
 void reportRefused(const scene::Scene& scene, const scene::Device& device, const std::string& told,
                    document::Problems& problems) {
   const std::string before = "device '" + device.name + "': ";
@@ -252,7 +252,7 @@ document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog
   const auto& given = loaded.device->parameters;
   const bool own_hand =
       std::any_of(given.begin(), given.end(), [](const scene::Value& value) { return value.id.starts_with("hand."); });
-  if (!own_hand)  // a scene gives it one
+  if (!own_hand)  // a scene gives the arm a hand, so what is wrong with the default one does not matter
     std::erase_if(problems, [](const document::Problem& one) { return one.key.starts_with("hand"); });
   for (const document::Problem& one : fastHands(alone)) warnings.push_back(one);
   return problems;

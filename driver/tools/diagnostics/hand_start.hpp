@@ -25,8 +25,8 @@ document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool
 /// velocity of a probe
 document::Problems refusedArms(const scene::Scene& scene, bool needs_velocity);
 
-/// [main] Does the same for one device file. If the file has no hand, its hand is not judged, because the scenes give
-/// it one.
+/// [main] Like refusedArms(), for the arm of one device file without a scene. If the file describes no hand, only the
+/// arm is checked, because each scene gives the hand.
 /// @param warnings receives the warnings of fastHands() about its hand
 document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog& catalog,
                                 document::Problems& warnings);

@@ -31,7 +31,7 @@ class HandValues {
     document::report(warnings_, key.place, key.id, what);
   }
 
-  /// Warns of a force of the hand's unrest that was given in mN.
+  /// Warns of a force of the hand's tremor or wander that was probably given in mN.
   void checkTremor(const char* id, double most, double usual) const {
     if (!isAbove(id, most)) return;
     const double force = read(id)->number;

@@ -65,7 +65,8 @@ void checkSlider(const GivenModel& given) {
       given.warn({id}, "has no effect: a slider does not turn; remove it, or set joint: hinge or free");
 }
 
-/// Warns of settings of a soft body that is not felt in motion, or whose springs along the surface have a length.
+/// Warns of parameters of a soft body that have no effect: contact_ratio unless dynamics is `felt`, and shear_offset
+/// beside shear_distance.
 void checkSoftBody(const GivenModel& given) {
   const std::string dynamics = given.choice("dynamics");
   if ((dynamics == "off" || dynamics == "seen" || dynamics == "on") && given.find("contact_ratio") != nullptr)

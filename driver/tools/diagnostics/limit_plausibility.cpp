@@ -65,10 +65,11 @@ void checkDynamics(const Bounds& of) {
                         "{:g} N); the value must be in N s, such as {:.2g}",
                         limits.impulse, limits.impulse / 0.1, of.force, 0.1 * of.force));
   if (limits.workspace > 0 && limits.workspace < kSmall && !of.knows("limits.workspace"))
-    of.warn({"limits", "workspace"},
-            fmt::format("forces end {0:g} m from the origin of the arm's frame, and a hand is beyond that at once; the "
-                        "value must be the radius of the workspace in m, such as 0.15",
-                        limits.workspace));
+    of.warn(
+        {"limits", "workspace"},
+        fmt::format("forces end {0:g} m from the origin of the arm's frame, and a hand is farther away at once; the "
+                    "value must be the radius of the workspace in m, such as 0.15",
+                    limits.workspace));
   const double velocity = limits.velocity.value_or(0);
   if (velocity > 0 && velocity < kStill)
     of.warn({"limits", "velocity"},
@@ -171,15 +172,16 @@ struct Joint {
                   "the value must be in N m s/rad, such as 0.005",
                   joint + 1, drag, kHand, of.force));
     if (mass > kHeavy)
-      of.warn({"parameters", "joint", "rotor"}, fmt::format("with joint.gear {:g} the motor of joint {} weighs as much "
-                                                            "as {:.3g} kg at the tip; the value must be in kg "
-                                                            "m^2 before the gear: 1 g cm^2 is 1e-7",
-                                                            gear, joint + 1, mass));
+      of.warn({"parameters", "joint", "rotor"},
+              fmt::format(
+                  "with joint.gear {:g} the motor of joint {} feels like {:.3g} kg at the tip; the value must be in kg "
+                  "m^2 before the gear: 1 g cm^2 is 1e-7",
+                  gear, joint + 1, mass));
   }
 };
 
-/// Warns of a delay with which contacts swing up. A spring that answers late is stable only while its stiffness is less
-/// than the damping over the time that it is late, and only the hand damps a simulated arm.
+/// Warns of a delay with which contacts swing up. A spring with a delay is stable only while its stiffness is less than
+/// the damping divided by the delay, and only the hand damps a simulated arm.
 void checkDelay(const Bounds& of) {
   constexpr double kRate = 1000, kHold = 0.5, kSoft = 800;  // [Hz] of a servo; [ticks]; [N/m] as most models
   const double late = of.number("delay", 0), damping = of.number("hand.damping", 5);
@@ -232,7 +234,7 @@ void warnOfImplausibleLimits(const Node& root, const scene::Device& device, cons
   for (const scene::Value& value : device.parameters)
     if (value.id == "device.max_force" && value.number > 0)
       force = force > 0 ? std::min(force, value.number) : value.number;
-  if (!(force > 0)) force = 5;  // [N] what a hand's arm gives, where nobody says it
+  if (!(force > 0)) force = 5;  // [N] a usual force of such arms, if no key gives one
   const Bounds bounds{root, device, force, warnings};
   checkDynamics(bounds);
   checkCarried(bounds);

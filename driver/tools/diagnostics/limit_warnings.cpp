@@ -38,7 +38,7 @@ void forceBeyondArm(const scene::Device& device, document::Problems& warnings) {
 
 using Joints = std::array<double, HDV_MAX_JOINTS>;
 
-/// Rows of the Jacobian in one pose, from `first` on; nothing if the arm cannot tell.
+/// Returns three rows of the Jacobian in one pose, from `first` on; nothing if the module cannot calculate it.
 std::optional<Eigen::Matrix3Xd> jacobianAt(const Joints& q, const host::DeviceInstance& arm, Eigen::Index first) {
   const hdv_ext_kinematics& kinematics = arm.kinematics();
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor> all(6, kinematics.joint_count);
@@ -117,8 +117,9 @@ std::optional<double> forceOfMotors(const Node& root, const scene::Device& devic
   return motors.empty() || !linear ? std::nullopt : farthestReach(*linear, motors);
 }
 
-/// What motors give, and where: at rest, or, of an arm that rests stretched out, in the middle of some poses. Stretched
-/// out it bears any force along itself, and folded nearly so.
+/// The largest force of the motors at the tip [N], and where it holds: at rest, or, if the arm rests stretched out, the
+/// median over some poses. The links of a stretched arm bear any force along the arm, so its motors bound nothing
+/// there.
 struct MotorForce {
   double most = 0;
   const char* where = "at rest";
@@ -134,7 +135,7 @@ static std::optional<MotorForce> motorForce(const Node& root, const scene::Devic
   std::vector<double> reaches;
   for (int pose = 0; pose < kPoses; ++pose) {
     Joints q = restJoints(root, joints);
-    for (uint32_t i = 0; i < joints; ++i) q[i] += 0.9 * std::sin(1.7 * (pose + 1) + 2.3 * i);  // spread over a radian
+    for (uint32_t i = 0; i < joints; ++i) q[i] += 0.9 * std::sin(1.7 * (pose + 1) + 2.3 * i);  // up to 0.9 rad away
     keepWithinStops(root, q, joints);
     const auto linear = jacobianAt(q, arm, 0);
     if (const auto reach = linear ? farthestReach(*linear, motors) : std::nullopt) reaches.push_back(*reach);

@@ -149,8 +149,8 @@ TrialResult tryOne(const scene::Scene& scene, const scene::Model& model, uint32_
   return tried;
 }
 
-/// Sets up a refused model without the parameter that the plugin objects to, and again, so that further objections and
-/// the size of the model are known. What would only follow from a missing parameter is not added to the problems.
+/// Sets up a refused model again without the parameter that the plugin objects to, a few times, so that further
+/// objections and the size of the model are known. An objection that follows only from a left-out parameter is dropped.
 TrialResult tryWithout(const scene::Scene& scene, uint32_t index, double max_force, std::string error, const Log& log,
                        host::ChildProgress& trail, PackedTexts& problems) {
   constexpr int kMost = 3;  // parameters that are left out
@@ -170,7 +170,7 @@ TrialResult tryWithout(const scene::Scene& scene, uint32_t index, double max_for
     problems.add(index, tried.error);
     error = tried.error;
   }
-  tried.stiffness = 0;  // it may depend on what was left out
+  tried.stiffness = 0;  // it may depend on the parameters that were left out
   return tried;
 }
 

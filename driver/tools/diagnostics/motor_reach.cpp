@@ -40,7 +40,9 @@ double farthestCorner(const Eigen::Matrix3Xd& jacobian, const std::vector<double
 }  // namespace
 
 std::optional<double> farthestReach(const Eigen::Matrix3Xd& jacobian, const std::vector<double>& torque) {
-  constexpr double kFlat = 1e-2;  // share of the longest: a direction in which the joints hardly move is not bounded
+  // Share of the largest singular value. If a direction has less, the joints hardly move the tip along it, so the
+  // motors bound no force there.
+  constexpr double kFlat = 1e-2;
   const auto joints = static_cast<int>(jacobian.cols());
   if (joints < 3 || torque.size() != static_cast<size_t>(joints) || !jacobian.allFinite()) return std::nullopt;
   // The eigenvalues of J J^T, in ascending order, are the squares of the singular values of J.

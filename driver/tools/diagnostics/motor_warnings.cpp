@@ -14,18 +14,18 @@ namespace hapticd::diagnostics {
 
 using document::Node;
 
-/// 0 is taken for not known: such a joint has no bound of its own.
+/// Warns of a largest torque of 0: it means that the torque is unknown, so the torque of the joint is not bounded.
 static void noTorque(const Node& root, const scene::Device& device, document::Problems& warnings) {
   const Node* list = find(root, {"parameters", "arm", "max_torque"});
   if (list == nullptr || !list->isSequence()) return;
   for (size_t i = 0; i < list->items.size(); ++i) {
     const Node& item = list->items[i];
     if (document::toNumber(item.scalar).value_or(1) != 0) continue;
-    document::report(warnings, device.file.string(), item.line, item.column,
-                     fmt::format("parameters.arm.max_torque[{}]", i),
-                     fmt::format("0 is no bound: joint {} gets whatever a force asks of it; expected the N m that its "
-                                 "motor gives at the joint",
-                                 i + 1));
+    document::report(
+        warnings, device.file.string(), item.line, item.column, fmt::format("parameters.arm.max_torque[{}]", i),
+        fmt::format("0 is no bound: nothing limits the torque of joint {}; expected the torque in N m that its "
+                    "motor gives at the joint",
+                    i + 1));
   }
 }
 
@@ -45,7 +45,7 @@ struct Motors {
 
 /// Warns of values that no motor of an arm for a hand has. @return true if the motor has such a value
 static bool oddMotor(const Motors& motors, size_t i) {
-  constexpr double kStrong = 8, kResists = 200, kReduces = 0.5;  // [N m/A] also of motors with gears; [ohm]; share
+  constexpr double kStrong = 8, kResists = 200, kReduces = 0.5;  // [N m/A] with its gear; [ohm]; ratio of a gear
   const scene::Motor& motor = motors.device.limits.motors[i];
   const size_t before = motors.warnings.size();
   if (motor.torque_constant > kStrong)
@@ -60,7 +60,7 @@ static bool oddMotor(const Motors& motors, size_t i) {
   if (motor.ratio > 0 && motor.ratio < kReduces)
     motors.warn(i, "ratio",
                 fmt::format("with {:g} the joint would be weaker than its motor; the value must be the torque at the "
-                            "joint divided by the torque at the motor: {:.3g} if it was turned round",
+                            "joint divided by the torque at the motor: {:.3g} if it was inverted",
                             motor.ratio, 1 / motor.ratio));
   if (motor.housing_time <= motor.winding_time)
     motors.warn(
@@ -73,7 +73,7 @@ static bool oddMotor(const Motors& motors, size_t i) {
 
 /// Warns of a motor whose winding gets far too hot, or not at all warm, at the largest torque of its joint.
 static void oddHeat(const Motors& motors, size_t i, double torque) {
-  constexpr double kCold = 1e-3, kHot = 200;  // W in the winding: less warms nothing, more melts those of a hand's arm
+  constexpr double kCold = 1e-3, kHot = 200;  // [W] less does not warm a winding; more melts that of an arm for a hand
   const scene::Motor& motor = motors.device.limits.motors[i];
   if (!(motor.torque_constant > 0) || !(motor.ratio > 0)) return;
   const double current = torque / (motor.torque_constant * motor.ratio);

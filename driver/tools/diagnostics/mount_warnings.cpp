@@ -25,12 +25,12 @@ void warnOfNoMount(const Node& root, const scene::Device& device, const host::De
   std::array<double, 4> turn{};
   const auto q = restJoints(root, kinematics.joint_count);
   if (kinematics.forward(arm.handle(), q.data(), tip.data(), turn.data()) < 0 || !tip.allFinite()) return;
-  // Who gave one of these has thought of where the tip is.
+  // If one of these keys is given, its author has chosen where the tip is.
   const bool placed = described->find("origin") != nullptr || described->find("base_position") != nullptr;
   if (tip.norm() <= kAway && (placed || tip.norm() >= kInside)) return;
   const Eigen::Vector3d mount = Eigen::Vector3d(0, 0, 0.09) - tip;
   const Node& at = given != nullptr ? *given : root;
-  const auto shown = [](double value) { return std::round(value * 1e3) / 1e3 + 0.0; };  // [m] no -0
+  const auto shown = [](double value) { return std::round(value * 1e3) / 1e3 + 0.0; };  // [m]; -0 becomes 0
   document::report(
       warnings, device.file.string(), at.line, at.column, "mount",
       fmt::format("not given, so the tip rests at [{:g}, {:g}, {:g}] m of the world, {} the shapes that scenes have "

@@ -189,7 +189,7 @@ void checkDamper(const GivenModel& given, const scene::Value& value) {
 void checkMass(const GivenModel& given, const scene::Value& value) {
   constexpr double kDensest = 25'000, kEasy = 3, kThin = 0.02;  // [kg/m^3], [kg], share of the size
   if (!given.box() || value.number <= kEasy) return;
-  const bool in_mm = given.size() > kOutOfReach;  // which has a warning of its own
+  const bool in_mm = given.size() > kOutOfReach;  // lengths in mm have a warning of their own
   const Vector3d sides = given.box()->sizes().cwiseMax(kThin * given.size()) * (in_mm ? kMilli : 1);
   const double density = value.number / sides.prod();
   if (density > kDensest)

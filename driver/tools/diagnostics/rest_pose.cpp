@@ -110,7 +110,7 @@ std::vector<Candidate> candidatesFor(const Links& links) {
     for (size_t i = 0; i < middle.size(); ++i) {
       const double part = (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5) * kInside;
       const double joint = middle[i] + part * (links.rows[i].high - links.rows[i].low);
-      one.q[i] = std::round(joint * 100) / 100;  // as it will be printed
+      one.q[i] = std::round(joint * 100) / 100;  // rounded as in the printed pose
       one.away += part * part;
     }
     one.motion = motionAt(links, one.q);

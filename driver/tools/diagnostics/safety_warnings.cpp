@@ -110,7 +110,7 @@ void slowSamples(const File& file, const codec::Wire& wire) {
     file.warn(*rate, "parameters.wire.rate", fmt::format("{:g} Hz: ", wire.rate) + slow);
 }
 
-/// Warns of a time without reports that ends before the second report, because one late report then stops the motors.
+/// Warns if health.stale is shorter than the time of two reports, because one late report then stops the motors.
 void soonStale(const File& file, const codec::Wire& wire) {
   constexpr double kReports = 2;
   const Node* stale = find(file.root, {"parameters", "health", "stale"});

@@ -29,7 +29,7 @@ void checkGravity(const scene::Scene& scene, document::Problems& warnings) {
                      fmt::format("[{:g}, {:g}, {:g}] {}; expected [0, -9.81, 0] m/s^2, or [0, 0, 0] for none", g.x(),
                                  g.y(), g.z(), what));
   };
-  if (g.norm() > kStrong * kEarth) tell(fmt::format("is {:.3g} times the Earth's", g.norm() / kEarth));
+  if (g.norm() > kStrong * kEarth) tell(fmt::format("is {:.3g} times the Earth's gravity", g.norm() / kEarth));
   if (g.y() > kLow * g.norm()) return tell("points up, as +y is up in the world: bodies fall upwards");
   if (g.norm() > 0 && -g.y() < kLow * g.norm()) tell("pulls aside, as +y is up in the world");
 }
@@ -54,10 +54,11 @@ void checkAnswerTime(const scene::Scene& scene, document::Problems& warnings) {
   constexpr double kShare = 0.25, kRounding = 1e-9;  // share of the period, as in a run
   const double period = 1 / scene.servo.rate, most = kShare * period;
   if (scene.clients.answer_time > (1 + kRounding) * most)
-    document::report(warnings, placeIn(scene, "clients.answer_time"), "clients.answer_time",
-                     fmt::format("{:g} s, but at {:g} Hz the servo waits at most a quarter of its period of {:g} s; "
-                                 "nearest: {:g} s",
-                                 scene.clients.answer_time, scene.servo.rate, period, most));
+    document::report(
+        warnings, placeIn(scene, "clients.answer_time"), "clients.answer_time",
+        fmt::format("the wait is {:g} s, but at {:g} Hz the servo waits at most a quarter of its period of {:g} s; "
+                    "expected at most {:g} s",
+                    scene.clients.answer_time, scene.servo.rate, period, most));
 }
 
 /// Warns of settings of programs that push, where no program may.
@@ -119,9 +120,9 @@ void checkTwoArms(const scene::Scene& scene, document::Problems& warnings) {
     }
 }
 
-/// The base of a chain is where its first link turns: within a model nothing else has room.
+/// Warns of an arm whose base is inside a model. The base of a chain is the place about which its first link turns.
 void checkBases(const scene::Scene& scene, const ModelBoxes& boxes, document::Problems& warnings) {
-  constexpr double kOpen = 0.6;  // of a box's half widths: its corners may be free, and models have rooms
+  constexpr double kOpen = 0.6;  // share of a box's half widths, because a model may leave the corners of its box free
   for (const scene::Device& device : scene.devices) {
     const document::Place place = device.place.file.empty() ? document::Place{device.file.string()} : device.place;
     const scene::Value *links = nullptr, *base = nullptr;
@@ -198,7 +199,7 @@ document::Problems lightAdmittance(const scene::Scene& scene, const scene::Devic
     if (const auto found = placeOfKey(device.file, key)) place = *found;
   document::report(warnings, place, key,
                    fmt::format("{:g} kg is {:.3g} times less than the {:.3g} kg of {}, which cannot follow so light a "
-                               "mass; the value must be in kg; nearest: {:.2g} kg",
+                               "mass; the value must be in kg; expected {:.2g} kg or more",
                                device.admittance->mass, info.mass_kg / device.admittance->mass, info.mass_kg,
                                device.name, kLightest * info.mass_kg));
   return warnings;

@@ -43,8 +43,8 @@ std::string wrapsTooOften(const Field& field, const PositionRange& stops) {
   const double around = std::ldexp(std::abs(field.scale), static_cast<int>(field.bits));
   if (around >= stops.length()) return "";
   return fmt::format(
-      "one count of joint {} is {:.3g} rad, {:.3g} counts a turn of the joint, and its {} bits would wrap within "
-      "arm.limits; expected 2 pi / (counts a motor turn * motor turns of one joint turn)",
+      "one count of joint {} is {:.3g} rad, {:.3g} counts per turn of the joint, and its {} bits would wrap within "
+      "arm.limits; expected 2 pi / (counts per motor turn * motor turns per joint turn)",
       field.index + 1, std::abs(field.scale), 2 * M_PI / std::abs(field.scale), field.bits);
 }
 
@@ -131,7 +131,7 @@ double extentOf(const host::DeviceInstance& arm, const std::vector<PositionRange
 /// Warns of a workspace that the arm can never leave, because millimetres were meant.
 void workspaceBeyondReach(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                           document::Problems& warnings) {
-  constexpr size_t kMostJoints = 6;  // 729 poses
+  constexpr size_t kMostJoints = 6;  // three positions of each of six joints are 729 poses
   constexpr double kTimes = 3;
   const Node* given = find(root, {"limits", "workspace"});
   const size_t joints = arm.kinematics().joint_count;
@@ -154,7 +154,7 @@ void workspaceBeyondReach(const Node& root, const scene::Device& device, const h
 /// workspace shows how far the arm should move.
 void narrowWorkspace(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                      const codec::Wire& wire, document::Problems& warnings) {
-  constexpr size_t kMostJoints = 6;  // 729 poses
+  constexpr size_t kMostJoints = 6;  // three positions of each of six joints are 729 poses
   constexpr double kSmall = 0.35;    // share of the workspace's width
   const Node* given = find(root, {"limits", "workspace"});
   const size_t joints = arm.kinematics().joint_count;

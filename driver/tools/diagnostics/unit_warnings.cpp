@@ -65,7 +65,7 @@ void twistInDegrees(const Node* rows, const std::string& file, document::Problem
 
 /// Warns of a link that is too long, because its length is not in metres or its decimal point is wrong.
 void linkTooLong(const Node* lengths, const std::string& file, document::Problems& warnings) {
-  constexpr double kLong = 2;  // m: longer than a person's arm, and than any device for one
+  constexpr double kLong = 2;  // [m] longer than a person's arm, and than any haptic arm
   const double most = largest(numbersIn(lengths));
   if (most <= kLong) return;
   document::report(
@@ -76,9 +76,9 @@ void linkTooLong(const Node* lengths, const std::string& file, document::Problem
           most, most / 10));
 }
 
-/// The same of a chain, whose lengths are in two columns.
+/// Warns of a link of a chain that is too long. The lengths are in two columns of its table.
 void chainTooLong(const Node* rows, const std::string& file, document::Problems& warnings) {
-  constexpr double kLong = 2;  // m, as above
+  constexpr double kLong = 2;  // [m] as for other links
   if (rows == nullptr || !rows->isSequence()) return;
   for (size_t row = 0; row < rows->items.size(); ++row)
     for (const size_t column : {size_t{0}, size_t{2}}) {
@@ -102,7 +102,7 @@ void commasInNumbers(const Node* list, const char* key, const std::string& file,
     document::report(warnings, file, list->line, list->column, key, "zeros and whole numbers take turns" + advice);
 }
 
-/// A link that points the other way has a twist, not a negative length.
+/// Warns of a negative length: the direction of a link is given by its signs or angles, not by its length.
 void lengthBelowZero(const Node* lengths, const std::string& file, document::Problems& warnings) {
   for (const double length : numbersIn(lengths))
     if (length < 0)
@@ -139,18 +139,19 @@ void offsetBeyondATurn(const Node* fields, const std::string& file, document::Pr
 }
 
 void mountFarAway(const Node* position, const std::string& file, document::Problems& warnings) {
-  constexpr double kFar = 5;  // m: farther than anybody reaches
+  constexpr double kFar = 5;  // [m] farther than anybody reaches
   const double most = largest(numbersIn(position));
   if (most <= kFar) return;
-  document::report(warnings, file, position->line, position->column, "mount.position",
-                   fmt::format("{:g} m from the world's origin, where the scenes have their shapes; the value must be "
-                               "in m: {:g} mm is {:g} m",
-                               most, most, most / 1000));
+  document::report(
+      warnings, file, position->line, position->column, "mount.position",
+      fmt::format("the arm stands {:g} m from the world's origin, where scenes have their shapes; the value must be "
+                  "in m: {:g} mm is {:g} m",
+                  most, most, most / 1000));
 }
 
 void quaternionTurnedRound(const Node* orientation, const std::string& key, const std::string& file,
                            document::Problems& warnings) {
-  constexpr double kMost = 0.7;  // part of z: the other order then is a turn of at most 91 degrees
+  constexpr double kMost = 0.7;  // least last number; read as w, it means a turn of at most 91 degrees
   const std::vector<double> q = numbersIn(orientation);
   const bool read =
       orientation != nullptr && std::all_of(orientation->items.begin(), orientation->items.end(),
@@ -159,11 +160,11 @@ void quaternionTurnedRound(const Node* orientation, const std::string& key, cons
   if (q[1] == 0 && q[2] == 0)
     return document::report(
         warnings, file, orientation->line, orientation->column, key,
-        "is w, x, y, z, so this is a half turn about z; expected [1, 0, 0, 0] where no turn was meant; "
+        "the order is w, x, y, z, so this is a half turn about z; expected [1, 0, 0, 0] where no turn was meant; "
         "[0, 0, 0, -1] is the same half turn without this warning");
   document::report(
       warnings, file, orientation->line, orientation->column, key,
-      fmt::format("is w, x, y, z, so this is a half turn about [{0:g}, {1:g}, {2:g}]; if it was written as "
+      fmt::format("the order is w, x, y, z, so this is a half turn about [{0:g}, {1:g}, {2:g}]; if it was written as "
                   "x, y, z, w, write [{2:g}, 0, {0:g}, {1:g}]; if not, reverse all signs",
                   q[1], q[2], q[3]));
 }

@@ -91,7 +91,7 @@ double missedByPath(const scene::Model& model, const host::ShapeInstance& shape,
 document::Problems unreachableModels(const scene::Scene& scene, const servo::World& world, servo::Core& core,
                                      const std::vector<TipReach>& tips) {
   constexpr double kRoom = 1.1;     // not all poses of the arm were tried
-  constexpr double kLittle = 0.05;  // [m] a nearer miss is not told
+  constexpr double kLittle = 0.05;  // [m] a model that is missed by less is not reported
   constexpr double kFar = 10;       // [m] farther positions have their own warning
   document::Problems warnings;
   for (uint32_t i = 0; i < scene.models.size(); ++i) {

@@ -46,13 +46,13 @@ void UnreadKeys::addOwn(const std::string& key, UnreadModel& model) const {
       model.any = model.any || key == kParameters;
       return;
     }
-  model.any = true;  // an unknown key, or the model as a whole
+  model.any = true;  // the key is unknown, or stands for the whole model
 }
 
 void UnreadKeys::addParameter(const std::string& key, const host::ClassInfo& info, UnreadModel& model) const {
   const std::string id = key.substr(0, key.find('['));
   for (const host::ParamInfo& param : info.params)
-    if (isPartOf(param.id, id)) model.ids.insert(param.id);  // itself, or its group
+    if (isPartOf(param.id, id)) model.ids.insert(param.id);  // the parameter itself, or the group that it belongs to
   if (std::any_of(info.params.begin(), info.params.end(),
                   [&id](const host::ParamInfo& param) { return isPartOf(param.id, id); }))
     return;
@@ -73,7 +73,7 @@ UnreadModel UnreadKeys::ofModel(size_t index, const host::ClassInfo& info) const
       addParameter(key.substr(kParameters.size() + 1), info, model);
     else
       addOwn(key, model);
-  for (const char* both : {"motion", "path"})  // they stand beside the parameters, too
+  for (const char* both : {"motion", "path"})  // these are keys of the model and may also be parameters of its plugin
     if (model.own.contains(both)) model.ids.insert(both);
   return model;
 }

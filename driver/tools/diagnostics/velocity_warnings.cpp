@@ -63,11 +63,10 @@ document::Problems lateVelocity(const scene::Scene& scene, bool needs_velocity) 
   const std::string mend = cut_off ? "expected 50 Hz or more (only the estimator window takes a number of samples)"
                            : how.estimator == "kalman" ? "expected a higher servo.rate"
                                                        : fmt::format("expected at most {:.0f}", std::floor(most));
-  document::report(
-      warnings, placeInServo(scene, kParameter), kParameter,
-      fmt::format("{} lags by up to {:.3g} ms: damping and friction act after the hand has moved on, and can drive it; "
-                  "{}",
-                  lags, delay * 1e3, mend));
+  document::report(warnings, placeInServo(scene, kParameter), kParameter,
+                   fmt::format("{} lags by up to {:.3g} ms: damping and friction act too late, and can push the hand; "
+                               "{}",
+                               lags, delay * 1e3, mend));
   return warnings;
 }
 
@@ -81,16 +80,19 @@ document::Problems wideScales(const scene::Scene& scene) {
     if (scale == nullptr || damping == nullptr || scale->number < kWideScale || damping->number <= 0) continue;
     document::report(
         warnings, scale->place, fmt::format("models[{}].parameters.depth_scale", i),
-        fmt::format("{:g} m: {} has its full damping of {:g} N s/m only at this depth; at 1 mm it has {:.2g} N s/m; "
+        fmt::format("the scale is {:g} m: {} has its full damping of {:g} N s/m only at this depth; at 1 mm it has "
+                    "{:.2g} N s/m; "
                     "the value must be in m (1 mm is 0.001)",
                     scale->number, scene.models[i].name, damping->number,
                     damping->number * std::pow(1e-3 / scale->number, exponent != nullptr ? exponent->number : 1)));
   }
   if (scene.servo.hysteresis > kWideHysteresis)
-    document::report(warnings, placeInServo(scene, "servo.hysteresis"), "servo.hysteresis",
-                     fmt::format("{:g} m beyond the radius of {:g} m: a surface that is traced once is never dropped; "
-                                 "the value must be in m (50 mm is 0.05)",
-                                 scene.servo.hysteresis, scene.servo.activation_radius));
+    document::report(
+        warnings, placeInServo(scene, "servo.hysteresis"), "servo.hysteresis",
+        fmt::format(
+            "{:g} m is added to the activation radius of {:g} m, so a surface that was traced once is never dropped; "
+            "the value must be in m (50 mm is 0.05)",
+            scene.servo.hysteresis, scene.servo.activation_radius));
   return warnings;
 }
 

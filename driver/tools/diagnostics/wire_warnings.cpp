@@ -117,8 +117,9 @@ void warnOfTorques(const Node& fields, const codec::Report& report, const scene:
   }
 }
 
-/// Fields that no checksum covers: numbers of joints, what switches motors or tells of trouble, and the only counter.
-/// Of two counters, both may stand around all of it.
+/// Returns the fields that no checksum covers, although a transfer error in them would matter: numbers of joints, and
+/// flags. A counter is among them if it is the only one, because two counters may enclose the other bytes.
+/// @param counts_too false to leave out counters
 std::vector<size_t> uncovered(const codec::Report& report, bool counts_too) {
   std::vector<bool> covered(report.size);
   bool any = false;
@@ -142,7 +143,7 @@ std::vector<size_t> uncovered(const codec::Report& report, bool counts_too) {
   return outside;
 }
 
-/// A number that no checksum covers is trusted as it comes.
+/// Warns of fields that no checksum covers, because an error of the transfer in them is not noticed.
 void warnOfChecksum(const Node& fields, const codec::Report& report, const char* side, const scene::Device& device,
                     document::Problems& warnings) {
   std::string outside;
@@ -281,7 +282,7 @@ void warnOfWire(const Node& root, const scene::Device& device, size_t joints, do
   warnOfButtons(*in, wire->input, device, warnings);
   if (wire->input.placed) warnOfChecksum(*in, wire->input, "input", device, warnings);
   if (wire->output.placed) warnOfChecksum(*out, wire->output, "output", device, warnings);
-  if (!wireOf(device, joints)) return;  // a field with a mistake may lie elsewhere
+  if (!wireOf(device, joints)) return;  // if a field has a mistake, its place may be wrong, too
   warnOfCountedId(root, wire->input, "input", device, warnings);
   warnOfCountedId(root, wire->output, "output", device, warnings);
   if (const Node* startup = find(root, {"parameters", "wire", "startup"}))

@@ -48,7 +48,7 @@ class Body {
     text_.append(raw, sizeof raw);
     return *this;
   }
-  Body& text(std::string_view value) {  ///< with its length in front
+  Body& text(std::string_view value) {  ///< writes the length before the text
     n(static_cast<uint32_t>(value.size()));
     text_ += value;
     return *this;

@@ -12,7 +12,8 @@ const Candidate& chosenOf(const Findings& findings) {
   return findings.tuning.candidates[findings.tuning.chosen];
 }
 
-/// Returns the candidates on the front, cheapest first.
+/// Returns the candidates of the Pareto front (of cost and error) that are shown, cheapest first. Of several that are
+/// alike, one is shown.
 std::vector<Candidate*> front(Findings& findings) {
   std::vector<Candidate*> all;
   for (Candidate& candidate : findings.tuning.candidates)

@@ -48,16 +48,16 @@ void checkModel(const scene::Scene& scene, size_t index, const scene::Device& de
          (info.max_stiffness < kUnfelt
               ? ", as its device.max_stiffness says; so little cannot be felt, so give device.max_stiffness in N/m (1 "
                 "N/mm is 1000 N/m)"
-              : "; nearest: " + text(roundedDown(info.max_stiffness)) + " N/m"));
+              : "; expected at most " + text(roundedDown(info.max_stiffness)) + " N/m"));
   if (alone > 0 && stiffness > alone)
     warn(claim + ", and at " + text(scene.servo.rate) + " Hz a felt mass of " + text(info.mass_kg) +
-         " kg is stable up to " + text(alone) +
-         " N/m without damping of the arm; nearest: " + text(roundedDown(alone)) + " N/m, or " +
+         " kg is stable up to " + text(alone) + " N/m without damping of the arm; expected at most " +
+         text(roundedDown(alone)) + " N/m, or a rate of " +
          text(std::ceil(scene.servo.rate * std::sqrt(stiffness / alone) / 100) * 100) + " Hz");
   if (info.resolution_m > 0 && stiffness * info.resolution_m > kBuzz)
     warn(claim + ", so one count of " + text(info.resolution_m * 1e6) + " um is a step of " +
-         text(stiffness * info.resolution_m) +
-         " N, which a hand feels as buzz; nearest: " + text(roundedDown(kBuzz / info.resolution_m)) + " N/m");
+         text(stiffness * info.resolution_m) + " N, which a hand feels as buzz; expected at most " +
+         text(roundedDown(kBuzz / info.resolution_m)) + " N/m");
 }
 
 /// Warns of a force that the arm cannot sustain. Simulated arms are left out, because their motors cannot burn.
@@ -66,9 +66,10 @@ void checkHeat(const scene::Device& device, const hdv_info& info, document::Prob
   const bool guarded = !device.limits.motors.empty() || (info.capabilities & HDV_C_SIMULATED) != 0;
   if (guarded || info.continuous_force <= 0 || most <= info.continuous_force) return;
   document::report(problems, device.place, "limits.force",
-                   text(most) + " N, and " + device.name + " sustains " + text(info.continuous_force) +
-                       " N continuously, and nothing protects its motors from heat; expected limits.motors, or a lower "
-                       "limit; nearest: " +
+                   "the limit is " + text(most) + " N, and " + device.name + " sustains " +
+                       text(info.continuous_force) +
+                       " N continuously, and nothing protects its motors from heat; expected limits.motors, or a "
+                       "limit of at most " +
                        text(info.continuous_force) + " N");
 }
 
@@ -77,18 +78,18 @@ void checkLoopRate(const scene::Scene& scene, const scene::Device& device, const
                    document::Problems& problems) {
   constexpr double kSlack = 1.001;
   const std::string file = scene.file.string(), rates = text(scene.servo.rate) + " Hz";
-  const std::string own = " (" + text(info.rate_hz) + " Hz)", nearest = "; nearest: " + text(info.rate_hz) + " Hz";
+  const std::string own = " (" + text(info.rate_hz) + " Hz)", nearest = "; expected " + text(info.rate_hz) + " Hz";
   const bool paced = scene.servo.pace == scene::Pace::kDevice;
   if (paced && (info.capabilities & HDV_C_PACING) == 0)
     document::report(problems, file, 0, 0, "servo.pace",
-                     "device, but " + device.name +
-                         " gives a sample whenever it is asked, so it cannot drive the loop; unless another arm can, "
-                         "the clock drives it; expected clock");
+                     "the samples of " + device.name +
+                         " cannot drive the loop, because the arm gives one whenever it is asked; unless another arm "
+                         "can, the clock drives the loop; expected clock");
   if (info.rate_hz <= 0) return;
   const double ratio = scene.servo.rate / info.rate_hz;
   if (paced && (ratio > kSlack || ratio < 1 / kSlack))
     document::report(problems, file, 0, 0, "servo.rate",
-                     rates + ", but the samples of " + device.name + own +
+                     "the rate is " + rates + ", but the samples of " + device.name + own +
                          " drive the loop, so budgets and estimators are made for the wrong rate" + nearest);
   else if (ratio > kSlack && (info.capabilities & HDV_C_SIMULATED) == 0)
     document::report(
@@ -135,7 +136,7 @@ document::Problems unstableSettings(const scene::Scene& scene, const scene::Devi
   if (scene.servo.budget_us > period * 1e6)
     document::report(problems, file, 0, 0, "servo.budget_us",
                      text(scene.servo.budget_us) + " us is longer than the period of " + text(period * 1e6) +
-                         " us, so every tick may be late; nearest: " + text(0.8 * period * 1e6) + " us");
+                         " us, so every tick may be late; expected at most " + text(0.8 * period * 1e6) + " us");
   checkHeat(device, info, problems);
   checkLoopRate(scene, device, info, problems);
   return problems;

@@ -35,8 +35,10 @@ def example(name, *arguments):
 
 
 ALONE = """
-import os, sys
+import os, sys, warnings
 sys.modules["numpy"] = None  # as where it is not installed
+import hapticd
+from hapticd._client import _plain
 from hapticd._lead import ForceLead, PoseLead
 from hapticd._rows import Column, Stream
 stream = Stream(None, 0, "ticks", 12, 8, 0, [Column("t", "f8", 0, "s", ""), Column("n", "u4", 8, "", "")])
@@ -46,13 +48,13 @@ try:
     rows["tt"]
     raise SystemExit("no such column was accepted")
 except KeyError as error:
-    assert "expected one of: t, n" in str(error), error
+    assert "expected one of: t, n (did you mean \\"t\\"?)" in str(error), error
 def lead(kind):
     fd = os.memfd_create("lead")
     os.truncate(fd, 4096)
     return kind(fd, 4096, lambda: None)
 nan = float("nan")
-for use, words in ((lambda: lead(ForceLead).put(1, [nan, 0, 0]), "not finite"), (lambda: lead(ForceLead).put(1, [0, 0]), "3 numbers"),
+for use, words in ((lambda: lead(ForceLead).put(1, [nan, 0, 0]), "not finite"), (lambda: lead(ForceLead).put(1, [0, 0]), "force [x, y, z] in N"),
                    (lambda: lead(PoseLead).put([nan, 0, 0]), "not finite"), (lambda: lead(PoseLead).put([11, 0, 0]), "farther than 10 m"),
                    (lambda: lead(PoseLead).put([0, 0, 0], [90, 0, 1, 0]), "unit quaternion")):
     try:
@@ -60,6 +62,20 @@ for use, words in ((lambda: lead(ForceLead).put(1, [nan, 0, 0]), "not finite"), 
         raise SystemExit(words + ": accepted")
     except ValueError as error:
         assert words in str(error), error
+for use, words in ((lambda: lead(PoseLead).put(0.1, 0, 0), "position [x, y, z] in m"), (lambda: lead(ForceLead).put(1, 5), "force [x, y, z] in N"),
+                   (lambda: stream.last("ten"), "a whole number of rows"), (lambda: hapticd.connect(5), "the name of a daemon"),
+                   (lambda: _plain({1}), "a request has only texts, numbers")):
+    try:
+        use()
+        raise SystemExit(words + ": accepted")
+    except TypeError as error:
+        assert words in str(error), error
+with warnings.catch_warnings(record=True) as caught:
+    warnings.simplefilter("always")
+    bounded = lead(lambda *memory: ForceLead(*memory, max_force=3))
+    for force in (3, 5, 7):
+        bounded.put(1, [0, force, 0])
+assert [str(w.message)[:50] for w in caught] == ["a force of 5 N was asked for, but the arm gets 3 N"], caught
 lead(ForceLead).put(1, [0.1, 0, 0])
 lead(PoseLead).put([0.1, 0, 0])
 """

@@ -104,7 +104,7 @@ def held(daemon):
         texts = warned(lambda _: h.lead_force(ARM).end())
         check("who begins on an arm that is held is warned", any("held" in t and "hapticd ctl clear" in t for t in texts), texts)
         h.clear()
-        check("the log tells of the hold", daemon.says(ARM, "it is held") and daemon.says("hapticd ctl clear"), daemon.told())
+        check("the log tells of the hold", daemon.says(ARM, "the arm is held") and daemon.says("hapticd ctl clear"), daemon.told())
         check("and of its end in matching words", daemon.says(ARM, "the hold is over"), daemon.told())
 
 
@@ -147,6 +147,7 @@ def pushed_again(daemon):
             failed._thread.join(30)
         again = h.push(ARM, lambda state: [0, 0, 1])
         check("an arm can be pushed on again after a callback failed", until(lambda: again.answers > 0))
+        check("a program learns the largest force that it gets", again._lead.max_force == 3, again._lead.max_force)
         again.end()
         try:
             h.push(ARM, 5)

@@ -24,7 +24,7 @@ SECOND, FIRST_OUT = READ.format(2, 4), SENT.format(1, 0)
 
 # What is given, what for, its key and a word that is told of it; a bar stands in front of the place.
 CASES = [
-    (WIRED, {SECOND: SECOND.replace("i16", "i16, endian: |big")}, f"{IN}[2].endian", "but most other numbers of this report are little"),
+    (WIRED, {SECOND: SECOND.replace("i16", "i16, endian: |big")}, f"{IN}[2].endian", "is big, but most other numbers of this report are little"),
     (WIRED, {SENT.format(n + 1, 2 * n): SENT.format(n + 1, 2 * n).replace("i16", "i16, endian: " + "|" * (n == 0) + "big") for n in range(3)},
      f"{OUT}[0].endian", "big in all of wire.output, but little in all of wire.input"),
     (WIRED, {SECOND: SECOND.replace("i16", "|u16")}, f"{IN}[2].type", "the types of the other joints are signed"),
@@ -108,9 +108,9 @@ CASES += [
     (CHAIN, {"- [0, 1.5707963, 0, 0]": "- [|1.5707963, 0.01, 0, 0]"}, "parameters.arm.dh[0][0]", "a quarter of a turn in rad"),
     (CHAIN, {"    dh:": "    lengths: |[0.2, 0.2]\n    dh:"}, "parameters.arm.lengths", "a chain has no lengths"),
     (WIRED, {"[[-1.2, 1.2]": "[|[0, 0]"}, "parameters.arm.limits[0]", "joint 1 cannot move"),
-    (WIRED, {"workspace: 0.3": "workspace: |0.01"}, "limits.workspace", "a hand is beyond that at once"),
+    (WIRED, {"workspace: 0.3": "workspace: |0.01"}, "limits.workspace", "a hand is farther away at once"),
     (WIRED, {"force: 2, ": "force: 2, " + MOTORS.replace("0.0259", "|25.9", 1)}, "limits.motors[0].torque_constant", "25.9 mN m/A is 0.0259 N m/A"),
-    (WIRED, {"force: 2, ": "force: 2, " + MOTORS.replace("ratio: 12", "ratio: |0.0833", 1)}, "limits.motors[0].ratio", "12 if it was turned round"),
+    (WIRED, {"force: 2, ": "force: 2, " + MOTORS.replace("ratio: 12", "ratio: |0.0833", 1)}, "limits.motors[0].ratio", "12 if it was inverted"),
     (PREMIUM, {"force: 8.5": "force: 8.5, " + MOTORS.replace("2.3", "|2300", 1).rstrip(", ")}, "limits.motors[0].resistance", "2300 mohm is 2.3 ohm"),
     (WIRED, {"force: 2, ": "force: 2, " + MOTORS.replace("ratio: 12", "ratio: 12, housing_time: |10", 1)}, "limits.motors[0].housing_time", "10 min is 600 s"),
     (TWIN, {"hand:": "  delay: |16\nhand:"}, "parameters.delay", "stiffer than about 303 N/m may bounce"),
@@ -158,7 +158,7 @@ TOGETHER = [
      {"module": "did you mean", "usb.id": "", "calibration.pose": "45 degrees is 0.7854 rad"}),
     (WIRED, {"force: 2, ": "force: 40, slew: 2, ramp_in: 250, velocity: 0.02, ", "workspace: 0.3": "workspace: 0.01"},
      {"limits.ramp_in": "250 ms is 0.25 s", "limits.slew": "2 N/ms is 2000 N/s", "limits.velocity": "its first stroke would be a fault",
-      "limits.workspace": "a hand is beyond that at once", "limits.force": "N"}),
+      "limits.workspace": "a hand is farther away at once", "limits.force": "N"}),
     (WIRED, {"[0.21, 0.17": "[0.21, 17", "method: pose": "method: device", "max_stiffness: 600": "max_stiffness: 0.6", "mass: 0.2": "mass: 100"},
      {"arm.lengths[1]": "17 mm is 0.017 m", "calibration.method": "no field of wire.input", "device.max_stiffness": "0.6 N/mm is 600 N/m",
       "device.mass": "100 g is 0.1 kg"}),
@@ -305,7 +305,7 @@ def refused(folder):
           and not os.path.exists(os.path.join(folder, "double-twin.yaml")), (problems, twin))
     soft, _ = written(os.path.join(folder, "soft.yaml"), WIRED, {"max_stiffness: 600": "max_stiffness: |0.6"})
     stiff = subprocess.run([HAPTICD, "check", os.path.join(SOURCE, "config", "scenes", "sphere.yaml"), "--device", soft], capture_output=True, text=True, timeout=120)
-    check("a model is not blamed for an arm in N/mm", "as its device.max_stiffness says" in stiff.stdout and "nearest: 0.6" not in stiff.stdout, stiff.stdout)
+    check("a model is not blamed for an arm in N/mm", "as its device.max_stiffness says" in stiff.stdout and "expected at most 0.6 N/m" not in stiff.stdout, stiff.stdout)
     check("a scene tells all of its device", done.returncode == 2 and len(told) == 2 and all("parameters.wire." in line for line in told), done.stdout)
 
 

@@ -138,7 +138,7 @@ def reloads(daemon):
     check("the daemon's own scene is loaded again by the daemon", code == 0, said)
     with open(os.path.join(daemon.folder, "own.yaml"), "a") as out:
         out.write(SECRET + "\n")
-    refused("what is wrong with it is not told", daemon.ctl("reload"), "cannot be used")
+    refused("what is wrong with it is not told", daemon.ctl("reload"), "only the daemon's user may see")
     scene = daemon.file("next", "next", 0o600, NOBODY)
     code, said = daemon.ctl("reload", scene)
     check("another scene is passed along", code == 0, said)

@@ -35,8 +35,8 @@ def words(ask):
     code, out, err = ask("set", "donut", "push", "0.25")
     check("push is set to a number", code == 0 and ask_value("push") == 0.25, (code, out, err))
     for parameter, word, expected in (("law", "herz", "expected one of linear, hertz"), ("law", "2", "expected one of linear, hertz"),
-                                      ("loud", "maybe", "expected true or false"), ("push", "abc", "\"abc\" is not a number, expected 0 to 3 N"),
-                                      ("push", "7", "7 is out of range, expected 0 to 3 N"), ("whole", "1.5", "expected a whole number from 0 to 9"),
+                                      ("loud", "maybe", "expected true or false"), ("push", "abc", "\"abc\" is not a number, expected a number from 0 to 3 N"),
+                                      ("push", "7", "7 is out of range, expected a number from 0 to 3 N"), ("whole", "1.5", "expected a whole number from 0 to 9"),
                                       ("fixed", "abc", "cannot change while the model runs"), ("file", "x.csv", "cannot change while the model runs"),
                                       ("lw", "hertz", "did you mean \"law\"?")):
         code, out, err = ask("set", "donut", parameter, word)

@@ -132,7 +132,7 @@ for pace in (["--virtual-time"], ["--allow-non-rt"]):
     check(f"a stop() that hangs does not keep a run {pace}", code not in (0, 124) and "stop()" in text and "slips_arm" in text, (code, text))
 stalls = put("scene.yaml", open(scene).read().replace("stop_hangs", os.path.basename(arm("read_stalls"))[:-5]))
 code, text = run("run", stalls, "--allow-non-rt", "--for", "3")
-check("a read() that stalls is told of its module", "its module did not come back" in text and "hapticd device check" in text and "doctor" not in text, (code, text))
+check("a read() that stalls is told of its module", "its module did not return" in text and "hapticd device check" in text and "doctor" not in text, (code, text))
 code, text = run("check", arm("inverse_mirrored"))
 check("check warns of a wrong inverse", code == 0 and "warning" in text and "inverse()" in text, (code, text))
 

@@ -73,7 +73,7 @@ def raw(client):
             check("status counts refused answers, with the reason",
                   one["refused"] > 0 and one["answers"] == 0 and one["why"] == "a number is not finite", one)
         elif force[0] > 1e6:
-            check("the reason is that of the last", one["why"] == "a number is beyond 1e6", one)
+            check("the reason is that of the last", one["why"] == "a force or torque is beyond 1e6 N or N m", one)
     check("status says what was asked for and what was cut",
           one["asked_n"] == 7 and one["bounded"] > 0 and one["largest_n"] <= 3.0001, one)
     os.close(fd)

@@ -119,7 +119,7 @@ with tempfile.TemporaryDirectory() as folder:
         check("the list says which deform", {m["name"]: m["deforms"] for m in json.loads(ctl("list")[1])["models"]} == {"plate": True, "teapot": False})
         code, out, err = ctl("geometry", "teapot", "--follow")
         check("following what does not deform is refused with its cure", code == 1 and "display_tolerance" in err, err)
-        for arguments, why in ((("geometry", "nobody"), "no model"), (("geometry", "plate", "--tolerance", "2"), "from 1e-05"),
+        for arguments, why in ((("geometry", "nobody"), "no model"), (("geometry", "plate", "--tolerance", "2"), "from 0.00001 to 1 m"),
                                (("geometry", "teapot", "--tolerance", "0.00001"), "larger")):
             code, out, err = ctl(*arguments)
             check(" ".join(arguments) + " is refused with its reason", code == 1 and why in err, (code, out[:200], err))

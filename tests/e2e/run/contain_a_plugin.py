@@ -142,7 +142,7 @@ with tempfile.TemporaryDirectory() as scratch:
     surroundings = dict(os.environ, HAPTICD_PLUGIN_PATH=os.path.join(scratch, "plugins"), RUNTIME_DIRECTORY=scratch,
                         STATE_DIRECTORY=os.path.join(scratch, "state"))
     for signal, words in (("segv", ["SIGSEGV"]), ("fpe", ["SIGFPE"]), ("bus", ["SIGBUS"]), ("ill", ["SIGILL"]), ("abort", ["SIGABRT"]),
-                          ("hang", ["did not come back", "never slept"])):
+                          ("hang", ["did not return", "never slept"])):
         crash(scratch, surroundings, signal, words)
     builtAnew(scratch, surroundings)
     service(scratch, surroundings)

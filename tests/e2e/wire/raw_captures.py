@@ -143,8 +143,8 @@ with tempfile.TemporaryDirectory() as folder:
 
     # Id and size.
     for form, of in (("raw", bytes), ("text", text_of)):
-        named(f"an id that the file lacks, {form}", of(PLAIN), no_id, "each begins with 0x01 and has one byte too many", "give wire.input id: 1;")
-        named(f"another id, {form}", of(OVER), {"      id: 1\n": "      id: 3\n"}, "with another id (0x01)", "each begins with 0x01, expected 0x03", "give wire.input id: 1\n")
+        named(f"an id that the file lacks, {form}", of(PLAIN), no_id, "each bad report begins with 0x01 and has one byte too many", "give wire.input id: 1;")
+        named(f"another id, {form}", of(OVER), {"      id: 1\n": "      id: 3\n"}, "with another id (0x01)", "each report begins with 0x01, expected 0x03", "give wire.input id: 1\n")
     named("a size of one byte too few, with an id", PLAIN, {"size: 20": "size: 19", SUM: SUM.replace("18", "17").replace(", over_id: true", "")},
           "0x01 occurs every 21 bytes", "give wire.input size: 20 (it is 19)")
     bare = b"".join(PLAIN[at + 1:at + 21] for at in range(0, len(PLAIN), 21))

@@ -147,7 +147,7 @@ with tempfile.TemporaryDirectory() as folder:
     code, err, _ = told(text([hid(i, flags=0) for i in range(COUNT)]))
     check("and an arm that is never calibrated", f"calibrated is 0 in all {COUNT} reports" in err, err)
     code, err, _ = told(text([hid(i, starts=i & 255) for i in range(COUNT)]))
-    check("a start with each report is a counter or a clock", "starts is another number in 399 of 400 reports" in err, err)
+    check("a start with each report is a counter or a clock", "the field starts has another number in 399 of 400 reports" in err, err)
     code, err, _ = told(text([hid(i, order="big") for i in range(COUNT)]))
     check("a counter in the other byte order is told", "the counter counts with endian: big" in err, err)
 

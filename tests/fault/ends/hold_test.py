@@ -69,7 +69,7 @@ check("a hold does not wait for one that never ends", code == 0 and run.arm.sile
 begun = time.monotonic()
 run.process.terminate()
 code, said = run.end(30)
-check("SIGTERM ends the run all the same, and names what kept it", time.monotonic() - begun < 5 and "plugin 'slow' of model 'never' did not come back" in said,
+check("SIGTERM ends the run all the same, and names what kept it", time.monotonic() - begun < 5 and "plugin 'slow' of model 'never' did not return" in said,
       (time.monotonic() - begun, said))
 check("nobody is in quarantine for being slow", run.quarantined() == "")
 check("the motors are off", not run.arm.motors_on())

@@ -101,7 +101,7 @@ check("torn memory: nor left out", [line.split("\t")[0] for line in quarantined(
 
 # A step that never comes back ends by itself, after 5 s of processor time. Two ways watch it: a run's, and that of the others.
 for command in (RUN, TRACE, EXPLAIN, TUNE) if LONG else (RUN, TRACE):
-    ends(command, "ending", "how: loop, after: 40", "", "a step that did not come back")
+    ends(command, "ending", "how: loop, after: 40", "", "a step that did not return")
 
 
 BUSY = 0.8  # [s] of processor time; until its loop a command takes less than half of that

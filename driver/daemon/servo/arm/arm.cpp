@@ -77,7 +77,7 @@ Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& desc
       weight_(described.limits, fullForce(described.limits, device_->info())),
       name_(described.name),
       stuck_words_(
-          "a tick did not end, as its module did not come back, and the watchdog cut the motors; find the cause "
+          "a tick did not end, as its module did not return, and the watchdog cut the motors; find the cause "
           "with: hapticd device check " +
           described.file.string()),
       former_passivity_(options.former_passivity) {}
@@ -269,7 +269,7 @@ void Arm::sendsNothing() noexcept HSP_RT {
 }
 
 void Arm::send(Nanoseconds now) noexcept HSP_RT {
-  if (taken_.exchange(true)) return;  // the watchdog is writing its zero force
+  if (taken_.exchange(true)) return;  // the watchdog is writing a zero force
   if (cut_in_write_) cut_.store(true);
   cut_in_write_ = false;
   if (cut_.load()) {  // the motors are off until this tick has acknowledged the cut

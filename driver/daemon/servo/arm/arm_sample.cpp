@@ -12,11 +12,11 @@ namespace hapticd::servo {
 namespace {
 
 constexpr double kCalmFor = 0.5;      ///< [s] a device must be well for this time before its force comes back
-constexpr double kCalmTravel = 0.02;  ///< [m] largest motion of the tip in that time, if a force waits for it
+constexpr double kCalmTravel = 0.02;  ///< [m] largest motion of the tip within kCalmFor, if a force would act on it
 constexpr double kStaleAfter = 0.05;  ///< [s] after this time without a new sample, the position is too old for a force
 /// [periods] without a new sample for this time, the force fades: one sample may be late
 constexpr double kPeriodsTrusted = 2.001;
-constexpr double kTrustFades = 2e-3;  ///< [s] duration of this fade
+constexpr double kTrustFades = 2e-3;  ///< [s] duration of the fade of an old sample's force
 constexpr double kPairWithin = 2e-3;  ///< [s] least time that counts between two samples, because they may arrive
                                       ///< closer together than they were measured
 
@@ -35,7 +35,7 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
     findCut(CutFound::kInRead);
     limiter_.cut(Fault::kStuck, cut_after_.load());
   }
-  if (taken_.exchange(true)) {  // the watchdog is writing its zero force
+  if (taken_.exchange(true)) {  // the watchdog is writing a zero force
     probe_.valid = tip_known_ = well_ = false;
     if (velocity_) velocity_->reset();
     return probe_;
@@ -98,8 +98,8 @@ void Arm::trip(Fault fault, double measured) noexcept HSP_RT {
   limiter_.trip(fault, measured);
 }
 
-/// Gives a device that was unplugged, silent or at fault its force back once it has been well for a while, and if the
-/// force surprises nobody: the tip rests, or no force acts on it now.
+/// Gives the force back to a device that was unplugged, silent or at fault. The device must have worked for a while,
+/// and the force must surprise nobody: the tip must rest, or no force may act on it now.
 void Arm::recover(double dt, bool pushes) noexcept HSP_RT {
   const bool moved = pushes && !((probe_.position - calm_at_).norm() <= kCalmTravel);
   if (!well_ || !probe_.valid || moved || !limiter_.silent()) {

@@ -129,7 +129,8 @@ bool ClientForces::take(Client& client, uint64_t tick) noexcept HSP_RT {
   return true;
 }
 
-/// Notes how much force a program asks for, and how much of it passes the bound.
+/// Notes the largest force that a program asked for, the size of its last force within the bound, and how many of its
+/// forces were larger.
 void ClientForces::note(Client& client) const noexcept HSP_RT {
   const double asked = Eigen::Map<const Vector3d>(client.push.force).norm();
   client.given.store(std::min(asked, max_force_), std::memory_order_relaxed);

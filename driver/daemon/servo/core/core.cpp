@@ -258,7 +258,7 @@ void Core::sendTransform(ModelState& model, uint32_t index) noexcept HSP_RT {
   transform.model = index;
   for (size_t i = 0; i < 3; ++i) transform.position[i] = model.pose.position[i];
   for (size_t i = 0; i < 4; ++i) transform.orientation[i] = model.pose.orientation[i];
-  link_.transforms.push(transform);  // lost if the queue is full; the next tick sends a newer one
+  link_.transforms.push(transform);  // if the queue is full, the transform is lost; the next tick sends a newer one
 }
 
 }  // namespace hapticd::servo

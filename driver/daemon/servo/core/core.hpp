@@ -79,7 +79,8 @@ struct CoreSettings {
   double max_probe_speed = 20;  ///< [m/s] a faster probe is treated as a jump
   uint32_t spare_models = 0;    ///< empty places for models that are added during the run
   bool measure = false;         ///< true: the time of each step is measured
-  /// [ns] if > 0, the cost of a step is this value times the number of its evaluations, not its measured time
+  /// [ns] for tests, in which accuracy must fall in the same way each time: if > 0, a step costs this time for each
+  /// evaluation of the surface (hsp_contact.iterations), and not its measured time
   double evaluation_ns = 0;
   /// for old recordings: torques are not bounded, nor is the step after a parameter was set
   bool former_claims = false;

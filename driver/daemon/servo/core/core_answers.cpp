@@ -59,8 +59,8 @@ namespace {
 /// [s] a model counts as free after this time; a search runs every 5 ms, less often on a busy machine
 constexpr double kFreeFor = 0.05;
 
-/// Keeps the largest jump of force so far, as the max_jump that the plugin would have to report so that this jump is
-/// allowed. The caller adds the time.
+/// Keeps in model.pull the largest jump of force so far, as the max_jump that the plugin would have to claim so that
+/// this jump is allowed. The time of the jump (pull.t) is filled in after the step.
 void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, const hsp_contact& out) noexcept HSP_RT {
   const double size = step.force.norm();
   const double felt = step.max_force > 0 && size > step.max_force ? step.max_force / size : 1;

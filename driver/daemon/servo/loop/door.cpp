@@ -70,7 +70,7 @@ void Door::ring(uint32_t& word, uint32_t& waiting, uint64_t tick) noexcept HSP_R
   if (flag.load() == 0) return;
   flag.store(0);
   const NotRealTime the_one_call;                                       // this system call never blocks
-  if (os::wakeWaiting(&word, kMostWoken) == kMostWoken) flag.store(1);  // more may wait: the next tick wakes them
+  if (os::wakeWaiting(&word, kMostWoken) == kMostWoken) flag.store(1);  // the next tick wakes the others
 }
 
 }  // namespace hapticd::servo

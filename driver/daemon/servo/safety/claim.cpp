@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Returns the part of the force `of` from which a change to `to` is counted. A force may always shrink, so shrinking
-/// is no change.
+/// Returns the point between zero and the force `of` that is nearest to the force `to`. The change of the force is
+/// counted from this point, because a force may always shrink.
 Vector3d nearestPart(const Vector3d& of, const Vector3d& to) noexcept HSP_RT {
   const double square = of.squaredNorm();
   if (!(square > 0)) return Vector3d::Zero();

@@ -39,7 +39,8 @@ bool limitSlew(Vector3d& v, const Vector3d& slow, double most) noexcept HSP_RT {
   return !cap(v, asked);
 }
 
-/// Moves `slow` toward the last force. `slow` is never farther behind than the rest of the window allows.
+/// Moves `slow` toward the last force by `slew` [N/s]. It never stays farther behind than the slew covers in the rest
+/// of the window.
 void follow(Vector3d& slow, const Vector3d& last, double slew, double dt) noexcept HSP_RT {
   const Vector3d behind = slow - last;
   const double size = behind.norm(), rest = slew * std::max(0.0, Limiter::kSlewWindow - dt);

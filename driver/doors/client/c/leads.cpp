@@ -30,7 +30,7 @@ hapticd_lead* leadOf(hapticd_client* client, const char* what, const char* name,
   const std::string begin = requestOf("lead", what, name), end = requestOf("unlead", what, name);
   Answer answer;
   if (!client->ask(begin, answer, told)) {
-    if (std::strcmp(told->code, "timeout") == 0) client->leave(end);  // the lead may have begun, so it is ended
+    if (std::strcmp(told->code, "timeout") == 0) client->leave(end);  // ends the lead, because it may have begun
     return nullptr;
   }
   hapticd::client::Mapping memory(answer.descriptor.get(), HAPTICD_LEAD_BYTES, PROT_READ | PROT_WRITE);

@@ -111,7 +111,7 @@ int hapticd_next_state(hapticd_client* client, int device, uint64_t after, int t
   const auto there = [&] { return newest(at, *state) && (after == UINT64_MAX || state->tick > after); };
   const int64_t before = client->listen_ns.load(std::memory_order_relaxed), period = client->rows.period();
   const long end = nowMs() + timeout_ms;
-  if (after == UINT64_MAX && client->ended()) return -1;  // there will be no new state
+  if (after == UINT64_MAX && client->ended()) return -1;  // the daemon has ended, so no new state will come
   if (there()) return 1;
   if (before > 0 && after != UINT64_MAX && timeout_ms * kNsPerMs > 2 * period &&
       listen(at, period, before, after, *state))

@@ -32,7 +32,7 @@ TEST(Slip, NamesTheBracketOrTheQuoteThatIsOpen) {
 
 TEST(Slip, SaysWhatWasMeantInPlainWords) {
   const char* const cases[][2] = {
-      {"a: 1\n// b\nc: 2\n", "2:1: not YAML: //, expected # before a comment"},
+      {"a: 1\n// b\nc: 2\n", "2:1: not YAML: // begins no comment, expected #"},
       {"a:\n  -b: 1\n   c: 2\n", "2:4: not YAML: no blank after the dash, expected \"- b: ...\""},
       {"a: @b\n", "1:4: not YAML: a text cannot begin with @, expected it in quotes"},
       {"a: *b\n", "a text that begins with * stands for one marked with &"},

@@ -23,11 +23,11 @@ struct Wall {
   int n, delay;
   double period;
 
-  /// At one frequency, left(): the damping b that the wall's damping leaves for stiffness; share(): how much of it each
-  /// N/m needs.
+  /// Returns, at one frequency, the part of the damping b [N s/m] that the wall's damping leaves for its stiffness.
   double left(double theta) const noexcept {
     return b - damping / (2 * n) * (dirichlet(delay, theta) - dirichlet(delay + n, theta));
   }
+  /// Returns, at one frequency, how much of this damping each N/m of stiffness needs [s].
   double share(double theta) const noexcept { return period / 2 * dirichlet(delay, theta); }
   double bound(double theta) const noexcept { return left(theta) / share(theta); }
 };

@@ -16,8 +16,8 @@ import hapticd
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("model", help="name of the model")
 parser.add_argument("--name", default="hapticd", help="name of the daemon")
-parser.add_argument("--travel", type=float, default=0.02, help="m")
-parser.add_argument("--seconds", type=float, default=10)
+parser.add_argument("--travel", type=float, default=0.02, help="how far the model moves up and down [m]")
+parser.add_argument("--seconds", type=float, default=10, help="duration of the motion [s]")
 options = parser.parse_args()
 
 with hapticd.connect(options.name) as h:

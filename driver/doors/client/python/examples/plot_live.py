@@ -11,11 +11,12 @@ import argparse
 import hapticd
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("columns", nargs="*", default=["arm0_sent_fx", "arm0_sent_fy", "arm0_sent_fz"])
+parser.add_argument("columns", nargs="*", default=["arm0_sent_fx", "arm0_sent_fy", "arm0_sent_fz"],
+                    help="columns of the ticks to draw; default: the force that is sent to the first arm")
 parser.add_argument("--name", default="hapticd", help="name of the daemon")
-parser.add_argument("--window", type=float, default=5, help="seconds that are shown")
+parser.add_argument("--window", type=float, default=5, help="time that is shown [s]")
 parser.add_argument("--save", metavar="FILE", help="write one picture instead of opening a window")
-parser.add_argument("--list", action="store_true", help="print the columns")
+parser.add_argument("--list", action="store_true", help="print the columns of the ticks, with unit and meaning")
 options = parser.parse_args()
 
 with hapticd.connect(options.name) as h:

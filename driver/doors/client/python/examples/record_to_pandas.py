@@ -18,8 +18,8 @@ import hapticd
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("--name", default="hapticd", help="name of the daemon")
-parser.add_argument("--seconds", type=float, default=2)
-parser.add_argument("--csv", metavar="FILE", help="write the frame")
+parser.add_argument("--seconds", type=float, default=2, help="how much of the run is taken [s]")
+parser.add_argument("--csv", metavar="FILE", help="write all ticks to this CSV file")
 options = parser.parse_args()
 
 with hapticd.connect(options.name) as h:

@@ -15,8 +15,8 @@ import hapticd
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("--name", default="hapticd", help="name of the daemon")
-parser.add_argument("--stiffness", type=float, default=200, help="N/m")
-parser.add_argument("--damping", type=float, default=1, help="N s/m")
+parser.add_argument("--stiffness", type=float, default=200, help="stiffness of the spring [N/m]")
+parser.add_argument("--damping", type=float, default=1, help="damping of the spring [N s/m]")
 parser.add_argument("--seconds", type=float, default=10)
 options = parser.parse_args()
 

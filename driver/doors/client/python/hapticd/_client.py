@@ -15,7 +15,7 @@ import warnings
 from collections import deque
 from typing import Any, Callable, Iterator, Optional, Sequence
 
-from ._error import HapticdError, Named, NoForceWarning, Refused
+from ._error import HapticdError, Named, NoForceWarning, Refused, meant
 from ._lead import ForceLead, PoseLead
 from ._models import Model
 from ._push import ForceThread
@@ -59,6 +59,13 @@ def runtime_folder(name: str) -> str:
                        "  fix: start one with hapticd run, or name it: hapticd.connect(NAME)")
 
 
+def _plain(value: Any) -> Any:
+    """Converts numbers and arrays of numpy, which the module json does not know."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"a request has only texts, numbers, lists of numbers, True and False, got {value!r} ({type(value).__name__})")
+
+
 class _Line:
     """A socket with lines of JSON, and with the descriptors that come with them."""
 
@@ -76,9 +83,9 @@ class _Line:
 
     def say(self, request: dict[str, Any]) -> None:
         try:
-            line = json.dumps(request, allow_nan=False)
+            line = json.dumps(request, allow_nan=False, default=_plain)
         except ValueError:
-            raise ValueError(f"a number of the request is not finite: {request}") from None
+            raise ValueError(f"a number of the request is not finite, expected finite numbers: {request}") from None
         try:
             self._socket.sendall(line.encode() + b"\n")
         except OSError as error:
@@ -133,7 +140,7 @@ class _Line:
     def descriptor(self) -> int:
         """Returns the descriptor that came with the last line."""
         if not self._descriptors:
-            raise HapticdError("the daemon sent no memory with its answer")
+            raise HapticdError("the daemon sent no shared memory with its answer; it may be of another version\n  fix: restart the daemon")
         return self._descriptors.pop(0)
 
     def _forget(self) -> None:
@@ -186,6 +193,8 @@ class Client:
     """A connection to a running daemon. Its leads end with it. Only one thread at a time may use it."""
 
     def __init__(self, name: str = "hapticd", folder: Optional[str] = None, timeout: float = 10) -> None:
+        if not isinstance(name, str):
+            raise TypeError(f"connect() expects the name of a daemon (hapticd run --name NAME), got {name!r}")
         self.name, self.timeout = name, timeout
         self._folder = folder or runtime_folder(name)
         self._base = os.path.join(self._folder, name)
@@ -293,7 +302,7 @@ class Client:
         while True:
             answer = self._line.hear(self.timeout)
             if answer is None:
-                raise HapticdError(f"the daemon did not answer within {self.timeout:g} s")
+                raise HapticdError(f"the daemon did not answer within {self.timeout:g} s; it may hang\n  fix: hapticd ctl status, or connect with a longer timeout")
             if answer.get("id") != self._asked:
                 continue  # an answer that came too late, after its request had timed out
             if not answer.get("ok"):
@@ -353,12 +362,13 @@ class Client:
 
     def lead_force(self, device: str) -> ForceLead:
         """Pushes on the hand of an arm, tick by tick; `push` does it in a thread. The scene must allow it (`clients`).
-        Warns (NoForceWarning) if the arm gets no force now."""
+        Warns (NoForceWarning) if the arm gets no force now, and once if a force is larger than the scene allows."""
         target = {"force": device}
         answer = self._begin(target)
         if answer.get("no_force"):
             warnings.warn(answer["no_force"], NoForceWarning, stacklevel=2)
-        return ForceLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target), self._lost_lead)
+        return ForceLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target), self._lost_lead,
+                         answer.get("max_force", math.inf))
 
     def _lost_lead(self) -> str:
         """Returns why the leads of this connection have no effect any more, or "" if they have."""
@@ -401,7 +411,7 @@ class Client:
         end, seen = time.monotonic() + self.timeout, 0
         while (state := self._states.read(self._arm(device))) is None:
             if time.monotonic() > end:
-                raise HapticdError("the daemon reports no tick; it may have ended")
+                raise HapticdError(f"the daemon reported no tick within {self.timeout:g} s; it may have ended")
             seen = self._ring().wait("state", seen, 0.1)
         return state
 
@@ -416,7 +426,7 @@ class Client:
     def _arm(self, device: str) -> int:
         names = [d["name"] for d in self.about["devices"]]
         if device not in names:
-            raise Refused(f"there is no device {device!r}, expected one of {names}", "unknown")
+            raise Refused(f"there is no device {device!r}, expected one of: {', '.join(names)}{meant(device, names)}", "unknown")
         return names.index(device)
 
     @property

@@ -2,6 +2,8 @@
 """The exceptions and warnings of this package."""
 from __future__ import annotations
 
+from typing import Iterable
+
 
 class HapticdError(Exception):
     """There is no daemon, it has ended, or its answer cannot be understood."""
@@ -19,6 +21,13 @@ class NoForceWarning(UserWarning):
     """A program pushes on an arm that gets no force: a fault is latched, or somebody holds it. The text says what to do."""
 
 
+def meant(name: object, known: Iterable[object]) -> str:
+    """Returns ' (did you mean "stiffness"?)', or "" if no known name is similar."""
+    import difflib  # only after a mistake, because the import takes time
+    similar = difflib.get_close_matches(str(name), [str(one) for one in known], 1)
+    return f' (did you mean "{similar[0]}"?)' if similar else ""
+
+
 class Named(dict):  # type: ignore[type-arg]
     """A dictionary whose error for an unknown name lists the known names."""
 
@@ -27,4 +36,5 @@ class Named(dict):  # type: ignore[type-arg]
         self._what = what
 
     def __missing__(self, name: object) -> None:
-        raise KeyError(f"there is no {self._what} {name!r}; expected one of: {', '.join(map(str, self)) or 'there are none'}")
+        known = f"expected one of: {', '.join(map(str, self))}{meant(name, self)}" if self else "nor any other"
+        raise KeyError(f"there is no {self._what} {name!r}, {known}")

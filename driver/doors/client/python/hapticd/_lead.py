@@ -7,6 +7,7 @@ import mmap
 import os
 import struct
 import time
+import warnings
 from typing import Any, Callable, Optional, Sequence
 
 from ._error import HapticdError
@@ -18,6 +19,7 @@ _COUNT = struct.Struct("<Q")
 
 _UNIT = 1e-3  # largest error of a quaternion's length, as in the daemon
 _FAR = 10.0  # m: largest coordinate of a position, as in the daemon
+_ROUNDING = 1e-3  # tolerance for a program that limits its force to max_force by itself
 _LARGEST = 1e6  # N and N m: largest number of a force or torque, as in the daemon
 
 
@@ -74,7 +76,7 @@ class Lead(Ending):
 
     def _put(self, record: bytes) -> None:
         if self._slot is None:
-            raise ValueError("the lead has ended")
+            raise ValueError("this lead has ended, so nothing can be put into it; begin a new lead")
         if why := self._lost():
             raise HapticdError(why)
         self._slot.put(record)
@@ -105,9 +107,10 @@ class PoseLead(Lead):
         stamp = time.monotonic() if when is None else when
         try:
             record = _TARGET.pack(*position, *orientation, *linear, *angular, stamp)
-        except struct.error:
-            raise ValueError(f"expected position, linear and angular of 3 numbers and orientation of 4, got "
-                             f"{list(position)}, {list(linear)}, {list(angular)} and {list(orientation)}") from None
+        except (struct.error, TypeError) as error:
+            raise (TypeError if isinstance(error, TypeError) else ValueError)(
+                "put() expects position [x, y, z] in m, orientation [w, x, y, z], linear [x, y, z] in m/s, angular [x, y, z] in "
+                f"rad/s and when in s, got {position!r}, {orientation!r}, {linear!r}, {angular!r} and {when!r}") from None
         _finite("the target", *position, *orientation, *linear, *angular, stamp)
         if max(map(abs, position)) > _FAR:
             raise ValueError(f"the position {list(position)} is farther than {_FAR:g} m from the world's origin; the daemon would "
@@ -124,19 +127,31 @@ class PoseLead(Lead):
 class ForceLead(Lead):
     """A force on the hand of an arm. 3 ms after the last answer the force ramps out; after 20 ms it is zero."""
 
+    def __init__(self, fd: int, size: int, unlead: Callable[[], Any], lost: Callable[[], str] = lambda: "",
+                 max_force: float = math.inf) -> None:
+        super().__init__(fd, size, unlead, lost)
+        self.max_force = max_force  #: N: largest force that the scene and the device allow this program
+        self._warned = False
+
     def put(self, tick: int, force: Sequence[float], torque: Sequence[float] = (0.0, 0.0, 0.0),
             woke_ns: int = 0) -> None:
         """Answers a tick (the `tick` of the newest state) with a force [N] and a torque [N m] on the hand, world frame.
-        `woke_ns` is time.monotonic_ns() when the program learnt of that tick, for the recording."""
+        `woke_ns` is time.monotonic_ns() when the program learnt of that tick, for the recording. Warns once if the force is
+        larger than `max_force`: the daemon makes it smaller."""
         try:
             record = _PUSH.pack(tick, *force, *torque, woke_ns, time.monotonic_ns())
-        except struct.error:
-            raise ValueError(f"expected a tick from 0 on, force and torque of 3 numbers, got {tick}, {list(force)} and "
-                             f"{list(torque)}") from None
+        except (struct.error, TypeError) as error:
+            raise (TypeError if isinstance(error, TypeError) else ValueError)(
+                "put() expects the number of a tick from 0 on, force [x, y, z] in N and torque [x, y, z] in N m, got "
+                f"{tick!r}, {force!r} and {torque!r}") from None
         _finite("the force or torque", *force, *torque)
         if max(map(abs, (*force, *torque))) > _LARGEST:
             raise ValueError(f"{list(force)} N and {list(torque)} N m: a number is beyond {_LARGEST:g}; the daemon would refuse "
                              f"it; the force must be in N")
+        if not self._warned and math.hypot(*force) > self.max_force * (1 + _ROUNDING):
+            self._warned = True
+            warnings.warn(f"a force of {math.hypot(*force):.3g} N was asked for, but the arm gets {self.max_force:.3g} N at most "
+                          "(clients.max_force in the scene, or the limit of the device)", stacklevel=2)
         self._put(record)
 
     def __enter__(self) -> "ForceLead":

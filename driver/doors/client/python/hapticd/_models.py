@@ -66,6 +66,8 @@ class Model:
 
     def move(self, position: Sequence[float], seconds: Optional[float] = None) -> float:
         """Sends a kinematic model to a position [m]. Returns how many seconds the motion takes."""
+        if not hasattr(position, "__len__"):
+            raise TypeError(f"move() expects a position [x, y, z] in m, got {position!r}")
         request: dict[str, Any] = {"do": "move", "model": self.name, "position": list(position)}
         if seconds is not None:
             request["seconds"] = seconds

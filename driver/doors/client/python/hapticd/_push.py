@@ -33,7 +33,8 @@ class ForceThread(Ending):
 
     def __init__(self, client: "Client", device: str, callback: Callable[[State], Optional[Force]], priority: int) -> None:
         if not callable(callback):
-            raise TypeError(f"push() expects a function of one argument, the state of the arm, got {callback!r}")
+            raise TypeError("push() expects a function that takes the state of the arm and returns its force, [x, y, z] in N, got "
+                            f"{callback!r}")
         self._lead: ForceLead = client.lead_force(device)
         self._page: StatePage = client._state_page()
         self._bell: Bell = client._bell()
@@ -116,9 +117,9 @@ class ForceThread(Ending):
                 self.unanswered += 1
                 continue
             if not hasattr(force, "__len__"):
-                raise ValueError(f"the callback returned {force!r}, expected 3 numbers (force in N, [x, y, z]) or 6 (and torque in N m)")
+                raise ValueError(f"the callback returned {force!r}, expected 3 numbers ([x, y, z], the force in N) or 6 (and the torque in N m)")
             if len(force) not in (3, 6):
-                raise ValueError(f"the callback returned {len(force)} numbers, expected 3 (force in N) or 6 (and torque in N m)")
+                raise ValueError(f"the callback returned {len(force)} numbers, expected 3 (the force in N) or 6 (and the torque in N m)")
             self._lead.put(state.tick, force[:3], force[3:] if len(force) == 6 else (0.0, 0.0, 0.0), woke)
             self.answers += 1
             self.late += time.monotonic_ns() - woke > _TOO_OLD

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import mmap
+import operator
 import os
 import struct
 from dataclasses import dataclass
@@ -23,6 +24,13 @@ _BLOCK = struct.Struct("<IIQ")
 _BLOCK_MAGIC = 0x4B4C4248
 _INDEX_NODE = 0xFFFFFFFF
 _CODES = {"f8": "d", "f4": "f", "u8": "Q", "u4": "I", "i4": "i"}
+
+
+def _whole(name: str, value: Any) -> int:
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name}={value!r}: expected a whole number of rows, 0 or more") from None
 
 
 @dataclass(frozen=True)
@@ -79,6 +87,7 @@ class Stream:
     def read(self, first: int, most: Optional[int] = None) -> tuple[int, Any]:
         """Returns rows from number `first` on, at most `most`. Rows that are no longer kept are left out, so the
         result is the number of the first returned row, and the rows. It never waits."""
+        first, most = _whole("first", first), None if most is None else _whole("most", most)
         if first < 0 or (most is not None and most < 0):
             raise ValueError(f"rows are counted from 0: read({first}, {most}); the newest n are last(n)")
         while True:
@@ -91,7 +100,7 @@ class Stream:
 
     def last(self, count: int) -> Any:
         """Returns the newest rows, oldest first."""
-        if count < 0:
+        if (count := _whole("last", count)) < 0:
             raise ValueError(f"last={count}: expected how many of the newest rows, 0 or more")
         return self.read(max(self.written - count, 0))[1]
 
@@ -122,11 +131,11 @@ class BlackBox:
         try:
             self._memory = mmap.mmap(fd, 0, prot=mmap.PROT_READ)
         except (OSError, ValueError) as error:
-            raise HapticdError(f"{file}: cannot be mapped: {error}") from None
+            raise HapticdError(f"{file}: the black box cannot be mapped into memory: {error}") from None
         finally:
             os.close(fd)
         if len(self._memory) < 4096:
-            raise HapticdError(f"{file}: is too short for a black box")
+            raise HapticdError(f"{file}: the file is too short for a black box; the daemon may still be starting")
         magic, count, ring, _, _, about_at, about_bytes, blocks_at = _HEADER.unpack_from(self._memory, _HEADER_AT)
         if not magic.startswith(b"hapticd-recording/1") or not ring:
             raise HapticdError(f"{file}: is not a black box that this version of the package can read")
@@ -151,7 +160,7 @@ class BlackBox:
                 places[stream] = at
             at += size
         if len(places) < count:
-            raise HapticdError("the black box is damaged: it lacks rows of a stream")
+            raise HapticdError("the black box is damaged: it lacks the rows of a stream")
         return places
 
     def close(self) -> None:

@@ -79,8 +79,9 @@ TEST(Mechanism, AllThatIsWrongIsToldAtOnce) {
   chain.masses = {1};
   chain.base_orientation = {0.7, 0.7, 0.7, 0};
   const std::string said = refusalOf(chain);
-  for (const char* expected : {"arm.base_orientation: norm", "arm.limits: 2 rows, expected 3", "arm.limits[1]: 1 to -1",
-                               "arm.masses: 1 number, expected 3"})
+  for (const char* expected :
+       {"arm.base_orientation: the quaternion has length 1.2124", "arm.limits: 2 rows, expected 3",
+        "arm.limits[1]: [1, -1], expected the smaller number first", "arm.masses: 1 number, expected 3"})
     EXPECT_NE(said.find(expected), std::string::npos) << expected << " in " << said;
   EXPECT_EQ(jointsOf(chain), 3u);
   MechanismParameters phantom = woodenHaptics();

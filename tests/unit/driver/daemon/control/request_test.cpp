@@ -29,20 +29,24 @@ TEST(Request, TakesWhatTheManualSays) {
 TEST(Request, SaysWhatIsWrongAndWhatWasExpected) {
   const std::pair<const char*, const char*> wrong[] = {
       {"", "JSON object"},
-      {"[]", "JSON object"},
+      {"[]", "the line is an array: expected one JSON object"},
+      {"null", "the line is null: expected"},
       {"{", "JSON object"},
       {R"({"do":"dance"})", "expected one of status"},
       {R"({"do":1})", "expected one of"},
-      {R"({"do":"enable"})", "\"model\" is missing"},
-      {R"({"do":"enable","model":""})", "text of 1"},
-      {R"({"do":"enable","model":3})", "text of 1"},
+      {R"({"do":"enable"})", "\"model\" is missing in \"enable\", expected the name of a model"},
+      {R"({"do":"move","model":"a"})", "\"position\" is missing in \"move\", expected a list of 3 numbers [x, y, z]"},
+      {R"({"do":"enable","model":""})", "expected the name of a model, 1 to 4096 bytes of text"},
+      {R"({"do":"enable","model":3})", "expected the name of a model, 1 to 4096 bytes of text, got 3"},
       {R"({"do":"enable","model":"a\u0000b"})", "zero bytes"},
-      {R"({"do":"status","modle":"a"})", "not part of"},
-      {R"({"do":"set","model":"a","parameter":"k","value":"1"})", "\"value\": expected a number"},
+      {R"({"do":"status","modle":"a"})", "\"modle\" is not a key of \"status\", expected no other key"},
+      {R"({"do":"set","model":"a","parameter":"k","value":"1"})", "\"value\": expected a number without quotes"},
+      {R"({"do":"set","model":"a","parameter":"k","value":null})", "or a word in quotes such as \"true\", got null"},
       {R"({"do":"set","model":"a","parameter":"k","value":1e999})", "JSON object"},
       {R"({"do":"set","model":"a","parameter":"k","value":1,"consent":1})", "true or false"},
-      {R"({"do":"move","model":"a","position":[1,2]})", "list of 3"},
-      {R"({"do":"move","model":"a","position":[1,2,11]})", "within 10"},
+      {R"({"do":"move","model":"a","position":[1,2]})",
+       "a list of 3 numbers [x, y, z] from -10 to 10 m, world frame, got [1,2]"},
+      {R"({"do":"move","model":"a","position":[1,2,11]})", "from -10 to 10 m"},
       {R"({"do":"move","model":"a","position":[1,2,null]})", "list of 3"},
       {R"({"do":"move","model":"a","position":[0,0,0],"orientation":[1,1,0,0]})", "unit quaternion"},
       {R"({"do":"move","model":"a","position":[0,0,0],"seconds":0})", "from 0.05"},
@@ -52,16 +56,17 @@ TEST(Request, SaysWhatIsWrongAndWhatWasExpected) {
       {R"({"do":"vertices"})", "\"model\" is missing"},
       {R"({"do":"feature","model":"a"})", "\"number\" is missing"},
       {R"({"do":"feature","model":"a","number":-1})",
-       "\"number\": expected a whole number from 0 to 4294967295, got -1"},
-      {R"({"do":"feature","model":"a","number":5e9})", "\"number\": expected a whole number"},
-      {R"({"do":"feature","model":"a","number":1.5})", "\"number\": expected a whole number"},
+       "\"number\": expected the number of a surface or feature, a whole number from 0 to 4294967295, got -1"},
+      {R"({"do":"feature","model":"a","number":5e9})", "a whole number from 0"},
+      {R"({"do":"feature","model":"a","number":1.5})", "a whole number from 0"},
       {R"({"do":"vertices","model":"a","after":-1})", "\"after\": expected a whole number"},
       {R"({"do":"vertices","model":"a","after":0.5})", "\"after\": expected a whole number"},
-      {R"({"do": status})", "column 8 is not valid JSON"},
+      {R"({"do": status})", "the line is not valid JSON at byte 8"},
       {R"({"do":"dsable","model":"a"})", "got \"dsable\" (did you mean \"disable\"?)"},
-      {R"({"do":"enable","modle":"a"})", "expected model (did you mean \"model\"?)"},
+      {R"({"do":"enable","modle":"a"})",
+       "\"modle\" is not a key of \"enable\" (did you mean \"model\"?), expected the keys model"},
       {R"({"do":"move","model":"a","position":[1,2,11],"seconds":1000})",
-       "within 10 m of 0, got [1,2,11]; \"seconds\": expected a number from 0.05 to 600 s, got 1000"},
+       "got [1,2,11]; \"seconds\": expected a number from 0.05 to 600 s, got 1000"},
       {R"({"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":1}}}}}}}}}})", "JSON object"}};
   for (const auto& [line, part] : wrong) {
     const auto request = parseRequest(line);
@@ -83,7 +88,17 @@ TEST(Request, RefusesMoreThanItReads) {
   const std::string deep(40000, '[');
   EXPECT_FALSE(parseRequest(deep));
   const std::string large = R"({"do":"enable","model":")" + std::string(kMaxRequestBytes, 'x') + "\"}";
-  EXPECT_NE(parseRequest(large).error().find("longer than"), std::string::npos);
+  EXPECT_NE(parseRequest(large).error().find("expected at most 65536"), std::string::npos);
+}
+
+/// The answer names a few of the wrong keys only: its size must not grow with the request.
+TEST(Request, NamesAFewOfManyWrongKeys) {
+  std::string line = R"({"do":"status")";
+  for (int i = 0; i < 4000; ++i) line += ",\"k" + std::to_string(i) + "\":0";
+  const auto request = parseRequest(line + "}");
+  ASSERT_FALSE(request);
+  EXPECT_LT(request.error().size(), 400u);
+  EXPECT_NE(request.error().find("3995 others"), std::string::npos) << request.error();
 }
 
 }  // namespace

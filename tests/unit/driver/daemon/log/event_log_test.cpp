@@ -78,12 +78,12 @@ TEST_F(EventWords, OfAHoldAndOfItsEndMatch) {
   event.kind = HAPTICD_FAULT;
   event.model = -1;
   event.code = static_cast<uint32_t>(Fault::kStopped);
-  EXPECT_NE(log_.messageOf(event).text.find("it is held"), std::string::npos) << log_.messageOf(event).text;
+  EXPECT_NE(log_.messageOf(event).text.find("the arm is held"), std::string::npos) << log_.messageOf(event).text;
   log_.note(event);
-  EXPECT_EQ(of(HAPTICD_CLEARED).text, "the hold is over; its forces come back");
+  EXPECT_EQ(of(HAPTICD_CLEARED).text, "the hold is over; the forces come back");
   event.kind = HAPTICD_CLEARED;
   log_.note(event);
-  EXPECT_EQ(of(HAPTICD_CLEARED).text, "the fault is over; its forces come back");
+  EXPECT_EQ(of(HAPTICD_CLEARED).text, "the fault is over; the forces come back");
 }
 
 /// Texts of one look at the programs on an arm.
@@ -114,7 +114,8 @@ TEST(PusherWords, TellWhoAskedFallsSilentAndDies) {
   EXPECT_NE(update(log, forces, 0).find("(spring) asked for 100 N and gets 4 N at most"), std::string::npos);
   tick(std::numeric_limits<double>::quiet_NaN());
   tick(2e6);
-  EXPECT_EQ(update(log, forces, 0), "2 answers of process 4711 (spring) were refused so far: a number is beyond 1e6\n");
+  EXPECT_EQ(update(log, forces, 0),
+            "2 answers of process 4711 (spring) were refused so far: a force or torque is beyond 1e6 N or N m\n");
   tick(3);
   for (int i = 0; i < 300; ++i) forces.collect(now++, kTick);
   EXPECT_EQ(update(log, forces, 1),

@@ -29,8 +29,7 @@ void runWatched(int how, const fs::path& dir) {
   WatchedServo watched(*rig.loop, rig.arms, *rig.telemetry);
   watch::guardAgainstCrash(watched, dir);
   const WorkerScope working(Worker::kServo);
-  watch::Watchdog watchdog(watched,
-                           [&watched] { watch::endByFault("a step that did not come back", watched.inServo()); });
+  watch::Watchdog watchdog(watched, [&watched] { watch::endByFault("a step that did not return", watched.inServo()); });
   if (watchdog.start(81)) _exit(3);
   os::prepareSignalStack();
   rig.loop->run();
@@ -60,7 +59,7 @@ TEST(HangDeathTest, APluginThatNeverComesBackIsEndedByTheWatchdog) {
   const fs::path dir = fs::temp_directory_path() / "hapticd-crash-hang";
   fs::remove_all(dir);
   fs::create_directories(dir);
-  EXPECT_EXIT(runWatched(4, dir), testing::ExitedWithCode(1), "did not come back");
+  EXPECT_EXIT(runWatched(4, dir), testing::ExitedWithCode(1), "did not return");
   ASSERT_EQ(watch::quarantined(dir).size(), 1u);
   EXPECT_EQ(watch::quarantined(dir)[0].plugin, "deadly");
   fs::remove_all(dir);

@@ -49,7 +49,7 @@ TEST(CrashDeathTest, ACutThatNeverComesBackIsEndedByTheNextThreadThatMissesTheSe
     guardAgainstCrash(servo, "");
     std::thread servo_thread([] { std::raise(SIGFPE); });
     usleep(100'000);
-    endByFault("a step that did not come back", nullptr);
+    endByFault("a step that did not return", nullptr);
   };
   EXPECT_EXIT(crash(), testing::ExitedWithCode(1), "");
 }
