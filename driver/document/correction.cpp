@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -47,6 +48,12 @@ std::string rounded(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.7g", value);
   return text;
+}
+
+/// Returns the number as text without the rounding error of a product in its last digits.
+std::string withoutError(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 10).ptr};
 }
 
 std::string_view withoutBlanks(std::string_view text) {
@@ -141,6 +148,38 @@ std::string suggestNumber(std::string_view given, std::string_view unit) {
   if (decimal && rest.find(',') != rest.npos) return "";
   return (decimal ? "; write decimals with a point" : "") +
          suggestUnit(toNumber(number).value_or(0), number + " " + std::string(rest), rest, unit);
+}
+
+OtherUnit suggestOtherUnit(double value, std::pair<double, double> allowed, std::string_view unit) {
+  struct UnitSlip {
+    const char *unit, *meant;
+    double factor;
+    double least;  ///< smallest number that people write in this unit
+  };
+  static constexpr UnitSlip kSlips[] = {{"m", "mm", 1e-3, 0.1},     {"rad", "degrees", M_PI / 180, 0.1},
+                                        {"s", "ms", 1e-3, 0.02},    {"s", "us", 1e-6, 1},
+                                        {"kg", "g", 1e-3, 0.1},     {"N", "mN", 1e-3, 1},
+                                        {"N m", "N mm", 1e-3, 0.1}, {"Hz", "kHz", 1e3, 0.1}};
+  for (const UnitSlip& slip : kSlips)
+    if (const double meant = value * slip.factor;
+        unit == slip.unit && std::abs(value) >= slip.least && meant >= allowed.first && meant <= allowed.second)
+      return {"; " + numberText(value) + " " + slip.meant + " is " + withoutError(meant) + " " + slip.unit, meant};
+  return {};
+}
+
+std::string suggestDecimals(const Node& list, size_t least) {
+  size_t commas = 0;
+  std::string first;
+  const auto isWhole = [](const Node& item) {
+    return item.isScalar() && !item.scalar.empty() && std::all_of(item.scalar.begin(), item.scalar.end(), isDigit);
+  };
+  for (size_t i = 0; i + 1 < list.items.size(); ++i) {
+    if (list.items[i].scalar != "0" || !isWhole(list.items[i + 1]) || toNumber(list.items[i + 1].scalar) == 0) continue;
+    if (first.empty()) first = list.items[i + 1].scalar;
+    ++commas, ++i;
+  }
+  if (commas < least || first.empty()) return "";
+  return "; a comma separates two numbers: write 0." + first + ", not 0," + first;
 }
 
 std::string suggestList(const Node& node, size_t count) {

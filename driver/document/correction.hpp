@@ -3,6 +3,7 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "document/node.hpp"
 
@@ -12,6 +13,20 @@ namespace hapticd::document {
 /// be guessed. It recognises decimal commas, units, quotes, blanks or signs between digits, and formulas.
 /// @param unit the expected unit; "" if it is unknown
 std::string suggestNumber(std::string_view text, std::string_view unit = "");
+
+/// A number that is out of its range because it is in another unit.
+struct OtherUnit {
+  std::string advice;  ///< such as "; 5 ms is 0.005 s"; "" if no unit is likely
+  double meant = 0;    ///< the number in the expected unit
+};
+
+/// [any] Guesses that a number beyond its range is in millimetres, degrees, milliseconds, kilohertz or the like: the
+/// number in the right unit is then in the range, and was a likely number to write.
+OtherUnit suggestOtherUnit(double value, std::pair<double, double> allowed, std::string_view unit);
+
+/// [any] Returns advice such as "; a comma separates two numbers: write 0.2, not 0,2" for a list with at least this
+/// many zeros that are followed by whole numbers, or "".
+std::string suggestDecimals(const Node& list, size_t least);
 
 /// [any] Returns advice such as "; write [0, 0, 0.1]" for a node in the place of a list of numbers, or "".
 std::string suggestList(const Node& node, size_t count);

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <unordered_set>
 
 namespace hapticd::document {
 namespace {
@@ -51,6 +52,7 @@ void appendScalar(const Node& node, std::string& out) {
 }
 
 void appendJson(const Node& node, std::string& out) {
+  std::unordered_set<std::string_view> first;
   switch (node.kind) {
     case Node::Kind::kNull:
       out += "null";
@@ -67,8 +69,9 @@ void appendJson(const Node& node, std::string& out) {
       out += ']';
       return;
     case Node::Kind::kMap:
-      out += '{';
+      out += '{';  // of a key that is given twice, the first counts, as for find()
       for (size_t i = 0; i < node.entries.size(); ++i) {
+        if (!first.insert(node.entries[i].key.scalar).second) continue;
         if (i > 0) out += ',';
         appendJsonText(node.entries[i].key.scalar, out);
         out += ':';

@@ -52,32 +52,6 @@ bool normalise(Eigen::Quaterniond& q) {
   return true;
 }
 
-/// Returns the number as text without the rounding error of a product in its last digits.
-static std::string shortText(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 10).ptr};
-}
-
-/// Guesses that a number that is out of range is in another unit, such as millimetres, degrees or kHz. Returns advice
-/// if the converted number is in the range, and was a likely number to write, else "".
-static std::string inOtherUnits(double value, const Range& range) {
-  struct UnitSlip {
-    const char *unit, *meant;
-    double factor;
-    double least;  ///< smallest number that people write in this unit
-  };
-  static constexpr UnitSlip kSlips[] = {{"m", "mm", 1e-3, 0.1},     {"rad", "degrees", M_PI / 180, 0.1},
-                                        {"s", "ms", 1e-3, 0.02},    {"s", "us", 1e-6, 1},
-                                        {"kg", "g", 1e-3, 0.1},     {"N", "mN", 1e-3, 1},
-                                        {"N m", "N mm", 1e-3, 0.1}, {"Hz", "kHz", 1e3, 0.1}};
-  for (const UnitSlip& slip : kSlips)
-    if (const double meant = value * slip.factor; std::string_view(range.unit) == slip.unit &&
-                                                  std::abs(value) >= slip.least && meant >= range.min &&
-                                                  meant <= range.max)
-      return "; " + numberText(value) + " " + slip.meant + " is " + shortText(meant) + " " + slip.unit;
-  return "";
-}
-
 std::optional<double> Reader::number(const Node& node, const std::string& key, const Range& range) {
   const std::optional<double> value = node.isScalar() && !node.quoted ? toNumber(node.scalar) : std::nullopt;
   if (!value) {
@@ -89,7 +63,8 @@ std::optional<double> Reader::number(const Node& node, const std::string& key, c
   } else if (*value < range.min || *value > range.max) {
     const std::string unit = range.unit[0] != '\0' ? std::string(" ") + range.unit : "";
     problem(node, key,
-            node.scalar + unit + " is out of range, expected " + expectedOf(range) + inOtherUnits(*value, range));
+            node.scalar + unit + " is out of range, expected " + expectedOf(range) +
+                suggestOtherUnit(*value, {range.min, range.max}, range.unit).advice);
   } else {
     return value;
   }

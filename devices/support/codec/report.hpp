@@ -78,6 +78,7 @@ struct Report {
   std::vector<Field> fields;
   /// true if every field of the file could be read; only then it is certain which roles the report does not have
   bool whole = false;
+  bool placed = false;  ///< true if, moreover, the size of the report and the place of every field are known
   size_t bytes() const noexcept { return size + (id >= 0 ? 1 : 0); }
 };
 

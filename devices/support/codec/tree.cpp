@@ -47,13 +47,22 @@ double suggestHex(const std::string& text, double least, double most) {
 
 }  // namespace
 
+/// A value that is read for a key that a mapping lacks.
+struct Tree::Instead {
+  const void* mapping;
+  std::string key, path;  ///< path of the key that is meant
+  const void* value;      ///< nullptr if nothing is given there
+  std::string written;    ///< path of the value in the file
+};
+
 struct Document::Data {
   Json json;
   std::string name;
   std::vector<std::string> problems;
+  std::vector<Tree::Instead> instead;
 };
 
-Document::Document(const std::string& json, std::string name) : data_(new Data{Json(), std::move(name), {}}) {
+Document::Document(const std::string& json, std::string name) : data_(new Data{Json(), std::move(name), {}, {}}) {
   data_->json = document::parseJson(json);
   if (data_->json.is_discarded()) throw std::invalid_argument(data_->name + ": cannot be read, expected a mapping");
 }
@@ -70,6 +79,25 @@ void Document::check() const {
   if (!all.empty()) throw std::invalid_argument(all);
 }
 
+std::vector<ReadInstead> Document::readInstead() const {
+  std::vector<ReadInstead> all;
+  for (const Tree::Instead& one : data_->instead) all.push_back({one.written, one.path});
+  return all;
+}
+
+const Tree::Instead* Tree::insteadOf(const std::string& key) const {
+  for (const Instead& one : static_cast<Document::Data*>(data_)->instead)
+    if (one.mapping == value_ && one.key == key) return &one;
+  return nullptr;
+}
+
+void Tree::readInstead(const char* key, const Tree& value) const {
+  if (value_ == nullptr || jsonOf(value_).contains(key) || insteadOf(key) != nullptr) return;
+  const bool given = value.value_ != nullptr && !jsonOf(value.value_).is_null();
+  static_cast<Document::Data*>(data_)->instead.push_back(
+      {value_, key, path_ + "." + key, given ? value.value_ : nullptr, value.path_});
+}
+
 void Tree::fail(const std::string& what) const {
   constexpr size_t kMost = 100;
   auto& problems = static_cast<Document::Data*>(data_)->problems;
@@ -83,7 +111,9 @@ size_t Tree::problems() const {
 }
 
 bool Tree::has(const char* key) const {
-  return value_ != nullptr && jsonOf(value_).is_object() && jsonOf(value_).contains(key);
+  if (value_ == nullptr || !jsonOf(value_).is_object()) return false;
+  const Instead* instead = insteadOf(key);
+  return jsonOf(value_).contains(key) || (instead != nullptr && instead->value != nullptr);
 }
 
 bool Tree::isMapping() const {
@@ -95,6 +125,8 @@ bool Tree::isMapping() const {
 
 Tree Tree::at(const char* key) const {
   const std::string path = path_ + "." + key;
+  if (value_ != nullptr)
+    if (const Instead* instead = insteadOf(key)) return {instead->value, instead->written, data_};
   if (has(key)) return {&jsonOf(value_)[key], path, data_};
   if (isMapping()) fail("lacks the key \"" + std::string(key) + "\"");
   return {nullptr, path, data_};
@@ -136,6 +168,8 @@ double Tree::number(double least, double most, const char* unit) const {
     if (!std::isnan(hex)) taken = hex;
     meant = std::isnan(hex) ? document::suggestNumber(text) : "; if it is hexadecimal, write 0x" + text;
   }
+  if (const auto other = document::suggestOtherUnit(value, {least, most}, unit); !other.advice.empty())
+    meant = other.advice, taken = other.meant;
   fail(shown(json) + ", expected " + range + meant);
   return taken;
 }
@@ -187,16 +221,22 @@ std::string Tree::text() const {
   return "";
 }
 
-bool Tree::only(std::span<const char* const> keys) const {
+bool Tree::only(std::span<const char* const> keys, std::span<const char* const> around) const {
   if (!isMapping()) return false;
   bool all_known = true;
+  const std::vector<std::string> names(keys.begin(), keys.end());
   for (const auto& [key, value] : jsonOf(value_).items()) {
-    if (std::any_of(keys.begin(), keys.end(), [&, &name = key](const char* known) { return name == known; })) continue;
-    std::string all;
-    for (const char* name : keys) all += (all.empty() ? "" : ", ") + std::string(name);
-    const std::string meant = document::suggestion(key, {keys.begin(), keys.end()});
-    Tree{&value, path_ + "." + key, data_}.fail("unknown key, expected one of " + all + meant);
+    if (std::find(names.begin(), names.end(), key) != names.end()) continue;
     all_known = false;
+    const Tree unknown{&value, path_ + "." + key, data_};
+    if (std::find(around.begin(), around.end(), key) != around.end()) {
+      unknown.fail("belongs one level up, beside " + path_.substr(path_.rfind('.') + 1) + ", not inside of it");
+      continue;
+    }
+    unknown.fail("unknown key, expected one of " + document::listed(names, names.size()) +
+                 document::suggestion(key, names));
+    const std::string meant = document::nearest(key, names);
+    if (value.is_structured() && !meant.empty()) readInstead(meant.c_str(), unknown);
   }
   return all_known;
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace hapticd::codec {
 
@@ -25,18 +26,29 @@ class Tree {
   uint64_t bits(unsigned width) const;  ///< an exact whole number of up to 64 bits; two's complement if negative
   bool boolean() const;
   std::string text() const;
-  bool only(std::span<const char* const> keys) const;  ///< returns false and notes a problem if there are other keys
-  void fail(const std::string& what) const;            ///< notes the problem "path: what"
+  /// Returns false and notes a problem if there are other keys. A block under a misspelt key is then read as that of
+  /// the nearest key. @param around keys of the mapping around this one, which stand one level too deep here
+  bool only(std::span<const char* const> keys, std::span<const char* const> around = {}) const;
+  /// makes has() and at() take this value for a key that is not given
+  void readInstead(const char* key, const Tree& value) const;
+  void fail(const std::string& what) const;  ///< notes the problem "path: what"
   bool exists() const { return value_ != nullptr; }
   size_t problems() const;  ///< number of problems noted so far in the whole document
 
  private:
   friend class Document;
+  struct Instead;
+  const Instead* insteadOf(const std::string& key) const;
   Tree(const void* value, std::string path, void* data) : value_(value), path_(std::move(path)), data_(data) {}
   bool isMapping() const;
   const void* value_;  // nullptr if the value is missing, which has been noted
   std::string path_;
   void* data_;
+};
+
+/// A block that stands under a misspelt key or one level too deep, and is read as the one that is meant.
+struct ReadInstead {
+  std::string written, meant;  ///< paths, such as "wire.ouput" and "wire.output"
 };
 
 /// Owns the data that a Tree shows.
@@ -50,6 +62,7 @@ class Document {
   Tree root() const;
   /// Throws std::invalid_argument with all problems that were noted, one per line.
   void check() const;
+  std::vector<ReadInstead> readInstead() const;  ///< outer blocks come before the blocks in them
 
  private:
   struct Data;

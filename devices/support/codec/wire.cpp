@@ -15,7 +15,6 @@
 namespace hapticd::codec {
 namespace {
 
-constexpr double kMaxRate = 20000;
 constexpr size_t kMaxSteps = 64;
 
 constexpr Name<Exchange> kExchanges[] = {{"stream", Exchange::kStream}, {"poll", Exchange::kPoll}};
@@ -109,6 +108,8 @@ void readFields(const Tree& fields, size_t joints, bool input, ReadReport& read)
   }
   if (!fields.exists()) return;
   report.whole = std::all_of(read.known.begin(), read.known.end(), [](const FieldFacts& one) { return one.target; });
+  report.placed = read.sized && report.whole &&
+                  std::all_of(read.known.begin(), read.known.end(), [](const FieldFacts& one) { return one.placed; });
   checkOverlaps(fields, report, read.known);
   if (joints == 0) joints = jointsNamed(report, input ? Role::kPosition : Role::kTorque);
   requireEach(fields, read, joints, input ? Role::kPosition : Role::kTorque, input ? "position" : "torque");
@@ -122,7 +123,7 @@ ReadReport readReport(const Tree& tree, size_t joints, bool input) {
   ReadReport read;
   Report& report = read.report;
   if (!tree.exists()) return read;
-  tree.only(kReportKeys);
+  tree.only(kReportKeys, kWireKeys);
   if (tree.has("id")) report.id = static_cast<int>(tree.at("id").whole(1, 255));
   const size_t before = tree.problems();
   report.size = static_cast<size_t>(tree.at("size").whole(1, kMaxReportBytes - 1));
@@ -239,7 +240,7 @@ std::string secondsOf(double time) {
 /// Reads whether the arm sends by itself or answers, and how often.
 void readTimes(const Tree& tree, Wire& wire) {
   if (tree.has("exchange")) wire.exchange = choiceOf(tree.at("exchange"), kExchanges);
-  wire.rate = tree.at("rate").number(50, kMaxRate, "Hz");
+  wire.rate = tree.at("rate").number(kLeastRate, kMostRate, "Hz");
   if (tree.has("keep_alive")) wire.keep_alive = tree.at("keep_alive").number(1e-4, 1, "s");
   if (tree.has("watchdog")) wire.watchdog = tree.at("watchdog").number(0, 10, "s (20 ms is 0.02 s)");
   if (wire.watchdog > 0 && wire.keep_alive > wire.watchdog / 2)
@@ -257,11 +258,19 @@ void readStartup(const Tree& steps, Wire& wire) {
   }
 }
 
+/// Reads a block that stands inside of a report as the one beside it that it is meant to be.
+void readMisplaced(const Tree& tree) {
+  for (const char* side : {"input", "output"})
+    for (const char* key : kWireKeys)
+      if (tree.has(side) && tree.at(side).has(key)) tree.readInstead(key, tree.at(side).at(key));
+}
+
 /// Reads the whole description. What is wrong in it has been noted, and has its default.
 Wire readAll(const Document& document, size_t joints) {
   const Tree tree = document.root();
   Wire wire;
   tree.only(kWireKeys);
+  readMisplaced(tree);
   readTimes(tree, wire);
   bool marks_known = true;
   if (tree.has("framing")) wire.framing = readFraming(tree.at("framing"), marks_known);
@@ -299,6 +308,12 @@ Wire draftOfWire(const std::string& json, size_t joints) {
   Wire wire = readAll(document, joints);
   wire.startup.clear();
   return wire;
+}
+
+std::vector<ReadInstead> misplacedInWire(const std::string& json, size_t joints) {
+  const Document document(json, "wire");
+  (void)readAll(document, joints);
+  return document.readInstead();
 }
 
 }  // namespace hapticd::codec

@@ -9,8 +9,11 @@
 #include <vector>
 
 #include "codec/report.hpp"
+#include "codec/tree.hpp"
 
 namespace hapticd::codec {
+
+constexpr double kLeastRate = 50, kMostRate = 20000;  ///< [Hz] reports a second that an arm may have
 
 /// Whether the arm sends reports by itself.
 enum class Exchange : uint8_t {
@@ -107,5 +110,9 @@ Wire readWire(const std::string& json, size_t joints);
 /// their order. A wrong value becomes its default. Do not use the result for encoding or decoding: its fields may lie
 /// outside of their report, and it has no startup steps. Throws only if the text is not JSON.
 Wire draftOfWire(const std::string& json, size_t joints);
+
+/// [main] Returns the blocks of a wire description that readWire() and draftOfWire() read in the place of others,
+/// because their keys are misspelt or stand one level too deep. Throws only if the text is not JSON.
+std::vector<ReadInstead> misplacedInWire(const std::string& json, size_t joints);
 
 }  // namespace hapticd::codec

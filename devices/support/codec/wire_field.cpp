@@ -126,10 +126,26 @@ void readPlace(const Tree& tree, const Report& report, Field& field) {
   field.bit_skip = static_cast<uint8_t>(static_cast<size_t>(skip) % 8);
 }
 
+/// Notes a problem if the type of a checksum is wider than its method and does not fit into the report, as u61 for u16;
+/// then takes the type of the method, so that the place of the field is judged with it. @return true if it noted this
+/// problem
+bool fitToMethod(const Tree& tree, const Report& report, Field& field) {
+  if (field.role != Role::kChecksum || !tree.has("method") || !tree.has("at") || tree.has("bit_offset")) return false;
+  if (static_cast<size_t>(tree.at("at").whole(0, kMaxReportBytes)) + (field.bits + 7U) / 8 <= report.size) return false;
+  const std::string method = tree.at("method").text();
+  for (const NamedCrc& named : namedCrcs())
+    if (method == named.name && field.bits > named.check.bits) {
+      tree.at("type").fail("\"" + tree.at("type").text() + "\", expected u" + std::to_string(named.check.bits) +
+                           " for " + method);
+      field.bits = named.check.bits;
+      return true;
+    }
+  return false;
+}
+
 /// Reads where the bits of the field are, and the number that they encode. While the type is unknown, every number is
-/// allowed, so that a mistake is noted once. @return false if the type is unknown
-bool readNumber(const Tree& tree, const Report& report, Field& field) {
-  const bool typed = readType(tree.at("type"), field);
+/// allowed, so that a mistake is noted once. @param typed true if the type is known
+void readNumber(const Tree& tree, const Report& report, bool typed, Field& field) {
   readPlace(tree, report, field);
   if (tree.has("endian")) field.big_endian = choiceOf(tree.at("endian"), kOrders);
   std::tie(field.least, field.most) = typed ? rangeOf(field.type, field.bits) : rangeOf(Type::kFloat, 64);
@@ -141,7 +157,6 @@ bool readNumber(const Tree& tree, const Report& report, Field& field) {
     field.bit = static_cast<int8_t>(tree.at("bit").whole(0, bits - 1));
   }
   if (tree.has("inverted")) field.inverted = tree.at("inverted").boolean();
-  return typed;
 }
 
 /// Notes a problem if a key in degrees is used together with the key in SI units, or for a torque.
@@ -330,9 +345,11 @@ ReadField readField(const Tree& tree, const Report& report, size_t joints, bool 
   const size_t first = tree.problems();
   if (!tree.only(kKeys) && !tree.has("is")) return read;
   readTarget(tree, joints, input, field, read.known);
+  read.known.type = readType(tree.at("type"), field);
   const size_t before = tree.problems();
-  read.known.type = readNumber(tree, report, field);
-  read.known.placed = tree.problems() == before;
+  const size_t of_type = read.known.type && fitToMethod(tree, report, field) ? 1 : 0;
+  readNumber(tree, report, read.known.type, field);
+  read.known.placed = read.known.type && tree.problems() == before + of_type;
   if (!read.known.role) return read;  // the role decides which other keys a field needs
   const size_t before_scale = tree.problems();
   if (ofJoint(field.role)) readScale(tree, field);

@@ -226,10 +226,32 @@ static std::vector<std::string> unitsOf(const host::ParamInfo& param) {
   return units.size() == param.columns ? units : std::vector<std::string>{param.unit};
 }
 
+/// Returns advice for a list of which some numbers are beyond the range because their decimal commas separate numbers.
+static std::string suggestDecimalsBeyond(const Node& list, const host::ParamInfo& param) {
+  const bool beyond = std::any_of(list.items.begin(), list.items.end(), [&param](const Node& item) {
+    const auto number = item.isScalar() ? toNumber(item.scalar) : std::nullopt;
+    return number && (*number < param.min || *number > param.max);
+  });
+  return beyond ? suggestDecimals(list, 2) : "";
+}
+
+static std::string numbersText(size_t count) {
+  return std::to_string(count) + (count == 1 ? " number" : " numbers");
+}
+
+/// Returns what is wrong with a text in the place of a list.
+static std::string notAList(const Node& node, const host::ParamInfo& param) {
+  const std::string hint = suggestList(node, param.min_count);
+  return describe(node) + " is not a number, expected a list of " + countText(param) + hint +
+         (hint.empty() && param.def_text ? "; such as " + *param.def_text : "");
+}
+
 bool ParameterReader::readArray(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value) {
   const size_t before = in_->problems().size();
   bool shaped = true;  // a list of the right length is kept even if its numbers are wrong, so that it can be judged
   const std::vector<std::string> units = unitsOf(param);
+  if (const std::string advice = suggestDecimalsBeyond(node, param); !advice.empty())
+    return in_->problem(node, key, "zeros and whole numbers take turns" + advice), false;
   const auto add = [&](const Node& item, const std::string& path, size_t column) {
     const Range of_column{param.min, param.max, units[column % units.size()].c_str()};
     const bool shown = in_->problems().size() - before < kShownProblems;
@@ -237,10 +259,7 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
     value.numbers.push_back(number.value_or(heldIn(item, of_column)));
   };
   if (node.isScalar() && param.min_count > 1 && !toNumber(node.scalar)) {
-    const std::string hint = suggestList(node, param.min_count);
-    in_->problem(node, key,
-                 describe(node) + " is not a number, expected a list of " + countText(param) + hint +
-                     (hint.empty() && param.def_text ? "; such as " + *param.def_text : ""));
+    in_->problem(node, key, notAList(node, param));
   } else if (node.isScalar()) {
     add(node, key, 0);
   } else if (node.isSequence()) {
@@ -250,8 +269,7 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
       if (item.isSequence() && param.columns > 1 && item.items.size() != param.columns) {
         shaped = false;
         in_->problem(item, path,
-                     "it has " + std::to_string(item.items.size()) + (item.items.size() == 1 ? " number" : " numbers") +
-                         ", expected " + std::to_string(param.columns));
+                     "it has " + numbersText(item.items.size()) + ", expected " + std::to_string(param.columns));
       } else if (item.isSequence())
         for (size_t j = 0; j < item.items.size(); ++j) add(item.items[j], path + "[" + std::to_string(j) + "]", j);
       else
@@ -265,8 +283,7 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
   const size_t count = value.numbers.size();
   const bool ragged = param.columns > 1 && count % param.columns != 0;
   if (!ragged && count >= param.min_count && count <= param.max_count) return true;
-  in_->problem(node, key,
-               std::to_string(count) + (count == 1 ? " number" : " numbers") + ", expected " + countText(param));
+  in_->problem(node, key, numbersText(count) + ", expected " + countText(param) + document::suggestDecimals(node, 1));
   return false;
 }
 

@@ -79,6 +79,8 @@ std::vector<Decoding> readingsOf(const Field& field) {
     all.push_back({Code::kSame, 1, -range / 2});
     all.push_back({Code::kSame, -1, -range / 2});
     all.push_back({Code::kSame, -1, -(range - 1)});
+  } else if (field.offset == 0) {
+    for (const double turn : {1.0, -1.0}) all.push_back({Code::kOtherSign, turn, -range / 2});
   }
   return all;
 }
@@ -87,9 +89,16 @@ std::string wholeRange(const Field& field, const std::vector<double>& positions,
   const std::string what = "jumps by nearly the whole range of its " + typeOf(field, false) +
                            " from one report to the next, " + std::to_string(count) +
                            (count == 1 ? " time: " : " times: ");
-  const Decoding other{Decoding::Code::kOtherSign, 1, 0};
-  const auto as_other = allAs(field, other, positions);
-  const bool fits = jumpsOf(field, as_other, kWholeRange / 2) == 0 && !leavesStops(as_other, stops);
+  Decoding other{Decoding::Code::kOtherSign, 1, 0};
+  const auto fitsWith = [&](const Decoding& reading) {
+    const auto as_other = allAs(field, reading, positions);
+    return jumpsOf(field, as_other, kWholeRange / 2) == 0 && !leavesStops(as_other, stops);
+  };
+  bool fits = fitsWith(other);
+  if (!fits && field.type == Type::kSigned && field.offset == 0) {  // counts about the middle of an unsigned range
+    other.offset = -spanOf(field) / 2;
+    fits = fitsWith(other);
+  }
   const std::string wraps = "wraps: true if its numbers start again at the other end of their range, as in a counter";
   return what + (fits ? "give " + wordsOf(field, other) + ", or " : "give ") + wraps;
 }

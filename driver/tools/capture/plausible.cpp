@@ -44,16 +44,17 @@ Stops stopsOf(const ArmFacts& arm, size_t joint) {
 }
 
 /// Returns a text if the joint goes beyond its stops. If its zero is not known yet, returns a text if its positions
-/// span more than the range between them.
-std::string beyondStops(const JointSeries& course, const Stops& stops) {
+/// span more than the range between them. @param has_offset true if the file gives an offset
+std::string beyondStops(const JointSeries& course, const Stops& stops, bool has_offset) {
   constexpr double kTurns = 4 * M_PI;  // a joint with stops cannot make two turns
   const double way = course.most - course.least;
   if (stops.given ? !leavesStops(course.at, stops) : way <= kTurns * 1.1) return "";
   if (stops.placed && way <= stops.high - stops.low)
     return "from " + number(course.least) + " to " + number(course.most) + " rad, and arm.limits are " +
            number(stops.low) + " to " + number(stops.high) + " rad: its range of " + number(way) +
-           " rad fits between them, but it is shifted: is offset in rad (for degrees: offset_degrees), with the right "
-           "sign?";
+           " rad fits between them, but it is shifted: " +
+           (has_offset ? "is offset in rad (for degrees: offset_degrees), with the right sign?"
+                       : "expected an offset, or the other signedness of its type");
   return "from " + number(course.least) + " to " + number(course.most) + " rad, " +
          (stops.placed  ? "and arm.limits are " + number(stops.low) + " to " + number(stops.high) + " rad"
           : stops.given ? "farther than the " + number(stops.high - stops.low) + " rad between its arm.limits"
@@ -130,8 +131,8 @@ std::string shortWays(const std::map<size_t, JointSeries>& courses, const ArmFac
     ways += (ways.empty() ? "" : ", ") + number(100 * part) + " %";
   }
   if (ways.empty()) return "";
-  return "the joints moved over " + ways +
-         " of the distance between their arm.limits: if they were moved from stop to stop, scale is " + "about " +
+  return "nothing is wrong if the joints were not moved from stop to stop: they moved over " + ways +
+         " of the distance between their arm.limits; if they were moved from stop to stop, scale is about " +
          number(1 / widest) + " times too small (a turn of an encoder has 4 counts for each of its lines)\n";
 }
 
@@ -141,7 +142,7 @@ std::string implausibleSeries(const codec::Wire& wire, const codec::Field& field
   const Stops stops = stopsOf(arm, field.index);
   std::string wrong = alternativeDecoding(field, course.at, stops);
   if (wrong.empty()) wrong = jumps(course, wire, arm);
-  return wrong.empty() ? beyondStops(course, stops) : wrong;
+  return wrong.empty() ? beyondStops(course, stops, field.offset != 0) : wrong;
 }
 
 }  // namespace

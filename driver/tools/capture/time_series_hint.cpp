@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <vector>
 
+#include "base/three_digits.hpp"
+
 namespace hapticd::capture {
 namespace {
 
@@ -83,6 +85,18 @@ std::string counter(const codec::Wire& wire, const Decoded& decoded, const Decod
   return std::string("the counter counts with endian: ") + (field->big_endian ? "little" : "big") + "\n";
 }
 
+/// Returns the advice to give a rate, or why it cannot be given.
+std::string rateToGive(double measured) {
+  char text[160];
+  if (measured < codec::kLeastRate || measured > codec::kMostRate)
+    std::snprintf(text, sizeof text,
+                  "a rate must be %g to %g Hz: are the times of the capture in s, and of every report?",
+                  codec::kLeastRate, codec::kMostRate);
+  else
+    std::snprintf(text, sizeof text, "give rate: %.0f if this is how the arm sends", measured);
+  return text;
+}
+
 /// Compares wire.rate with the times in the capture. The median counts, because a pause in a recording says nothing
 /// about the arm.
 std::string rate(const codec::Wire& wire, const DecodedReports& reports, double least_rate) {
@@ -96,19 +110,12 @@ std::string rate(const codec::Wire& wire, const DecodedReports& reports, double 
   if (!(period > 0)) return "";  // several reports came together
   const double measured = 1 / period;
   if (measured > 0.75 * wire.rate && measured < 1.5 * wire.rate) return "";
-  char text[320];
-  if (measured < wire.rate)
-    std::snprintf(
-        text, sizeof text,
-        "the reports are %.3g s apart (median), which is a rate of %.3g Hz, and wire.rate is %g%s; give rate: "
-        "%.0f if this is how the arm sends\n",
-        period, measured, wire.rate,
-        measured < least_rate * wire.rate ? ": at so low a rate (health.least_rate) no torque goes out" : "", measured);
-  else
-    std::snprintf(text, sizeof text,
-                  "the reports are %.3g s apart (median), which is a rate of %.3g Hz, and wire.rate is %g; give rate: "
-                  "%.0f if this is how the arm sends\n",
-                  period, measured, wire.rate, measured);
+  char text[400];
+  std::snprintf(text, sizeof text,
+                "the reports are %.3g s apart (median), which is a rate of %s Hz, and wire.rate is %g%s; %s\n", period,
+                threeDigits(measured).c_str(), wire.rate,
+                measured < least_rate * wire.rate ? ": at so low a rate (health.least_rate) no torque goes out" : "",
+                rateToGive(measured).c_str());
   return text;
 }
 
@@ -124,11 +131,13 @@ std::string clock(const codec::Wire& wire, const DecodedReports& reports) {
   const double period = between[between.size() / 2], times = period * wire.rate;
   constexpr double kFast = 0.67, kSlow = 1.34;
   if (times > kFast && times < kSlow) return "";
-  char text[320];
+  const bool allowed = 1 / period >= codec::kLeastRate && 1 / period <= codec::kMostRate;
+  char give[48] = "", text[320];
+  if (allowed) std::snprintf(give, sizeof give, "rate: %.0f, or ", 1 / period);
   std::snprintf(text, sizeof text,
                 "the arm's clock grows by %.3g s from one report to the next (median), and wire.rate %g means one "
-                "report each %.3g s; give rate: %.0f, or a scale of the field time that is %.4g times %s\n",
-                period, wire.rate, 1 / wire.rate, 1 / period, times > 1 ? times : 1 / times,
+                "report each %.3g s; give %sa scale of the field time that is %.4g times %s\n",
+                period, wire.rate, 1 / wire.rate, give, times > 1 ? times : 1 / times,
                 times > 1 ? "smaller" : "larger");
   return text;
 }

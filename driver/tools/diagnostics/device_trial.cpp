@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "diagnostics/arm_table.hpp"
 #include "diagnostics/enable_button.hpp"
+#include "diagnostics/meant_tree.hpp"
 #include "diagnostics/unit_warnings.hpp"
+#include "document/correction.hpp"
 #include "document/node.hpp"
 #include "host/call_trail.hpp"
 #include "host/device_instance.hpp"
@@ -21,7 +24,8 @@ namespace {
 using document::Node;
 
 /// Returns the node of a path such as "wire.input.fields[3].at", or the last node on this path that exists.
-const Node* walk(const Node* at, const std::string& path) {
+/// @param to_key returns the key itself if the path ends in one, not its value
+const Node* walk(const Node* at, const std::string& path, bool to_key) {
   for (size_t i = 0; i < path.size();) {
     const size_t end = std::min(path.find_first_of(".[", i + 1), path.size());
     const Node* next = nullptr;
@@ -29,7 +33,9 @@ const Node* walk(const Node* at, const std::string& path) {
       const size_t index = std::strtoul(path.c_str() + i + 1, nullptr, 10);
       if (at->isSequence() && index < at->items.size()) next = &at->items[index];
     } else {
-      next = at->find(path.substr(path[i] == '.' ? i + 1 : i, end - i - (path[i] == '.' ? 1 : 0)));
+      const std::string key = path.substr(path[i] == '.' ? i + 1 : i, end - i - (path[i] == '.' ? 1 : 0));
+      for (const document::Entry& entry : at->entries)
+        if (entry.key.scalar == key && next == nullptr) next = to_key && end == path.size() ? &entry.key : &entry.value;
     }
     if (next == nullptr) return at;
     at = next;
@@ -80,19 +86,25 @@ void placeAtModule(const std::string& error, const Node& root, const std::string
   for (const std::string& line : linesOf(error)) document::report(problems, file, at.line, at.column, "module", line);
 }
 
+/// Returns true for a message about a key, not about its value.
+bool isOfKey(const std::string& what) {
+  return what.starts_with("unknown key") || what.starts_with("belongs one level up");
+}
+
 /// Reports the messages of a module about its parameters, each with the line and column of its parameter in the file.
 void placeComplaints(const std::string& error, const Node& parameters, const Node& root, const std::string& file,
                      const document::Problems& known, document::Problems& problems) {
   for (const std::string& message : linesOf(error)) {
     size_t begin = 0;
     const std::string key = keyIn(message, parameters, begin);
-    const Node* at = walk(&parameters, key);
     if (follows(key, known)) continue;
     if (key.empty() && message.find(kOfModule) != std::string::npos) {
       placeAtModule(message, root, file, problems);
       continue;
     }
-    const std::string what = key.empty() ? message : message.substr(begin + key.size() + 2);
+    std::string what = key.empty() ? message : message.substr(begin + key.size() + 2);
+    const Node* at = walk(&parameters, key, isOfKey(what));
+    if (what.find(" numbers, expected") != std::string::npos) what += document::suggestDecimals(*at, 1);
     document::report(problems, file, at->line, at->column, key.empty() ? "parameters" : "parameters." + key, what);
   }
 }
@@ -154,10 +166,11 @@ document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& c
   if (!draft) return problems;  // this is a scene, or its module is unknown
   const ModuleTrial trial = tryModule(*draft);
   document::Problems unread;  // not reported here, because the loader of the file reports them
-  const auto root = document::parseFile(file, unread);
+  auto root = document::parseFile(file, unread);
   if (!root) return problems;
+  root = withMeantParameters(std::move(*root), *draft);
   const Node* parameters = root->find("parameters");
-  checkEnableButton(*root, file.string(), problems);
+  checkEnableButton(withMeantWire(*root, *draft), file.string(), problems);
   checkHd(*root, file.string(), problems);
   if (parameters != nullptr && !trial.error.empty())
     placeComplaints(trial.error, *parameters, *root, file.string(), known, problems);

@@ -11,11 +11,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "diagnostics/arm_plausibility.hpp"
 #include "diagnostics/arm_table.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/limit_warnings.hpp"
+#include "diagnostics/meant_tree.hpp"
 #include "diagnostics/motor_warnings.hpp"
 #include "diagnostics/mount_warnings.hpp"
 #include "diagnostics/node_path.hpp"
@@ -198,6 +200,8 @@ void dropKnown(const Node& root, const document::Problems& known, document::Prob
     return std::any_of(known.begin(), known.end(), [&root, &warning](const document::Problem& one) {
       if (warning.key == "parameters.arm.limits" || warning.key == "parameters.calibration.pose")
         if (hasAngles(root, one)) return false;
+      if (one.key.ends_with(".type") && warning.key == one.key.substr(0, one.key.size() - 4) + "to")
+        return false;  // which bytes a checksum covers does not depend on its type
       const std::string part = partOf(one.key);
       return !part.empty() && part != "parameters" && (isBelow(warning.key, part) || isBelow(part, warning.key));
     });
@@ -210,8 +214,9 @@ document::Problems warnOfDevice(const std::filesystem::path& file, host::Catalog
                                 const document::Problems& known) {
   document::Problems warnings, unread;
   const auto device = known.empty() ? scene::loadDevice(file, catalog).device : scene::deviceDraft(file, catalog);
-  const auto root = device ? document::parseFile(file, unread) : std::nullopt;
+  auto root = device ? document::parseFile(file, unread) : std::nullopt;
   if (!root) return warnings;
+  if (!known.empty()) root = withMeantWire(withMeantParameters(std::move(*root), *device), *device);
   countsWithoutScale(*root, file.string(), warnings);
   massesOfAnotherArm(*root, file.string(), warnings);
   massesAtTheEnds(*root, file.string(), warnings);

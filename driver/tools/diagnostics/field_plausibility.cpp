@@ -34,9 +34,13 @@ struct Side {
   /// Adds a warning, unless the key has one already: earlier checks give more exact warnings.
   void warn(size_t i, const char* key, const std::string& what) const {
     const Node *given = fields.items[i].find(key), *at = given != nullptr ? given : &fields.items[i];
+    if (!warned(i, key))
+      document::report(warnings, device.file.string(), at->line, at->column,
+                       fmt::format("parameters.wire.{}.fields[{}].{}", name, i, key), what);
+  }
+  bool warned(size_t i, const char* key) const {
     const std::string path = fmt::format("parameters.wire.{}.fields[{}].{}", name, i, key);
-    if (std::none_of(warnings.begin(), warnings.end(), [&](const auto& told) { return told.key == path; }))
-      document::report(warnings, device.file.string(), at->line, at->column, path, what);
+    return std::any_of(warnings.begin(), warnings.end(), [&](const auto& told) { return told.key == path; });
   }
   /// Returns the fields with numbers of more than one byte, which have a byte order.
   std::vector<size_t> wide() const {
@@ -131,7 +135,8 @@ void unlikeOthers(const Side& side, Role role, const std::vector<double>& motors
     const double part = role == Role::kTorque && field.index < motors.size() ? motors[field.index] : 1;
     return std::abs(field.scale) / part;
   };
-  const std::vector<size_t> all = side.of({role});
+  std::vector<size_t> all = side.of({role});
+  std::erase_if(all, [&side](size_t i) { return side.warned(i, "scale"); });  // a wrong scale is no measure of others
   if (all.size() < 3 || (role == Role::kTorque && motors.empty())) return;
   for (const size_t i : all) {
     double next = 0, least = 1e300;
@@ -141,10 +146,15 @@ void unlikeOthers(const Side& side, Role role, const std::vector<double>& motors
     }
     const bool finer = coarseness(i) > 0 && coarseness(i) * kFiner <= least;
     if (coarseness(i) < kTimes * next && !finer) continue;
-    side.warn(i, "scale",
-              fmt::format("this scale is {:.3g} times as {} as that of any other joint{}: is the decimal point wrong?",
-                          finer ? least / coarseness(i) : coarseness(i) / next, finer ? "fine" : "coarse",
-                          role == Role::kTorque ? ", measured by arm.max_torque" : ""));
+    const double times = coarseness(i) / next, degrees = times * M_PI / 180;
+    const bool in_degrees = role == Role::kPosition && degrees > 0.9 && degrees < 1.1;
+    side.warn(
+        i, "scale",
+        fmt::format(
+            "this scale is {:.3g} times as {} as that of any other joint{}: {}", finer ? least / coarseness(i) : times,
+            finer ? "fine" : "coarse", role == Role::kTorque ? ", measured by arm.max_torque" : "",
+            in_degrees ? fmt::format("if it is in degrees, write scale_degrees: {:g}", side.report.fields[i].scale)
+                       : "is the decimal point wrong?"));
   }
 }
 

@@ -239,13 +239,13 @@ void warnOfImplausibleLimits(const Node& root, const scene::Device& device, cons
   checkDynamics(bounds);
   checkCarried(bounds);
   if (device.module == "simulated") checkRates(bounds);
+  if (const auto draft = wireDraftOf(device, 0)) checkDeviceClock(bounds, *draft);
   if (arm == nullptr) return;
   if (device.module == "simulated") checkTwin(bounds, *arm);
   const auto wire = wireOf(device, arm->kinematics().joint_count);
   if (!wire) return;
   checkCompliance(bounds, *wire);
   checkIds(bounds, *wire);
-  checkDeviceClock(bounds, *wire);
 }
 
 }  // namespace hapticd::diagnostics

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/three_digits.hpp"
 #include "diagnostics/motor_reach.hpp"
 #include "diagnostics/node_path.hpp"
 #include "document/reader.hpp"
@@ -52,9 +53,9 @@ void beyondMotors(const Node* at, const char* key, double given, double reach, c
   constexpr double kBeyond = 1.5;  // factor, because elsewhere in its workspace an arm may give somewhat more
   if (at == nullptr || given <= kBeyond * reach) return;
   document::report(warnings, file, at->line, at->column, key,
-                   fmt::format("{:g} {} is beyond the motors: with arm.max_torque they give at most {:.3g} {} {}; "
+                   fmt::format("{:g} {} is beyond the motors: with arm.max_torque they give at most {} {} {}; "
                                "expected a limit below that, or the torques at the joints (motor times gear)",
-                               given, unit, reach, unit, where));
+                               given, unit, threeDigits(reach), unit, where));
 }
 
 /// Warns of motors that push far harder than allowed, because N mm were meant.
@@ -69,9 +70,9 @@ void motorsBeyondAll(const Node& root, const scene::Device& device, double reach
   const std::string allowed =  // a wrong limit is told elsewhere, and was not read
       device.limits.force > 0 ? fmt::format(", but limits.force allows only {:g} N", device.limits.force) : "";
   document::report(warnings, device.file.string(), at->line, at->column, "parameters.arm.max_torque",
-                   fmt::format("these torques give {:.3g} N at the tip{}; torques must be in N m, here and in the "
+                   fmt::format("these torques give {} N at the tip{}; torques must be in N m, here and in the "
                                "scales of the torques: {:g} N mm is {:g} N m",
-                               reach, allowed, most, most / 1000));
+                               threeDigits(reach), allowed, most, most / 1000));
 }
 
 /// Moves joints between their stops: those of a simulated chain to the middle, where it begins, and others to the

@@ -60,6 +60,21 @@ bool zeroedByPose(const scene::Device& device) {
                      [](const scene::Value& value) { return value.id == "calibration.method" && value.number > 1; });
 }
 
+/// Returns a text if a field would express the whole range between the stops with the other sign of its offset.
+std::string offsetTurnedRound(const Field& field, const PositionRange& said, const PositionRange& stops) {
+  const double room = 0.02 * stops.length();
+  const PositionRange other{said.low - 2 * field.offset, said.high - 2 * field.offset};
+  const auto covers = [&](const PositionRange& range) {
+    return range.low <= stops.low + room && range.high >= stops.high - room;
+  };
+  if (field.offset == 0 || covers(said) || !covers(other)) return "";
+  return fmt::format(
+      "has the wrong sign: this field covers {:.4g} to {:.4g} rad, and arm.limits of joint {} go from {:.4g} to "
+      "{:.4g}; "
+      "with the other sign it covers {:.4g} to {:.4g} rad: expected ",
+      said.low, said.high, field.index + 1, stops.low, stops.high, other.low, other.high);
+}
+
 /// Returns a text if a field cannot express the whole range between the stops, or "".
 std::string tooShort(const Field& field, const PositionRange& said, const PositionRange& stops, bool placed) {
   const double room = 0.02 * stops.length();  // stops are not measured more accurately
@@ -74,6 +89,20 @@ std::string tooShort(const Field& field, const PositionRange& said, const Positi
       "wider type, an offset, or wraps: true if the counter continues past its end",
       said.low, said.high, field.index + 1, stops.low, stops.high,
       times > 1.05 ? fmt::format("a scale that is {:.3g} times as large, ", times) : std::string());
+}
+
+/// Adds a warning at the offset of a field, with the number of the other sign. Returns false if it has none.
+bool tellOffset(const Node& field, size_t index, const scene::Device& device, const std::string& what,
+                document::Problems& warnings) {
+  for (const char* key : {"offset", "offset_degrees"})
+    if (const Node* offset = field.find(key)) {
+      const double given = document::toNumber(offset->scalar).value_or(0);
+      document::report(warnings, device.file.string(), offset->line, offset->column,
+                       fmt::format("parameters.wire.input.fields[{}].{}", index, key),
+                       what + fmt::format("{}: {:g}", key, -given));
+      return true;
+    }
+  return false;
 }
 
 /// Returns the box around all places of the tip, with each joint in three positions.
@@ -163,7 +192,11 @@ void warnOfTravel(const Node& root, const scene::Device& device, size_t joints, 
     const Field& field = wire->input.fields[i];
     const auto said = sayable(field);
     if (field.role != Role::kPosition || field.index >= joints) continue;
-    const PositionRange stops{limits[2u * field.index], limits[2u * field.index + 1]};
+    const auto [low, high] = std::minmax(limits[2u * field.index], limits[2u * field.index + 1]);
+    const PositionRange stops{low, high};  // in order, also where the file has them in the other one: told elsewhere
+    if (const std::string turned = said && !zeroedByPose(device) ? offsetTurnedRound(field, *said, stops) : "";
+        !turned.empty() && tellOffset(fields->items[i], i, device, turned, warnings))
+      continue;
     const std::string wrong = said ? tooShort(field, *said, stops, !zeroedByPose(device)) : wrapsTooOften(field, stops);
     if (wrong.empty()) continue;
     const Node* scale = fields->items[i].find("scale");

@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "diagnostics/node_path.hpp"
+#include "document/correction.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -110,6 +113,14 @@ void chainTooLong(const Node* rows, const std::string& file, document::Problems&
     }
 }
 
+/// Warns of lengths and masses such as [0,2, 0,18, 0], which have the right count by chance.
+void commasInNumbers(const Node* list, const char* key, const std::string& file, document::Problems& warnings) {
+  constexpr size_t kLeast = 2;
+  if (list == nullptr) return;
+  if (const std::string advice = document::suggestDecimals(*list, kLeast); !advice.empty())
+    document::report(warnings, file, list->line, list->column, key, "zeros and whole numbers take turns" + advice);
+}
+
 /// Warns of a negative length: the direction of a link is given by its signs or angles, not by its length.
 void lengthBelowZero(const Node* lengths, const std::string& file, document::Problems& warnings) {
   for (const double length : numbersIn(lengths))
@@ -120,19 +131,29 @@ void lengthBelowZero(const Node* lengths, const std::string& file, document::Pro
                                           length));
 }
 
+/// Returns the advice for an offset that is in counts.
+std::string inCounts(double value, const Node& field) {
+  for (const auto& [key, offset] : {std::pair{"scale", "offset"}, std::pair{"scale_degrees", "offset_degrees"}})
+    if (const Node* scale = field.find(key))
+      if (const double one = document::toNumber(scale->scalar).value_or(0); one != 0)
+        return fmt::format("if it is in counts, multiply it by {}: {}: {:.6g}", key, offset, value * one);
+  return "counts must be multiplied by scale";
+}
+
 /// Warns of an offset of more than a turn, which was meant in degrees or in counts.
 void offsetBeyondATurn(const Node* fields, const std::string& file, document::Problems& warnings) {
+  constexpr double kTwoTurns = 720;  // degrees
   if (fields == nullptr || !fields->isSequence()) return;
   for (size_t i = 0; i < fields->items.size(); ++i) {
     const Node *is = fields->items[i].find("is"), *offset = fields->items[i].find("offset");
     if (is == nullptr || is->scalar != "position" || offset == nullptr) continue;
     const double value = document::toNumber(offset->scalar).value_or(0);
     if (std::abs(value) <= 2 * M_PI) continue;
-    document::report(warnings, file, offset->line, offset->column,
-                     fmt::format("parameters.wire.input.fields[{}].offset", i),
-                     fmt::format("{:g} rad is more than a whole turn; the value must be in rad (or m); if it is in "
-                                 "degrees, write offset_degrees: {:g}",
-                                 value, value));
+    document::report(
+        warnings, file, offset->line, offset->column, fmt::format("parameters.wire.input.fields[{}].offset", i),
+        fmt::format("{:g} rad is more than a whole turn; the value must be in rad (or m); ", value) +
+            (std::abs(value) <= kTwoTurns ? fmt::format("if it is in degrees, write offset_degrees: {:g}", value)
+                                          : inCounts(value, fields->items[i])));
   }
 }
 
@@ -207,6 +228,8 @@ void warnOfUnits(const Node& root, const std::string& file, document::Problems& 
   twistInDegrees(find(root, {"parameters", "arm", "dh"}), file, warnings);
   chainTooLong(find(root, {"parameters", "arm", "dh"}), file, warnings);
   linkTooLong(find(root, {"parameters", "arm", "lengths"}), file, warnings);
+  commasInNumbers(find(root, {"parameters", "arm", "lengths"}), "parameters.arm.lengths", file, warnings);
+  commasInNumbers(find(root, {"parameters", "arm", "masses"}), "parameters.arm.masses", file, warnings);
   lengthBelowZero(find(root, {"parameters", "arm", "lengths"}), file, warnings);
   offsetBeyondATurn(find(root, {"parameters", "wire", "input", "fields"}), file, warnings);
   mountFarAway(find(root, {"mount", "position"}), file, warnings);

@@ -280,11 +280,11 @@ void warnOfWire(const Node& root, const scene::Device& device, size_t joints, do
   if (!maxTorqueTooLarge(root, wire->output, device, warnings)) warnOfTorques(*out, wire->output, device, warnings);
   warnOfGaps(*in, wire->input, device, warnings);
   warnOfButtons(*in, wire->input, device, warnings);
+  if (wire->input.placed) warnOfChecksum(*in, wire->input, "input", device, warnings);
+  if (wire->output.placed) warnOfChecksum(*out, wire->output, "output", device, warnings);
   if (!wireOf(device, joints)) return;  // if a field has a mistake, its place may be wrong, too
   warnOfCountedId(root, wire->input, "input", device, warnings);
   warnOfCountedId(root, wire->output, "output", device, warnings);
-  warnOfChecksum(*in, wire->input, "input", device, warnings);
-  warnOfChecksum(*out, wire->output, "output", device, warnings);
   if (const Node* startup = find(root, {"parameters", "wire", "startup"}))
     warnOfStartup(*startup, *wire, device, warnings);
 }

@@ -210,7 +210,7 @@ std::string overheating(const std::string& device, double sustained, const std::
   if (effective <= sustained) return "";
   return device + " gave " + text(effective) + " N (root of the mean square of the last " +
          text(std::round(static_cast<double>(forces.size()) / rate)) + " s) and sustains " + text(sustained) +
-         " N: real motors would overheat; " +
+         " N (device.continuous_force): real motors would overheat; " +
          (pusher.empty()
               ? "use a softer model, or limits.force: " + text(sustained) + " in the device file"
               : "no model was touched, and " + pusher +

@@ -12,67 +12,9 @@ import tempfile
 
 HAPTICD, SOURCE = (os.path.abspath(one) for one in sys.argv[1:3])
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
+from arm_files import CHAIN, TWIN, WIRED
 from e2e import check, finish
 
-WIRED = """hapticd-device: 1
-module: usb_hid
-name: mine
-mount: {position: [0, 0, 0.09]}
-limits: {force: 2, passivity: true, workspace: 0.3, enable: {button: 0}}
-parameters:
-  usb: {id: "1209:0a0a"}
-  device: {max_force: 5, continuous_force: 2, max_stiffness: 600, mass: 0.2}
-  arm:
-    kind: phantom
-    lengths: [0.21, 0.17, 0.03, 0, 0]
-    masses: [0.02, 0.025, 0, 0]
-    max_torque: [0.6]
-    limits: [[-1.2, 1.2], [-0.3, 0.9], [-1, 1]]
-  calibration: {method: pose, pose: [0, 0, 0], instructions: "Hold every joint at its zero."}
-  wire:
-    exchange: stream
-    rate: 1000
-    watchdog: 0.02
-    input:
-      size: 12
-      fields:
-        - {is: counter, at: 0, type: u16}
-        - {is: position, joint: 1, at: 2, type: i16, scale: 9.6e-5}
-        - {is: position, joint: 2, at: 4, type: i16, scale: 9.6e-5}
-        - {is: position, joint: 3, at: 6, type: i16, scale: 9.6e-5}
-        - {is: button, button: 1, at: 8, type: u1}
-        - {is: checksum, at: 10, type: u16, method: crc16-modbus, from: 0, to: 10}
-    output:
-      size: 10
-      fields:
-        - {is: torque, joint: 1, at: 0, type: i16, scale: 2.0e-5}
-        - {is: torque, joint: 2, at: 2, type: i16, scale: 2.0e-5}
-        - {is: torque, joint: 3, at: 4, type: i16, scale: 2.0e-5}
-        - {is: enable, at: 6, type: u8}
-        - {is: counter, at: 7, type: u8}
-        - {is: checksum, at: 8, type: u16, method: crc16-modbus, from: 0, to: 8}
-"""
-TWIN = """hapticd-device: 1
-module: simulated
-name: twin
-mount: {position: [0, 0, 0.09]}
-limits: {force: 2}
-parameters:
-  arm:
-    kind: phantom
-    lengths: [0.21, 0.17, 0, 0, 0]
-    masses: [0.03, 0, 0.05, 0]
-hand: {script: press, radius: 0.05, rise: 0.003, rate: 1, center: [0, 0, -0.09]}
-"""
-CHAIN = WIRED.replace("""    kind: phantom
-    lengths: [0.21, 0.17, 0.03, 0, 0]
-    masses: [0.02, 0.025, 0, 0]
-""", """    kind: chain
-    dh:
-      - [0, 1.5707963, 0, 0]
-      - [0.22, 0, 0, 0]
-      - [0.2, 0, 0, 0]
-""").replace("workspace: 0.3, ", "")
 PREMIUM = open(os.path.join(SOURCE, "config", "devices", "simulated-premium15.yaml")).read()
 SARCOS = open(os.path.join(SOURCE, "config", "devices", "sarcos.yaml")).read()
 IN, OUT = "parameters.wire.input.fields", "parameters.wire.output.fields"
@@ -140,6 +82,18 @@ CASES = [
     (PREMIUM, {"  seed: 1": "  joint: {gear: 0.1, counts: |4}"}, "parameters.joint.counts", "one count moves the tip by"),
 ]
 
+CASES += [
+    (WIRED.replace("method: pose, pose: [0, 0, 0]", "method: none").replace("i16, scale: 9.6e-5", "u16, scale: 9.6e-5, offset: -3.14159"),
+     {"at: 4, type: u16, scale: 9.6e-5, offset: -3.14159": "at: 4, type: u16, scale: 9.6e-5, offset: |+3.14159"}, f"{IN}[2].offset",
+     "has the wrong sign: this field covers 3.142 to 9.433 rad, and arm.limits of joint 2 go from -0.3 to 0.9; with the other sign it covers -3.142 to 3.15 rad: expected offset: -3.14159"),
+    (WIRED.replace("scale: 9.6e-5", "scale: 9.6e-6, wraps: true"), {"at: 6, type: i16, scale: 9.6e-6": "at: 6, type: i16, scale: |5.5e-4"}, f"{IN}[3].scale",
+     "57.3 times as coarse as that of any other joint: if it is in degrees, write scale_degrees: 0.00055"),
+    (WIRED, {SECOND: SECOND.replace("9.6e-5", "9.6e-5, offset: |-524288")}, f"{IN}[2].offset", "if it is in counts, multiply it by scale: offset: -50.3316"),
+    (WIRED, {SECOND: SECOND.replace("9.6e-5", "9.6e-5, offset: |90")}, f"{IN}[2].offset", "write offset_degrees: 90"),
+    (WIRED, {"max_torque: [0.6]": "max_torque: |[600]"}, "parameters.arm.max_torque", "these torques give 5370 N at the tip"),
+    (WIRED, {"lengths: [0.21, 0.17, 0.03, 0, 0]": "lengths: |[0,2, 0,2, 0]"}, "parameters.arm.lengths", "write 0.2, not 0,2"),
+]
+
 MOTOR = "{torque_constant: 0.0259, resistance: 2.3, ratio: 12}"
 MOTORS = f"motors: [{MOTOR}, {MOTOR}, {MOTOR}], "
 ROWS = """      - [0, 1.5707963, 0, 0]
@@ -180,6 +134,9 @@ REFUSED = [
     (TWIN, {"kind: phantom": "kind: premium15", "    lengths: [0.21, 0.17, 0, 0, 0]\n": "", "masses: [": "masses: |["}, "parameters.arm.masses",
      "a premium15 has fixed masses"),
     (TWIN, {"{force: 2}": "{force: 2, enable: {button: |1}}"}, "limits.enable.button", "the device has 0 buttons"),
+    (WIRED, {"lengths: [0.21, 0.17, 0.03, 0, 0]": "lengths: |[0,2, 0,18, 0, 0, 0]"}, "parameters.arm.lengths", "zeros and whole numbers take turns; a comma separates two numbers: write 0.2, not 0,2"),
+    (WIRED, {"lengths: [0.21, 0.17, 0.03, 0, 0]": "lengths: |[0,2, 0,9, 0, 0, 0]"}, "parameters.arm.lengths", "expected 5 for this kind of arm; a comma separates two numbers: write 0.2, not 0,2"),
+    (WIRED, {"max_torque: [0.6]": "max_torque: |[0,6, 0,6]"}, "parameters.arm.max_torque", "write 0.6, not 0,6"),
     (WIRED, {"lengths: [0.21": "lengths: [|205"}, "parameters.arm.lengths[0]", "205 mm is 0.205 m\n"),
 ]
 
@@ -250,9 +207,23 @@ TOGETHER = [
     (TWIN_CHAIN, {"    dh:": "    masses: [1]\n    dh:", "parameters:\n": "parameters:\n  joint: {damping: [1, 1], friction: [0.1, 0.1], motor_lag: -1}\n"},
      {"joint.motor_lag": "out of range", "joint.damping": "2", "joint.friction": "2", "arm.masses": "expected 3"}),
 ]
+CLOCK = WIRED.replace("        - {is: button", "        - {is: time, at: 9, type: u8, scale: 1}\n        - {is: button")
+TOGETHER += [
+    (CLOCK, {"rate: 1000": "rate: 1", "watchdog: 0.02": "watchdog: 0.02\n    keep_alive: 5"},
+     {"wire.rate": "1 kHz is 1000 Hz", "wire.keep_alive": "5 ms is 0.005 s", "wire.input.fields[4].scale": "clock is 1 s, and a report comes every 0.001 s"}),
+    (WIRED, {"type: u16, method: crc16-modbus, from: 0, to: 10": "type: u61, method: crc16-modbus, from: 4, to: 10"},
+     {"wire.input.fields[5].type": "expected u16 for crc16-modbus", "wire.input.fields[5].to": "leaves out counter, position 1"}),
+    (WIRED, {"    output:": "    ouput:", SENT.format(2, 2): SENT.format(2, 2).replace("2.0e-5", "2.0e-2")},
+     {"wire.ouput": "did you mean \"output\"", "wire.output.fields[1].scale": "0.02 N mm is 2e-05 N m"}),
+    (WIRED, {"parameters:": "parameter:", "  wire:": "  wrie:", SECOND: SECOND.replace("9.6e-5", "1.6e-5")},
+     {"parameter": "did you mean \"parameters\"", "wrie": "did you mean \"wire\"", "wire.input.fields[2].scale": "arm.limits of joint 2 go from"}),
+]
 # The keys beside which nothing else may be told, because it would follow from the same mistake.
 ALONE = [
     (WIRED, {"max_torque: [0.6]": "max_torque: [500]"}, ["parameters.arm.max_torque"]),
+    (WIRED, {"type: u16, method: crc16-modbus, from: 0, to: 10": "type: u61, method: crc16-modbus, from: 0, to: 10"}, [f"{IN}[5].type"]),
+    (WIRED, {"[-1.2, 1.2]": "[1.2, -1.2]", READ.format(1, 2): READ.format(1, 2).replace("9.6e-5", "6e-6"), SECOND: SECOND.replace("9.6e-5", "6e-6")},
+     ["parameters.arm.limits[0]", f"{IN}[1].scale", f"{IN}[2].scale"]),
     (WIRED, {"max_torque: [0.6]": "max_torque: [500]", "force: 2, ": "force: 5000, "}, ["limits.force", "parameters.arm.max_torque"]),
 ]
 

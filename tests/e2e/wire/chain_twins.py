@@ -55,6 +55,18 @@ with tempfile.TemporaryDirectory() as folder:
         touched = told.get("models", {}).get("sphere", {}).get("contact_ticks", 0)
         check("and presses the sphere", code == 0 and touched > 200 and told["faults"] == [], (touched, out[-1200:], err, open(twin).read()))
 
+    # Nobody said what its motors sustain: the Premium's 1.4 N are not theirs.
+    new("--kind", "phantom")
+    run("device", "twin", arm, "-o", twin)
+    text = open(twin).read()
+    lines = [line for line in text.splitlines() if not line.startswith("hand:")]
+    pressed = "\n".join(lines) + "\nhand: {script: press, radius: 0.04, rise: 0.003, rate: 1, center: [0, 0, -0.09]}\n"
+    for given, warns in (("", False), (", continuous_force: 1.4", True)):
+        open(twin, "w").write(pressed.replace("device: {rate: 1000", "device: {rate: 1000" + given))
+        code, out, err = run("run", SPHERE, "--device", twin, "--for", "8", "--virtual-time")
+        check(f"a twin's heat is judged by its own number{given}", code == 0 and ("sustains 1.4 N (device.continuous_force)" in err) == warns
+              and ("sustains" in err) == warns, (out, err))
+
     new("--kind", "chain", "--joints", "1")
     code, out, err = run("device", "twin", arm, "-o", twin)
     ran = run("run", SPHERE, "--device", twin, "--for", "1", "--virtual-time")

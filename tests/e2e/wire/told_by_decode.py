@@ -136,6 +136,10 @@ with tempfile.TemporaryDirectory() as folder:
     # What no arm means.
     code, err, _ = told(text(good, period=0.01))
     check("another rate is told", "a rate of 100 Hz, and wire.rate is 1000: at so low a rate (health.least_rate) no torque goes out; give rate: 100" in err, err)
+    code, err, _ = told(text(good, period=1.0))
+    check("a rate that no arm has is not proposed", "a rate of 1 Hz" in err and "give rate" not in err and "a rate must be 50 to 20000 Hz" in err, err)
+    code, err, _ = told(text(good, period=0.001), change=("rate: 1000", "rate: 300"))
+    check("a rate is told in full", "a rate of 1000 Hz" in err and "give rate: 1000" in err, err)
     code, err, _ = told(capture, change=("rate: 1000", "rate: 950"))
     check("but not one that is nearly right", code == 0 and err.count("\n") == 1, err)
     code, err, _ = told(text([hid(i, flags=3) for i in range(COUNT)]))

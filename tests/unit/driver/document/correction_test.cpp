@@ -48,6 +48,24 @@ TEST(Meant, ReadsAListInATextAndTwoNumbersInOne) {
   for (const char* text : {"press", "[1]", "http://x", "a b = 1"}) EXPECT_EQ(suggestMapping(node(text)), "") << text;
 }
 
+TEST(Meant, ReadsDecimalCommasInAList) {
+  const auto told = [](const std::string& text, size_t least) {
+    Problems problems;
+    return suggestDecimals(parseText(text, "t.yaml", problems).value_or(Node{}), least);
+  };
+  EXPECT_EQ(told("[0,2, 0,18, 0]", 2), "; a comma separates two numbers: write 0.2, not 0,2");
+  EXPECT_EQ(told("[0,5]", 1), "; a comma separates two numbers: write 0.5, not 0,5");
+  for (const char* text : {"[0,5]", "[0, 0, 0, 0]", "[1, 0, 0, 0]", "[0, 0.2, 0, 0.3]", "[0.2, 0.18]", "3", "[]"})
+    EXPECT_EQ(told(text, 2), "") << text;
+}
+
+TEST(Meant, ReadsANumberInAnotherUnit) {
+  EXPECT_EQ(suggestOtherUnit(1, {50, 20000}, "Hz").advice, "; 1 kHz is 1000 Hz");
+  EXPECT_EQ(suggestOtherUnit(5, {1e-4, 1}, "s").advice, "; 5 ms is 0.005 s");
+  EXPECT_EQ(suggestOtherUnit(5, {1e-4, 1}, "s").meant, 0.005);
+  EXPECT_EQ(suggestOtherUnit(100000, {50, 20000}, "Hz").advice, "");
+}
+
 TEST(Meant, FindsTheValueInsideAKey) {
   EXPECT_EQ(suggestion("rate:1000", {"rate"}), " (no blank after the colon, expected \"rate: 1000\")");
   EXPECT_EQ(suggestion("\u00a0rate", {"rate"}), " (it contains a no-break space, expected ordinary blanks)");

@@ -226,6 +226,32 @@ TEST(Wire, AMisspeltWordIsUnderstoodInside) {
   EXPECT_NE(complaint(changed("\"position\"", "\"positon\"")).find("(did you mean \"position\"?)"), std::string::npos);
 }
 
+TEST(Wire, ABlockUnderAMisspeltKeyIsReadAsTheOneThatIsMeant) {
+  std::string text = changed("\"output\"", "\"ouput\"");
+  EXPECT_EQ(lines(complaint(text)), 1u) << complaint(text);
+  for (size_t at = 0; (at = text.find("\"fields\"", at)) != std::string::npos;) text.replace(at, 8, "\"feilds\"");
+  text.replace(text.find("i16"), 3, "i65");
+  const std::string said = complaint(text);
+  for (const char* expected : {"wire.ouput: unknown key", "wire.ouput.feilds: unknown key",
+                               "wire.input.feilds: unknown", "wire.input.feilds[0].type: \"i65\""})
+    EXPECT_NE(said.find(expected), std::string::npos) << expected << "\n  in:\n" << said;
+  EXPECT_EQ(lines(said), 4u) << said;
+  EXPECT_EQ(draftOfWire(text, 1).output.fields.size(), 1u);
+  const auto moved = misplacedInWire(text, 1);
+  ASSERT_EQ(moved.size(), 3u);
+  EXPECT_EQ(moved[0].written + " " + moved[0].meant, "wire.ouput wire.output");
+}
+
+TEST(Wire, ABlockOneLevelTooDeepIsReadWhereItBelongs) {
+  std::string text = kGood;
+  const size_t output = text.find(",\"output\""), close = text.rfind("}", output);
+  const std::string block = text.substr(output, text.rfind("}") - output);
+  text.erase(output, block.size()).insert(close, block);
+  EXPECT_EQ(complaint(text), "wire.input.output: belongs one level up, beside input, not inside of it");
+  text.replace(text.find("\"output\":"), std::string::npos, "\"output\":null}}");  // its keys were indented no further
+  EXPECT_EQ(complaint(text), "wire.input.output: belongs one level up, beside input, not inside of it");
+}
+
 TEST(Wire, AllMistakesAreToldAtOnce) {
   const std::string said = complaint(
       R"({"rat":1000,"watchdog":-1,"framing":{"start":300,"escape":{"mark":125,"codes":[[1]]}},"startup":[{"wait":99}],)"
@@ -308,6 +334,17 @@ TEST(Wire, AFieldThatIsTooWideIsToldAtItsTypeAndNotAtTheFieldsInIt) {
   EXPECT_EQ(lines(wide), 1u) << wide;
   const std::string place = wrongOfThree(arm(R"("at":4,"type":"i16")", R"("at":5,"type":"i16")"));
   EXPECT_EQ(place.find("type"), place.find("type of one of the two")) << place;  // a place is as likely
+}
+
+TEST(Wire, AChecksumOfAnOddWidthHasTheTypeOfItsMethod) {
+  const std::string wide = arm(R"("type":"u16","method":"crc16")", R"("type":"u61","method":"crc16")");
+  EXPECT_THROW(readWire(wide, 3), std::invalid_argument);
+  try {
+    readWire(wide, 3);
+  } catch (const std::invalid_argument& e) {
+    EXPECT_EQ(std::string(e.what()), "wire.input.fields[4].type: \"u61\", expected u16 for crc16");
+  }
+  EXPECT_TRUE(draftOfWire(wide, 3).input.placed);
 }
 
 TEST(Wire, OneWrongFieldHidesNoOtherProblem) {
