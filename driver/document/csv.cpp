@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "document/csv.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "document/correction.hpp"
@@ -96,7 +97,7 @@ class Parser {
     return "";
   }
   void problem(size_t offset, const std::string& column, const std::string& what) {
-    ++wrong_;
+    if (wrong_++ >= kShownProblems) return;
     report(problems_, file_, line_, static_cast<int>(offset) + 1, column, what);
   }
 
@@ -129,18 +130,41 @@ class Parser {
                      countText(fields.size()) + ", expected " + std::to_string(table_.columns) +
                          separators(fields, table_.columns) +
                          (fields.size() > table_.columns ? "; write decimals with a point: 0.5, not 0,5" : ""));
-    for (size_t i = 0; i < fields.size(); ++i)
-      if (!take(fields[i], i)) return table_.values.resize(table_.lines.size() * table_.columns);
-    const double* now = table_.values.data() + table_.lines.size() * table_.columns;
-    if (rules_.growing && !table_.lines.empty() && *now <= *(now - table_.columns)) {
-      problem(0, nameOf(0),
-              numberText(*now) + " does not grow from row to row, expected more than " +
-                  numberText(*(now - table_.columns)));
-      return table_.values.resize(table_.lines.size() * table_.columns);
+    bool good = true;
+    for (size_t i = 0; i < fields.size(); ++i) {
+      const bool taken = take(fields[i], i);
+      if (i == 0 && taken) good = grows(table_.values.back());
+      good = good && taken;
     }
-    table_.lines.push_back(line_);
+    if (good && isTurn()) return table_.lines.push_back(line_);
+    table_.values.resize(table_.lines.size() * table_.columns);
   }
 
+  /// Judges the first number of a row, also if the rest of the row is wrong.
+  bool grows(double now) {
+    if (!rules_.growing) return true;
+    const bool more = !(now <= latest_);
+    if (!more)
+      problem(0, nameOf(0),
+              numberText(now) + " does not grow from row to row, expected more than " + numberText(latest_));
+    else
+      latest_ = now;
+    return more;
+  }
+
+  /// Judges the quaternion at the end of the table's newest row.
+  bool isTurn() {
+    constexpr size_t kFirst = 4, kColumns = 8;
+    if (!rules_.unit || table_.columns != kColumns) return true;
+    const double* v = table_.values.data() + table_.values.size() - kFirst;
+    Eigen::Quaterniond q(v[0], v[1], v[2], v[3]);
+    if (normalise(q)) return true;
+    problem(0, nameOf(kFirst),
+            "the quaternion has length " + numberText(q.norm()) + ", expected 1 within 0.001 (order w, x, y, z)");
+    return false;
+  }
+
+  /// Adds a number to the table. Reports a field that is no valid number.
   bool take(const Field& field, size_t column) {
     const std::optional<double> value = numberIn(field.text);
     const bool finite = rules_.finite || (rules_.growing && column == 0);
@@ -161,6 +185,7 @@ class Parser {
   Problems& problems_;
   CsvTable table_;
   std::string names_;
+  double latest_ = -HUGE_VAL;  ///< last first number that grew
   size_t wrong_ = 0;
   int line_ = 0;
 };

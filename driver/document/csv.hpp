@@ -21,6 +21,7 @@ struct CsvRules {
   bool finite = true;  ///< true: nan and inf are errors. In the first column of a growing table they are always errors
   bool growing = false;       ///< true: the first column must grow from row to row
   double largest = HUGE_VAL;  ///< largest magnitude of a finite number
+  bool unit = false;          ///< true: the columns qw,qx,qy,qz, if they are there, must be a unit quaternion
 };
 
 struct CsvTable {

@@ -13,20 +13,17 @@ constexpr size_t kMaxPathBytes = 256u << 20;  ///< enough for an hour of rows at
 constexpr double kFarthest = 1e6;             ///< [m] largest coordinate
 constexpr size_t kPoseColumns = 8;
 
-const CsvRules kRules{{"t,x,y,z,qw,qx,qy,qz", "t,x,y,z"}, true, true, kFarthest};
+const CsvRules kRules{{"t,x,y,z,qw,qx,qy,qz", "t,x,y,z"}, true, true, kFarthest, true};
 
-std::vector<PathPoint> pointsOf(const CsvTable& table, const std::string& file, Problems& problems) {
+std::vector<PathPoint> pointsOf(const CsvTable& table) {
   std::vector<PathPoint> points(table.rows());
   for (size_t i = 0; i < table.rows(); ++i) {
     const double* v = table.row(i);
     points[i].t = v[0];
     points[i].pose.position = {v[1], v[2], v[3]};
     if (table.columns < kPoseColumns) continue;
-    Eigen::Quaterniond& q = points[i].pose.orientation = {v[4], v[5], v[6], v[7]};
-    if (normalise(q)) continue;
-    report(problems, file, table.lines[i], 1, "qw",
-           "the quaternion has length " + numberText(q.norm()) + ", expected 1 within 0.001 (order w, x, y, z)");
-    return {};
+    points[i].pose.orientation = {v[4], v[5], v[6], v[7]};
+    normalise(points[i].pose.orientation);
   }
   return points;
 }
@@ -35,12 +32,12 @@ std::vector<PathPoint> pointsOf(const CsvTable& table, const std::string& file, 
 
 std::vector<PathPoint> parseKinematicPath(const std::string& text, const std::string& file, Problems& problems) {
   const auto table = parseCsv(text, file, kRules, problems);
-  return table ? pointsOf(*table, file, problems) : std::vector<PathPoint>{};
+  return table ? pointsOf(*table) : std::vector<PathPoint>{};
 }
 
 std::vector<PathPoint> readKinematicPath(const std::filesystem::path& file, Problems& problems) {
   const auto table = readCsv(file, kMaxPathBytes, kRules, problems);
-  return table ? pointsOf(*table, file.string(), problems) : std::vector<PathPoint>{};
+  return table ? pointsOf(*table) : std::vector<PathPoint>{};
 }
 
 }  // namespace hapticd::scene
