@@ -36,7 +36,7 @@ std::optional<document::Problem> problemOf(const std::string& line) {
 }
 
 /// Returns where the problems of a file begin in a message; npos if it quotes none.
-size_t quoted(const std::string& what) {
+size_t quoteIn(const std::string& what) {
   size_t first = std::string::npos;
   for (const std::string_view words : kRefused)
     if (const size_t at = what.find(words); at != std::string::npos) first = std::min(first, at + words.size());
@@ -54,7 +54,7 @@ bool isOtherKind(const document::Problems& parts) {
 
 /// Returns the problems of a message; none if it is not a message about the contents of one file.
 document::Problems partsOf(const document::Problem& whole) {
-  const size_t begin = quoted(whole.what);
+  const size_t begin = quoteIn(whole.what);
   if (begin == std::string::npos) return {};
   document::Problems parts;
   std::istringstream lines(whole.what.substr(begin));
@@ -86,7 +86,7 @@ void separateModelFiles(document::Problems& problems) {
       continue;
     }
     if (other) {
-      one.what = one.what.substr(0, quoted(one.what)) + std::to_string(parts.size()) + " problems in " +
+      one.what = one.what.substr(0, quoteIn(one.what)) + std::to_string(parts.size()) + " problems in " +
                  parts[0].place.file + ", told at their own places; is it the right file?";
       all.push_back(std::move(one));
     }
