@@ -57,6 +57,7 @@ class Hand {
 
   bool holds() const noexcept { return settings_.script != Script::kNone; }
   const HandSettings& settings() const noexcept { return settings_; }
+  const HandPath& path() const noexcept { return path_; }  ///< [main]
 
  private:
   void script(double t, Eigen::Vector3d& position, Eigen::Vector3d& velocity) const noexcept;

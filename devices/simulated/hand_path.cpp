@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace hapticd::simulated {
 namespace {
@@ -12,13 +13,16 @@ constexpr size_t kMaxBytes = size_t{1} << 30;
 const document::CsvRules kRules{{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, true, true};
 
 document::CsvTable orThrow(std::optional<document::CsvTable> table, const document::Problems& problems) {
-  if (!table) throw std::runtime_error(problems.front().text());
-  return std::move(*table);
+  if (table) return std::move(*table);
+  std::string all;
+  for (const document::Problem& problem : problems) all.append(all.empty() ? "" : "\n").append(problem.text());
+  throw std::runtime_error(all);
 }
 
 }  // namespace
 
-HandPath::HandPath(const document::CsvTable& table) {
+HandPath::HandPath(const document::CsvTable& table, std::string file)
+    : file_(std::move(file)), first_line_(table.lines.empty() ? 1 : table.lines.front()) {
   for (size_t i = 0; i < table.rows(); ++i) {
     times_.push_back(table.row(i)[0]);
     points_.emplace_back(table.row(i)[1], table.row(i)[2], table.row(i)[3]);
@@ -27,12 +31,12 @@ HandPath::HandPath(const document::CsvTable& table) {
 
 HandPath HandPath::read(const std::string& file) {
   document::Problems problems;
-  return HandPath(orThrow(document::readCsv(file, kMaxBytes, kRules, problems), problems));
+  return HandPath(orThrow(document::readCsv(file, kMaxBytes, kRules, problems), problems), file);
 }
 
 HandPath HandPath::parse(const std::string& text, const std::string& name) {
   document::Problems problems;
-  return HandPath(orThrow(document::parseCsv(text, name, kRules, problems), problems));
+  return HandPath(orThrow(document::parseCsv(text, name, kRules, problems), problems), name);
 }
 
 void HandPath::at(double t, Eigen::Vector3d& position, Eigen::Vector3d& velocity) const noexcept {

@@ -9,6 +9,7 @@
 #include "hapticd/device_pace.h"
 #include "kinematics/extension.hpp"
 #include "kinematics/statics.hpp"
+#include "simulated/nearest_place.hpp"
 #include "simulated/parameter_table.hpp"
 
 namespace hapticd::simulated {
@@ -178,14 +179,25 @@ class SimulatedArm : public Device, public Parameters {
     std::snprintf(info.serial, sizeof info.serial, "seed %d", seed);
   }
 
+  /// Says why the hand cannot start. For a path, the text begins with the file and the line of its first row.
   std::string unreachable() const {
     const Vector3d& p = target_.position;
-    char text[256];
-    std::snprintf(text, sizeof text,
-                  "the hand starts at (%.3f, %.3f, %.3f) m in the device frame, which the arm cannot reach; expected a "
-                  "script within its workspace: see hand.center, arm.limits and the mount of the device file",
-                  p.x(), p.y(), p.z());
-    return text;
+    const auto text = [](const char* format, const Vector3d& v) {
+      char all[160];
+      std::snprintf(all, sizeof all, format, v.x(), v.y(), v.z());
+      return std::string(all);
+    };
+    const bool follows = hand_->settings().script == Script::kPath;
+    std::string told = follows ? hand_->path().firstPlace() + ": x: " : "";
+    told += text("the hand starts at (%.3f, %.3f, %.3f) m in the device frame, which the arm cannot reach", p);
+    constexpr double kFar = 2;  // [m] no arm of the kinds that are simulated reaches so far
+    if (JointVector q = arm_->neutral(); p.norm() > kFar && arm_->inverse(1e-3 * p, q))
+      return told + text("; is it in mm? It must be in m: [%.4g, %.4g, %.4g]", 1e-3 * p);
+    if (const auto near = nearestPlace(*arm_, p))
+      told += text("; the nearest place that it reaches is [%.3f, %.3f, %.3f]", *near);
+    return told + (follows ? "; expected rows within its workspace (hapticd device info)"
+                           : "; expected a script within its workspace: see hand.center, arm.limits and the mount of "
+                             "the device file");
   }
 
   void advance(uint64_t now_ns) noexcept {

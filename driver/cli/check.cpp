@@ -21,8 +21,10 @@
 #include "diagnostics/key_place.hpp"
 #include "diagnostics/model_file_problems.hpp"
 #include "diagnostics/model_trial.hpp"
+#include "diagnostics/pass_through.hpp"
 #include "diagnostics/setting_plausibility.hpp"
 #include "diagnostics/slow_arm.hpp"
+#include "diagnostics/two_hands.hpp"
 #include "diagnostics/unit_warnings.hpp"
 #include "diagnostics/value_plausibility.hpp"
 #include "diagnostics/velocity_warnings.hpp"
@@ -58,6 +60,7 @@ struct CheckResult {
   std::string file;
   document::Problems problems, warnings;
   bool whole = true;  ///< false if some checks were left out, because something that they need is missing or wrong
+  bool hand_left_out = false;  ///< true if the scene gives a hand, but it was not moved, because of the problems
 };
 
 /// Returns true if the same key of the same file has a warning already.
@@ -78,7 +81,10 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
   if (const auto root = document::parseFile(result.file, unread)) {
     warnOfZeros(*root, result.file, more);
     warnOfTurns(*root, result.file, more);
+    warnOfTwoHands(*root, result.file, more);
   }
+  if (!options.files_only)
+    for (const document::Problem& one : pressesThrough(full, trial.boxes)) more.push_back(one);
   if (!options.files_only)  // only a scene without problems can run, and a run shows more of its hands
     for (const document::Problems& found :
          {result.problems.empty() ? unreachableRows(full) : document::Problems(),
@@ -227,6 +233,8 @@ CheckResult checkOne(const std::string& file, const CheckArguments& options) {
   result.whole = result.whole && found.empty();
   if (scene) addWarnings(withArm(*scene), trial, options, result);
   if (scene) addImplausible(withArm(*scene), trial.boxes, {}, result.warnings);
+  result.hand_left_out = !found.empty() && !options.files_only && placeOfKey(std::filesystem::path(file), "hand") &&
+                         placeOfKey(std::filesystem::path(file), "models");
   placeWarnings(result.warnings);
   separateModelFiles(result.problems);
   return result;
@@ -254,7 +262,7 @@ int check(const CheckArguments& options) {
   if (!options.schema.empty()) return printSchema(options.schema);
   if (options.files.empty()) return fail(kBadInput, "no file given, expected `hapticd check FILE...`");
   size_t problems = 0, bad_files = 0;
-  bool whole = true;
+  bool whole = true, hand_left_out = false;
   Json files = Json::array();
   for (const std::string& file : options.files) {
     const CheckResult result = checkOne(file, options);
@@ -267,6 +275,7 @@ int check(const CheckArguments& options) {
       print(result, options.quiet);
     problems += result.problems.size();
     whole = whole && result.whole;
+    hand_left_out = hand_left_out || result.hand_left_out;
     bad_files += result.problems.empty() ? 0 : 1;
   }
   if (options.json)
@@ -275,9 +284,10 @@ int check(const CheckArguments& options) {
         Json{{"problems", problems}, {"files", files}}.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
   if (problems == 0) return kWorked;
   std::fflush(stdout);
-  std::fprintf(stderr, "%zu problem%s in %zu of %zu file%s%s\n", problems, problems == 1 ? "" : "s", bad_files,
+  std::fprintf(stderr, "%zu problem%s in %zu of %zu file%s%s%s\n", problems, problems == 1 ? "" : "s", bad_files,
                options.files.size(), options.files.size() == 1 ? "" : "s",
-               whole ? "" : "; some checks can run only after these are corrected, and may find more");
+               whole ? "" : "; some checks can run only after these are corrected, and may find more",
+               whole || !hand_left_out ? "" : ": the hand was not moved yet");
   return kBadInput;
 }
 

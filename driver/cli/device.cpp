@@ -9,6 +9,7 @@
 #include "cli/class_info.hpp"
 #include "cli/command.hpp"
 #include "cli/device_file.hpp"
+#include "diagnostics/arm_reach.hpp"
 #include "diagnostics/device_bus.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/enable_button.hpp"
@@ -130,6 +131,13 @@ void printCapabilities(uint32_t flags) {
     if ((flags & capability.flag) != 0) std::printf("  %s\n", capability.text);
 }
 
+/// Prints where the tip can be, within the limits of the joints.
+void printReach(const host::DeviceInstance& device) {
+  if (const auto box = diagnostics::boxOfReach(device))
+    std::printf("  reach of the tip in the device frame: x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f m\n",
+                box->min().x(), box->max().x(), box->min().y(), box->max().y(), box->min().z(), box->max().z());
+}
+
 void printHardware(host::DeviceInstance& device) {
   auto opened = device.open();
   if (!opened) return (void)std::printf("hardware: not available\n  %s\n", opened.error().c_str());
@@ -143,6 +151,7 @@ void printHardware(host::DeviceInstance& device) {
   for (uint32_t i = 0; i < info.joint_count; ++i)
     std::printf("  joint %u: %g to %g, motor %g\n", i + 1, info.position_min[i], info.position_max[i],
                 info.max_torque[i]);
+  printReach(device);
 }
 
 bool hasParameter(const hdv_class& module, const std::string& id) {

@@ -96,7 +96,7 @@ class Parser {
     return "";
   }
   void problem(size_t offset, const std::string& column, const std::string& what) {
-    ++wrong_;
+    if (wrong_++ >= kShownProblems) return;
     report(problems_, file_, line_, static_cast<int>(offset) + 1, column, what);
   }
 

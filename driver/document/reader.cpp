@@ -158,9 +158,28 @@ std::optional<Eigen::Vector3d> Reader::vector3(const Node& node, const std::stri
   return good ? std::optional(v) : std::nullopt;
 }
 
+/// Returns the quaternion of a mapping with axis and angle, as a hint; "" if the node is none.
+static std::string turnOf(const Node& node) {
+  const Node *axis = node.isMap() ? node.find("axis") : nullptr, *angle = node.isMap() ? node.find("angle") : nullptr;
+  if (axis == nullptr || angle == nullptr || !axis->isSequence() || axis->items.size() != 3) return "";
+  Eigen::Vector3d v;
+  for (size_t i = 0; i < 3; ++i) v[static_cast<int>(i)] = toNumber(axis->items[i].scalar).value_or(0);
+  const double given = toNumber(angle->scalar).value_or(0);
+  if (!(v.norm() > 0) || !v.allFinite() || !std::isfinite(given)) return "";
+  const bool degrees = std::abs(given) > 2 * M_PI;
+  const Eigen::Quaterniond q(Eigen::AngleAxisd(degrees ? given * M_PI / 180 : given, v.normalized()));
+  const auto part = [](double x) { return numberText(std::round(x * 1e7) / 1e7 + 0.0); };
+  return numberText(given) + (degrees ? " degrees" : " rad") + " about this axis are [" + part(q.w()) + ", " +
+         part(q.x()) + ", " + part(q.y()) + ", " + part(q.z()) + "]";
+}
+
 std::optional<Eigen::Quaterniond> Reader::quaternion(const Node& node, const std::string& key) {
   constexpr const char* kNoDegrees =
       "expected a unit quaternion [w, x, y, z]; 90 degrees about y are [0.7071068, 0, 0.7071068, 0]";
+  if (const std::string turn = turnOf(node); !turn.empty()) {
+    problem(node, key, describe(node) + ", expected a unit quaternion [w, x, y, z]; " + turn);
+    return std::nullopt;
+  }
   if (!node.isSequence() || node.items.size() != 4) {
     problem(
         node, key,

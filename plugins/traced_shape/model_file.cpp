@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <initializer_list>
 #include <optional>
 
@@ -102,12 +103,29 @@ class Reader {
       try {
         check();
       } catch (const std::exception& e) {
-        problems_.add(at, e.what() + otherKnots(data));
+        problems_.add(placeIn(data, at, e.what()), e.what() + otherKnots(data));
       }
     };
     for (const int axis : {0, 1}) attempt([&] { spline::validateKnots(data, axis); });
     if (problems_.count() == before) attempt([&] { spline::validate(data); });
     return problems_.count() == before;
+  }
+
+  /// Returns the value of a surface that a message such as "surface 'lid': knots[u][2]: ..." is about.
+  static Path placeIn(const spline::SurfaceData& data, const Path& at, const std::string& what) {
+    const std::string before = "surface '" + (data.name.empty() ? std::string("unnamed") : data.name) + "': ";
+    if (!what.starts_with(before)) return at;
+    const std::string where = what.substr(before.size(), what.find(": ", before.size()) - before.size());
+    const std::string key = where.substr(0, where.find('['));
+    Path path = at;
+    for (const char* known : {"knots", "points", "weights"})
+      if (key == known) path = path / known;
+    if (path.size() == at.size()) return at;
+    for (std::size_t open = where.find('['); open != std::string::npos; open = where.find('[', open + 1)) {
+      const std::string index = where.substr(open + 1, where.find(']', open) - open - 1);
+      path = path / (index == "u" ? 0u : index == "v" ? 1u : std::strtoul(index.c_str(), nullptr, 10));
+    }
+    return path;
   }
 
   /// Returns what was probably meant by knots that do not fit the points.
@@ -193,7 +211,16 @@ class Reader {
       for (int side = 0; side < trace::kSides; ++side)
         if (surface >= 0 && json[1] == kSideNames[static_cast<std::size_t>(side)]) return trace::EdgeEnd{surface, side};
     }
-    problems_.add(at, "expected [surface, side]: a name or index of a surface, and u0, u1, v0 or v1");
+    std::vector<std::string> names;
+    for (const spline::SurfaceData& surface : file.surfaces)
+      if (!surface.name.empty()) names.push_back(surface.name);
+    const bool is_name = json.is_array() && json.size() == 2 && json[0].is_string();
+    if (is_name && std::find(names.begin(), names.end(), json[0].get<std::string>()) == names.end())
+      problems_.add(at / std::size_t{0}, "there is no surface \"" + json[0].get<std::string>() +
+                                             "\", expected a name or index of a surface" +
+                                             document::suggestion(json[0].get<std::string>(), names));
+    else
+      problems_.add(at, "expected [surface, side]: a name or index of a surface, and u0, u1, v0 or v1");
     return std::nullopt;
   }
 

@@ -97,13 +97,27 @@ double lengthOfNet(const SurfaceData& surface, std::size_t along_u, std::size_t 
   return length;
 }
 
+/// Returns true if some lines of a control net that face each other across a cell run in opposite directions.
+bool runsToAndFro(const SurfaceData& surface, std::size_t along_u, std::size_t along_v) {
+  const auto rows = static_cast<std::size_t>(surface.count(0)), columns = static_cast<std::size_t>(surface.count(1));
+  const auto& p = surface.points;
+  for (std::size_t i = 0; i + 1 < rows; ++i)
+    for (std::size_t j = 0; j + 1 < columns; ++j) {
+      const std::size_t a = i * along_u + j * along_v, b = a + along_u, c = a + along_v, d = b + along_v;
+      if ((p[b] - p[a]).dot(p[d] - p[c]) < 0 || (p[c] - p[a]).dot(p[d] - p[b]) < 0) return true;
+    }
+  return false;
+}
+
 /// Warns of a control net whose points were written with u fastest. Read with v fastest, its lines run to and fro, so
 /// they are longer.
 void warnOfOrder(const SurfaceData& surface, std::size_t index, Problems& odd) {
-  constexpr double kShorter = 0.8;
+  constexpr double kShorter = 0.8, kBitShorter = 0.95;
   const auto rows = static_cast<std::size_t>(surface.count(0)), columns = static_cast<std::size_t>(surface.count(1));
   const double as_read = lengthOfNet(surface, columns, 1), turned = lengthOfNet(surface, 1, rows);
-  if (turned < kShorter * as_read)
+  const bool folded =
+      turned < kBitShorter * as_read && runsToAndFro(surface, columns, 1) && !runsToAndFro(surface, 1, rows);
+  if (folded || turned < kShorter * as_read)
     odd.add(surfaceAt(index, "points"),
             written("run to and fro: the net of %zu by %zu is %.3g times as long as it would be if u ran fastest; "
                     "expected all points of the first u, then of the next: v runs fastest",

@@ -56,7 +56,7 @@ std::string countText(const host::ParamInfo& p) {
                      : p.max_count == UINT32_MAX
                          ? "at least " + std::to_string(p.min_count) + " numbers"
                          : std::to_string(p.min_count) + " to " + std::to_string(p.max_count) + " numbers";
-  if (p.columns > 1) text += " in rows of " + std::to_string(p.columns);
+  if (p.columns > 1 && p.max_count > p.columns) text += " in rows of " + std::to_string(p.columns);
   return text;
 }
 

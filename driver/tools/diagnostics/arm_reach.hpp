@@ -2,6 +2,7 @@
 /// Finds how far an arm can move its tip, and how far away the models of a scene are.
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 
 #include "description/scene.hpp"
@@ -13,6 +14,10 @@ namespace hapticd::diagnostics {
 /// [main] Returns how far [m] the joints can move the tip from `tip_device` (device frame) within arm.limits. Without
 /// arm.limits the result is an overestimate.
 double reachOf(const scene::Device& device, const host::DeviceInstance& arm, const Eigen::Vector3d& tip_device);
+
+/// [main] Returns the box [m] (device frame) round all places of the tip within the joint limits; nothing if some joint
+/// has no limits. @param arm an opened arm
+std::optional<Eigen::AlignedBox3d> boxOfReach(const host::DeviceInstance& arm);
 
 /// [main] Returns the distance [m] from a tip to one model; nothing if the model gives no distance.
 std::optional<double> distanceOf(const scene::Scene& scene, const servo::World& world, servo::Core& core,

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
+#include <cstdlib>
 #include <string>
 
 #include "document/csv.hpp"
@@ -47,7 +49,13 @@ std::string obstacle(const host::DeviceInstance& arm, const double* place, std::
   const hdv_ext_kinematics& kinematics = arm.kinematics();
   if (kinematics.inverse == nullptr) return "";
   auto q = joints;
-  if (kinematics.inverse(arm.handle(), place, q.data()) < 0) return "the arm does not reach it";
+  if (kinematics.inverse(arm.handle(), place, q.data()) < 0) {
+    const double smaller[] = {1e-3 * place[0], 1e-3 * place[1], 1e-3 * place[2]};
+    constexpr double kFar = 2;  // [m] no arm reaches so far
+    const bool fits =
+        std::hypot(place[0], place[1], place[2]) > kFar && kinematics.inverse(arm.handle(), smaller, q.data()) >= 0;
+    return std::string("the arm does not reach it") + (fits ? "; is it in mm? It must be in m" : "");
+  }
   joints = q;
   for (uint32_t i = 0; i < arm.info().joint_count; ++i) {
     constexpr double kRounding = 1e-6;
@@ -58,8 +66,8 @@ std::string obstacle(const host::DeviceInstance& arm, const double* place, std::
   return "";
 }
 
-/// Returns a text with the first row that the arm cannot follow, the reason, and how many rows there are; "=" if it can
-/// follow all.
+/// Returns a text with the line of the first row that the arm cannot follow, the reason, and how many rows there are;
+/// "=" if it can follow all.
 std::string tryRows(const scene::Device& device, const std::string& file) {
   document::Problems told_by_who_opens;
   const auto table =
@@ -79,8 +87,8 @@ std::string tryRows(const scene::Device& device, const std::string& file) {
     const std::string why = obstacle(**arm, row + 1, joints);
     if (why.empty()) continue;
     if (rows++ == 0)
-      first = fmt::format("{}:{}: at t = {:g} s the hand wants to be at [{:.4g}, {:.4g}, {:.4g}] m (device frame): {}",
-                          file, table->lines[i], row[0], row[1], row[2], row[3], why);
+      first = fmt::format("{}: at t = {:g} s the hand wants to be at [{:.4g}, {:.4g}, {:.4g}] m (device frame): {}",
+                          table->lines[i], row[0], row[1], row[2], row[3], why);
   }
   if (rows == 0) return "=";
   return first +
@@ -97,7 +105,9 @@ document::Problems unreachableRows(const scene::Scene& scene) {
     const std::string file = pathOf(device);
     if (file.empty()) continue;
     const auto told = host::runInChild([&] { return tryRows(device, file); }, kPathLimitMs);
-    if (told && *told != "=") document::report(warnings, given(device, "hand.path")->place, "hand.path", *told);
+    if (!told || *told == "=") continue;
+    const size_t colon = told->find(": ");
+    document::report(warnings, file, std::atoi(told->c_str()), 1, "hand.path", told->substr(colon + 2));
   }
   return warnings;
 }

@@ -39,6 +39,10 @@ void readPath(const scene::Device& device, HandScript& hand) {
       document::readCsv(path->text, kMaxPathBytes, {{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, true, true}, told_by_who_opens);
   if (!table || table->rows() == 0) return;
   hand.path_end = table->row(table->rows() - 1)[0];
+  hand.path_times = {path->text, table->lines[std::min<size_t>(1, table->rows() - 1)], 1};
+  for (size_t i = 0; i < table->rows(); ++i)
+    for (size_t axis = 1; axis <= 3; ++axis)
+      hand.path_widest = std::max(hand.path_widest, std::abs(table->row(i)[axis]));
   for (size_t i = 1; i < table->rows(); ++i) {
     const double *from = table->row(i - 1), *to = table->row(i);
     const double way = std::hypot(to[1] - from[1], to[2] - from[2], to[3] - from[3]), speed = way / (to[0] - from[0]);
@@ -79,16 +83,16 @@ void checkSpeed(const scene::Scene& scene, const scene::Device& device, const Ha
 }
 
 /// Warns of a path file whose times seem to be in ms, because its hand is extremely slow.
-void checkSlowMotion(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
-                     document::Problems& warnings) {
+void checkSlowMotion(const scene::Device& device, const HandScript& hand, document::Problems& warnings) {
   constexpr double kCrawl = 2e-3, kLong = 10, kFar = 5e-3;  // [m/s]; [s]; [m] a shorter path counts as rest
-  if (hand.kind != Kind::kPath || hand.path_end < kLong || hand.path_way < kFar) return;
-  if (hand.path_speed > 10 * kCrawl || hand.path_way > kCrawl * hand.path_end) return;
-  const HandKey key = keyOfHand(scene, device, {"hand.path"});
+  constexpr double kWidest = 2;                             // [m] places farther away must be in mm
+  const double unit = hand.path_widest > kWidest ? 1e-3 : 1, way = unit * hand.path_way;
+  if (hand.kind != Kind::kPath || hand.path_end < kLong || way < kFar) return;
+  if (unit * hand.path_speed > 10 * kCrawl || way > kCrawl * hand.path_end) return;
   document::report(
-      warnings, key.place, key.id,
+      warnings, hand.path_times, "t",
       fmt::format("the hand of {} takes {:.4g} s for {:.3g} mm ({:.2g} mm/s); times must be in s (1 ms is 0.001)",
-                  device.name, hand.path_end, hand.path_way * 1e3, hand.path_way / hand.path_end * 1e3));
+                  device.name, hand.path_end, way * 1e3, way / hand.path_end * 1e3));
 }
 
 /// Warns of a sweep that was meant in degrees. Returns true if it was, so that the speed needs no warning of its own.
@@ -164,6 +168,8 @@ std::optional<HandScript> handScriptOf(const scene::Device& device) {
   hand.rise = number("hand.rise"), hand.rate = number("hand.rate"), hand.lead_in = number("hand.lead_in");
   if (const scene::Value* center = givenIn(device.parameters, "hand.center"); center && center->numbers.size() == 3)
     hand.center = Eigen::Map<const Eigen::Vector3d>(center->numbers.data());
+  if (const scene::Value* normal = givenIn(device.parameters, "hand.normal"); normal && normal->numbers.size() == 3)
+    hand.normal = Eigen::Map<const Eigen::Vector3d>(normal->numbers.data());
   if (hand.kind == Kind::kPath) readPath(device, hand);
   return hand;
 }
@@ -181,7 +187,7 @@ document::Problems fastHands(const scene::Scene& scene, const UnreadKeys& unread
       checkSpeed(scene, device, mended, warnings);
     } else if (!wide && !unread.has("hand")) {
       checkSpeed(scene, device, *hand, warnings);
-      checkSlowMotion(scene, device, *hand, warnings);
+      checkSlowMotion(device, *hand, warnings);
     }
     const bool fast = warnings.size() > before;
     document::Problems of_values;

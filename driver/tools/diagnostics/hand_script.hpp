@@ -17,10 +17,13 @@ struct HandScript {
   enum class Kind { kHold, kStroke, kPress, kTap, kCircle, kPath, kNone, kGuided };  ///< in the module's order
   Kind kind = Kind::kHold;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();          ///< [m] device frame
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();         ///< from the centre to the hand, of any length
   double radius = 0, sweep = 0, rise = 0, rate = 0;          ///< [m], [rad], [m], [Hz]
   double lead_in = 0;                                        ///< [s]
   double path_end = 0, path_speed = 0, path_fastest_at = 0;  ///< path file: end [s], top speed [m/s], its time [s]
   double path_way = 0;                                       ///< [m] length of that path
+  double path_widest = 0;                                    ///< [m] largest coordinate in it
+  document::Place path_times;                                ///< where its file has the second time
 
   /// True if the hand moves by itself: there is a hand, and no program leads it.
   bool moves() const { return kind != Kind::kNone && kind != Kind::kGuided; }

@@ -80,6 +80,19 @@ void checkSpring(const HandValues& values, const HandScript& hand) {
                           led ? "the program that leads it" : "its script"));
 }
 
+const char* wordOf(HandScript::Kind script);
+
+/// Warns of a hand whose script moves it, but with no depth or not even once.
+void checkStill(const HandValues& values, const HandScript& hand) {
+  if (!isRepeated(hand)) return;
+  const bool turns = hand.kind == HandScript::Kind::kCircle || hand.kind == HandScript::Kind::kStroke;
+  const char* id = hand.rate == 0 ? "hand.rate" : turns || hand.rise > 0 ? nullptr : "hand.rise";
+  if (id == nullptr || values.read(id) == nullptr) return;
+  values.tell(id, fmt::format("with 0 {} the hand rests and never does its script, {}; expected a number above 0, or "
+                              "script: hold",
+                              hand.rate == 0 ? "Hz" : "m", wordOf(hand.kind)));
+}
+
 const char* wordOf(HandScript::Kind script) {
   constexpr const char* kWords[] = {"hold", "stroke", "press", "tap", "circle", "path", "none", "guided"};
   return kWords[static_cast<size_t>(script)];
@@ -149,6 +162,7 @@ void checkHandValues(const scene::Scene& scene, const scene::Device& device, con
                                             hand.lead_in, hand.lead_in * kThousandth));
   if (knowsScriptOf(device, "hand.rate", unread)) checkHandRate(values, hand);
   if (knowsScriptOf(device, "hand.stiffness", unread)) checkSpring(values, hand);
+  if (knowsScriptOf(device, "hand.rise", unread)) checkStill(values, hand);
 }
 
 }  // namespace hapticd::diagnostics

@@ -11,7 +11,8 @@
 namespace hapticd::diagnostics {
 namespace {
 
-constexpr std::string_view kRefused = ": cannot be set up: ";
+/// Words after which a refusal quotes the problems of a file: a model file, or the path file of a hand.
+constexpr std::string_view kRefused[] = {"cannot be set up: ", "cannot be opened: ", "cannot be started: "};
 
 /// Reads a line such as "/models/soft.yaml:5:13: medial.stifness: unknown key". Returns nothing for any other line.
 std::optional<document::Problem> problemOf(const std::string& line) {
@@ -22,6 +23,7 @@ std::optional<document::Problem> problemOf(const std::string& line) {
     const char* second = end + 1;
     const long column = std::strtol(second, &end, 10);
     if (column <= 0 || end == second || std::string_view(end).substr(0, 2) != ": ") continue;
+    if (line.rfind(": ", colon) != std::string::npos && line.rfind(": ", colon) < colon) return std::nullopt;
     document::Problem problem{{line.substr(0, colon), static_cast<int>(row), static_cast<int>(column)}, "", end + 2};
     const size_t key = problem.what.find(": ");
     if (key != std::string::npos && problem.what.find(' ') > key) {
@@ -33,12 +35,29 @@ std::optional<document::Problem> problemOf(const std::string& line) {
   return std::nullopt;
 }
 
-/// Returns the problems of a message; none if it is not a message about one file with several problems.
+/// Returns where the problems of a file begin in a message; npos if it quotes none.
+size_t quoteIn(const std::string& what) {
+  size_t first = std::string::npos;
+  for (const std::string_view words : kRefused)
+    if (const size_t at = what.find(words); at != std::string::npos) first = std::min(first, at + words.size());
+  return first;
+}
+
+/// Returns true if the problems say that the file is of another kind, so that it may be the wrong file. The place where
+/// it is named is then a problem, too.
+bool isOtherKind(const document::Problems& parts) {
+  return std::any_of(parts.begin(), parts.end(), [](const document::Problem& one) {
+    const bool no_key = one.key.empty() && one.place.line == 1 && !one.place.file.ends_with(".csv");
+    return no_key || one.key == "format" || one.key == "surfaces" || one.key == "medial";
+  });
+}
+
+/// Returns the problems of a message; none if it is not a message about the contents of one file.
 document::Problems partsOf(const document::Problem& whole) {
-  const size_t begin = whole.what.find(kRefused);
-  if (begin == std::string::npos || whole.what.find('\n') == std::string::npos) return {};
+  const size_t begin = quoteIn(whole.what);
+  if (begin == std::string::npos) return {};
   document::Problems parts;
-  std::istringstream lines(whole.what.substr(begin + kRefused.size()));
+  std::istringstream lines(whole.what.substr(begin));
   for (std::string line; std::getline(lines, line);) {
     auto part = problemOf(line);
     if (!part || (!parts.empty() && part->place.file != parts[0].place.file)) return {};
@@ -61,13 +80,16 @@ void separateModelFiles(document::Problems& problems) {
   document::Problems all;
   for (document::Problem& one : problems) {
     document::Problems parts = partsOf(one);
-    if (parts.empty()) {
+    const bool other = isOtherKind(parts);
+    if (parts.empty() || (other && parts.size() == 1)) {
       all.push_back(std::move(one));
       continue;
     }
-    one.what = one.what.substr(0, one.what.find(kRefused) + kRefused.size()) + std::to_string(parts.size()) +
-               " problems in " + parts[0].place.file + ", told at their own places";
-    all.push_back(std::move(one));
+    if (other) {
+      one.what = one.what.substr(0, quoteIn(one.what)) + std::to_string(parts.size()) + " problems in " +
+                 parts[0].place.file + ", told at their own places; is it the right file?";
+      all.push_back(std::move(one));
+    }
     for (document::Problem& part : parts)
       if (!isTold(all, part)) all.push_back(std::move(part));
   }

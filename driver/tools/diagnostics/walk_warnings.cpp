@@ -18,6 +18,32 @@ namespace {
 
 constexpr double kContactSeconds = 0.02;  ///< [s] a shorter contact is not judged
 
+/// Returns a spring of the hand that is so soft that the hand need not come where its script aims; nullptr if it is
+/// not.
+const scene::Value* softSpring(const scene::Device& device) {
+  constexpr double kSoft = 50;  // [N/m]
+  const scene::Value* spring = givenIn(device.parameters, "hand.stiffness");
+  return spring != nullptr && spring->number < kSoft ? spring : nullptr;
+}
+
+/// Returns the advice for a hand that aims at no model: a larger radius, if the model lies in the direction of the
+/// normal; another normal if the hand moves along it, but not to the model.
+std::string adviceOf(const scene::Device& device, const HandScript& hand, const scene::Model& nearest, double away) {
+  constexpr double kWide = 0.2, kTowards = 0.9;  // [m] few arms let a hand move farther from its centre; cosine
+  const double wider = hand.radius + away;
+  if (away <= 0 || wider >= kWide) return "";
+  const bool turns = hand.kind == HandScript::Kind::kStroke || hand.kind == HandScript::Kind::kCircle;
+  const Eigen::Vector3d normal = device.mount.orientation * hand.normal.normalized();
+  const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
+  const Eigen::Vector3d way = nearest.pose.position - (center + hand.radius * normal);
+  if (turns || way.dot(normal) > kTowards * way.norm())
+    return fmt::format(", or give a hand.radius above {:.3g} m", wider);
+  return fmt::format(
+      ", or turn hand.normal: the hand moves along it only, which is [{:.3g}, {:.3g}, {:.3g}] in the "
+      "world, so another hand.radius does not lead there",
+      normal.x(), normal.y(), normal.z());
+}
+
 void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen,
                 const servo::World& world, document::Problems& warnings) {
   const scene::Device& device = scene.devices[index];
@@ -36,6 +62,13 @@ void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& han
                            "{:.3g}], and pose.position of {} is [{:.3g}, {:.3g}, {:.3g}]: is one of them wrong?",
                            device.name, mount.x(), mount.y(), mount.z(), nearest.name, pose.x(), pose.y(), pose.z()));
   }
+  if (const scene::Value* spring = softSpring(device))
+    return document::report(
+        warnings, spring->place, "hand.stiffness",
+        what +
+            fmt::format("a stiffer hand: with {:g} N/m its spring pulls with {:.2g} N where it is 10 mm off its way; "
+                        "500 N/m is a firm grip",
+                        spring->number, 0.01 * spring->number));
   if (circlesModel(device, hand, nearest, *world.shapes()[seen.nearest])) {
     const HandKey key = keyOfHand(scene, device, {"hand.radius", "hand.rise", "hand.script"});
     return document::report(
@@ -47,15 +80,12 @@ void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& han
                     : fmt::format("a hand.radius with which it meets the surface (it is {:.4g} m now)", hand.radius)));
   }
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
-  constexpr double kWide = 0.2;  // [m] few arms let a hand move farther from its centre
-  const double wider = hand.radius + seen.away;
   const std::string at = fmt::format(
       "a hand that moves near a model: its centre (hand.center) is at [{:.3g}, {:.3g}, {:.3g}] in "
       "the world, it moves {:.3g} m from there (hand.radius), and {} is at [{:.3g}, {:.3g}, {:.3g}]; move the arm "
       "(mount.position), hand.center or the model (pose.position){}",
       center.x(), center.y(), center.z(), hand.radius, nearest.name, nearest.pose.position.x(),
-      nearest.pose.position.y(), nearest.pose.position.z(),
-      seen.away > 0 && wider < kWide ? fmt::format(", or give a hand.radius above {:.3g} m", wider) : std::string());
+      nearest.pose.position.y(), nearest.pose.position.z(), adviceOf(device, hand, nearest, seen.away));
   const std::string in_list = fmt::format("devices[{}].mount.position", index);
   for (const std::string& id : {std::string("device.mount.position"), in_list})
     if (const auto place = placeOfKey(scene.file, id)) return document::report(warnings, *place, id, what + at);
@@ -139,7 +169,11 @@ void reportCut(const scene::Scene& scene, const scene::Device& device, const Han
   const std::string limit = servo::nameOf(static_cast<servo::Limit>(strictest(seen)));
   if (reportOwnLimit(device, seen, limit, warnings)) return;
   const std::string most =
-      limiter.maxForce() > 0 ? fmt::format(", but only {:.3g} N are allowed", limiter.maxForce()) : "";
+      limit == "motors (torque)" && seen.asked <= limiter.maxForce()
+          ? fmt::format(", less than the {:.3g} N of limits.force, but more than its motors give in that pose",
+                        limiter.maxForce())
+      : limiter.maxForce() > 0 ? fmt::format(", but only {:.3g} N are allowed", limiter.maxForce())
+                               : "";
   document::report(
       warnings, key.place, key.id,
       fmt::format(

@@ -46,7 +46,7 @@ def judged(folder, ask):
         with open(path, "w") as file:
             file.write(f"t,x,y,z\n0,0,0.02,0\n1,-0.04,0,{last}\n")
         code, out, err = ask("check", scene)
-        check(f"check warns of a row {name}", code == 0 and word in out and "path.csv:3: at t = 1 s" in out, (code, out, err))
+        check(f"check warns of a row {name}", code == 0 and word in out and "path.csv:3:1: hand.path: warning: at t = 1 s" in out, (code, out, err))
     with open(path, "w") as file:
         file.write("t,x,y,z\n0,0,0.02,0\n1,0,0.01,0\n")
     code, out, err = ask("check", scene)

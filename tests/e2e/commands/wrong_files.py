@@ -80,7 +80,7 @@ with tempfile.TemporaryDirectory() as folder:  # of arms, check refuses what run
     with open(scene, "w") as out:
         out.write(f"hapticd: 1\nhand: {{script: path, path: path.csv}}\nmodels:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {geometry}}}}}\n")
     told = subprocess.run([HAPTICD, "check", scene], capture_output=True, text=True, timeout=120)
-    check("a path in ms is told", f"{scene}:2:28: hand.path: warning: " in told.stdout and "times must be in s (1 ms is 0.001)" in told.stdout, told.stdout)
+    check("a path in ms is told", f"{os.path.join(folder, 'path.csv')}:3:1: t: warning: " in told.stdout and "times must be in s (1 ms is 0.001)" in told.stdout, told.stdout)
 
 for name in ("part.dae", "part.glb"):
     done = subprocess.run([HAPTICD, "import", name, "-o", "part.hpart"], capture_output=True, text=True, timeout=120)
