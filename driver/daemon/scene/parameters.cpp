@@ -283,7 +283,8 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
   const size_t count = value.numbers.size();
   const bool ragged = param.columns > 1 && count % param.columns != 0;
   if (!ragged && count >= param.min_count && count <= param.max_count) return true;
-  in_->problem(node, key, numbersText(count) + ", expected " + countText(param) + document::suggestDecimals(node, 1));
+  const std::string advice = count > param.min_count ? document::suggestDecimals(node, 1) : "";
+  in_->problem(node, key, numbersText(count) + ", expected " + countText(param) + advice);
   return false;
 }
 

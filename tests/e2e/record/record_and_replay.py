@@ -88,7 +88,7 @@ with tempfile.TemporaryDirectory() as scratch:
     replayIsExact(scratch, "moving-box")
     theManualReadsIt(teapot)
     status, text = hapticd("plot", teapot, "--from", "2", "--to", "1")
-    check("--from after --to is refused by its name", status == 2 and "--from is not before --to" in text, text)
+    check("--from after --to is refused by its name", status == 2 and "--from 2 is not before --to 1" in text, text)
     status, text = hapticd("plot", teapot, "--from", "50")
     check("a time beyond the recording is refused with the times it has", status == 2 and "the recording covers" in text, text)
     check("and leaves no picture", not os.path.exists(teapot + ".svg"))
