@@ -38,7 +38,7 @@ ALONE = """
 import os, sys, warnings
 sys.modules["numpy"] = None  # as where it is not installed
 import hapticd
-from hapticd._client import _plain
+from hapticd._line import _plain
 from hapticd._lead import ForceLead, PoseLead
 from hapticd._rows import Column, Stream
 stream = Stream(None, 0, "ticks", 12, 8, 0, [Column("t", "f8", 0, "s", ""), Column("n", "u4", 8, "", "")])
