@@ -38,7 +38,7 @@ double errorAfter(const Rotation& rotation, const Vector3d& turn, int64_t n) {
 }
 
 TEST(Rotation, ManyTicksDriftByRoundingOnly) {
-  const Vector3d turn(1e-3, -2e-3, 2e-3);                           // 3 rad/s at 1 kHz
+  const Vector3d turn(1e-3, -2e-3, 2e-3);                          // 3 rad/s at 1 kHz
   const int64_t ticks = support::kLong ? 100'000'000 : 3'000'000;  // 28 hours
   Rotation rotation;
   for (int64_t i = 0; i < ticks; ++i) rotation.turnWorld(turn);
