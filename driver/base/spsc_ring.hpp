@@ -22,12 +22,20 @@ class SpscRing {
 
   /// [rt] Appends a value. Returns false and writes nothing if the ring is full.
   bool push(const T& value) noexcept HSP_RT {
-    const size_t head = head_.load(std::memory_order_relaxed);
-    if (head - tail_.load(std::memory_order_acquire) == slots_.size()) return false;
-    slots_[head & mask_] = value;
-    head_.store(head + 1, std::memory_order_release);
+    const bool added = add(value);
+    publish();
+    return added;
+  }
+
+  /// [rt] Appends a value that the reader sees only after publish(), together with all others of its kind. Returns
+  /// false and writes nothing if the ring is full.
+  bool add(const T& value) noexcept HSP_RT {
+    if (written_ - tail_.load(std::memory_order_acquire) == slots_.size()) return false;
+    slots_[written_++ & mask_] = value;
     return true;
   }
+  /// [rt] Shows the reader all values that add() has appended.
+  void publish() noexcept HSP_RT { head_.store(written_, std::memory_order_release); }
 
   /// [rt] Takes the oldest value. Returns false if the ring is empty.
   bool pop(T& value) noexcept HSP_RT {
@@ -41,7 +49,8 @@ class SpscRing {
  private:
   std::vector<T> slots_;
   size_t mask_;
-  alignas(64) std::atomic<size_t> head_{0};
+  alignas(64) std::atomic<size_t> head_{0};  ///< count of the values that the reader may see
+  size_t written_ = 0;                       ///< count of the values that were appended, known to the writer only
   alignas(64) std::atomic<size_t> tail_{0};
 };
 

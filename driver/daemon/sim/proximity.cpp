@@ -77,6 +77,7 @@ void Proximity::search() {
     for (Model& model : models_)
       if (model.index != UINT32_MAX) searchModel(model, probe, p_world);
   }
+  link_.records.publish();
 }
 
 void Proximity::receiveTransforms() {
@@ -127,7 +128,7 @@ void Proximity::stopLeft(Model& model, uint32_t probe) {
 }
 
 bool Proximity::send(const Model& model, ActivationRecord::Order order, const hsp_near& near) {
-  return link_.records.push(ActivationRecord{model.index, order, near});
+  return link_.records.add(ActivationRecord{model.index, order, near});
 }
 
 }  // namespace hapticd::sim

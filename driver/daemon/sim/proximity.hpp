@@ -41,6 +41,7 @@ class Proximity {
   void remove(uint32_t place);
 
   /// [sim] Searches once with the newest positions of the probes, and starts, updates or stops the tracing of surfaces.
+  /// The servo sees all records of a search at once.
   void search();
 
   /// [any] Returns the number of models that have surfaces to search.

@@ -79,7 +79,8 @@ void Tracks::restart(int patch, const Array2d& uv) noexcept {
 }
 
 /// Records that this tick brings results of a search. `way_told_before_` becomes the length of the probe's path at the
-/// tick in which the previous results arrived. The search of the new results is assumed to have begun after that tick.
+/// tick in which the previous results arrived. The search of the new results began after that tick, because the results
+/// of one search arrive in one tick (sim/proximity.cpp), unless there are more than a tick takes (1024).
 void Tracks::noteSearch() noexcept {
   if (told_ == tick_) return;
   told_before_ = told_;

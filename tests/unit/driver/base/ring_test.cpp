@@ -21,6 +21,21 @@ TEST(SpscRing, RefusesWhenFullAndKeepsOrder) {
   EXPECT_FALSE(ring.pop(none));
 }
 
+TEST(SpscRing, ShowsWhatWasAddedOnlyWhenPublished) {
+  SpscRing<int> ring(4);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(ring.add(i));
+  int got = -1;
+  EXPECT_FALSE(ring.pop(got));
+  ring.publish();
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(ring.pop(got));
+    EXPECT_EQ(got, i);
+  }
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(ring.add(i));
+  EXPECT_FALSE(ring.add(4)) << "four are not published yet, and there is room for no more";
+  EXPECT_FALSE(ring.pop(got));
+}
+
 TEST(SpscRing, LosesAndReordersNothingBetweenTwoThreads) {
   constexpr int kCount = 50000;
   SpscRing<int> ring(64);
