@@ -89,7 +89,7 @@ class Socket final : public Peer, public std::enable_shared_from_this<Socket> {
     Message bytes;
     bool text;
   };
-  websocket::stream<beast::tcp_stream> stream_;
+  websocket::stream<beast::tcp_stream, false> stream_;  ///< without compression: rows are for this machine
   ServerImpl& server_;
   std::shared_ptr<Register> register_;
   Request request_;
