@@ -4,7 +4,13 @@
 #   hapticd_headers              Eigen and the standard library, for code that ticks wait for
 #   hapticd_headers_no_deadline  nlohmann/json as well, for rooms with hapticd_no_deadline()
 # Flags of a room must be those of the headers, or g++ refuses them; a source with flags of its own says
-# SKIP_PRECOMPILE_HEADERS. A room links the libraries, since ccache reads the headers themselves.
+# SKIP_PRECOMPILE_HEADERS. A room also gets the libraries of the headers, since ccache reads the headers themselves.
+function(hapticd_use_precompiled target headers)
+  target_link_libraries(${target} PRIVATE ${ARGN})
+  target_precompile_headers(${target} REUSE_FROM ${headers})
+  target_compile_options(${target} PRIVATE ${HAPTICD_PRECOMPILED_WARNINGS})
+endfunction()
+
 function(hapticd_precompile headers)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES;ROOMS")
   file(WRITE ${CMAKE_BINARY_DIR}/${headers}.cpp "// nothing: its target precompiles headers\n")
@@ -13,8 +19,7 @@ function(hapticd_precompile headers)
   target_precompile_headers(${headers} PRIVATE ${arg_HEADERS})
   foreach(room IN LISTS arg_ROOMS)
     if(TARGET ${room})
-      target_precompile_headers(${room} REUSE_FROM ${headers})
-      target_compile_options(${room} PRIVATE ${HAPTICD_PRECOMPILED_WARNINGS})
+      hapticd_use_precompiled(${room} ${headers} ${arg_LIBRARIES})
     endif()
   endforeach()
 endfunction()
@@ -26,11 +31,12 @@ if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     hapticd_arm hapticd_core hapticd_host hapticd_loop hapticd_passivity hapticd_safety hapticd_sim hapticd_telemetry
     hapticd_velocity hapticd_kinematics hapticd_simulated simulated_objects hapticd_brep hapticd_contact hapticd_dynamics
     hapticd_medial hapticd_importing hapticd_part hapticd_spline hapticd_trace hapticd_traced_shape mat_deformable_objects
-    nurbs_rigid_objects pendulum_objects push_button_objects)
+    nurbs_rigid_objects pendulum_objects push_button_objects hapticd_wire_arm usb_hid_objects usb_bulk_objects vme_objects
+    vendor_hd_objects vendor_dhd_objects)
   hapticd_precompile(hapticd_headers_no_deadline HEADERS <Eigen/Geometry> <nlohmann/json.hpp> ${standard}
     LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json ROOMS
     hapticd_capture hapticd_conformance hapticd_diagnostics hapticd_document hapticd_export
     hapticd_mesh_import hapticd_record hapticd_scene hapticd_session hapticd_tune hapticd_view_parts
-    hapticd_world)
+    hapticd_world hapticd_client_objects hapticd_control hapticd_haply_parts hapticd_hd)
   hapticd_no_deadline(hapticd_headers_no_deadline)
 endif()

@@ -15,7 +15,6 @@
 namespace hapticd {
 namespace {
 
-constexpr double kLarge = 1.5;  ///< [m] a longer body is unusual: no arm reaches round it
 /// ratio of the felt stiffness to the file's stiffness above which a hint is given
 constexpr double kNoticed = 1.1;
 constexpr std::size_t kMostLines = 200;  ///< most lines in the log; nobody reads more
@@ -165,7 +164,7 @@ void MatDeformable::describe(const MedialFile& file, double tick) const {
         HSP_LOG_WARNING,
         "friction_static: has no effect, because friction_dynamic is greater; friction_dynamic must not be greater");
   const double size = body_->bounds().sizes().maxCoeff();
-  if (!(size > kLarge)) return;
+  if (!(size > medial::kLargestUsual)) return;
   char text[128];
   std::snprintf(text, sizeof text, ": the body is %.3g m long; lengths must be in m: is the file in millimetres?",
                 size);

@@ -67,12 +67,11 @@ class MaReader {
  private:
   /// Throws all problems, with a warning about millimetres.
   [[noreturn]] void throwAll() const {
-    constexpr double kLarge = 1.5;  // [m] a longer body is unusual
     Eigen::AlignedBox3d box;
     for (const medial::Sphere& sphere : data_.vertices)
       if (sphere.center.allFinite()) box.extend(sphere.center);
     ModelFileError error(found_);
-    if (const double size = box.isEmpty() ? 0 : box.sizes().maxCoeff(); size > kLarge) {
+    if (const double size = box.isEmpty() ? 0 : box.sizes().maxCoeff(); size > medial::kLargestUsual) {
       char text[160];
       std::snprintf(text, sizeof text, ": the body is %.3g m long; lengths must be in m: is the file in millimetres?",
                     size);

@@ -107,7 +107,7 @@ std::vector<std::string> warnOfMedialFile(const MedialFile& file, const Json& ro
   if (sized && read("mass")) warnOfMass(file, box, odd);
   if (read("stiffness") || read("young")) warnOfStiffness(file, medial, odd);
   // A file without problems gets this warning from the body that is made of it.
-  if (constexpr double kLarge = 1.5; problems.any() && sized && size > kLarge)
+  if (problems.any() && sized && size > medial::kLargestUsual)
     odd.add({{"medial", 0}},
             written("the body is %.3g m large; lengths must be in m: %.3g mm is %.3g m", size, size, size / 1000));
   return odd.texts();

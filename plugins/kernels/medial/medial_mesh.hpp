@@ -15,6 +15,8 @@
 
 namespace hapticd::medial {
 
+constexpr double kLargestUsual = 1.5;  ///< [m] no arm reaches round a larger body, so its file may be in millimetres
+
 /// A medial mesh as in a file; indices count from 0.
 struct MeshData {
   std::vector<Sphere> vertices;
