@@ -132,8 +132,7 @@ static void placeDoubt(const std::string& doubt, const Node& root, const std::st
                        document::Problems& warnings) {
   if (const auto stuck = stuckJoint(root, file); stuck && doubt.find("inverse()") != std::string::npos)
     return warnings.push_back(*stuck);
-  if (hasLimitsBeyondATurn(root) && doubt.find("inverse() refuses") != std::string::npos)
-    return;  // it follows from them
+  if (hasLimitsBeyondATurn(root) && doubt.find("inverse()") != std::string::npos) return;  // it follows from them
   const Node* parameters = root.find("parameters");
   const Node* arm = parameters != nullptr && parameters->isMap() ? parameters->find("arm") : nullptr;
   const Node* centers = arm != nullptr && arm->isMap() ? arm->find("centers") : nullptr;
