@@ -323,9 +323,10 @@ bool standsStill(const status::Page& page, uint64_t tick) {
 }
 
 int top(const TopArguments& options) {
-  const std::string file = status::runtimeFolder(false) + "/" + options.name + ".status";
-  auto opened = status::PageFile::open(file);
-  if (!opened) return fail(kFailed, opened.error() + "\n  " + control::startOrName(status::runtimeFolder(false)));
+  const std::string base = status::runtimeFolder(false) + "/" + options.name;
+  auto opened = status::PageFile::open(base + ".status");
+  if (!opened)
+    return fail(kFailed, control::isAlive(base + ".sock") ? opened.error() : control::noDaemonText(base + ".sock"));
   const status::Page& page = std::as_const(**opened).page();
   if (!options.once) return options.json ? stream(options, page) : watch(options, page);
   if (ended(page))
