@@ -102,7 +102,8 @@ View readPage(const status::Page& page) {
     line.traced = line.now.tick + kFresh >= view.now.tick && std::isfinite(line.now.depth);
     if (!line.traced) line.now.force = 0;
     line.silenced =
-        servo::silenceReason(line.name, static_cast<servo::ShapeFault>(line.now.trouble), line.now.failed_status);
+        servo::silenceReason(line.name, "FILE.so (`hapticd plugin info " + line.plugin + "` names the file)",
+                             static_cast<servo::ShapeFault>(line.now.trouble), line.now.failed_status);
     view.models.push_back(line);
   }
   view.clients = diagnostics::clientsOf(page);

@@ -21,11 +21,11 @@ constexpr double kBegins = 0.005;  ///< [s] a touch this early means that the ti
 
 }  // namespace
 
-void EventLog::name(uint32_t place, const std::string& model) {
+void EventLog::name(uint32_t place, const std::string& model, const std::string& file) {
   if (model.empty()) return;
   const std::lock_guard lock(mutex_);
   if (place >= models_.size()) models_.resize(place + 1);
-  models_[place] = model;
+  models_[place] = {model, file};
 }
 
 void EventLog::logNewEvents(const Flight& flight) {
@@ -98,10 +98,10 @@ EventLog::Message EventLog::messageOfSwitch(size_t arm) const {
           "press it"};
 }
 
-std::string EventLog::model(const hapticd_event& event) const {
+EventLog::NamedModel EventLog::model(const hapticd_event& event) const {
   const std::lock_guard lock(mutex_);
   const auto place = static_cast<size_t>(event.model);
-  return event.model >= 0 && place < models_.size() ? models_[place] : "";
+  return event.model >= 0 && place < models_.size() ? models_[place] : NamedModel();
 }
 
 std::string EventLog::device(const hapticd_event& event) const {
@@ -124,7 +124,7 @@ EventLog::Message EventLog::messageOf(const hapticd_event& event) const {
 }
 
 EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
-  const std::string who = model(event);
+  const auto [who, file] = model(event);
   switch (event.kind) {
     case HAPTICD_CLICK:
       return {HSP_LOG_DEBUG, who, fmt::format("clicked at {:.4f} s", event.t)};
@@ -137,7 +137,7 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
                     "the model, the arm (mount) or the hand (hand), so that the tip starts outside"};
       return {HSP_LOG_DEBUG, who, fmt::format("{} touches it at {:.4f} s", device(event), event.t)};
     case HAPTICD_SILENCED:
-      return {HSP_LOG_ERROR, "", silenceReason(event, who)};
+      return {HSP_LOG_ERROR, "", silenceReason(event, who, file)};
     case HAPTICD_DEGRADED:
       return {HSP_LOG_WARNING, who,
               fmt::format("answers less accurately (level {:.0f}), because ticks took too long", event.value)};
@@ -177,7 +177,7 @@ EventLog::Message EventLog::messageOfArm(const hapticd_event& event) const {
 EventLog::Message EventLog::messageOfLeader(const hapticd_event& event) const {
   if (event.model < 0 && event.code == static_cast<uint32_t>(Order::Led::kForce))
     return {HSP_LOG_DEBUG, "", ""};  // PusherLog reports more about programs that push
-  const std::string what = event.model >= 0 ? model(event) : device(event);
+  const std::string what = event.model >= 0 ? model(event).name : device(event);
   if (event.kind == HAPTICD_REFUSED)
     return {HSP_LOG_WARNING, what,
             fmt::format("{:.0f} record{} of its leader {} refused so far{}{}", event.value, event.value == 1 ? "" : "s",

@@ -25,8 +25,8 @@ class EventLog {
       : models_(places), devices_(std::move(devices)), arms_(arms) {}
 
   /// [any] Called when a model takes a place, or with "" when the model has left. Events before this call are reported
-  /// with the old name.
-  void name(uint32_t place, const std::string& model);
+  /// with the old name. @param file the file of its plugin
+  void name(uint32_t place, const std::string& model, const std::string& file);
 
   /// [main] Writes the events since the last call.
   void logNewEvents(const Flight& flight);
@@ -52,18 +52,22 @@ class EventLog {
   Message messageOfSwitch(size_t arm) const;
 
  private:
+  struct NamedModel {
+    std::string name, file;
+  };
   void logSwitches();
   void logPushers();
   void write(uint32_t arm, const PusherLog::Message& message) const;
   std::string leaderOf(const hapticd_event& event) const;
-  std::string model(const hapticd_event& event) const;
+  NamedModel model(const hapticd_event& event) const;
   std::string device(const hapticd_event& event) const;
   Message messageOfModel(const hapticd_event& event) const;
   Message messageOfArm(const hapticd_event& event) const;
   Message messageOfLeader(const hapticd_event& event) const;
 
   mutable std::mutex mutex_;  // because the request worker adds models
-  std::vector<std::string> models_, devices_;
+  std::vector<NamedModel> models_;
+  std::vector<std::string> devices_;
   const Arms& arms_;
   std::vector<bool> told_of_switch_, held_;
   PusherLog pushers_;

@@ -262,7 +262,7 @@ std::vector<std::string> Runner::enterRealTime() const {
 
 void Runner::nameModel(uint32_t place, const std::string& name, const std::string& plugin, const std::string& library) {
   telemetry_->name(place, name, plugin, library);
-  event_log_->name(place, name);
+  event_log_->name(place, name, library);
   if (telemetry_->statusWriter() != nullptr) telemetry_->statusWriter()->name(place, name, plugin);
 }
 

@@ -127,7 +127,8 @@ void Runner::openEventLog() {
   std::vector<std::string> devices;
   for (const scene::Device& device : scene_.devices) devices.push_back(device.name);
   event_log_ = std::make_unique<EventLog>(world_->places(), std::move(devices), arms_);
-  for (uint32_t place = 0; place < scene_.models.size(); ++place) event_log_->name(place, scene_.models[place].name);
+  for (uint32_t place = 0; place < scene_.models.size(); ++place)
+    event_log_->name(place, scene_.models[place].name, scene_.models[place].library.string());
 }
 
 }  // namespace hapticd::servo

@@ -151,7 +151,8 @@ ModuleTrial tryModule(const scene::Device& device) {
   if (!said) {
     const std::string call = trail.call();
     return {"its module '" + device.module + "' " + said.error() + (call.empty() ? "" : ", in " + call + "()") +
-                "; correct it in " + device.library.filename().string() + "; hapticd device check tries every call",
+                "; correct it in " + device.library.filename().string() + "; hapticd device check " +
+                device.file.string() + " tries every call",
             {}};
   }
   if (said->front() == kNotMade) return {said->substr(1), {}};
