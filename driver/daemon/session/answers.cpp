@@ -285,7 +285,8 @@ std::string noForceWhy(const Session& session, uint32_t index) {
   if (fault == Fault::kStopped)
     return "device " + device + ": the arm is held; its forces ended and stay off until the hold is cleared" + clear;
   if (fault != Fault::kNone)
-    return faultMessage(device, fault, arm.limiter().measured(), arm.troubleOf(fault)) +
+    return faultMessage(device, fault, arm.limiter().measured(), arm.troubleOf(fault),
+                        session.runner.scene().devices[index].file.string()) +
            (endsByItself(fault) ? "" : clear);
   if (!arm.foundPressed()) return "";
   return "device " + device +

@@ -287,7 +287,8 @@ std::string Runner::faultOf(size_t arm) const {
   const Limiter& limiter = arms_[arm]->limiter();
   const Fault fault = limiter.fault();
   if (fault == Fault::kNone || fault == Fault::kStopped) return "";
-  return faultMessage(scene_.devices[arm].name, fault, limiter.measured(), arms_[arm]->troubleOf(fault));
+  return faultMessage(scene_.devices[arm].name, fault, limiter.measured(), arms_[arm]->troubleOf(fault),
+                      scene_.devices[arm].file.string());
 }
 
 std::vector<std::string> Runner::recovered() const {

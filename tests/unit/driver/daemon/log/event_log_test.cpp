@@ -15,7 +15,7 @@ namespace {
 
 class EventWords : public testing::Test {
  protected:
-  EventWords() : log_(2, {"phantom"}, arms_) { log_.name(1, "door", "shapes/door.so"); }
+  EventWords() : log_(2, {{"phantom", "my-arm.yaml"}}, arms_) { log_.name(1, "door", "shapes/door.so"); }
   EventLog::Message of(uint32_t kind, uint32_t code = 0, double value = 0) const {
     hapticd_event event{};
     event.kind = kind;
@@ -42,6 +42,7 @@ TEST_F(EventWords, TellHowLongNoTickCame) {
   EXPECT_EQ(stalled.level, HSP_LOG_WARNING);
   EXPECT_NE(stalled.text.find("no tick for 1.50 s"), std::string::npos) << stalled.text;
   EXPECT_NE(stalled.text.find("SIGSTOP"), std::string::npos) << stalled.text;
+  EXPECT_NE(stalled.text.find("hapticd device check my-arm.yaml"), std::string::npos) << stalled.text;
 }
 
 TEST_F(EventWords, NameTheModel) {
