@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "servo/safety/fault.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <string_view>
 
@@ -51,8 +52,8 @@ std::string faultMessage(const std::string& device, Fault fault, double measured
                          const std::string& file) {
   std::string words = why != nullptr ? why : describe(fault);
   constexpr std::string_view kFile = " FILE";
-  const size_t command = words.find("hapticd device ");
-  if (const size_t at = command != std::string::npos ? words.find(kFile, command) : command; at != std::string::npos)
+  const size_t command = std::min(words.find("hapticd device "), words.size());
+  if (const size_t at = words.find(kFile, command); at != std::string::npos)
     words.replace(at + 1, kFile.size() - 1, file);
   const size_t cure = words.find("; ");
   const char* unit = fault == Fault::kTooFast || fault == Fault::kJumped                         ? "m/s"
