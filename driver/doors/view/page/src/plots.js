@@ -157,7 +157,7 @@ export class Plots {
       ...forces,
       {title: 'Depth', about: 'How deep the tip is in the model; negative: its distance', unit: 'mm', color: '--depth', read: (v, at) => Math.max(depth(v, at), -0.02), scale: 1e3, zero: false, least: 0.5},
       {title: 'Lateness', about: 'How late each tick began', unit: 'µs', color: '--late', read: reader(columns, 'lateness_us'), limit: period * 1e6, least: 50},
-      {title: 'Tick time', about: 'How long each tick took', unit: 'µs', color: '--compute', read: reader(columns, 'compute_us'), limit: period * 1e6, least: 20},
+      {title: 'Compute time', about: 'How long each tick took', unit: 'µs', color: '--compute', read: reader(columns, 'compute_us'), limit: period * 1e6, least: 20},
     ].map((what) => new Plot(parent, what, this));
     this.own = null;
     this.next = 0;
