@@ -59,7 +59,9 @@ int viewRecording(const ViewArguments& options) {
 void tellOfWaiting(const ViewArguments& options) {
   const std::string socket = status::runtimeFolder(false) + "/" + options.name + ".sock";
   if (control::isAlive(socket)) return;
-  std::fprintf(stderr, "no daemon named %s runs yet, so the page waits for it; %s\n  to start it: %s\n",
+  std::fprintf(stderr,
+               "no daemon named %s runs yet, so the page waits for it; %s\n  fix: start it with %s, or name another "
+               "one with --name\n",
                options.name.c_str(), control::othersText(socket).c_str(), control::startText(socket).c_str());
 }
 
