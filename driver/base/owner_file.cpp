@@ -13,8 +13,7 @@ namespace {
 /// read it at any moment.
 struct FileOfOwner {
   const Owner* owner;
-  std::string identity;
-  bool foreign;
+  OwnersFile file;
   const FileOfOwner* next;
 };
 std::atomic<const FileOfOwner*> newest_file{nullptr};
@@ -22,31 +21,42 @@ std::atomic<const FileOfOwner*> newest_file{nullptr};
 /// Tells whether a later entry of the same module replaces this entry.
 bool isRepeated(const FileOfOwner* entry) noexcept {
   for (const FileOfOwner* later = newest_file.load(); later != entry; later = later->next)
-    if (later->foreign && later->owner->module == entry->owner->module) return true;
+    if (later->file.foreign && later->owner->module == entry->owner->module) return true;
   return false;
+}
+
+/// Returns the newest entry of an owner; nullptr if there is none.
+const FileOfOwner* entryOf(const Owner* owner) noexcept {
+  const FileOfOwner* entry = newest_file.load();
+  while (entry != nullptr && entry->owner != owner) entry = entry->next;
+  return entry;
 }
 
 }  // namespace
 
-void setFileOfOwner(const Owner* owner, const std::string& identity, bool foreign) {
+void setFileOfOwner(const Owner* owner, const OwnersFile& file) {
   static std::mutex mutex;
   static auto& last = *new std::unordered_map<const Owner*, const FileOfOwner*>;  // newest entry of each owner
   const std::lock_guard lock(mutex);
   const FileOfOwner*& kept = last[owner];
-  if ((kept != nullptr ? kept->identity : "") == identity) return;
-  kept = new FileOfOwner{owner, identity, foreign, newest_file.load()};
+  if ((kept != nullptr ? kept->file.identity : "") == file.identity) return;
+  kept = new FileOfOwner{owner, file, newest_file.load()};
   newest_file.store(kept);
 }
 
+const char* pathOf(const Owner* owner) noexcept {
+  const FileOfOwner* entry = entryOf(owner);
+  return entry != nullptr ? entry->file.path.c_str() : "";
+}
+
 const char* fileOf(const Owner* owner) noexcept {
-  for (const FileOfOwner* entry = newest_file.load(); entry != nullptr; entry = entry->next)
-    if (entry->owner == owner) return entry->identity.c_str();
-  return "";
+  const FileOfOwner* entry = entryOf(owner);
+  return entry != nullptr ? entry->file.identity.c_str() : "";
 }
 
 const Owner* foreignOwner(size_t number) noexcept {
   for (const FileOfOwner* entry = newest_file.load(); entry != nullptr; entry = entry->next)
-    if (entry->foreign && !isRepeated(entry) && number-- == 0) return entry->owner;
+    if (entry->file.foreign && !isRepeated(entry) && number-- == 0) return entry->owner;
   return nullptr;
 }
 

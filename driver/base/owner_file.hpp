@@ -10,10 +10,17 @@
 
 namespace hapticd {
 
-/// [main] Notes which file contains the code of an owner. @param identity identity of the file when it was loaded, one
-/// line without tabs
-/// @param foreign true if the file does not ship with hapticd
-void setFileOfOwner(const Owner* owner, const std::string& identity, bool foreign);
+/// The file that contains the code of an owner.
+struct OwnersFile {
+  std::string path;
+  std::string identity;  ///< identity of the file when it was loaded, one line without tabs
+  bool foreign = false;  ///< true if the file does not ship with hapticd
+};
+
+/// [main] Notes which file contains the code of an owner.
+void setFileOfOwner(const Owner* owner, const OwnersFile& file);
+/// [any] Returns the path of that owner's file; "" if none was given. Async-signal-safe.
+const char* pathOf(const Owner* owner) noexcept;
 /// [any] Returns the identity of that owner's file; "" if none was given. Async-signal-safe.
 const char* fileOf(const Owner* owner) noexcept;
 /// [any] Returns the owner of that number among the owners whose files do not ship with hapticd. Each module counts

@@ -56,9 +56,13 @@ std::string socketOf(const CtlArguments& options) {
   return status::runtimeFolder(false) + "/" + options.name + ".sock";
 }
 
-/// Waits for the start of the daemon as long as --wait allows. If there is none then, the request says so.
+/// Waits for the start of the daemon as long as --wait allows, and says that it waits. If there is none then, the
+/// request says so.
 void awaitDaemon(const CtlArguments& options) {
-  if (options.wait > 0) control::waitForStart([&options] { return socketOf(options); }, options.wait);
+  if (options.wait <= 0 || control::connectTo(socketOf(options))) return;
+  std::fprintf(stderr, "waiting at most %g s for the daemon %s; %s\n", options.wait, options.name.c_str(),
+               control::othersText(socketOf(options)).c_str());
+  control::waitForStart([&options] { return socketOf(options); }, options.wait);
 }
 
 std::string lineOf(const Json& json) {

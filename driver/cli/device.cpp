@@ -182,6 +182,14 @@ void logButNoErrors(int level, const std::string& who, const std::string& text) 
   if (level != HSP_LOG_ERROR) logToTerminal(level, who, text);
 }
 
+/// Returns the box that the tip can reach, in m in the device frame; null if it is unknown.
+Json reachJson(const host::DeviceInstance& device) {
+  const auto box = diagnostics::boxOfReach(device);
+  if (!box) return {};
+  return {{"min", {box->min().x(), box->min().y(), box->min().z()}},
+          {"max", {box->max().x(), box->max().y(), box->max().z()}}};
+}
+
 /// Returns the facts for programs. Opens the arm if it is plugged in.
 Json infoJson(const scene::Device& description, host::DeviceInstance& device) {
   const Eigen::Vector3d& p = description.mount.position;
@@ -212,6 +220,7 @@ Json infoJson(const scene::Device& description, host::DeviceInstance& device) {
                       {"mass_kg", info.mass_kg},
                       {"damping", info.damping},
                       {"buttons", info.buttons},
+                      {"reach_m", reachJson(device)},
                       {"simulated", (info.capabilities & HDV_C_SIMULATED) != 0},
                       {"verified", (info.capabilities & HDV_C_UNVERIFIED) == 0}};
   return json;

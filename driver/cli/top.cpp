@@ -102,7 +102,8 @@ View readPage(const status::Page& page) {
     line.traced = line.now.tick + kFresh >= view.now.tick && std::isfinite(line.now.depth);
     if (!line.traced) line.now.force = 0;
     line.silenced =
-        servo::silenceReason(line.name, static_cast<servo::ShapeFault>(line.now.trouble), line.now.failed_status);
+        servo::silenceReason(line.name, "FILE.so (`hapticd plugin info " + line.plugin + "` names the file)",
+                             static_cast<servo::ShapeFault>(line.now.trouble), line.now.failed_status);
     view.models.push_back(line);
   }
   view.clients = diagnostics::clientsOf(page);
@@ -323,9 +324,10 @@ bool standsStill(const status::Page& page, uint64_t tick) {
 }
 
 int top(const TopArguments& options) {
-  const std::string file = status::runtimeFolder(false) + "/" + options.name + ".status";
-  auto opened = status::PageFile::open(file);
-  if (!opened) return fail(kFailed, opened.error() + "\n  " + control::startOrName(status::runtimeFolder(false)));
+  const std::string base = status::runtimeFolder(false) + "/" + options.name;
+  auto opened = status::PageFile::open(base + ".status");
+  if (!opened)
+    return fail(kFailed, control::isAlive(base + ".sock") ? opened.error() : control::noDaemonText(base + ".sock"));
   const status::Page& page = std::as_const(**opened).page();
   if (!options.once) return options.json ? stream(options, page) : watch(options, page);
   if (ended(page))

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "cli/command.hpp"
 #include "cli/recorded_models.hpp"
 #include "cli/view_process.hpp"
+#include "control/liveness.hpp"
+#include "status/page_file.hpp"
 
 namespace hapticd::cli {
 
@@ -52,8 +55,19 @@ int viewRecording(const ViewArguments& options) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : kFailed;
 }
 
+/// Says that the page will wait, if no daemon of this name runs.
+void tellOfWaiting(const ViewArguments& options) {
+  const std::string socket = status::runtimeFolder(false) + "/" + options.name + ".sock";
+  if (control::isAlive(socket)) return;
+  std::fprintf(stderr,
+               "no daemon named %s runs yet, so the page waits for it; %s\n  fix: start it with %s, or name another "
+               "one with --name\n",
+               options.name.c_str(), control::othersText(socket).c_str(), control::startText(socket).c_str());
+}
+
 int view(const ViewArguments& options) {
   if (!options.file.empty()) return viewRecording(options);
+  tellOfWaiting(options);
   return fail(kFailed, becomeView(argumentsOf(options)).error());
 }
 

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <vector>
 
+#include "base/short_number.hpp"
 #include "document/reader.hpp"
 #include "document/suggestion.hpp"
 
@@ -43,17 +42,11 @@ std::string replaced(std::string_view text, std::string_view what, std::string_v
   return out;
 }
 
-/// Returns the number in the form in which a person would write it, without rounding errors in its last digits.
+/// Returns the product of a number and a unit in the form in which a person would write it, without rounding errors in
+/// its last digits.
 std::string rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.7g", value);
-  return text;
-}
-
-/// Returns the number as text without the rounding error of a product in its last digits.
-std::string withoutError(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 10).ptr};
+  constexpr int kDigits = 7;
+  return shortNumber(value, kDigits);
 }
 
 std::string_view withoutBlanks(std::string_view text) {
@@ -163,7 +156,7 @@ OtherUnit suggestOtherUnit(double value, std::pair<double, double> allowed, std:
   for (const UnitSlip& slip : kSlips)
     if (const double meant = value * slip.factor;
         unit == slip.unit && std::abs(value) >= slip.least && meant >= allowed.first && meant <= allowed.second)
-      return {"; " + numberText(value) + " " + slip.meant + " is " + withoutError(meant) + " " + slip.unit, meant};
+      return {"; " + numberText(value) + " " + slip.meant + " is " + rounded(meant) + " " + slip.unit, meant};
   return {};
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/nearest_word.hpp"
 #include "base/passed_files.hpp"
 #include "base/regular_file.hpp"
 #include "document/absent_file.hpp"
@@ -255,7 +256,7 @@ std::string tooDeep(const Table& table, const Node& value) {
 /// is given as well, or if the word as it is spelt belongs in another place.
 const Key* meantKey(const Node& node, const Entry& entry, const Table& table) {
   const std::string& name = entry.key.scalar;
-  const std::string meant = nearest(name, table.names());
+  const std::string meant = nearestWord(name, table.names());
   if (meant.empty() || entry.value.isNull() || node.find(meant) != nullptr) return nullptr;
   return hasAnotherPlace(belongsTo(table, name, true), name) ? nullptr : table.find(meant);
 }

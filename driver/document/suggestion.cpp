@@ -9,10 +9,6 @@
 
 namespace hapticd::document {
 
-std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
-  return nearestWord(word, candidates);
-}
-
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
   const size_t point = word.rfind('.');
   const bool decimal = point != word.npos && point > 0 && std::isdigit(static_cast<unsigned char>(word[point - 1]));
@@ -20,7 +16,7 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
   const std::string_view own = decimal ? word : word.substr(point + 1);
   for (const std::string_view key : {word, own})
     if (const std::string slip = suggestKey(key); !slip.empty()) return slip;
-  const std::string meant = nearest(word, candidates);
+  const std::string meant = nearestWord(word, candidates);
   return meant.empty() ? "" : " (did you mean \"" + meant + "\"?)";
 }
 

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <vector>
 
-#include "document/suggestion.hpp"
+#include "base/nearest_word.hpp"
 #include "document/yaml_scan.hpp"
 
 namespace hapticd::document {
@@ -179,7 +179,7 @@ Alias aliasAt(const std::string& text, const Place& place) {
   std::vector<std::string> marked;
   for (size_t at = text.find('&'); at < star; at = text.find('&', at + 1))
     if (std::string name = nameAt(text, at + 1); name != alias.name) marked.push_back(std::move(name));
-  alias.meant = nearest(alias.name, marked);
+  alias.meant = nearestWord(alias.name, marked);
   return alias;
 }
 

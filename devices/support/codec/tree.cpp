@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "base/nearest_word.hpp"
 #include "document/correction.hpp"
 #include "document/json_text.hpp"
 #include "document/suggestion.hpp"
@@ -235,7 +236,7 @@ bool Tree::only(std::span<const char* const> keys, std::span<const char* const> 
     }
     unknown.fail("unknown key, expected one of " + document::listed(names, names.size()) +
                  document::suggestion(key, names));
-    const std::string meant = document::nearest(key, names);
+    const std::string meant = nearestWord(key, names);
     if (value.is_structured() && !meant.empty()) readInstead(meant.c_str(), unknown);
   }
   return all_known;

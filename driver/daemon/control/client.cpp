@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 
 #include "base/clock.hpp"
 #include "control/liveness.hpp"
@@ -55,10 +54,11 @@ bool connectTo(const std::string& file) {
 Result<Client> Client::connect(const std::string& file) {
   const int fd = connected(file);
   if (fd >= 0) return Client(file, fd);
-  const std::string why = errno == EAGAIN ? "the daemon is busy, and its queue is full" : std::strerror(errno);
-  return Error{"no daemon answers at " + file + ": " + why + "\n  " +
-               startOrName(std::filesystem::path(file).parent_path().string()) +
-               "; only its user and group may connect"};
+  const int code = errno;
+  if ((code == ENOENT || code == ECONNREFUSED) && !isAlive(file)) return Error{noDaemonText(file)};
+  const std::string why = code == EAGAIN ? "the daemon is busy, and its queue is full" : std::strerror(code);
+  return Error{"no daemon answers at " + file + ": " + why + "\n  fix: " +
+               (code == EACCES ? "only the daemon's user and group may connect: be one of them" : "try again")};
 }
 
 /// The kernel reports the end of the connection as soon as the daemon's end is closed, even if the daemon was killed.

@@ -70,10 +70,23 @@ std::vector<std::string> runningDaemons(const std::string& folder) {
   return names;
 }
 
-std::string startOrName(const std::string& folder) {
+std::string othersText(const std::string& socket) {
+  const std::string folder = fs::path(socket).parent_path().string();
   std::string names;
-  for (const std::string& name : runningDaemons(folder)) names += (names.empty() ? " (" : ", ") + name;
-  return "fix: start one with hapticd run, or name a running one" + (names.empty() ? "" : names + ")") + " with --name";
+  for (const std::string& name : runningDaemons(folder)) names += (names.empty() ? "" : ", ") + name;
+  return names.empty() ? "none runs in " + folder : "in " + folder + " these run: " + names;
+}
+
+std::string startText(const std::string& socket) {
+  const std::string name = fs::path(socket).stem().string();
+  return "hapticd run SCENE" + (name == "hapticd" ? "" : " --name " + name);
+}
+
+std::string noDaemonText(const std::string& socket) {
+  const fs::path file(socket);
+  const bool others = !runningDaemons(file.parent_path().string()).empty();
+  return "no daemon named " + file.stem().string() + " runs; " + othersText(socket) + "\n  fix: start it with " +
+         startText(socket) + (others ? ", or name one of these with --name" : "");
 }
 
 }  // namespace hapticd::control

@@ -26,7 +26,14 @@ bool wasKilled(const std::string& socket);
 /// [main] Returns the names of the living daemons whose files are in a folder, sorted.
 std::vector<std::string> runningDaemons(const std::string& folder);
 
-/// [main] Returns how to mend that no daemon runs under a name: "fix: start one ...", with the names of those that run.
-std::string startOrName(const std::string& folder);
+/// [main] Returns which daemons run beside the one of this socket: "none runs in FOLDER", or "in FOLDER these run:
+/// ...".
+std::string othersText(const std::string& socket);
+
+/// [any] Returns the command that starts a daemon with this socket, such as "hapticd run SCENE --name left".
+std::string startText(const std::string& socket);
+
+/// [main] Returns an error for the user: no daemon has this socket, which daemons run, and how to mend it.
+std::string noDaemonText(const std::string& socket);
 
 }  // namespace hapticd::control

@@ -52,13 +52,17 @@ class InverseCheck {
     Tip tip;
     if (calls_.forward(back, tip) >= 0 && !((tip.position - far).norm() <= 1)) keep("says HSP_OK for " + metres(far));
   }
+  /// Returns what is wrong: first what a user notices, then the function that the author of the module must mend.
   std::string said() const {
+    if (wrong_.empty() && (asked_ == 0 || refused_ < asked_)) return "";
+    const std::string effect =
+        "the module cannot tell which joint positions bring the tip to a place, so a simulated hand and `hapticd "
+        "device encode` go wrong: its inverse() ";
     if (!wrong_.empty())
-      return "its inverse() " + wrong_ + "; expected forward(inverse(p)) to be p, or HSP_E_NUMERIC out of reach";
-    if (asked_ == 0 || refused_ < asked_) return "";
-    return "its inverse() refuses every one of " + std::to_string(asked_) +
-           " tips that its own forward() gives, although the search starts at joints nearby (" + statusName(status_) +
-           "); expected HSP_OK within the arm's limits";
+      return effect + wrong_ + "; expected forward(inverse(p)) to be p, or HSP_E_NUMERIC out of reach";
+    return effect + "finds no joint positions (" + statusName(status_) + ") for any of " + std::to_string(asked_) +
+           " places at which its own forward() puts the tip, although the search starts nearby; expected HSP_OK within "
+           "the joint limits";
   }
 
  private:

@@ -81,7 +81,7 @@ Result<std::unique_ptr<ShapeInstance>> ShapeInstance::create(const scene::Model&
 
   setCodeOwner(reinterpret_cast<const void*>(instance->class_->create), instance->owner_);
   setPlaceOfOwner(instance->owner_, placeOf(model));
-  setFileOfOwner(instance->owner_, identityLoaded(model.library), !ships(model.library));
+  setFileOfOwner(instance->owner_, {model.library.string(), identityLoaded(model.library), !ships(model.library)});
   const OwnerScope calling(instance->owner_);
   const CallName creating("create");
   instance->shape_ = instance->class_->create(instance->class_, instance->services_.abi());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/load.hpp"
 
+#include "base/nearest_word.hpp"
 #include "document/suggestion.hpp"
 #include "scene/device_draft.hpp"
 #include "scene/loader.hpp"
@@ -23,7 +24,7 @@ void checkRoot(const Node& root, Reader& in, host::Catalog& catalog, std::option
     Reader rest(in.file(), others);
     detail::loadScene(root, rest, catalog, {.default_device = root.find("hand") != nullptr, .device_file = {}});
     for (Problem& one : others)
-      if (document::nearest(one.key, {"hapticd"}).empty()) in.problems().push_back(std::move(one));
+      if (nearestWord(one.key, {"hapticd"}).empty()) in.problems().push_back(std::move(one));
   } else if (format->table == &kSceneTable) {
     // If the scene names no arm, its hand is checked against the default arm of `hapticd run`.
     const bool default_arm = root.find("hand") != nullptr;
@@ -59,7 +60,7 @@ static void reportNoDeviceVersion(const Node& root, Reader& in) {
       return in.problem(entry.key, "hapticd",
                         "this is the key of a scene, but the file has no models, and a module or parameters, so it "
                         "describes a device; expected hapticd-device: 1");
-    if (!nearest(entry.key.scalar, {"hapticd-device"}).empty())
+    if (!nearestWord(entry.key.scalar, {"hapticd-device"}).empty())
       return in.problem(entry.key, entry.key.scalar, "unknown key, expected hapticd-device: 1");
   }
   in.problem(root, "hapticd-device",

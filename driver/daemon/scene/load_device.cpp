@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
+#include "base/nearest_word.hpp"
 #include "document/suggestion.hpp"
 #include "hapticd/device.h"
 #include "host/shipped.hpp"
@@ -104,7 +105,7 @@ bool partOf(const std::string& a, const std::string& b) {
 std::string suggestModule(const std::string& name, const Node* parameters, host::Catalog& catalog) {
   constexpr size_t kEnough = 3, kAlike = 1000;  // known parameters; more than any module has
   const std::vector<std::string> names = catalog.names(host::Kind::kDevice);
-  std::string best = nearest(name, names);
+  std::string best = nearestWord(name, names);
   if (!best.empty() || parameters == nullptr) return best;
   size_t most = 0;
   for (const std::string& one : names) {
@@ -190,7 +191,8 @@ std::optional<Device> loadMeantDevice(const Node& root, Reader& in, const Device
   Reader rest(in.file(), others);
   std::optional<Device> device = loadDevice(root, rest, reference, catalog, nullptr, nullptr, nullptr);
   for (Problem& one : others)  // the version itself is reported already
-    if (nearest(one.key, {"hapticd-device"}).empty() && one.key != "hapticd") in.problems().push_back(std::move(one));
+    if (nearestWord(one.key, {"hapticd-device"}).empty() && one.key != "hapticd")
+      in.problems().push_back(std::move(one));
   return device;
 }
 

@@ -3,7 +3,7 @@
 #include <set>
 #include <unordered_map>
 
-#include "document/suggestion.hpp"
+#include "base/nearest_word.hpp"
 #include "hapticd/shape.h"
 #include "scene/kinematic_path.hpp"
 #include "scene/loader.hpp"
@@ -92,7 +92,7 @@ class SceneLoader {
     for (const host::CatalogFile* file : catalog_.files(host::Kind::kShape))
       for (const host::ClassInfo& info : file->classes)
         if (info.kind == host::Kind::kShape) names.push_back(info.name);
-    const std::string meant = nearest(name, names);
+    const std::string meant = nearestWord(name, names);
     const auto found = meant.empty() ? Result<const host::ClassInfo*>(nullptr) : catalog_.shape(meant);
     return found ? *found : nullptr;
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/nearest_word.hpp"
 #include "document/correction.hpp"
 #include "document/suggestion.hpp"
 #include "hapticd/abi.h"
@@ -64,7 +65,7 @@ std::string countText(const host::ParamInfo& p) {
 
 /// Returns the index of the choice that a misspelt one probably means.
 static std::optional<double> suggestChoice(const std::string& word, const std::vector<std::string>& choices) {
-  const std::string meant = document::nearest(word, choices);
+  const std::string meant = nearestWord(word, choices);
   if (meant.empty()) return std::nullopt;
   return static_cast<double>(std::find(choices.begin(), choices.end(), meant) - choices.begin());
 }
@@ -138,7 +139,7 @@ void ParameterReader::unknown(const Node& around, const Entry& entry, const std:
   in_->problem(entry.key, key,
                "unknown parameter of " + info_.name + ", expected one of " + document::listed(names, 24) +
                    (inside.empty() ? document::suggestion(id, ids) : " (did you mean \"" + inside + "\"?)"));
-  const std::string meant = inside.empty() ? document::nearest(id, ids) : inside;
+  const std::string meant = inside.empty() ? nearestWord(id, ids) : inside;
   if (around.find(meant.substr(meant.rfind('.') + 1)) == nullptr) judgeAs(meant, entry, key);
 }
 

@@ -176,7 +176,8 @@ bool waitsForTip(const Session& session, uint32_t place) {
 
 std::string silencedWhy(const Session& session, uint32_t place) {
   const status::ModelStatus now = nowOf(session, place);
-  return silenceReason(session.places[place].model.name, static_cast<ShapeFault>(now.trouble), now.failed_status);
+  const scene::Model& model = session.places[place].model;
+  return silenceReason(model.name, model.library.string(), static_cast<ShapeFault>(now.trouble), now.failed_status);
 }
 
 std::string statusAnswer(const Session& session, const std::string& name, const std::string& socket) {
@@ -284,7 +285,8 @@ std::string noForceWhy(const Session& session, uint32_t index) {
   if (fault == Fault::kStopped)
     return "device " + device + ": the arm is held; its forces ended and stay off until the hold is cleared" + clear;
   if (fault != Fault::kNone)
-    return faultMessage(device, fault, arm.limiter().measured(), arm.troubleOf(fault)) +
+    return faultMessage(device, fault, arm.limiter().measured(), arm.troubleOf(fault),
+                        session.runner.scene().devices[index].file.string()) +
            (endsByItself(fault) ? "" : clear);
   if (!arm.foundPressed()) return "";
   return "device " + device +
@@ -325,8 +327,11 @@ std::string eventText(const Session& session, const hapticd_event& event) {
   Json json = {{"event", nameOfEvent(event.kind)}, {"tick", event.tick}, {"t", event.t}};
   const auto model = static_cast<size_t>(event.model), arm = static_cast<size_t>(event.probe);
   if (event.model >= 0) json["number"] = event.model;
-  if (event.model >= 0 && model < session.places.size() && !session.places[model].model.name.empty())
-    json["model"] = session.places[model].model.name;
+  const scene::Model* known =
+      event.model >= 0 && model < session.places.size() && !session.places[model].model.name.empty()
+          ? &session.places[model].model
+          : nullptr;
+  if (known != nullptr) json["model"] = known->name;
   if (event.probe >= 0 && arm < session.runner.scene().devices.size())
     json["device"] = session.runner.scene().devices[arm].name;
   json["code"] = event.code;
@@ -334,7 +339,9 @@ std::string eventText(const Session& session, const hapticd_event& event) {
   if (event.kind == HAPTICD_FAULT) json["why"] = describe(static_cast<Fault>(event.code));
   if (event.probe < 0 || arm < session.runner.arms().size()) addProgram(session, event, json);
   if (event.kind == HAPTICD_REFUSED && *whyRefused(event) != 0) json["why"] = whyRefused(event);
-  if (event.kind == HAPTICD_SILENCED) json["why"] = silenceReason(event, json.value("model", ""));
+  if (event.kind == HAPTICD_SILENCED)
+    json["why"] = silenceReason(event, known != nullptr ? known->name : "",
+                                known != nullptr ? known->library.string() : "FILE.so");
   return lineOf(json);
 }
 

@@ -21,11 +21,11 @@ constexpr double kBegins = 0.005;  ///< [s] a touch this early means that the ti
 
 }  // namespace
 
-void EventLog::name(uint32_t place, const std::string& model) {
+void EventLog::name(uint32_t place, const std::string& model, const std::string& file) {
   if (model.empty()) return;
   const std::lock_guard lock(mutex_);
   if (place >= models_.size()) models_.resize(place + 1);
-  models_[place] = model;
+  models_[place] = {model, file};
 }
 
 void EventLog::logNewEvents(const Flight& flight) {
@@ -60,7 +60,7 @@ void EventLog::logPushers() {
 }
 
 void EventLog::write(uint32_t arm, const PusherLog::Message& message) const {
-  log::write(message.level, arm < devices_.size() ? devices_[arm] : "", message.text);
+  log::write(message.level, arm < devices_.size() ? devices_[arm].name : "", message.text);
 }
 
 void EventLog::pushes(uint32_t arm, uint32_t place, pid_t pid, const std::string& program) {
@@ -93,20 +93,20 @@ void EventLog::note(const hapticd_event& event) {
 }
 
 EventLog::Message EventLog::messageOfSwitch(size_t arm) const {
-  return {HSP_LOG_WARNING, arm < devices_.size() ? devices_[arm] : "",
+  return {HSP_LOG_WARNING, arm < devices_.size() ? devices_[arm].name : "",
           "the button of limits.enable was down when the run began, so it does not enable forces; release it, then "
           "press it"};
 }
 
-std::string EventLog::model(const hapticd_event& event) const {
+EventLog::Named EventLog::model(const hapticd_event& event) const {
   const std::lock_guard lock(mutex_);
   const auto place = static_cast<size_t>(event.model);
-  return event.model >= 0 && place < models_.size() ? models_[place] : "";
+  return event.model >= 0 && place < models_.size() ? models_[place] : Named();
 }
 
-std::string EventLog::device(const hapticd_event& event) const {
+EventLog::Named EventLog::device(const hapticd_event& event) const {
   const auto arm = static_cast<size_t>(event.probe);
-  return event.probe >= 0 && arm < devices_.size() ? devices_[arm] : "";
+  return event.probe >= 0 && arm < devices_.size() ? devices_[arm] : Named();
 }
 
 EventLog::Message EventLog::messageOf(const hapticd_event& event) const {
@@ -124,20 +124,20 @@ EventLog::Message EventLog::messageOf(const hapticd_event& event) const {
 }
 
 EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
-  const std::string who = model(event);
+  const auto [who, file] = model(event);
   switch (event.kind) {
     case HAPTICD_CLICK:
       return {HSP_LOG_DEBUG, who, fmt::format("clicked at {:.4f} s", event.t)};
     case HAPTICD_TOUCH:
       if (event.t < kBegins)
         return {HSP_LOG_WARNING, who,
-                device(event) +
+                device(event).name +
                     " has its tip inside this model at the start, so a force begins with the run (it grows over "
                     "limits.ramp_in)\n  fix: move "
                     "the model, the arm (mount) or the hand (hand), so that the tip starts outside"};
-      return {HSP_LOG_DEBUG, who, fmt::format("{} touches it at {:.4f} s", device(event), event.t)};
+      return {HSP_LOG_DEBUG, who, fmt::format("{} touches it at {:.4f} s", device(event).name, event.t)};
     case HAPTICD_SILENCED:
-      return {HSP_LOG_ERROR, "", silenceReason(event, who)};
+      return {HSP_LOG_ERROR, "", silenceReason(event, who, file)};
     case HAPTICD_DEGRADED:
       return {HSP_LOG_WARNING, who,
               fmt::format("answers less accurately (level {:.0f}), because ticks took too long", event.value)};
@@ -153,8 +153,8 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
           fmt::format(
               "no tick for {:.2f} s, until {:.2f} s: the process was stopped (SIGSTOP, a debugger), the "
               "machine was too busy, or a call of an arm's module took that long (compare \"in arms\" in the report of "
-              "the run, or try: hapticd device check FILE)",
-              event.value, event.t)};
+              "the run, or try: hapticd device check {})",
+              event.value, event.t, devices_.size() == 1 ? devices_[0].file : "FILE")};
     default:
       return {HSP_LOG_DEBUG, "", ""};
   }
@@ -164,20 +164,21 @@ EventLog::Message EventLog::messageOfArm(const hapticd_event& event) const {
   const auto arm = static_cast<size_t>(event.probe);
   const bool held = event.probe >= 0 && arm < held_.size() && held_[arm];
   if (event.kind == HAPTICD_CLEARED)
-    return {HSP_LOG_INFO, device(event),
+    return {HSP_LOG_INFO, device(event).name,
             held ? "the hold is over; the forces come back" : "the fault is over; the forces come back"};
   const auto fault = static_cast<Fault>(event.code);
   if (fault == Fault::kStopped)  // from an order to hold; the end of a run makes no event
-    return {HSP_LOG_WARNING, device(event),
+    return {HSP_LOG_WARNING, device(event).name,
             "the arm is held; its forces ended and stay off until the hold is cleared\n  fix: hapticd ctl clear"};
   const char* trouble = event.probe >= 0 && arm < arms_.size() ? arms_[arm]->troubleOf(fault) : nullptr;
-  return {HSP_LOG_ERROR, "", "fault: " + faultMessage(device(event), fault, event.value, trouble)};
+  const auto [name, file] = device(event);
+  return {HSP_LOG_ERROR, "", "fault: " + faultMessage(name, fault, event.value, trouble, file)};
 }
 
 EventLog::Message EventLog::messageOfLeader(const hapticd_event& event) const {
   if (event.model < 0 && event.code == static_cast<uint32_t>(Order::Led::kForce))
     return {HSP_LOG_DEBUG, "", ""};  // PusherLog reports more about programs that push
-  const std::string what = event.model >= 0 ? model(event) : device(event);
+  const std::string what = event.model >= 0 ? model(event).name : device(event).name;
   if (event.kind == HAPTICD_REFUSED)
     return {HSP_LOG_WARNING, what,
             fmt::format("{:.0f} record{} of its leader {} refused so far{}{}", event.value, event.value == 1 ? "" : "s",

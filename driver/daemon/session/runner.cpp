@@ -262,7 +262,7 @@ std::vector<std::string> Runner::enterRealTime() const {
 
 void Runner::nameModel(uint32_t place, const std::string& name, const std::string& plugin, const std::string& library) {
   telemetry_->name(place, name, plugin, library);
-  event_log_->name(place, name);
+  event_log_->name(place, name, library);
   if (telemetry_->statusWriter() != nullptr) telemetry_->statusWriter()->name(place, name, plugin);
 }
 
@@ -287,7 +287,8 @@ std::string Runner::faultOf(size_t arm) const {
   const Limiter& limiter = arms_[arm]->limiter();
   const Fault fault = limiter.fault();
   if (fault == Fault::kNone || fault == Fault::kStopped) return "";
-  return faultMessage(scene_.devices[arm].name, fault, limiter.measured(), arms_[arm]->troubleOf(fault));
+  return faultMessage(scene_.devices[arm].name, fault, limiter.measured(), arms_[arm]->troubleOf(fault),
+                      scene_.devices[arm].file.string());
 }
 
 std::vector<std::string> Runner::recovered() const {

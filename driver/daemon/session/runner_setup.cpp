@@ -124,10 +124,11 @@ Result<void> Runner::openArms(const host::Services::Log& log) {
 }
 
 void Runner::openEventLog() {
-  std::vector<std::string> devices;
-  for (const scene::Device& device : scene_.devices) devices.push_back(device.name);
+  std::vector<EventLog::Named> devices;
+  for (const scene::Device& device : scene_.devices) devices.push_back({device.name, device.file.string()});
   event_log_ = std::make_unique<EventLog>(world_->places(), std::move(devices), arms_);
-  for (uint32_t place = 0; place < scene_.models.size(); ++place) event_log_->name(place, scene_.models[place].name);
+  for (uint32_t place = 0; place < scene_.models.size(); ++place)
+    event_log_->name(place, scene_.models[place].name, scene_.models[place].library.string());
 }
 
 }  // namespace hapticd::servo

@@ -46,23 +46,24 @@ std::string causeOf(const Pull& pull) {
 
 std::string silenceReason(const ModelState& model) {
   if (model.shape == nullptr) return "";
-  return silenceReason(model.shape->name(), model.guard.fault(), model.failed_status, model.pull,
-                       model.shape->file().string());
+  return silenceReason(model.shape->name(), model.shape->file().string(), model.guard.fault(), model.failed_status,
+                       model.pull);
 }
 
-std::string silenceReason(const hapticd_event& event, const std::string& model) {
+std::string silenceReason(const hapticd_event& event, const std::string& model, const std::string& file) {
   const auto trouble = static_cast<ShapeFault>(event.code);
-  if (trouble == ShapeFault::kJump) return silenceReason(model, trouble, 0, {-1, -1, event.value});
-  if (trouble != ShapeFault::kPulls) return silenceReason(model, trouble, static_cast<int32_t>(event.value));
-  return silenceReason(model, trouble, 0, {event.t, -1, event.value});
+  if (trouble == ShapeFault::kJump) return silenceReason(model, file, trouble, 0, {-1, -1, event.value});
+  if (trouble != ShapeFault::kPulls) return silenceReason(model, file, trouble, static_cast<int32_t>(event.value));
+  return silenceReason(model, file, trouble, 0, {event.t, -1, event.value});
 }
 
-std::string silenceReason(const std::string& model, ShapeFault trouble, int32_t failed_status) {
-  return silenceReason(model, trouble, failed_status, Pull());
+std::string silenceReason(const std::string& model, const std::string& file, ShapeFault trouble,
+                          int32_t failed_status) {
+  return silenceReason(model, file, trouble, failed_status, Pull());
 }
 
-std::string silenceReason(const std::string& model, ShapeFault trouble, int32_t failed_status, const Pull& pull,
-                          const std::string& file) {
+std::string silenceReason(const std::string& model, const std::string& file, ShapeFault trouble, int32_t failed_status,
+                          const Pull& pull) {
   const std::string who = "model " + model + ": its plugin ", check = "hapticd plugin check " + file;
   switch (trouble) {
     case ShapeFault::kNone:

@@ -84,7 +84,7 @@ Result<std::unique_ptr<PageFile>> PageFile::create(const std::string& file) {
 
 Result<std::unique_ptr<PageFile>> PageFile::open(const std::string& file) {
   const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return cannot("no daemon runs under this name, or you may not read its status page", file, errno);
+  if (fd < 0) return cannot("cannot read the status page", file, errno);
   struct stat info{};
   const bool whole = fstat(fd, &info) == 0 && info.st_size >= static_cast<off_t>(sizeof(Page));
   void* memory = whole ? mmap(nullptr, sizeof(Page), PROT_READ, MAP_SHARED, fd, 0) : MAP_FAILED;

@@ -128,11 +128,16 @@ void printForeign(Line& line) noexcept {
   line.add("\n  ");
 }
 
+/// Adds the command that tests the file of a plugin.
+Line& addCheck(Line& line, const Owner* owner) noexcept {
+  const char* path = pathOf(owner);
+  return line.add("hapticd plugin check ").add(*path != '\0' ? path : "FILE.so");
+}
+
 void printRemedy(Line& line, bool drives) noexcept {
   if (mayBeLeftOut() && crash_steps.not_remembered == 0) {
-    line.add(
-            "the next start leaves its models out\n  fix: look at the plugin (hapticd plugin check FILE.so), then: "
-            "hapticd plugin clear ")
+    addCheck(line.add("the next start leaves its models out\n  fix: look at the plugin ("), leftOut(0))
+        .add("), then: hapticd plugin clear ")
         .add(leftOut(0)->module.c_str())
         .add("\n");
   } else if (mayBeLeftOut()) {
@@ -140,13 +145,11 @@ void printRemedy(Line& line, bool drives) noexcept {
     line.add("it could not be put in quarantine, so the next start loads it again: ").add(crash_steps.dir);
     line.add(": ").add(why != nullptr ? why : "not written").add("\n  fix: remove it from the scene\n");
   } else if (crash_steps.culprit != nullptr && !crash_steps.culprit->device) {
-    line.add(drives ? "the run" : "the command")
-        .add(" has ended\n  fix: repair the plugin; hapticd plugin check FILE.so looks for the cause\n");
+    line.add(drives ? "the run" : "the command").add(" has ended\n  fix: repair the plugin; ");
+    addCheck(line, crash_steps.culprit).add(" looks for the cause\n");
   } else if (crash_steps.suspicion != Suspicion::kNone && foreignOwner(0) != nullptr) {
-    line.add(
-            "the program has ended\n  fix: test that code first (hapticd plugin check FILE.so); if it passes, report "
-            "this with ")
-        .add("the output of: hapticd doctor --json\n");
+    addCheck(line.add("the program has ended\n  fix: test that code first ("), foreignOwner(0))
+        .add("); if it passes, report this with the output of: hapticd doctor --json\n");
   } else if (!drives) {
     line.add("the command has ended\n  fix: report it with the output of: hapticd doctor --json\n");
   } else {

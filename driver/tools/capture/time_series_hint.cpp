@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "base/three_digits.hpp"
+#include "base/short_number.hpp"
 
 namespace hapticd::capture {
 namespace {
@@ -113,7 +113,7 @@ std::string rate(const codec::Wire& wire, const DecodedReports& reports, double 
   char text[400];
   std::snprintf(text, sizeof text,
                 "the reports are %.3g s apart (median), which is a rate of %s Hz, and wire.rate is %g%s; %s\n", period,
-                threeDigits(measured).c_str(), wire.rate,
+                shortNumber(measured).c_str(), wire.rate,
                 measured < least_rate * wire.rate ? ": at so low a rate (health.least_rate) no torque goes out" : "",
                 rateToGive(measured).c_str());
   return text;

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "diagnostics/arm_table.hpp"
+#include "diagnostics/decimal_commas.hpp"
 #include "diagnostics/enable_button.hpp"
 #include "diagnostics/meant_tree.hpp"
 #include "diagnostics/unit_warnings.hpp"
-#include "document/correction.hpp"
 #include "document/node.hpp"
 #include "host/call_trail.hpp"
 #include "host/device_instance.hpp"
@@ -92,8 +92,9 @@ bool isOfKey(const std::string& what) {
 }
 
 /// Reports the messages of a module about its parameters, each with the line and column of its parameter in the file.
-void placeComplaints(const std::string& error, const Node& parameters, const Node& root, const std::string& file,
+void placeComplaints(const std::string& error, const scene::Device& draft, const Node& root, const std::string& file,
                      const document::Problems& known, document::Problems& problems) {
+  const Node& parameters = *root.find("parameters");
   for (const std::string& message : linesOf(error)) {
     size_t begin = 0;
     const std::string key = keyIn(message, parameters, begin);
@@ -104,7 +105,7 @@ void placeComplaints(const std::string& error, const Node& parameters, const Nod
     }
     std::string what = key.empty() ? message : message.substr(begin + key.size() + 2);
     const Node* at = walk(&parameters, key, isOfKey(what));
-    if (what.find(" numbers, expected") != std::string::npos) what += document::suggestDecimals(*at, 1);
+    if (at->isSequence()) what += adviceOnCommas(draft, key, *at);
     document::report(problems, file, at->line, at->column, key.empty() ? "parameters" : "parameters." + key, what);
   }
 }
@@ -132,8 +133,7 @@ static void placeDoubt(const std::string& doubt, const Node& root, const std::st
                        document::Problems& warnings) {
   if (const auto stuck = stuckJoint(root, file); stuck && doubt.find("inverse()") != std::string::npos)
     return warnings.push_back(*stuck);
-  if (hasLimitsBeyondATurn(root) && doubt.find("inverse() refuses") != std::string::npos)
-    return;  // it follows from them
+  if (hasLimitsBeyondATurn(root) && doubt.find("inverse()") != std::string::npos) return;  // it follows from them
   const Node* parameters = root.find("parameters");
   const Node* arm = parameters != nullptr && parameters->isMap() ? parameters->find("arm") : nullptr;
   const Node* centers = arm != nullptr && arm->isMap() ? arm->find("centers") : nullptr;
@@ -152,7 +152,8 @@ ModuleTrial tryModule(const scene::Device& device) {
   if (!said) {
     const std::string call = trail.call();
     return {"its module '" + device.module + "' " + said.error() + (call.empty() ? "" : ", in " + call + "()") +
-                "; correct it in " + device.library.filename().string() + "; hapticd device check tries every call",
+                "; correct it in " + device.library.filename().string() + "; hapticd device check " +
+                device.file.string() + " tries every call",
             {}};
   }
   if (said->front() == kNotMade) return {said->substr(1), {}};
@@ -173,7 +174,7 @@ document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& c
   checkEnableButton(withMeantWire(*root, *draft), file.string(), problems);
   checkHd(*root, file.string(), problems);
   if (parameters != nullptr && !trial.error.empty())
-    placeComplaints(trial.error, *parameters, *root, file.string(), known, problems);
+    placeComplaints(trial.error, *draft, *root, file.string(), known, problems);
   else if (!trial.error.empty() && known.empty())
     placeAtModule(trial.error, *root, file.string(), problems);
   for (const std::string& doubt : trial.doubts)

@@ -205,9 +205,10 @@ Finding checkModules(host::Catalog& catalog, host::Kind kind) {
   const bool shapes = kind == host::Kind::kShape;
   const std::string name = shapes ? "plugins" : "modules";
   size_t good = 0;
-  std::string bad;
+  std::string bad, first_bad;
   for (const host::CatalogFile* file : catalog.files(kind)) {
     good += file->error.empty() ? 1 : 0;
+    if (!file->error.empty() && bad.empty()) first_bad = file->path.string();
     if (!file->error.empty()) bad += (bad.empty() ? "" : "; ") + file->path.string() + ": " + file->error;
   }
   if (good == 0)
@@ -216,7 +217,7 @@ Finding checkModules(host::Catalog& catalog, host::Kind kind) {
                    : "hapticd device list shows the searched folders; set HAPTICD_PLUGIN_PATH"};
   if (bad.empty()) return ok(name, std::to_string(good) + " files load");
   return {name, Verdict::kWarn, bad, "scenes that name it cannot run",
-          shapes ? "hapticd plugin check FILE.so" : "hapticd device list"};
+          shapes ? "hapticd plugin check " + first_bad : "hapticd device list"};
 }
 
 Finding checkQuarantine() {

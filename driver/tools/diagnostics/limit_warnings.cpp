@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "base/three_digits.hpp"
+#include "base/short_number.hpp"
 #include "diagnostics/motor_reach.hpp"
 #include "diagnostics/node_path.hpp"
 #include "document/reader.hpp"
@@ -55,7 +55,7 @@ void beyondMotors(const Node* at, const char* key, double given, double reach, c
   document::report(warnings, file, at->line, at->column, key,
                    fmt::format("{:g} {} is beyond the motors: with arm.max_torque they give at most {} {} {}; "
                                "expected a limit below that, or the torques at the joints (motor times gear)",
-                               given, unit, threeDigits(reach), unit, where));
+                               given, unit, shortNumber(reach), unit, where));
 }
 
 /// Warns of motors that push far harder than allowed, because N mm were meant.
@@ -72,7 +72,7 @@ void motorsBeyondAll(const Node& root, const scene::Device& device, double reach
   document::report(warnings, device.file.string(), at->line, at->column, "parameters.arm.max_torque",
                    fmt::format("these torques give {} N at the tip{}; torques must be in N m, here and in the "
                                "scales of the torques: {:g} N mm is {:g} N m",
-                               threeDigits(reach), allowed, most, most / 1000));
+                               shortNumber(reach), allowed, most, most / 1000));
 }
 
 /// Moves joints between their stops: those of a simulated chain to the middle, where it begins, and others to the

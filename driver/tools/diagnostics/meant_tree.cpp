@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/nearest_word.hpp"
 #include "codec/wire.hpp"
-#include "document/suggestion.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -81,7 +81,7 @@ void move(Node& root, const std::string& from, const std::string& to) {
 Node withMeantParameters(Node root, const scene::Device& draft) {
   if (root.find("parameters") == nullptr)
     for (Entry& entry : root.entries)
-      if (!document::nearest(entry.key.scalar, {"parameters"}).empty()) {
+      if (!nearestWord(entry.key.scalar, {"parameters"}).empty()) {
         entry.key.scalar = "parameters";
         break;
       }

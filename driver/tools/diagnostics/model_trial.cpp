@@ -96,8 +96,8 @@ void reportEnd(const std::string& how, const host::ChildProgress& trail, const s
   const bool more = index + 1 < scene.models.size();
   document::report(problems, model.place, "models[" + std::to_string(index) + "]",
                    "plugin '" + model.plugin + "' of model '" + model.name + "' " + how + ", in its " + trail.call() +
-                       "()" + (more ? "; the models after it were not tried" : "") +
-                       "; hapticd plugin check FILE.so looks for the cause");
+                       "()" + (more ? "; the models after it were not tried" : "") + "; hapticd plugin check " +
+                       model.library.string() + " looks for the cause");
 }
 
 /// Packs the box of a model in its own frame; it is empty if the plugin does not report one.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "document/suggestion.hpp"
+#include "base/nearest_word.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -56,7 +56,7 @@ void UnreadKeys::addParameter(const std::string& key, const host::ClassInfo& inf
   if (std::any_of(info.params.begin(), info.params.end(),
                   [&id](const host::ParamInfo& param) { return isPartOf(param.id, id); }))
     return;
-  const std::string meant = document::nearest(id, info.paramIds());
+  const std::string meant = nearestWord(id, info.paramIds());
   if (meant.empty())
     model.any = true;
   else

@@ -46,7 +46,12 @@ def examples(folder):
     ticks = re.match(r"(\d+) ticks answered", done.stdout)
     check("spring.c", done.returncode == 0 and ticks and int(ticks[1]) > 100, done)
     done = subprocess.run([SPRING, "nobody"], env=environment, capture_output=True, text=True, timeout=60)
-    check("spring.c tells of a daemon that is none", done.returncode == 1 and "hapticd run" in done.stderr, done)
+    check("spring.c tells of a daemon that is none", done.returncode == 1 and all(words in done.stderr for words in (
+        "no daemon named nobody runs", "these run: lib", "hapticd run SCENE --name nobody", "give hapticd_connect the name of one of these")), done)
+    done = subprocess.run([sys.executable, "-c", "import hapticd\nhapticd.connect('nobody')"], env=dict(environment, PYTHONPATH=CLIENT), capture_output=True,
+                          text=True, timeout=60)
+    check("Python does, too", all(words in done.stderr for words in (
+        "no daemon named nobody runs; these run: lib", "hapticd run SCENE --name nobody", "hapticd.connect(NAME)")), done)
 
 
 def leads_a_model(client):

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <vector>
 
 #include "commands_fixture.hpp"
 
@@ -92,6 +93,33 @@ TEST_F(DeviceCommands, DeviceInfoPrintsTheParametersWhenAsked) {
   EXPECT_EQ(full.exit_code, 0) << full.text;
   EXPECT_FALSE(has(plain.text, " gain")) << plain.text;
   EXPECT_TRUE(has(full.text, " gain")) << full.text;
+}
+
+/// Returns the first numbers after a word of a text.
+std::vector<double> numbersAfter(const std::string& text, const std::string& word, size_t count) {
+  std::vector<double> numbers;
+  for (size_t at = text.find(word) + word.size(); at < text.size() && numbers.size() < count;) {
+    at = text.find_first_of("-0123456789", at);
+    if (at == std::string::npos) break;
+    size_t length = 0;
+    numbers.push_back(std::stod(text.substr(at), &length));
+    at += length;
+  }
+  return numbers;
+}
+
+TEST_F(DeviceCommands, DeviceInfoGivesProgramsTheReachThatItPrints) {
+  const std::string arm = HAPTICD_SOURCE_DIR "/config/devices/simulated-premium15.yaml";
+  const std::string plain = run("device info " + arm, kShipped).text;
+  const std::string json = run("device info --json " + arm, kShipped).text;
+  ASSERT_TRUE(has(plain, "reach of the tip") && has(json, "\"reach_m\"")) << plain << json;
+  const auto printed = numbersAfter(plain, "reach of the tip in the device frame:", 6);
+  const auto low = numbersAfter(json, "\"min\"", 3), high = numbersAfter(json, "\"max\"", 3);
+  ASSERT_TRUE(printed.size() == 6 && low.size() == 3 && high.size() == 3) << plain << json;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(low[axis], printed[2 * axis], 0.0006) << axis;
+    EXPECT_NEAR(high[axis], printed[2 * axis + 1], 0.0006) << axis;
+  }
 }
 
 TEST_F(DeviceCommands, DeviceInfoSaysWhatNobodyTriedAlthoughNothingIsPluggedIn) {

@@ -137,6 +137,7 @@ REFUSED = [
     (WIRED, {"lengths: [0.21, 0.17, 0.03, 0, 0]": "lengths: |[0,2, 0,18, 0, 0, 0]"}, "parameters.arm.lengths", "zeros and whole numbers take turns; a comma separates two numbers: write 0.2, not 0,2"),
     (WIRED, {"lengths: [0.21, 0.17, 0.03, 0, 0]": "lengths: |[0,2, 0,9, 0, 0, 0]"}, "parameters.arm.lengths", "expected 5 for this kind of arm; a comma separates two numbers: write 0.2, not 0,2"),
     (WIRED, {"max_torque: [0.6]": "max_torque: |[0,6, 0,6]"}, "parameters.arm.max_torque", "write 0.6, not 0,6"),
+    (WIRED, {"lengths: [0.21, 0.17, 0.03, 0, 0]": "lengths: |[0, 2, 1]"}, "parameters.arm.lengths", "3 numbers, expected 5 for this kind of arm\n"),
     (WIRED, {"lengths: [0.21": "lengths: [|205"}, "parameters.arm.lengths[0]", "205 mm is 0.205 m\n"),
 ]
 

@@ -38,7 +38,8 @@ def crash(folder, environment, how, reasons):
     code, _, err = hapticd(environment, "run", scene, "--for", "1")
     check(f"{how}: exit code 1", code == 1, (code, err))
     check(f"{how}: the message names plugin, model, reason and cure",
-          any(reason in err for reason in reasons) and all(word in err for word in ("'deadly'", "'bad'", "motors were switched off first", "plugin clear deadly")), err)
+          any(reason in err for reason in reasons) and all(word in err for word in ("'deadly'", "'bad'", "motors were switched off first", "plugin clear deadly",
+                                                                                                 f"hapticd plugin check {os.path.join(folder, 'plugins', os.path.basename(SHAPES))}")), err)
     box = os.path.join(environment["STATE_DIRECTORY"], "black-box-deadly.flight")
     code, out, err = hapticd(environment, "plot", box, "--out", os.path.join(folder, how + ".svg"))
     check(f"{how}: the black box bears its name and can be drawn", code == 0, (code, out, err))

@@ -255,9 +255,20 @@ def mutated(view):
     check("its memory does not grow", view.resident_kb() < 60_000, f"{view.resident_kb()} kB")
 
 
+def waits(view):
+    """A view of a daemon that does not run says so at once."""
+    with subprocess.Popen([HAPTICD, "view", "--name", "nobody"], env=view.environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as other:
+        address = other.stdout.readline()
+        other.terminate()
+        told = other.stderr.read()
+    check("a view says that it waits, what for, and what runs", address.startswith("http") and all(words in told for words in (
+        "no daemon named nobody runs yet, so the page waits for it", "these run: x", "hapticd run SCENE --name nobody")), told)
+
+
 with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
     view = View(folder)
     try:
+        waits(view)
         codes(view)
         sockets(view)
         crowds(view)

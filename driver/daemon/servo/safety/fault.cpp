@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "servo/safety/fault.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <string_view>
 
 namespace hapticd::servo {
 
@@ -46,8 +48,13 @@ const char* describe(Fault fault) {
   return "unknown fault";
 }
 
-std::string faultMessage(const std::string& device, Fault fault, double measured, const char* why) {
-  const std::string words = why != nullptr ? why : describe(fault);
+std::string faultMessage(const std::string& device, Fault fault, double measured, const char* why,
+                         const std::string& file) {
+  std::string words = why != nullptr ? why : describe(fault);
+  constexpr std::string_view kFile = " FILE";
+  const size_t command = std::min(words.find("hapticd device "), words.size());
+  if (const size_t at = words.find(kFile, command); at != std::string::npos)
+    words.replace(at + 1, kFile.size() - 1, file);
   const size_t cure = words.find("; ");
   const char* unit = fault == Fault::kTooFast || fault == Fault::kJumped                         ? "m/s"
                      : fault == Fault::kOverheated                                               ? "degC"

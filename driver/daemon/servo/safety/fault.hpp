@@ -36,7 +36,9 @@ const char* describe(Fault fault);
 /// [main] Returns a message of four parts: what failed, the measured value, the consequence, and the cure.
 /// @param measured value, in the unit that is named at the enumerator
 /// @param why the device's own text, "cause; cure"; nullptr if it has none
-std::string faultMessage(const std::string& device, Fault fault, double measured, const char* why = nullptr);
+/// @param file the device file, which the commands of the cure take
+std::string faultMessage(const std::string& device, Fault fault, double measured, const char* why = nullptr,
+                         const std::string& file = "FILE");
 
 /// A fault that one thread latches and other threads read.
 class LatchedFault {

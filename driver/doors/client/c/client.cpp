@@ -58,9 +58,9 @@ std::string baseOf(const std::string& name) {
 
 /// Changes a message that mentions the option --name, which a program that uses this library may not have.
 std::string forPrograms(std::string text) {
-  constexpr std::string_view kOption = "name a running one with --name";
+  constexpr std::string_view kOption = "name one of these with --name";
   if (const size_t at = text.find(kOption); at != std::string::npos)
-    text.replace(at, kOption.size(), "give hapticd_connect the name of a running one");
+    text.replace(at, kOption.size(), "give hapticd_connect the name of one of these");
   return text;
 }
 

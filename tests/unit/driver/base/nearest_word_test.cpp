@@ -14,5 +14,14 @@ TEST(NearestWord, DistanceIsSymmetricAndZeroForTheSameWord) {
   EXPECT_EQ(editDistance("Stiffness", "stiffness"), 0u);
 }
 
+TEST(NearestWord, FindsASlipOfTheHandAndRefusesAnotherWord) {
+  const std::vector<std::string> known = {"stiffness", "damping", "exponent", "geometry"};
+  EXPECT_EQ(nearestWord("stifness", known), "stiffness");
+  EXPECT_EQ(nearestWord("dampign", known), "damping");
+  EXPECT_EQ(nearestWord("Geometry", known), "geometry");
+  EXPECT_EQ(nearestWord("colour", known), "");
+  EXPECT_EQ(nearestWord("", known), "");
+}
+
 }  // namespace
 }  // namespace hapticd

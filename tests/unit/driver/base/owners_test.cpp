@@ -24,7 +24,7 @@ double keepMany(int count, const std::string& kind) {
   for (int i = 0; i < count; ++i) {
     const Owner* owner = ownerOf(kind, "m" + std::to_string(i));
     setPlaceOfOwner(owner, "scene.yaml:" + std::to_string(i));
-    setFileOfOwner(owner, "8 bytes of " + kind, false);
+    setFileOfOwner(owner, {kind + ".so", "8 bytes of " + kind, false});
   }
   return (processorTime() - begun) / count;
 }
@@ -41,11 +41,13 @@ TEST(Owners, ThePlaceAndTheFileThatWereKeptLastCount) {
   EXPECT_NE(ownerOf("tor", "usring"), owner);
   EXPECT_STREQ(placeOf(owner), "");
   EXPECT_STREQ(fileOf(owner), "");
+  EXPECT_STREQ(pathOf(owner), "");
   for (const char* place : {"a.yaml:4", "b.yaml:5", "b.yaml:5", "a.yaml:4"}) {
     setPlaceOfOwner(owner, place);
     EXPECT_STREQ(placeOf(owner), place);
-    setFileOfOwner(owner, place, true);
+    setFileOfOwner(owner, {"torus.so", place, true});
     EXPECT_STREQ(fileOf(owner), place);
+    EXPECT_STREQ(pathOf(owner), "torus.so");
   }
   EXPECT_EQ(foreignOwner(0), owner);
   EXPECT_EQ(foreignOwner(1), nullptr);

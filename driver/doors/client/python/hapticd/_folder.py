@@ -2,6 +2,8 @@
 """The runtime folder of a daemon."""
 from __future__ import annotations
 
+import fcntl
+import glob
 import os
 import stat
 
@@ -24,6 +26,21 @@ def _in_memory(folder: str) -> bool:
         return False
 
 
+def _running(folders: list[str]) -> list[str]:
+    """Returns the names of the daemons that run: each holds the lock on its name."""
+    names = []
+    for folder in folders:
+        for lock in glob.glob(os.path.join(glob.escape(folder), "*.lock")):
+            try:
+                with open(lock, "rb") as file:
+                    fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+            except BlockingIOError:
+                names.append(os.path.basename(lock)[:-len(".lock")])
+            except OSError:
+                continue
+    return sorted(names)
+
+
 def runtime_folder(name: str) -> str:
     """Returns the runtime folder of the daemon of this name; see control.md."""
     folders = []
@@ -38,5 +55,8 @@ def runtime_folder(name: str) -> str:
                 return folder
         except OSError:
             continue
-    raise HapticdError(f"there is no socket of a daemon named {name} in {', '.join(folders)}\n"
-                       "  fix: start one with hapticd run, or name it: hapticd.connect(NAME)")
+    others, option = _running(folders), "" if name == "hapticd" else f" --name {name}"
+    raise HapticdError(f"no daemon named {name} runs; "
+                       + (f"these run: {', '.join(others)}" if others else f"none runs in {' or '.join(folders)}")
+                       + f"\n  fix: start it with hapticd run SCENE{option}"
+                       + (", or name one of these: hapticd.connect(NAME)" if others else ""))

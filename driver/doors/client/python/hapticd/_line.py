@@ -33,7 +33,8 @@ class Line:
             self._socket.connect(file)
         except OSError as error:
             self._socket.close()
-            raise HapticdError(f"no daemon answers at {file}: {error.strerror}") from None
+            cure = "be the daemon's user or in its group: only they may connect" if isinstance(error, PermissionError) else "start the daemon with hapticd run"
+            raise HapticdError(f"no daemon answers at {file}: {error.strerror}\n  fix: {cure}") from None
         self._begun = b""  # the beginning of a line that is not yet complete
         self._begun_with: list[int] = []  # the descriptors that came with this beginning
         self._lines: deque[tuple[bytes, list[int]]] = deque()

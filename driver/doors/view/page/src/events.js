@@ -11,10 +11,12 @@ const kToldAsEvents = new Set([5, 6, 7, 8, 9, 10, 12, 13]);
 const kHeld = 8; // number of the fault of an arm that a person holds; it is not shown as a failure
 const kOfArm = new Set([5, 6, 11]);
 const kFaults = ['no fault any more', 'a force or position was not a number', 'the device is gone', 'the device reports a fault', 'no new sample came', 'the tip was too fast',
-  'too many ticks were missed', 'not calibrated', 'held', 'a tick was stuck', 'a motor is too hot', 'the position jumped'];
+  'too many ticks were missed', 'not calibrated', 'held', 'a tick did not end', 'a motor is too hot', 'the position jumped', 'its orientation is not a unit quaternion'];
 const kFaultUnits = {4: 's', 5: 'm/s', 6: 's', 9: 's', 10: '°C', 11: 'm/s'};
-const kSilenced = ['', 'it lost the surface', 'its force or pose was not a number', 'it returned an unknown status', 'its steps took too long', 'its force jumped beyond its stiffness'];
-const kLed = ['', 'the hand', 'a force'];
+const kSilenced = ['', 'it lost the surface', 'its force or pose was not a number', 'it returned an unknown status', 'its steps took too long', 'its force jumped beyond its stiffness',
+  'its pose is not a unit quaternion', 'it pulled the probe in', 'its torque jumped beyond its stiffness'];
+const kJoined = ['a program leads it', 'a program leads its hand', 'a program pushes on it'];
+const kLost = ['no program leads it any more', 'no program leads its hand any more', 'the program pushes no more'];
 /** The text for each kind of event; e has the code and the value of the event. `sort` decides the colour, the sound and
  * the mark. */
 const kEvents = {
@@ -27,10 +29,11 @@ const kEvents = {
   restored: {sort: 'order', text: () => 'computes at full accuracy again'},
   came: {sort: 'order', text: () => 'was added'},
   left: {sort: 'order', text: () => 'was removed'},
-  joined: {sort: 'order', text: (e) => `a program leads ${kLed[e.code] ?? ''}`.trimEnd()},
-  lost: {sort: 'order', text: () => 'is no longer led by a program'},
-  refused: {sort: 'fault', text: (e) => `${e.value} records of its leader were refused so far`},
-  quarantined: {sort: 'fault', text: () => 'models were left out: their plugin ended an earlier run'},
+  joined: {sort: 'order', text: (e) => kJoined[e.code] ?? kJoined[0]},
+  lost: {sort: 'order', text: (e) => kLost[e.code] ?? kLost[0]},
+  refused: {sort: 'fault', text: (e) => `${e.value} records of the program that leads it were refused so far`},
+  stalled: {sort: 'fault', text: (e) => `no tick came for ${short(e.value)} s`},
+  quarantined: {sort: 'fault', text: () => 'models were left out, because their plugin ended an earlier run'},
 };
 
 export class Events {

@@ -65,7 +65,7 @@ class Page {
     try {
       this.view = new View($('canvas'));
     } catch (error) {
-      this.notice(`This browser draws no 3D (WebGL 2): ${error.message}`);
+      this.notice(`This browser cannot draw 3D (WebGL 2): ${error.message}`);
       return;
     }
     this.hand = new Hand(this.connection, this.view);
@@ -94,7 +94,7 @@ class Page {
     on('status', (status) => this.#status(status));
     on('reset', () => { this.now?.clear(); this.plots?.clear(); this.events?.clear(); });
     on('playback', (state) => this.timeline.show(state));
-    on('waiting', ({name}) => this.#lamp('wait', `Waiting for a daemon named ${name}`));
+    on('waiting', ({name}) => this.#lamp('wait', `No daemon named ${name} runs yet. To start it: hapticd run SCENE${name === 'hapticd' ? '' : ` --name ${name}`}`));
     on('end', () => { this.#lamp('wait', 'The run has ended'); this.hand?.begin([], [], 'The run has ended'); });
     on('lost', () => this.#lost());
     on('refused', (why) => { this.whyLost = why; this.notice(why); });
@@ -283,7 +283,7 @@ class Page {
     if (this.hello?.recorded) return this.#lamp('good', 'Recording');
     if (!('rate_hz' in status)) return undefined;
     const p99 = status.lateness_us?.p99;
-    const text = `${short(status.rate_hz)} Hz · late ${short(p99)} µs (99 %) · ${status.missed_ticks ?? 0} missed`;
+    const text = `${short(status.rate_hz)} Hz · 99 % of the ticks at most ${short(p99)} µs late · ${status.missed_ticks ?? 0} missed`;
     return faults.length > 0 ? this.#lamp(this.held ? 'held' : 'bad', faults.join(', ')) : this.#lamp('good', text);
   }
 

@@ -51,7 +51,7 @@ export class Panel {
       this.signature = shape;
       const focused = this.#focused();
       $('models').replaceChildren(...models.map((model, i) => this.#model(model, i)));
-      if (models.length === 0) $('models').append(element('p', {class: 'quiet'}, 'There is no model.'));
+      if (models.length === 0) $('models').append(element('p', {class: 'quiet'}, 'The scene has no model.'));
       if (focused) this.#controlsOf(focused.model)?.[focused.place]?.focus();
     }
     for (const model of models) for (const parameter of model.live_parameters ?? []) this.#refresh(model, parameter);
@@ -100,9 +100,9 @@ export class Panel {
     swatch.style.background = colorOf(model.plugin, model.number ?? i);
     const head = element('header', {}, swatch, element('h3', {title: model.name}, model.name, element('small', {}, model.plugin)));
     if (this.control) {
-      const able = element('button', {type: 'button', title: 'Its force fades out, or in'}, model.enabled ? 'Disable' : 'Enable');
+      const able = element('button', {type: 'button', title: model.enabled ? 'Fade its force out; it is still traced' : 'Fade its force in'}, model.enabled ? 'Disable' : 'Enable');
       able.onclick = () => this.#do({do: model.enabled ? 'disable' : 'enable', model: model.name});
-      const remove = element('button', {type: 'button', title: 'Fade it out and take it away', 'aria-label': `Remove ${model.name}`}, '✕');
+      const remove = element('button', {type: 'button', title: 'Fade its force out and remove it', 'aria-label': `Remove ${model.name}`}, '✕');
       remove.onclick = () => this.#do({do: 'remove', model: model.name});
       head.append(able, remove);
     }
@@ -125,7 +125,7 @@ export class Panel {
     const set = async (wanted) => {
       wrong.hidden = true;
       if (!(wanted >= parameter.min && wanted <= parameter.max)) {
-        wrong.textContent = `${number.value || 'nothing'} is not allowed, expected ${exact(parameter.min)} to ${exact(parameter.max)} ${parameter.unit}`;
+        wrong.textContent = `${number.value === '' ? 'no number is given' : `${number.value} is out of range`}, expected ${exact(parameter.min)} to ${exact(parameter.max)} ${parameter.unit}`;
         wrong.hidden = false;
         this.#refresh(model, parameter, true);
         return;
@@ -140,11 +140,11 @@ export class Panel {
     number.onchange = () => set(number.valueAsNumber);
     slider.oninput = () => { number.value = Number(Number(slider.value).toPrecision(4)); };
     slider.onchange = () => set(number.valueAsNumber);
-    const title = parameter.doc ? `${parameter.doc} ${exact(parameter.min)} to ${exact(parameter.max)} ${parameter.unit}` : parameter.id;
+    const consents = parameter.safety ? ' A hand may feel a change suddenly, so the page asks first.' : '';
+    const title = parameter.doc ? `${parameter.doc} ${exact(parameter.min)} to ${exact(parameter.max)} ${parameter.unit}${consents}` : parameter.id;
     const field = element('div', {class: parameter.safety ? 'field safety' : 'field', data: {parameter: parameter.id}},
-      element('label', {htmlFor: id, title}, parameter.label ?? parameter.id), number, element('span', {class: 'unit'}, parameter.unit));
-    if (Number.isFinite(value)) field.append(slider);
-    field.append(wrong);
+      element('label', {htmlFor: id, title}, parameter.label ?? parameter.id), ...(Number.isFinite(value) ? [slider] : []), number,
+      element('span', {class: 'unit'}, parameter.unit), wrong);
     return field;
   }
 

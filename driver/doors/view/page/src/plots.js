@@ -50,17 +50,17 @@ function axis(size, format) {
 }
 
 class Plot {
-  constructor(parent, {title, unit, color, read, scale = 1, limit = null, zero = true, least = 0}, plots) {
+  constructor(parent, {title, about = '', unit, color, read, scale = 1, limit = null, zero = true, least = 0}, plots) {
     this.plots = plots;
     this.scale = scale;
     this.limit = limit;
     this.value = element('b', {}, '–');
     this.unit = unit;
-    const bound = limit === null ? '' : element('small', {title: 'Dashed in the plot'}, `limit ${short(limit)} ${unit}`);
+    const bound = limit === null ? '' : element('small', {title: 'Limit: dashed in the plot'}, `≤ ${short(limit)} ${unit}`);
     const mark = element('i');
     mark.style.background = `var(${color})`;
     this.chartBox = element('div', {class: 'chart'});
-    this.root = element('article', {class: 'plot'}, element('h3', {}, mark, element('span', {title}, title), bound, this.value), this.chartBox);
+    this.root = element('article', {class: 'plot'}, element('h3', {}, mark, element('span', {title: about || title}, title), bound, this.value), this.chartBox);
     parent.append(this.root);
     this.extremes = new Extremes((view, at) => scale * read(view, at), plots.readTime);
     this.color = color;
@@ -78,7 +78,7 @@ class Plot {
     };
     this.chart = new uPlot({
       width: 240, height: 118, legend: {show: false}, cursor: {show: true, points: {show: false}, y: false, drag: {x: false, y: false}},
-      padding: [6, 4, 0, 0], scales: {x: {time: false}, y: {range}},
+      padding: [6, 16, 0, 0], scales: {x: {time: false}, y: {range}},
       axes: [axis(20, (u, values) => values.map((v) => `${Number(v.toFixed(1))} s`)), axis(40, (u, values) => values.map((v) => String(Number(v.toPrecision(4)))))],
       series: [{}, {stroke, width: 1.4, points: {show: false}}, {stroke, width: 1.4, points: {show: false}}],
       bands: [{series: [2, 1], fill: () => `color-mix(in srgb, ${themeColor(this.color)} 45%, transparent)`}],
@@ -151,13 +151,13 @@ export class Plots {
     const depth = reader(columns, 'depth');
     const forces = arms.map(({name, limit}, i) => {
       const force = vectorReader(columns, `arm${i}_sent_f`);
-      return {title: arms.length > 1 ? `Force on ${name}` : 'Force on the hand', unit: 'N', color: '--force', read: (v, at) => norm(force(v, at)), limit, least: 0.5};
+      return {title: arms.length > 1 ? `Force, ${name}` : 'Force', about: 'Force that the arm exerts on the hand', unit: 'N', color: '--force', read: (v, at) => norm(force(v, at)), limit, least: 0.5};
     });
     this.plots = [
       ...forces,
-      {title: 'Depth', unit: 'mm', color: '--depth', read: (v, at) => Math.max(depth(v, at), -0.02), scale: 1e3, zero: false, least: 0.5},
-      {title: 'Lateness', unit: 'µs', color: '--late', read: reader(columns, 'lateness_us'), limit: period * 1e6, least: 50},
-      {title: 'Compute', unit: 'µs', color: '--compute', read: reader(columns, 'compute_us'), limit: period * 1e6, least: 20},
+      {title: 'Depth', about: 'How deep the tip is in the model; negative: its distance', unit: 'mm', color: '--depth', read: (v, at) => Math.max(depth(v, at), -0.02), scale: 1e3, zero: false, least: 0.5},
+      {title: 'Lateness', about: 'How late each tick began', unit: 'µs', color: '--late', read: reader(columns, 'lateness_us'), limit: period * 1e6, least: 50},
+      {title: 'Compute time', about: 'How long each tick took', unit: 'µs', color: '--compute', read: reader(columns, 'compute_us'), limit: period * 1e6, least: 20},
     ].map((what) => new Plot(parent, what, this));
     this.own = null;
     this.next = 0;

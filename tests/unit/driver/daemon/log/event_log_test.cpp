@@ -15,7 +15,7 @@ namespace {
 
 class EventWords : public testing::Test {
  protected:
-  EventWords() : log_(2, {"phantom"}, arms_) { log_.name(1, "door"); }
+  EventWords() : log_(2, {{"phantom", "my-arm.yaml"}}, arms_) { log_.name(1, "door", "shapes/door.so"); }
   EventLog::Message of(uint32_t kind, uint32_t code = 0, double value = 0) const {
     hapticd_event event{};
     event.kind = kind;
@@ -42,6 +42,7 @@ TEST_F(EventWords, TellHowLongNoTickCame) {
   EXPECT_EQ(stalled.level, HSP_LOG_WARNING);
   EXPECT_NE(stalled.text.find("no tick for 1.50 s"), std::string::npos) << stalled.text;
   EXPECT_NE(stalled.text.find("SIGSTOP"), std::string::npos) << stalled.text;
+  EXPECT_NE(stalled.text.find("hapticd device check my-arm.yaml"), std::string::npos) << stalled.text;
 }
 
 TEST_F(EventWords, NameTheModel) {
@@ -58,6 +59,7 @@ TEST_F(EventWords, TellTimeAndForceOfAPull) {
   const std::string pulled = of(HAPTICD_SILENCED, static_cast<uint32_t>(ShapeFault::kPulls), 0.42).text;
   EXPECT_NE(pulled.find("into its surface, at 0.000 s with 0.42 N: its force has the wrong sign"), std::string::npos)
       << pulled;
+  EXPECT_NE(pulled.find("hapticd plugin check shapes/door.so"), std::string::npos) << pulled;
   const std::string status = of(HAPTICD_SILENCED, static_cast<uint32_t>(ShapeFault::kBadStatus), -77).text;
   EXPECT_NE(status.find("status -77"), std::string::npos) << status;
 }
@@ -129,7 +131,7 @@ TEST(PusherWords, TellWhoAskedFallsSilentAndDies) {
 }
 
 TEST_F(EventWords, KeepTheNameOfAModelThatHasLeft) {
-  log_.name(1, "");
+  log_.name(1, "", "");
   EXPECT_EQ(of(HAPTICD_LEFT).who, "door");
 }
 

@@ -36,6 +36,9 @@ TEST(FaultWords, HaveTheConsequenceAndTheCure) {
             "device arm: no report came (measured: 0.06 s); its forces ended and come back in a ramp once the device "
             "works again; "
             "look at the cable");
+  EXPECT_EQ(faultMessage("arm", Fault::kNotCalibrated, 0, nullptr, "my-arm.yaml"),
+            "device arm: the device is not calibrated; its forces ended and come back in a ramp once the device works "
+            "again; run: hapticd device calibrate my-arm.yaml");
   EXPECT_EQ(faultMessage("arm", Fault::kStopped, 0),
             "device arm: stopped by the user; its forces ended and stay off until the fault is cleared");
 }

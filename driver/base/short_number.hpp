@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+/// Writes numbers for people.
+#pragma once
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+namespace hapticd {
+
+/// [any] Returns a number that is rounded to some significant digits, without an exponent where people write none:
+/// 6010, not 6.01e+03. @param digits 1 to 10
+inline std::string shortNumber(double value, int digits = 3) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
+  std::snprintf(text, sizeof text, "%.10g", std::strtod(text, nullptr));
+  return text;
+}
+
+}  // namespace hapticd
