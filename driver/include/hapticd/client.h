@@ -94,7 +94,8 @@ typedef struct hapticd_lead_page {
 /* ---- a row of the stream `events`. The number of a kind never changes; new kinds are added at the end. Each comment
  * says what happened, and then which members of hapticd_event are set. */
 enum {
-  HAPTICD_CLICK = 1, /* a button or switch snapped; model, probe */
+  HAPTICD_CLICK = 1, /* a button or switch snapped; model, probe, code: HAPTICD_WENT_IN or HAPTICD_CAME_OUT, or 0 if the
+                        direction is not known (a plugin that does not tell it, or a daemon of before) */
   HAPTICD_TOUCH,     /* a probe touched a model, after 50 ms or more without contact; model, probe, value: force in N */
   HAPTICD_FAULT,     /* an arm's force was taken away; probe, code: which fault, value: the measured quantity */
   HAPTICD_CLEARED,   /* the fault of an arm has ended; probe */
@@ -113,6 +114,7 @@ enum {
   HAPTICD_STALLED, /* the servo ran no tick for some time: the process was stopped, or got no CPU; value: time in s */
   HAPTICD_EVENT_KINDS /* one more than the last kind */
 };
+enum { HAPTICD_WENT_IN = 1, HAPTICD_CAME_OUT }; /* hapticd_event.code of HAPTICD_CLICK */
 typedef struct hapticd_event {
   uint64_t tick;
   double t;             /* s since the first tick */
