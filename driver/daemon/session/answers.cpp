@@ -205,6 +205,7 @@ std::string statusAnswer(const Session& session, const std::string& name, const 
                  {"tick", now.tick},
                  {"rate_hz", page.rate},
                  {"missed_ticks", now.missed},
+                 {"ends", session.runner.loop().ends()},
                  {"lateness_us", {{"p50", page.lateness_us.quantile(0.5)}, {"p99", page.lateness_us.quantile(0.99)}}},
                  {"devices", devices},
                  {"silenced", silencedJson(session)}});
@@ -281,6 +282,8 @@ std::string noForceWhy(const Session& session, uint32_t index) {
   const std::string& device = session.runner.scene().devices[index].name;
   const Fault fault = arm.limiter().fault();
   const std::string clear = "\n  fix: hapticd ctl clear, once the person who holds the arm agrees";
+  if (fault == Fault::kStopped && session.runner.loop().ends())
+    return "device " + device + ": the run ends, so its forces ramp to zero";
   if (fault == Fault::kStopped)
     return "device " + device + ": the arm is held; its forces ended and stay off until the hold is cleared" + clear;
   if (fault != Fault::kNone)

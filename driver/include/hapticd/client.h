@@ -158,6 +158,10 @@ HAPTICD_API void hapticd_close(hapticd_client* client);
 HAPTICD_API const char* hapticd_version(void);
 /* Returns 1 while the daemon runs, and 0 after it has ended. */
 HAPTICD_API int hapticd_alive(hapticd_client* client);
+/* Returns 0 while the daemon runs, HAPTICD_STOPPED after it has ended in order (hapticd ctl stop, Ctrl-C, the end of
+ * --for), and HAPTICD_CRASHED if it was killed or crashed. Ask it when another call returns -1. */
+enum { HAPTICD_STOPPED = 1, HAPTICD_CRASHED };
+HAPTICD_API int hapticd_ended(hapticd_client* client);
 
 /* Sends a request of control.md (JSON, one line) and writes the answer into `answer`, cut to `bytes` and ended by a
  * zero. Returns the length of the whole answer. Returns -1 if the daemon refuses, or does not answer within 10 s;

@@ -39,4 +39,4 @@ def runtime_folder(name: str) -> str:
         except OSError:
             continue
     raise HapticdError(f"there is no socket of a daemon named {name} in {', '.join(folders)}\n"
-                       "  fix: start one with hapticd run, or name it: hapticd.connect(NAME)")
+                       "  fix: start one with hapticd run, or name it: hapticd.connect(NAME)", "gone")
