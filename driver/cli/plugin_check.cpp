@@ -287,6 +287,13 @@ size_t testClass(const Recipe& recipe, const ConformanceArguments& options, std:
   return left + lacking.notRun();
 }
 
+/// Says which arrays no test used, because they are empty by default.
+void printUntested(const std::vector<EmptyArray>& arrays) {
+  for (const EmptyArray& array : arrays)
+    std::printf("note  %s is empty by default, so no test used it; test it too, with values of yours: --set %s\n",
+                array.id.c_str(), array.set.c_str());
+}
+
 int sum(const std::vector<Outcome>& outcomes, size_t not_run, const ConformanceArguments& options) {
   size_t failed = 0;
   auto tests = nlohmann::ordered_json::array();
@@ -339,6 +346,7 @@ int check(const ConformanceArguments& options) {
     if (touch) recipes[i].touch = *touch;
     not_run +=
         touch ? testClass(recipes[i], options, outcomes) : notActive(recipes[i], touch.error(), options, outcomes);
+    if (!options.json) printUntested(emptyArrays(info, recipes[i].set));
   }
   return sum(outcomes, not_run, options);
 }
@@ -350,7 +358,10 @@ void addPluginCheck(const Command& app, int& exit_code) {
   const Command command = app.subcommand("plugin").addSubcommand(
       "check", "Run the conformance tests of a plugin file, each in its own process.");
   command.addOption("file", options->file, "plugin file (.so)").required().existingFile();
-  command.addOption("--set", options->set, "set a parameter: ID=VALUE, VALUE as in a scene; may be repeated")
+  command
+      .addOption("--set", options->set,
+                 "set a parameter, required or not: ID=VALUE, VALUE as in a scene; may be repeated; without it the "
+                 "tests use the defaults")
       .oneValueEach();
   command.addOption("--timeout", options->timeout, "longest time of one test [s]; a longer one counts as a hang")
       .showDefault()

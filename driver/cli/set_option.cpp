@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/set_option.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <set>
@@ -29,6 +31,20 @@ const char* placeholder(uint32_t kind) {
     default:
       return "VALUE";
   }
+}
+
+/// Returns the shortest array that the table of the plugin allows, of numbers that it allows, such as "[[0, 0]]".
+std::string exampleOf(const host::ParamInfo& param) {
+  const uint32_t columns = std::max(param.columns, 1u), rows = std::max(1u, (param.min_count + columns - 1) / columns);
+  const std::string number = fmt::format("{:g}", std::clamp(0.0, param.min, param.max));
+  std::string row, all;
+  for (uint32_t i = 0; i < columns; ++i) row += (i > 0 ? ", " : "") + number;
+  if (columns == 1 || param.max_count <= columns) {
+    for (uint32_t i = 0; i < rows; ++i) all += (i > 0 ? ", " : "") + row;
+    return "[" + all + "]";
+  }
+  for (uint32_t i = 0; i < rows; ++i) all += (i > 0 ? ", [" : "[") + row + "]";
+  return "[" + all + "]";
 }
 
 std::vector<std::string> namesOf(const std::vector<host::ClassInfo>& classes) {
@@ -85,6 +101,18 @@ std::vector<std::string> missing(const host::ClassInfo& info, const std::vector<
                       "); give --set " + param.id + "=" + placeholder(param.kind));
   }
   return missing;
+}
+
+std::vector<EmptyArray> emptyArrays(const host::ClassInfo& info, const std::vector<scene::Value>& values) {
+  std::vector<EmptyArray> found;
+  for (const host::ParamInfo& param : info.params) {
+    const bool has = std::any_of(values.begin(), values.end(), [&](const auto& value) { return value.id == param.id; });
+    const std::string initial = param.def_text.value_or("");
+    const bool empty = initial.find_first_not_of(" []") == std::string::npos;
+    if (has || !empty || param.kind != HSP_ARRAY || (param.flags & HSP_P_REQUIRED) != 0) continue;
+    found.push_back({param.id, "'" + param.id + "=" + exampleOf(param) + "'"});
+  }
+  return found;
 }
 
 }  // namespace hapticd::cli

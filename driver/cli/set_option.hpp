@@ -33,4 +33,12 @@ class SetOption {
 /// such as "give --set heights=FILE".
 std::vector<std::string> missing(const host::ClassInfo& info, const std::vector<scene::Value>& values);
 
+/// An array that is empty by default, so that tests with defaults do not use it.
+struct EmptyArray {
+  std::string id, set;  ///< `set`: an option value to try, quoted for a shell, such as "'dent=[0]'"
+};
+
+/// [main] Returns the arrays that are empty by default and that have no value in `values`.
+std::vector<EmptyArray> emptyArrays(const host::ClassInfo& info, const std::vector<scene::Value>& values);
+
 }  // namespace hapticd::cli

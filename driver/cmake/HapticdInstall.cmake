@@ -29,7 +29,8 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/driver/doors/client/python/hapticd DESTI
         PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/driver/doors/client/python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
         USE_SOURCE_PERMISSIONS)
-install(FILES ${PROJECT_SOURCE_DIR}/driver/doors/client/c/examples/spring.c
+install(FILES ${PROJECT_SOURCE_DIR}/driver/doors/client/c/examples/button.c
+              ${PROJECT_SOURCE_DIR}/driver/doors/client/c/examples/spring.c
               ${PROJECT_SOURCE_DIR}/driver/doors/client/c/examples/lead_model.c DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 
 # What each Debian package says of its licences.

@@ -11,6 +11,12 @@ namespace {
 // least component of the normal along the axis: on steeper flanks a push hardly moves the button
 constexpr double kSteepest = 0.1;
 
+/// Returns the flags (HSP_OUT_*) of a step of the button. @param button the button after the step
+uint32_t clickOf(const dynamics::ButtonState& button, const dynamics::ButtonState::Step& step) noexcept HSP_RT {
+  if (!step.clicked) return 0;
+  return HSP_OUT_EVENT | (button.pressed() ? HSP_OUT_WENT_IN : HSP_OUT_CAME_OUT);
+}
+
 }  // namespace
 
 void PushButton::activate(const hsp_activation& activation, hsp_report& report) {
@@ -64,12 +70,12 @@ PushButton::Press PushButton::press(const hsp_step& step) noexcept HSP_RT {
 /// The button has no mass, so in every tick it is where the springs balance. First the probes are traced on the cap of
 /// the last tick; then the balance moves the cap, and the probes are traced again.
 hsp_status PushButton::step(const hsp_step& step) noexcept HSP_RT {
-  bool clicked = false;
+  uint32_t clicked = 0;  // HSP_OUT_* of a click in this step
   const MovingFrame before = MovingFrame::of(*step.pose);
   if (step.dt_s > 0) {
     const Press pressed = press(step);
     if (pressed.travel > 0 || !pressed.blind)  // if a sample is lost, the button stays where it is
-      clicked = button_.step(stiffness_ * pressed.along * pressed.along, *curve_, pressed.travel).clicked;
+      clicked = clickOf(button_, button_.step(stiffness_ * pressed.along * pressed.along, *curve_, pressed.travel));
   }
   const MovingFrame now = frame(step.dt_s);
   now.write(*step.pose);
@@ -80,7 +86,7 @@ hsp_status PushButton::step(const hsp_step& step) noexcept HSP_RT {
     hsp_contact& contact = *HSP_AT(hsp_contact, step.out, step.out_stride, i);
     const Touch touch = trace(*HSP_AT(const hsp_probe, moved.in, moved.in_stride, i), moved, contact);
     if (touch.status < 0 || (worst == HSP_OK && touch.status > 0)) worst = touch.status;
-    if (clicked) contact.flags |= HSP_OUT_EVENT;
+    contact.flags |= clicked;
     if (!touch.traced || touch.depth <= 0) continue;
     Eigen::Map<Eigen::Vector3d>(contact.force) = stiffness_ * touch.depth * touch.normal;
     contact.stiffness = stiffness_;

@@ -37,6 +37,7 @@ struct TemplateBall : hapticd::Shape {
                 "Greatest force along the surface, divided by the force into it."),
         F::choice("law", &TemplateBall::law, kLaws, 0,
                   "linear: the force is stiffness * depth; profile: it comes from the table of depth and force."),
+        // "m, N": units of the 2 columns; 4 to 200: how many numbers in all, so 2 to 100 rows; 0 to 20: range of each
         F::array("profile", &TemplateBall::profile, "m, N", 2, 4, 200, 0, 20, "[[0, 0], [0.002, 1], [0.01, 3]]",
                  "Table with rows of depth and force, by growing depth."),
         F::path("profile_file", &TemplateBall::profile_file,

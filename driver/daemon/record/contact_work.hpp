@@ -3,6 +3,7 @@
 /// the work that the hand did on it. A model that gives back more drives the hand, which then buzzes or drifts.
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -17,10 +18,14 @@ class ContactWork {
   /// spring.
   /// @param number number of the tick; if ticks are missing before it, no work is counted
   /// @param force [N] and position [m] in the world frame
-  void add(uint64_t number, const Eigen::Vector3d& force, const Eigen::Vector3d& position) noexcept HSP_RT {
+  /// @param depth [m] depth of the probe; 0 if it is outside
+  void add(uint64_t number, const Eigen::Vector3d& force, const Eigen::Vector3d& position,
+           double depth = 0) noexcept HSP_RT {
     if (number == next_) {
       const double work = 0.5 * (force + force_).dot(position - position_);
       if (std::isfinite(work)) (work > 0 ? given_ : taken_) += std::abs(work);
+    } else if (const double stored = force.norm() * std::max(depth, 0.0); std::isfinite(stored)) {
+      began_ += stored;
     }
     next_ = number + 1;
     force_ = force;
@@ -28,11 +33,14 @@ class ContactWork {
   }
   double given() const noexcept { return given_; }  ///< [J] work done on the hand
   double taken() const noexcept { return taken_; }  ///< [J] work that the hand did
+  /// [J] At most this energy was stored in the model where the hand was inside it at the first tick (after a gap). The
+  /// model may give it to a hand that never pressed.
+  double began() const noexcept { return began_; }
 
  private:
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), position_ = Eigen::Vector3d::Zero();
   uint64_t next_ = UINT64_MAX;  // number of the tick after the last one
-  double given_ = 0, taken_ = 0;
+  double given_ = 0, taken_ = 0, began_ = 0;
 };
 
 }  // namespace hapticd::record

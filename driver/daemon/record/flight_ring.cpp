@@ -159,6 +159,11 @@ Result<void> FlightRing::dump(const std::string& file) const {
   return (*recording)->close();
 }
 
+void FlightRing::noteEnd() noexcept {
+  auto* header = reinterpret_cast<FileHeader*>(memory_ + kHeaderAt);
+  std::atomic_ref<uint32_t>(header->closed).store(1, std::memory_order_release);
+}
+
 void FlightRing::removeFile() {
   if (!file_.empty()) unlink(file_.c_str());
   file_.clear();

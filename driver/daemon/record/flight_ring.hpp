@@ -67,6 +67,9 @@ class FlightRing {
   const std::byte* image() const noexcept { return memory_; }
   size_t imageBytes() const noexcept { return bytes_; }
 
+  /// [main] Tells programs that have mapped the file that the run ended in order. It stays in their memory, even if
+  /// another run takes the name.
+  void noteEnd() noexcept;
   void removeFile();  ///< [main] removes the file; called if the run ended well
 
  private:

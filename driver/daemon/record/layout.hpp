@@ -30,7 +30,7 @@ struct FileHeader {
   char magic[24] = {};
   uint32_t stream_count = 0;
   uint32_t ring = 0;    ///< 1: a black box, with the newest rows of each stream in a ring
-  uint32_t closed = 0;  ///< 1: the writer ended normally
+  uint32_t closed = 0;  ///< 1: the writer ended normally; in a black box: the run ended in order
   uint32_t reserved = 0;
   uint64_t about_address = 0, about_bytes = 0;  ///< place of the JSON with versions, columns and the scene
   uint64_t blocks_address = 0;                  ///< address of the first block

@@ -149,8 +149,12 @@ Result<void> Recording::read(std::span<const std::byte> bytes) {
 /// Reads a black box from a copy, because a running daemon overwrites its oldest rows meanwhile. Rows that it may have
 /// overwritten during the copy are left out.
 Result<void> Recording::readRing(std::span<const std::byte> bytes) {
+  const auto before = at<FileHeader>(bytes, kHeaderAt);
+  std::atomic_thread_fence(std::memory_order_acquire);  // the rows are read after their number
   copy_.assign(bytes.begin(), bytes.end());
   std::atomic_thread_fence(std::memory_order_acquire);  // the number of rows is read after the rows
+  // memmove() copies in any order, so the number in the copy may be newer than the rows in the copy.
+  if (before) std::memcpy(copy_.data() + kHeaderAt, &*before, sizeof *before);
   const auto later = at<FileHeader>(bytes, kHeaderAt);
   if (auto read = this->read(copy_); !read) return read;
   for (size_t i = 0; later && i < streams_.size(); ++i) {

@@ -44,7 +44,7 @@ Json modelJson(const ModelReport& model) {
   json["depthless"] = pushesJson(model.contact.depthless());
   json["outside"] = pushesJson(model.contact.outside());
   json["pulls"] = pushesJson(model.contact.pulls());
-  json["energy_j"] = {{"given", model.given_j}, {"taken", model.taken_j}};
+  json["energy_j"] = {{"given", model.given_j}, {"taken", model.taken_j}, {"began", model.began_j}};
   json["step_ns"] = {{"p50", step.quantile(0.5) * kNs}, {"p99", step.quantile(0.99) * kNs}, {"max", step.max() * kNs}};
   for (const ArmContact& arm : model.arms) json["arms"][arm.device] = contactJson(arm.contact);
   return json;
@@ -114,10 +114,11 @@ std::string deepText(const ModelReport& model) {
 }
 
 /// Warns of a model that does more work on the hand than the hand did on it, and so pushes the hand. Small differences
-/// are not reported: contacts are sampled, and a model may be switched off and on.
+/// are not reported: contacts are sampled, and a model may be switched off and on. A hand that was inside at the start
+/// may get the energy that was stored there.
 std::string energyText(const ModelReport& model) {
   constexpr double kTold = 2e-3, kShare = 0.1;  // [J], and share of the hand's work: less is not reported
-  const double net = model.given_j - model.taken_j;
+  const double net = model.given_j - model.taken_j - model.began_j;
   if (model.moves || !(net > std::max(kTold, kShare * model.taken_j))) return "";
   return fmt::format(
       "  warning   {} gave the hand {:.3g} mJ more than it took ({:.3g} mJ): a surface must not give "

@@ -25,6 +25,7 @@ struct ModelReport {
   uint64_t degraded_ticks = 0;      ///< ticks with a coarser answer, to keep the tick's budget
   uint32_t coarsest = 0;            ///< coarsest level of accuracy; 0 is full accuracy
   double residual_m = 0;            ///< [m] largest error that a coarser answer reported
+  double began_j = 0;               ///< [J] energy stored in it where a hand was inside it from the start, at most
   double given_j = 0, taken_j = 0;  ///< [J] work of its forces on the hands; work of the hands against them
   bool moves = false;  ///< true if its plugin moves it, so that it can give energy to the hand without a fault
   std::vector<ArmContact> arms{};  ///< contact of each arm, if there are several arms

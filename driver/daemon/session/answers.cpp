@@ -206,6 +206,7 @@ std::string statusAnswer(const Session& session, const std::string& name, const 
                  {"tick", now.tick},
                  {"rate_hz", page.rate},
                  {"missed_ticks", now.missed},
+                 {"ends", session.runner.loop().ends()},
                  {"lateness_us", {{"p50", page.lateness_us.quantile(0.5)}, {"p99", page.lateness_us.quantile(0.99)}}},
                  {"devices", devices},
                  {"silenced", silencedJson(session)}});
@@ -282,6 +283,8 @@ std::string noForceWhy(const Session& session, uint32_t index) {
   const std::string& device = session.runner.scene().devices[index].name;
   const Fault fault = arm.limiter().fault();
   const std::string clear = "\n  fix: hapticd ctl clear, once the person who holds the arm agrees";
+  if (fault == Fault::kStopped && session.runner.loop().ends())
+    return "device " + device + ": the run ends, so its forces ramp to zero";
   if (fault == Fault::kStopped)
     return "device " + device + ": the arm is held; its forces ended and stay off until the hold is cleared" + clear;
   if (fault != Fault::kNone)
@@ -336,6 +339,7 @@ std::string eventText(const Session& session, const hapticd_event& event) {
     json["device"] = session.runner.scene().devices[arm].name;
   json["code"] = event.code;
   json["value"] = event.value;
+  if (*directionOfClick(event) != 0) json["snapped"] = directionOfClick(event);
   if (event.kind == HAPTICD_FAULT) json["why"] = describe(static_cast<Fault>(event.code));
   if (event.probe < 0 || arm < session.runner.arms().size()) addProgram(session, event, json);
   if (event.kind == HAPTICD_REFUSED && *whyRefused(event) != 0) json["why"] = whyRefused(event);

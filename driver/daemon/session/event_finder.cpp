@@ -14,6 +14,11 @@ uint32_t codeOf(Order::Led led, PoseFollower::Refusal why) noexcept HSP_RT {
   return static_cast<uint32_t>(led) + kWhy * static_cast<uint32_t>(why);
 }
 
+uint32_t directionOf(uint32_t flags) noexcept HSP_RT {
+  if ((flags & HSP_OUT_WENT_IN) != 0) return HAPTICD_WENT_IN;
+  return (flags & HSP_OUT_CAME_OUT) != 0 ? uint32_t{HAPTICD_CAME_OUT} : 0;
+}
+
 }  // namespace
 
 void EventFinder::add(uint32_t kind, int32_t model, int32_t probe, uint32_t code, double value) noexcept HSP_RT {
@@ -83,7 +88,7 @@ void EventFinder::check(double t, uint32_t index, const Core& core) noexcept HSP
     const Contact& contact = core.contact(index, probe);
     if (!contact.traced) continue;
     const auto by = static_cast<int32_t>(probe);
-    if ((contact.world.flags & HSP_OUT_EVENT) != 0) add(HAPTICD_CLICK, number, by, 0, 0);
+    if ((contact.world.flags & HSP_OUT_EVENT) != 0) add(HAPTICD_CLICK, number, by, directionOf(contact.world.flags), 0);
     if (!(contact.world.depth_m > 0)) continue;
     if (t - note.touched[probe] >= kFreeFor)
       add(HAPTICD_TOUCH, number, by, 0, Eigen::Map<const Vector3d>(contact.world.force).norm());
@@ -133,6 +138,11 @@ const char* whyRefused(const hapticd_event& event) {
       break;
   }
   return "";
+}
+
+const char* directionOfClick(const hapticd_event& event) {
+  if (event.kind != HAPTICD_CLICK || event.code == 0) return "";
+  return event.code == HAPTICD_WENT_IN ? "in" : "out";
 }
 
 const char* nameOfEvent(uint32_t kind) {

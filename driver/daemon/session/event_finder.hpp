@@ -77,6 +77,9 @@ class EventFinder {
 /// [main] Returns why the target of a lead was refused, for an event HAPTICD_REFUSED; "" for other events.
 const char* whyRefused(const hapticd_event& event);
 
+/// [main] Returns "in" or "out" for an event HAPTICD_CLICK whose direction is known; "" for other events.
+const char* directionOfClick(const hapticd_event& event);
+
 /// [main] Returns the name of an event in JSON, such as "click"; "" if there is no such event.
 const char* nameOfEvent(uint32_t kind);
 

@@ -127,7 +127,9 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
   const auto [who, file] = model(event);
   switch (event.kind) {
     case HAPTICD_CLICK:
-      return {HSP_LOG_DEBUG, who, fmt::format("clicked at {:.4f} s", event.t)};
+      return {HSP_LOG_DEBUG, who,
+              fmt::format("{}{} at {:.4f} s", *directionOfClick(event) != 0 ? "snapped " : "clicked",
+                          directionOfClick(event), event.t)};
     case HAPTICD_TOUCH:
       if (event.t < kBegins)
         return {HSP_LOG_WARNING, who,

@@ -9,6 +9,10 @@ namespace hapticd::servo {
 
 namespace {
 
+/// The direction of a click is in the row of its event. Rows of contacts do not have these flags, so that recordings
+/// from before these flags replay to the same bits.
+constexpr uint32_t kOnlyInEvents = HSP_OUT_WENT_IN | HSP_OUT_CAME_OUT;
+
 void copy3(double* to, const Eigen::Vector3d& from) noexcept HSP_RT {
   for (int i = 0; i < 3; ++i) to[i] = from[i];
 }
@@ -210,7 +214,7 @@ void Flight::contacts(const Core& core, TickRow& tick) noexcept HSP_RT {
       row.probe = probe;
       row.feature = world.feature;
       row.iterations = world.iterations;
-      row.flags = world.flags;
+      row.flags = world.flags & ~kOnlyInEvents;
       row.status = model.status;
       row.depth = world.depth_m;
       row.u = world.param[0], row.v = world.param[1];

@@ -208,9 +208,11 @@ RowLayout eventColumns() {
   layout.add("kind", ColumnType::kWord, "", kinds);
   layout.add("model", ColumnType::kInt, "", "number of the model, -1 if there is none");
   layout.add("probe", ColumnType::kInt, "", "number of the arm, -1 if there is none");
-  layout.add("code", ColumnType::kWord, "",
-             "its meaning depends on kind: number of the fault, of the reason why a model was silenced, or of what a "
-             "program moves (0 a model, 1 a simulated hand, 2 a force); see the header client.h");
+  layout.add(
+      "code", ColumnType::kWord, "",
+      "its meaning depends on kind: direction of a click (1 snapped in, 2 snapped out, 0 not known), number of the "
+      "fault, of the reason why a model was silenced, or of what a program moves (0 a model, 1 a simulated hand, 2 "
+      "a force); see the header client.h");
   layout.add("value", ColumnType::kReal, "", "measured value; see the header client.h");
   return layout;
 }

@@ -226,6 +226,7 @@ void RunFiles::look() {
 void RunFiles::end() {
   if (runner_ == nullptr) return;
   look();
+  runner_->noteEnd();  // before the socket closes, so that a program that sees its connection end knows why
   server_.reset();
   handler_.reset();
   runner_->endBlackBox();

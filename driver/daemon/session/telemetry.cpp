@@ -44,6 +44,7 @@ record::ModelReport Telemetry::reportOf(size_t place) const {
   for (size_t i = 0; i < stops_.size(); ++i) {
     report.given_j += work_[place * stops_.size() + i].given();
     report.taken_j += work_[place * stops_.size() + i].taken();
+    report.began_j += work_[place * stops_.size() + i].began();
   }
   return report;
 }
@@ -120,10 +121,12 @@ void Telemetry::recordArms(uint32_t index, double dt, const Core& core,
 
 void Telemetry::recordWork(uint32_t index, const Core& core,
                            const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
-  for (uint32_t arm = 0; arm < stops_.size() && arm < core.probeCount() && arm < arms.size(); ++arm)
-    if (arms[arm]->probe().valid)
-      work_[index * stops_.size() + arm].add(
-          recorded_, Eigen::Map<const Vector3d>(core.contact(index, arm).world.force), arms[arm]->probe().position);
+  for (uint32_t arm = 0; arm < stops_.size() && arm < core.probeCount() && arm < arms.size(); ++arm) {
+    if (!arms[arm]->probe().valid) continue;
+    const Contact& contact = core.contact(index, arm);
+    work_[index * stops_.size() + arm].add(recorded_, Eigen::Map<const Vector3d>(contact.world.force),
+                                           arms[arm]->probe().position, contact.traced ? contact.world.depth_m : 0);
+  }
 }
 
 /// Returns the force [N] with which a contact pulls the probe deeper in, or 0.

@@ -94,7 +94,8 @@ typedef struct hapticd_lead_page {
 /* ---- a row of the stream `events`. The number of a kind never changes; new kinds are added at the end. Each comment
  * says what happened, and then which members of hapticd_event are set. */
 enum {
-  HAPTICD_CLICK = 1, /* a button or switch snapped; model, probe */
+  HAPTICD_CLICK = 1, /* a button or switch snapped; model, probe, code: HAPTICD_WENT_IN or HAPTICD_CAME_OUT, or 0 if the
+                        direction is not known (a plugin that does not tell it, or a daemon of before) */
   HAPTICD_TOUCH,     /* a probe touched a model, after 50 ms or more without contact; model, probe, value: force in N */
   HAPTICD_FAULT,     /* an arm's force was taken away; probe, code: which fault, value: the measured quantity */
   HAPTICD_CLEARED,   /* the fault of an arm has ended; probe */
@@ -113,6 +114,7 @@ enum {
   HAPTICD_STALLED, /* the servo ran no tick for some time: the process was stopped, or got no CPU; value: time in s */
   HAPTICD_EVENT_KINDS /* one more than the last kind */
 };
+enum { HAPTICD_WENT_IN = 1, HAPTICD_CAME_OUT }; /* hapticd_event.code of HAPTICD_CLICK */
 typedef struct hapticd_event {
   uint64_t tick;
   double t;             /* s since the first tick */
@@ -156,6 +158,10 @@ HAPTICD_API void hapticd_close(hapticd_client* client);
 HAPTICD_API const char* hapticd_version(void);
 /* Returns 1 while the daemon runs, and 0 after it has ended. */
 HAPTICD_API int hapticd_alive(hapticd_client* client);
+/* Returns 0 while the daemon runs, HAPTICD_STOPPED after it has ended in order (hapticd ctl stop, Ctrl-C, the end of
+ * --for), and HAPTICD_CRASHED if it was killed or crashed. Ask it when another call returns -1. */
+enum { HAPTICD_STOPPED = 1, HAPTICD_CRASHED };
+HAPTICD_API int hapticd_ended(hapticd_client* client);
 
 /* Sends a request of control.md (JSON, one line) and writes the answer into `answer`, cut to `bytes` and ended by a
  * zero. Returns the length of the whole answer. Returns -1 if the daemon refuses, or does not answer within 10 s;

@@ -25,7 +25,10 @@ enum {
   HSP_OUT_EDGE = 1u << 1,    /* the foot point lies on an edge or a corner */
   HSP_OUT_EVENT = 1u << 2,   /* the user feels an event in this tick, such as the click of a button */
   HSP_OUT_TRACED = 1u << 3,  /* point, normal, depth_m, param and feature are valid; also outside of contact */
-  HSP_OUT_HELD = 1u << 4     /* the foot point is followed from an earlier tick; another point may be nearer */
+  HSP_OUT_HELD = 1u << 4,    /* the foot point is followed from an earlier tick; another point may be nearer */
+  /* With HSP_OUT_EVENT: what snapped went in, or it came out again. Without either the direction is not known. */
+  HSP_OUT_WENT_IN = 1u << 5,
+  HSP_OUT_CAME_OUT = 1u << 6
 };
 typedef struct hsp_probe {         /* host -> plugin */
   double position[3], velocity[3]; /* m; m/s relative to the model, zero without HSP_R_VELOCITY */

@@ -72,6 +72,9 @@ Verdict torqueAboutProbe(const Recipe& recipe, uint64_t);
 /// Returns the energy that a hand gains if it goes in, along below the surface, and out again, or "" if it gains none.
 Verdict loopsGiveNoEnergy(const Recipe& recipe, uint64_t);
 
+/// Does the same with loops of 10 and 20 mm, at the places where the stiffness changes most along the surface.
+Verdict longLoopsGiveNoEnergy(const Recipe& recipe, uint64_t);
+
 /// Returns the objection to a damper that drives the hand instead of braking it, or that pulls in a shape that reports
 /// to push only; otherwise "".
 Verdict dampingSign(const Recipe& recipe, uint64_t);

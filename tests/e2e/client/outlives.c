@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   push.tick = state.tick;
   check("leads count while it lives", hapticd_lead_push(force, &push) == 0 && hapticd_lead_put(model, &target) == 0);
   uint64_t last = hapticd_written(c, ticks) - 1;
+  check("it has not ended", hapticd_ended(c) == 0);
   check("and rows are read", hapticd_read(c, ticks, &last, row, 1) == 1);
   printf("ready\n"), fflush(stdout);
   while (getchar() != '\n') continue;
@@ -44,6 +45,9 @@ int main(int argc, char** argv) {
   check("no force counts", hapticd_lead_push(force, &push) == -1);
   check("no pose counts", hapticd_lead_put(model, &target) == -1);
   check("it is not alive", hapticd_alive(c) == 0);
+  check("it was killed, also where another daemon has its name", hapticd_ended(c) == HAPTICD_CRASHED);
+  check("a request says that it is gone",
+        hapticd_ask(c, "{\"do\":\"list\"}", row, 65536, &error) == -1 && error.code[0] == 'g');
   hapticd_lead_end(force);
   hapticd_close(c);
   free(row);

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """The examples of the Python package against a running daemon, as a user runs them.
 
-Usage: run_the_examples.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
+Usage: run_the_examples.py HAPTICD SOURCE BUTTON     prints one line per case; exit 1 when one is off.
 """
+import json
 import os
 import re
 import subprocess
@@ -10,10 +11,10 @@ import sys
 import tempfile
 import time
 
-HAPTICD, SOURCE = sys.argv[1:3]
+HAPTICD, SOURCE, BUTTON = sys.argv[1:4]
 CLIENT = os.path.join(SOURCE, "driver", "doors", "client", "python")
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
-from e2e import check, finish
+from e2e import check, finish, until
 
 SCENE = """hapticd: 1
 servo: {{rate: 1000}}
@@ -157,6 +158,59 @@ def pushes(folder):
     check("and so is the end of the daemon", "the daemon is gone" in done.stderr, done.stderr)
 
 
+FOLLOWS = """
+import hapticd
+with hapticd.connect("snaps") as h, h.lead_model("box") as box, h.push(h.devices[0], lambda state: [0.1, 0, 0]):
+    print("ready", flush=True)
+    for rows in h.follow("ticks"):
+        box.put([0.15, 0, 0])
+print("over", h.ended(), h.died())
+"""
+SNAPS = """hapticd: 1
+device: {source}/config/devices/simulated-premium15.yaml
+clients: add
+hand: {{script: press, radius: 0.05, rise: 0.014, rate: 2}}
+models:
+  - {{name: box, plugin: nurbs_rigid, motion: kinematic, pose: {{position: [0.15, 0, 0]}}, parameters: {{geometry: {source}/config/models/box.yaml}}}}
+  - name: button
+    plugin: push_button
+    parameters: {{geometry: {source}/config/models/box.yaml, axis: [0, 0, -1], stiffness: 2000, detent: [[0, 0], [0.003, 4], [0.004, 2], [0.005, 3]], end_stiffness: 3000}}
+"""
+
+
+def snaps(folder, stop):
+    """Programs that react to a button and end with their daemon: quietly where it is stopped, and told where it is killed."""
+    scene = os.path.join(folder, "snaps.yaml")
+    with open(scene, "w") as file:
+        file.write(SNAPS.format(source=SOURCE))
+    daemon = subprocess.Popen([HAPTICD, "run", scene, "--name", "snaps"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    there = dict(environment, PYTHONPATH=CLIENT)
+    until(lambda: os.path.exists(os.path.join(folder, "snaps.sock")), 30)
+    python = [sys.executable, os.path.join(CLIENT, "examples", "button.py"), "--name", "snaps"]
+    programs = {"button.c": [BUTTON, "snaps"], "button.py": python, "a program that follows, leads and pushes": [sys.executable, "-c", FOLLOWS]}
+    running = {name: subprocess.Popen(command, env=there, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for name, command in programs.items()}
+    said = {name: program.stdout.readline() + program.stdout.readline() * (name != list(programs)[-1]) for name, program in running.items()}
+    time.sleep(0.3)
+    if stop:
+        subprocess.run([HAPTICD, "ctl", "--name", "snaps", "clear"], env=environment, capture_output=True)  # a busy machine may have latched a fault
+        told = subprocess.run([HAPTICD, "ctl", "--name", "snaps", "events"], env=environment, capture_output=True, text=True, timeout=60).stdout
+        clicks = [json.loads(line).get("snapped") for line in told.splitlines() if '"click"' in line]
+        check("clicks go in and out in turn", len(clicks) > 1 and clicks == ["in", "out"] * (len(clicks) // 2) + ["in"] * (len(clicks) % 2), clicks)
+        subprocess.run([HAPTICD, "ctl", "--name", "snaps", "stop"], env=environment, capture_output=True, timeout=60)
+    else:
+        daemon.kill()
+    for name, program in running.items():
+        out, err = program.communicate(timeout=60)
+        err = re.sub(r".*answers came more than 20 ms.*\n(  .*\n)?", "", err)  # the machine was busy
+        if stop:
+            check(f"{name} ends quietly with a daemon that is stopped", program.returncode == 0 and err == "" and out.splitlines()[-1].startswith(("the daemon has ended", "over True False")), (program.returncode, out[-200:], err))
+        else:
+            check(f"{name} is told that its daemon was killed", program.returncode == 1 and "was killed, or it crashed" in err, (program.returncode, out[-200:], err))
+        check(f"{name} said what it saw", "snapped in" in said[name] or said[name] == "ready\n", said[name])
+    daemon.kill()
+    daemon.wait()
+
+
 with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
     environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
     scene = os.path.join(folder, "scene.yaml")
@@ -173,6 +227,8 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
     alone()
     examples(folder)
     pushes(folder)
+    snaps(folder, True)
+    snaps(folder, False)
     daemon.terminate()
     check("the run ends in order", daemon.wait(timeout=30) == 0)
 finish()

@@ -169,6 +169,18 @@ over = [(t["name"], t["why"]) for t in tests if t["plugin"] == "overruns" and t[
 check("memory that was overrun is named beside the crash that it caused", over and "first correct what fails in eight-probes" in over[0][1] and
       over[1][0] == "eight-probes" and "it writes behind its hsp_contact (152 bytes)" in over[1][1], over)
 
+# A stiffness that changes along the surface needs a force along it too; arrays that are empty by default are told.
+SOFT, LONG_LOOP = os.path.join(BROKEN, "soft_places.so"), "long-loops-give-no-energy"
+for dents, softer in (("dents=[0.2]", True), ("dents=[-1.5707963, 0.5]", True), ("dents=[]", False)):
+    code, tests, failed, err = examined(SOFT, "--timeout", "60", "--set", dents)
+    for shape in ("softer", "much_softer", "wrong_slope", "right_slope", "right_slope_rubs", "bumps"):
+        wrong = softer and shape in ("softer", "much_softer", "wrong_slope")
+        mine = [(t["name"], t["why"]) for t in tests if t["plugin"] == shape and t["result"] == "fail"]
+        good = [name for name, _ in mine][-1:] == [LONG_LOOP] and "N/m stiff here" in mine[-1][1] if wrong else not mine
+        check(f"{shape} with {dents} {'gives energy in long loops' if wrong else 'passes'}", tests and good, mine)
+said = subprocess.run([HAPTICD, "plugin", "check", SOFT], capture_output=True, text=True, timeout=280).stdout
+check("an array that is empty by default is told, with what to try", said.count("dents is empty by default") == 6 and "--set 'dents=[0]'" in said, said[-300:])
+
 # Mistakes of a first shape. Each is told by one test, which says what to do.
 code, tests, failed, err = examined(os.path.join(BROKEN, "first_shapes.so"), "--timeout", "60")
 FIRST = {"pushes_and_rubs": ("force-along-normal", "expected no HSP_R_PUSHES in activate() of a shape that has friction"),

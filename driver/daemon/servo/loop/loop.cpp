@@ -152,6 +152,7 @@ void Loop::trip(Fault fault, double measured) noexcept HSP_RT {
 
 /// Ramps all forces down to end the run. An earlier fault is kept, because the user must know of it.
 void Loop::rampOut() noexcept HSP_RT {
+  ends_.store(true, std::memory_order_relaxed);
   for (const auto& arm : arms_)
     if (arm->limiter().fault() == Fault::kNone) arm->limiter().trip(Fault::kStopped);
 }

@@ -65,6 +65,8 @@ class Loop {
     stop_asked_.compare_exchange_strong(never, monotonicNow(), std::memory_order_relaxed);
     stop_.store(true, std::memory_order_relaxed);
   }
+  /// [any] True once the forces ramp to zero because the run ends.
+  bool ends() const noexcept { return ends_.load(std::memory_order_relaxed); }
   /// [any] Returns the CLOCK_MONOTONIC time of the first stop(), or 0 if there was none.
   Nanoseconds stopAsked() const noexcept { return stop_asked_.load(std::memory_order_relaxed); }
 
@@ -130,7 +132,7 @@ class Loop {
   SpscRing<Order> orders_{256};
   std::atomic<uint64_t> orders_done_{0};
   std::atomic<uint64_t> hold_{0};
-  std::atomic<bool> stop_{false}, needs_search_{true}, finished_{false}, silent_{false};
+  std::atomic<bool> stop_{false}, needs_search_{true}, finished_{false}, silent_{false}, ends_{false};
   std::atomic<uint64_t> tick_count_{0}, late_dry_cycles_{0};
   std::atomic<Nanoseconds> first_tick_{0}, tick_begun_{0}, next_tick_{0}, stop_asked_{0};
   std::atomic<os::CpuClock> cpu_clock_{os::kNoCpuClock};

@@ -160,7 +160,15 @@ void hapticd_close(hapticd_client* client) {
   delete client;
 }
 
+int hapticd_ended(hapticd_client* client) {
+  if (!client->ended()) return 0;
+  // A daemon of before does not note its end, but it removes its socket if it ends in order.
+  if (client->rows.ended() || access((client->base + ".sock").c_str(), F_OK) != 0) return HAPTICD_STOPPED;
+  return HAPTICD_CRASHED;
+}
+
 int hapticd_alive(hapticd_client* client) {
+  if (client->line.ended() && client->rows.ended()) return 0;
   // If the black box was replaced, another daemon has this name.
   if (client->line.ended() && !client->rows.isFile(client->base + ".blackbox.h5")) return 0;
   const std::string file = client->base + ".lock";

@@ -67,6 +67,8 @@ class RowFile {
   /// Returns the time [ns] from one tick to the next.
   int64_t period() const { return period_; }
   std::vector<Stream>& streams() { return streams_; }
+  /// True if the daemon has noted in this file that it ended in order.
+  bool ended() const;
   /// True if `file` is still the file that was opened. Another daemon of this name would have replaced it.
   bool isFile(const std::string& file) const;
   static uint64_t written(const Stream& stream);

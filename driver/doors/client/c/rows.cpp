@@ -98,6 +98,11 @@ Result<void> RowFile::readAbout() {
   return {};
 }
 
+bool RowFile::ended() const {
+  auto* header = reinterpret_cast<record::FileHeader*>(memory_.at(record::kHeaderAt, sizeof(record::FileHeader)));
+  return std::atomic_ref<uint32_t>(header->closed).load(std::memory_order_acquire) != 0;
+}
+
 uint64_t RowFile::written(const Stream& stream) {
   return load(*stream.written, std::memory_order_acquire);
 }

@@ -69,18 +69,23 @@ TEST(PushButton, ClicksInTheVeryTickItSnapsAndBackWithHysteresis) {
   plugin.tick({{0, kTop + 1e-3, 0}});
   const double in = 0.003 + 6 / button.k1, out = 0.004 + 2 / button.k1;  // where a branch ends
   std::vector<double> clicks;
+  uint32_t direction = 0;
   constexpr double kWay = 1.003e-5;  // a tick, so that none ends on the snap itself
   const auto goTo = [&](double travel) {
     plugin.tick({{0, kTop - travel, 0}});
-    if ((plugin.contacts[0].flags & HSP_OUT_EVENT) != 0) clicks.push_back(travel);
+    const uint32_t flags = plugin.contacts[0].flags;
+    if ((flags & HSP_OUT_EVENT) != 0)
+      clicks.push_back(travel), direction = flags & (HSP_OUT_WENT_IN | HSP_OUT_CAME_OUT);
   };
   for (int i = 1; i <= 1000; ++i) goTo(kWay * i);
   ASSERT_EQ(clicks.size(), 1u);
+  EXPECT_EQ(direction, HSP_OUT_WENT_IN);
   EXPECT_GE(clicks[0], in * (1 - 1e-12));
   EXPECT_LT(clicks[0] - kWay, in) << "not a tick late";
   clicks.clear();
   for (int i = 999; i >= 0; --i) goTo(kWay * i);
   ASSERT_EQ(clicks.size(), 1u);
+  EXPECT_EQ(direction, HSP_OUT_CAME_OUT);
   EXPECT_LE(clicks[0], out * (1 + 1e-12));
   EXPECT_GT(clicks[0] + kWay, out) << "not a tick late";
   EXPECT_LT(out, in) << "hysteresis";

@@ -20,5 +20,7 @@ from ._push import ForceThread
 from ._rows import Column, Stream
 from ._state import FAULTS, State
 
-__all__ = ["FAULTS", "Client", "Column", "Events", "ForceLead", "ForceThread", "HapticdError", "Lead", "Model", "NoForceWarning",
-           "Parameter", "PoseLead", "Refused", "State", "Stream", "connect"]
+CAME_OUT, WENT_IN = 2, 1  #: `code` of an event `click`, in rows of the stream `events`
+
+__all__ = ["CAME_OUT", "FAULTS", "Client", "Column", "Events", "ForceLead", "ForceThread", "HapticdError", "Lead", "Model", "NoForceWarning",
+           "Parameter", "PoseLead", "Refused", "State", "Stream", "WENT_IN", "connect"]

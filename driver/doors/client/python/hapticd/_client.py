@@ -10,7 +10,7 @@ import time
 import warnings
 from typing import Any, Callable, Iterator, Optional, Sequence
 
-from ._error import CLOSED, HapticdError, Named, NoForceWarning, Refused, meant
+from ._error import CLOSED, HapticdError, Named, NoForceWarning, Refused, caller, meant
 from ._folder import runtime_folder
 from ._lead import ForceLead, PoseLead
 from ._line import Line
@@ -40,7 +40,7 @@ class Events:
         except HapticdError:
             self.close()
             if self._died():
-                raise HapticdError("the daemon is gone: it was killed, or it crashed") from None
+                raise HapticdError("the daemon is gone: it was killed, or it crashed", "gone") from None
             raise StopIteration from None
         if event is None:
             self.close()
@@ -103,7 +103,7 @@ class Client:
                 since = time.monotonic()
                 yield news
             elif self.died():
-                raise HapticdError(self._gone())
+                raise self._gone()
             elif timeout is not None and time.monotonic() - since > timeout or self.ended():
                 return
             else:
@@ -132,21 +132,25 @@ class Client:
     def ended(self) -> bool:
         """Tells whether the daemon of this client has ended, even if another daemon has its name now. It also does so after
         `close`."""
-        return (self._line.closed() or self._line.ended()) and (self._file_of_box() != self._box_file or not self.alive())
+        return (self._line.closed() or self._line.ended()) and (
+            self._box.ended() or self._file_of_box() != self._box_file or not self.alive())
 
     def died(self) -> bool:
-        """Tells whether the daemon ended without removing its files, because it was killed or crashed."""
-        return self.ended() and os.path.exists(self._base + ".sock")
+        """Tells whether the daemon was killed or crashed. It is False while the daemon runs, and after it ended in order
+        (`hapticd ctl stop`, Ctrl-C, the end of `--for`)."""
+        # A daemon of before does not note its end, but it removes its socket if it ends in order.
+        return self.ended() and not self._box.ended() and os.path.exists(self._base + ".sock")
 
-    def _gone(self) -> str:
-        return (f"the daemon is gone: {self.name} " + ("was killed, or it crashed" if self.died() else "has ended")
-                + "\n  fix: start it again with hapticd run, then connect again")
+    def _gone(self) -> HapticdError:
+        died = self.died()
+        return HapticdError(f"the daemon is gone: {self.name} " + ("was killed, or it crashed" if died else "has ended")
+                            + "\n  fix: start it again with hapticd run, then connect again", "gone", not died)
 
     def _check(self) -> None:
         if self._line.closed():
-            raise HapticdError(CLOSED)
+            raise HapticdError(CLOSED, "closed")
         if self.ended():
-            raise HapticdError(self._gone())
+            raise self._gone()
 
     # ---- requests
 
@@ -159,8 +163,8 @@ class Client:
         except Refused:
             raise
         except HapticdError:
-            if why := self._lost():
-                raise HapticdError(why) from None
+            if lost := self._lost():
+                raise lost from None
             raise
 
     def _answered(self, request: dict[str, Any]) -> dict[str, Any]:
@@ -168,7 +172,7 @@ class Client:
         while True:
             answer = self._line.hear(self.timeout)
             if answer is None:
-                raise HapticdError(f"the daemon did not answer within {self.timeout:g} s; it may hang\n  fix: hapticd ctl status, or connect with a longer timeout")
+                raise HapticdError(f"the daemon did not answer within {self.timeout:g} s; it may hang\n  fix: hapticd ctl status, or connect with a longer timeout", "timeout")
             if answer.get("id") != self._asked:
                 continue  # an answer that came too late, after its request had timed out
             if not answer.get("ok"):
@@ -232,35 +236,36 @@ class Client:
         target = {"force": device}
         answer = self._begin(target)
         if answer.get("no_force"):
-            warnings.warn(answer["no_force"], NoForceWarning, stacklevel=2)
+            warnings.warn_explicit(answer["no_force"], NoForceWarning, *caller())
         return ForceLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target), self._lost_lead,
                          answer.get("max_force", math.inf))
 
-    def _lost_lead(self) -> str:
-        """Returns why the leads of this connection have no effect any more, or "" if they have."""
+    def _lost_lead(self) -> Optional[HapticdError]:
+        """Returns why the leads of this connection have no effect any more, or None if they have."""
         if not self._line.ended():
-            return ""
-        return self._gone() if self.ended() else "the daemon closed the connection, which ended this lead; connect again"
+            return None
+        return self._gone() if self.ended() else HapticdError("the daemon closed the connection, which ended this lead; connect again", "too_many")
 
-    def _lost(self) -> str:
-        """Returns why no answer can come on this connection, or "" if one may still come."""
+    def _lost(self) -> Optional[HapticdError]:
+        """Returns why no answer can come on this connection, or None if one may still come."""
         if not self._line.ended():
-            return ""
+            return None
         time.sleep(0.02)  # a daemon that ends closes its connections first
         if self.ended() or not os.path.exists(self._base + ".sock"):
             return self._gone()
-        return ("the daemon closed this connection, because it was silent and other programs needed its place\n"
-                "  fix: connect again")
+        return HapticdError("the daemon closed this connection, because it was silent and other programs needed its place\n"
+                            "  fix: connect again", "too_many")
 
     def _no_force(self, device: str) -> str:
-        """[any thread] Returns the daemon's reason why an arm gets no force now, or "" if it gets its force."""
+        """[any thread] Returns the daemon's reason why an arm gets no force now, or "" if it gets its force. It is "" too
+        if the run ends, because nobody need do anything about that."""
         line = Line(self._base + ".sock")
         try:
             line.say({"do": "status"})
             answer = line.hear(self.timeout) or {}
         finally:
             line.close()
-        return next((d.get("no_force") or "" for d in answer.get("devices", []) if d["name"] == device), "")
+        return "" if answer.get("ends") else next((d.get("no_force") or "" for d in answer.get("devices", []) if d["name"] == device), "")
 
     def push(self, device: str, callback: Callable[[State], Optional[Sequence[float]]], priority: int = 70) -> ForceThread:
         """Calls `callback(state)` once per tick in a separate thread (SCHED_FIFO `priority` if that is allowed); the
@@ -277,7 +282,7 @@ class Client:
         end, seen = time.monotonic() + self.timeout, 0
         while (state := self._states.read(self._arm(device))) is None:
             if time.monotonic() > end:
-                raise HapticdError(f"the daemon reported no tick within {self.timeout:g} s; it may have ended")
+                raise HapticdError(f"the daemon reported no tick within {self.timeout:g} s; it may have ended", "timeout")
             seen = self._ring().wait("state", seen, 0.1)
         return state
 
@@ -335,10 +340,10 @@ class Client:
         return self
 
     def __exit__(self, kind: object, *_: object) -> None:
-        gone = self._gone() if kind is None and self.died() else ""
+        gone = self._gone() if kind is None and self.died() else None
         self.close()
         if gone:
-            raise HapticdError(gone)
+            raise gone
 
 
 def connect(name: str = "hapticd", folder: Optional[str] = None, timeout: float = 10, wait: float = 0) -> Client:

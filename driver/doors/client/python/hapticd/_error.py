@@ -2,6 +2,8 @@
 """The exceptions and warnings of this package."""
 from __future__ import annotations
 
+import os
+import sys
 from typing import Iterable
 
 
@@ -10,19 +12,29 @@ CLOSED = ("this client is closed, by close() or because its with block has ended
 
 
 class HapticdError(Exception):
-    """There is no daemon, it has ended, or its answer cannot be understood."""
+    """There is no daemon, it has ended, or its answer cannot be understood. `code` is one word for programs, as in C:
+    `gone` (no daemon runs under the name, or the daemon has ended), `damaged`, `timeout`, `too_many`, `closed` (by this
+    program) or `failed`. `stopped` is True if the daemon ended in order, and False if it was killed or crashed."""
+
+    def __init__(self, text: str, code: str = "failed", stopped: bool = False) -> None:
+        super().__init__(text)
+        self.code, self.stopped = code, stopped
 
 
 class Refused(HapticdError):
-    """The daemon refused a request. `code` is one word for programs, the text is for people."""
-
-    def __init__(self, text: str, code: str = "failed") -> None:
-        super().__init__(text)
-        self.code = code
+    """The daemon refused a request. `code` is one of the words of control.md, the text is for people."""
 
 
 class NoForceWarning(UserWarning):
     """A program pushes on an arm that gets no force: a fault is latched, or somebody holds it. The text says what to do."""
+
+
+def caller() -> tuple[str, int]:
+    """Returns the file and the line of the program that called this package, for warnings."""
+    frame = sys._getframe()
+    while frame.f_back is not None and os.path.dirname(frame.f_code.co_filename) == os.path.dirname(__file__):
+        frame = frame.f_back
+    return frame.f_code.co_filename, frame.f_lineno
 
 
 def meant(name: object, known: Iterable[object]) -> str:

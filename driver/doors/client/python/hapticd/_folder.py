@@ -59,4 +59,4 @@ def runtime_folder(name: str) -> str:
     raise HapticdError(f"no daemon named {name} runs; "
                        + (f"these run: {', '.join(others)}" if others else f"none runs in {' or '.join(folders)}")
                        + f"\n  fix: start it with hapticd run SCENE{option}"
-                       + (", or name one of these: hapticd.connect(NAME)" if others else ""))
+                       + (", or name one of these: hapticd.connect(NAME)" if others else ""), "gone")

@@ -52,44 +52,51 @@ class _Slot:
 
 
 class Ending:
-    """Calls `end()` at the end of a `with` block."""
+    """Calls `end()` at the end of a `with` block. If the daemon ends in order, the block ends with it: the error of the
+    call that noticed it does not leave the block. The error that the daemon was killed or crashed does."""
 
     def end(self) -> None:
         raise NotImplementedError
 
-    def __exit__(self, kind: object, *_: object) -> None:
+    def __exit__(self, kind: object, error: object, *_: object) -> bool:
         try:
             self.end()
         except HapticdError:
             if kind is None:
                 raise  # only if there is no other error, so that the first error is not hidden
+        return isinstance(error, HapticdError) and error.stopped  # True: the end of the daemon ends the block quietly
 
 
 class Lead(Ending):
     """A lead of this program. It ends with `end()`, with the client, or at the end of a `with` block."""
 
     def __init__(self, fd: int, size: int, unlead: Callable[[], Any],
-                 lost: Callable[[], str] = lambda: "") -> None:
+                 lost: Callable[[], Optional[HapticdError]] = lambda: None) -> None:
         self._slot: Optional[_Slot] = _Slot(fd, size)
         self._unlead = unlead
-        self._lost = lost  # returns why the lead has no effect any more, or ""
+        self._lost = lost  # returns why the lead has no effect any more, or None
 
     def _put(self, record: bytes) -> None:
         if self._slot is None:
             raise ValueError("this lead has ended, so nothing can be put into it; begin a new lead")
-        if why := self._lost():
-            raise HapticdError(why)
+        if lost := self._lost():
+            raise lost
         self._slot.put(record)
 
     def end(self) -> None:
-        """Ends the lead: a model brakes and stays, a force ramps out. Raises HapticdError if the daemon has ended."""
+        """Ends the lead: a model brakes and stays, a force ramps out. Raises HapticdError if the daemon was killed or
+        crashed, and nothing if it ended in order."""
         if self._slot is None:
             return
         self._slot.close()
         self._slot = None
-        if why := self._lost():
-            raise HapticdError(why)
-        self._unlead()
+        try:
+            if lost := self._lost():
+                raise lost
+            self._unlead()
+        except HapticdError as error:
+            if not error.stopped:
+                raise
 
     def __enter__(self) -> "Lead":
         return self
@@ -127,7 +134,7 @@ class PoseLead(Lead):
 class ForceLead(Lead):
     """A force on the hand of an arm. 3 ms after the last answer the force ramps out; after 20 ms it is zero."""
 
-    def __init__(self, fd: int, size: int, unlead: Callable[[], Any], lost: Callable[[], str] = lambda: "",
+    def __init__(self, fd: int, size: int, unlead: Callable[[], Any], lost: Callable[[], Optional[HapticdError]] = lambda: None,
                  max_force: float = math.inf) -> None:
         super().__init__(fd, size, unlead, lost)
         self.max_force = max_force  #: N: largest force that the scene and the device allow this program

@@ -33,8 +33,12 @@ class Line:
             self._socket.connect(file)
         except OSError as error:
             self._socket.close()
-            cure = "be the daemon's user or in its group: only they may connect" if isinstance(error, PermissionError) else "start the daemon with hapticd run"
-            raise HapticdError(f"no daemon answers at {file}: {error.strerror}\n  fix: {cure}") from None
+            foreign = isinstance(error, PermissionError)
+            cure = ("be the daemon's user or in its group: only they may connect" if foreign
+                    else "start the daemon with hapticd run")
+            raise HapticdError(f"no daemon answers at {file}: {error.strerror}
+  fix: {cure}",
+                               "failed" if foreign else "gone") from None
         self._begun = b""  # the beginning of a line that is not yet complete
         self._begun_with: list[int] = []  # the descriptors that came with this beginning
         self._lines: deque[tuple[bytes, list[int]]] = deque()
@@ -46,11 +50,11 @@ class Line:
         except ValueError:
             raise ValueError(f"a number of the request is not finite, expected finite numbers: {request}") from None
         if self.closed():
-            raise HapticdError(CLOSED)
+            raise HapticdError(CLOSED, "closed")
         try:
             self._socket.sendall(line.encode() + b"\n")
         except OSError as error:
-            raise HapticdError(f"the daemon is gone: {error.strerror}") from None
+            raise HapticdError(f"the daemon is gone: {error.strerror}", "gone") from None
 
     def hear(self, timeout: Optional[float]) -> Optional[dict[str, Any]]:
         """Returns the next line, or None if none came in time."""
@@ -73,13 +77,13 @@ class Line:
         try:
             data, ancillary, _, _ = self._socket.recvmsg(1 << 16, socket.CMSG_SPACE(16), socket.MSG_CMSG_CLOEXEC)
         except OSError as error:
-            raise HapticdError(f"the daemon is gone: {error.strerror}") from None
+            raise HapticdError(f"the daemon is gone: {error.strerror}", "gone") from None
         fds = array.array("i")
         for level, kind, content in ancillary:
             if level == socket.SOL_SOCKET and kind == socket.SCM_RIGHTS:
                 fds.frombytes(content[:len(content) - len(content) % fds.itemsize])
         if not data or len(self._begun) > _MOST_LINE:
-            raise HapticdError("the daemon is gone")
+            raise HapticdError("the daemon is gone", "gone")
         *whole, rest = data.split(b"\n")
         for number, part in enumerate(whole):
             # A descriptor arrives with the first byte of its line, so it belongs to the last line of this message.
@@ -105,7 +109,7 @@ class Line:
     def descriptor(self) -> int:
         """Returns the descriptor that came with the last line."""
         if not self._descriptors:
-            raise HapticdError("the daemon sent no shared memory with its answer; it may be of another version\n  fix: restart the daemon")
+            raise HapticdError("the daemon sent no shared memory with its answer; it may be of another version\n  fix: restart the daemon", "damaged")
         return self._descriptors.pop(0)
 
     def _forget(self) -> None:

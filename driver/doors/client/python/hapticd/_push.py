@@ -10,7 +10,7 @@ import traceback
 import warnings
 from typing import TYPE_CHECKING, Callable, Optional, Sequence
 
-from ._error import HapticdError, NoForceWarning
+from ._error import HapticdError, NoForceWarning, caller
 from ._lead import Ending, ForceLead
 from ._state import FAULTS, Bell, State, StatePage
 
@@ -18,17 +18,24 @@ if TYPE_CHECKING:
     from ._client import Client
 
 _TOO_OLD = 20_000_000  # ns: the daemon ignores an answer that comes later than this after its tick
+_FEW = 0.001  # share of late answers that is no fault of the callback: the machine was busy
 _STOPPED = 8  # number of the fault of an arm that is held, or whose run ends
 _PATIENCE = 0.1  # s: time between two checks whether the daemon still runs
 
 Force = Sequence[float]
 
 
+def _stopped(error: Optional[BaseException]) -> bool:
+    """Tells whether the error is that the daemon ended in order, which is no failure of the program."""
+    return isinstance(error, HapticdError) and error.stopped
+
+
 class ForceThread(Ending):
     """Calls `callback(state)` in a thread once per tick. The callback returns the force on the hand, three numbers in N
     (or six with the torque in N m), or None for no answer to this tick. An exception in the callback ends the push: it
-    is printed at once, stays in `error`, and `end()` raises it. The end of the daemon is such an exception too. `end()`
-    warns if no tick was answered, or if answers came too late. A NoForceWarning comes each time the arm begins to get
+    is printed at once, stays in `error`, and `end()` raises it. If the daemon is killed or crashes, that is such an
+    exception too. If the daemon ends in order, `error` has it, but it is not printed and not raised. `end()`
+    warns if no tick was answered, or if more than one answer in a thousand came too late. A NoForceWarning comes each time the arm begins to get
     no force."""
 
     def __init__(self, client: "Client", device: str, callback: Callable[[State], Optional[Force]], priority: int) -> None:
@@ -40,6 +47,7 @@ class ForceThread(Ending):
         self._bell: Bell = client._bell()
         self._arm = client._arm(device)
         self._client, self._device = client, device
+        self._begun_at = caller()
         self._callback, self._priority = callback, priority
         self._stop = threading.Event()
         self.answers = 0  #: number of ticks that were answered
@@ -59,7 +67,8 @@ class ForceThread(Ending):
         try:
             self._answer()
         except BaseException as error:  # noqa: B902 - printed at once, and raised in end()
-            self._tell(error)
+            if not _stopped(error):
+                self._tell(error)
             self.error = error
             self._release()
         finally:
@@ -97,7 +106,7 @@ class ForceThread(Ending):
             return  # the daemon is about to end
         # Without a registry the same warning is shown each time.
         warnings.warn_explicit(why or f"device {self._device}: a fault ({FAULTS[fault] if fault < len(FAULTS) else fault}) ended its forces; see: hapticd ctl status",
-                               NoForceWarning, __file__, 0)
+                               NoForceWarning, *self._begun_at)
 
     def _answer(self) -> None:
         seen, last = self._bell.wait("state", -1, 0), -1
@@ -134,14 +143,14 @@ class ForceThread(Ending):
         except HapticdError:
             if self.error is None:
                 raise
-        if self.error is not None:
+        if self.error is not None and not _stopped(self.error):
             raise self.error
         if self.answers == 0 and self.unanswered > 0:
-            warnings.warn(f"the callback returned None for all {self.unanswered} ticks, so nothing was pushed: a "
-                          "return statement may be missing", stacklevel=2)
-        if self.late > 0:
-            warnings.warn(f"{self.late} of {self.answers} answers came more than 20 ms after their tick and were "
-                          "ignored: the callback takes too long", stacklevel=2)
+            warnings.warn_explicit(f"the callback returned None for all {self.unanswered} ticks, so nothing was pushed: a "
+                                   "return statement may be missing", UserWarning, *caller())
+        if self.late > _FEW * self.answers:
+            warnings.warn_explicit(f"{self.late} of {self.answers} answers came more than 20 ms after their tick and were "
+                                   "ignored: the callback takes too long", UserWarning, *caller())
 
     def __enter__(self) -> "ForceThread":
         return self

@@ -19,6 +19,8 @@ except ImportError:  # without numpy the row classes below are used
 
 _HEADER_AT = 512  # see recording.md, "Layout for other writers and readers"
 _HEADER = struct.Struct("<24sIIIIQQQ")
+_CLOSED_AT = _HEADER_AT + 32  # the member `closed` of the header
+_CLOSED = struct.Struct("<I")
 _STREAM = struct.Struct("<16sIIQQ")
 _BLOCK = struct.Struct("<IIQ")
 _BLOCK_MAGIC = 0x4B4C4248
@@ -79,7 +81,7 @@ class Stream:
     def written(self) -> int:
         """The number of rows written so far, which is also the number of the next row."""
         if self._memory.closed:
-            raise HapticdError(CLOSED)
+            raise HapticdError(CLOSED, "closed")
         return struct.unpack_from("<Q", self._memory, self._count_at)[0]
 
     def _kept(self, first: int, written: int) -> int:
@@ -129,18 +131,19 @@ class BlackBox:
         try:
             fd = os.open(file, os.O_RDONLY | os.O_CLOEXEC)
         except OSError as error:
-            raise HapticdError(f"cannot read {file}: {error.strerror}\n  fix: start a daemon with hapticd run; its group may read it") from None
+            raise HapticdError(f"cannot read {file}: {error.strerror}\n  fix: start a daemon with hapticd run; its group may read it", "damaged") from None
         try:
             self._memory = mmap.mmap(fd, 0, prot=mmap.PROT_READ)
+            self._head = mmap.mmap(fd, min(len(self._memory), mmap.PAGESIZE), prot=mmap.PROT_READ)  # stays mapped after close()
         except (OSError, ValueError) as error:
-            raise HapticdError(f"{file}: the black box cannot be mapped into memory: {error}") from None
+            raise HapticdError(f"{file}: the black box cannot be mapped into memory: {error}", "damaged") from None
         finally:
             os.close(fd)
         if len(self._memory) < 4096:
-            raise HapticdError(f"{file}: the file is too short for a black box; the daemon may still be starting")
+            raise HapticdError(f"{file}: the file is too short for a black box; the daemon may still be starting", "damaged")
         magic, count, ring, _, _, about_at, about_bytes, blocks_at = _HEADER.unpack_from(self._memory, _HEADER_AT)
         if not magic.startswith(b"hapticd-recording/1") or not ring:
-            raise HapticdError(f"{file}: is not a black box that this version of the package can read")
+            raise HapticdError(f"{file}: is not a black box that this version of the package can read", "damaged")
         self.about: dict[str, Any] = json.loads(bytes(self._memory[about_at:about_at + about_bytes]))
         places = self._rows_of(blocks_at, count)
         self.streams: dict[str, Stream] = Named("stream")
@@ -162,8 +165,12 @@ class BlackBox:
                 places[stream] = at
             at += size
         if len(places) < count:
-            raise HapticdError("the black box is damaged: it lacks the rows of a stream")
+            raise HapticdError("the black box is damaged: it lacks the rows of a stream", "damaged")
         return places
+
+    def ended(self) -> bool:
+        """Tells whether the daemon has noted here that it ended in order."""
+        return bool(_CLOSED.unpack_from(self._head, _CLOSED_AT)[0])
 
     def close(self) -> None:
         self._memory.close()

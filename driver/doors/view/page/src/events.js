@@ -20,7 +20,7 @@ const kLost = ['no program leads it any more', 'no program leads its hand any mo
 /** The text for each kind of event; e has the code and the value of the event. `sort` decides the colour, the sound and
  * the mark. */
 const kEvents = {
-  click: {sort: 'click', text: () => 'click'},
+  click: {sort: 'click', text: (e) => `click${['', ', snapped in', ', snapped out'][e.code] ?? ''}`},
   touch: {sort: 'contact', text: (e) => `touched, ${short(e.value)} N`},
   fault: {sort: 'fault', text: (e) => `${kFaults[e.code] ?? `fault ${e.code}`}${kFaultUnits[e.code] ? ` (${short(e.value)} ${kFaultUnits[e.code]})` : ''}`},
   cleared: {sort: 'order', text: () => 'no fault any more'},

@@ -37,6 +37,12 @@ TEST_F(EventWords, AreAtTheLevelThatAPersonNeeds) {
   EXPECT_EQ(of(HAPTICD_SILENCED, static_cast<uint32_t>(ShapeFault::kOverrun)).level, HSP_LOG_ERROR);
 }
 
+TEST_F(EventWords, TellTheDirectionOfAClickIfItIsKnown) {
+  EXPECT_EQ(of(HAPTICD_CLICK, HAPTICD_WENT_IN).text, "snapped in at 0.0000 s");
+  EXPECT_EQ(of(HAPTICD_CLICK, HAPTICD_CAME_OUT).text, "snapped out at 0.0000 s");
+  EXPECT_EQ(of(HAPTICD_CLICK).text, "clicked at 0.0000 s");
+}
+
 TEST_F(EventWords, TellHowLongNoTickCame) {
   const auto stalled = of(HAPTICD_STALLED, 0, 1.5);
   EXPECT_EQ(stalled.level, HSP_LOG_WARNING);

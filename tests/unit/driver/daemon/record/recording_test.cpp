@@ -185,8 +185,41 @@ TEST(FlightRing, KeepsTheNewestRowsInOrder) {
   EXPECT_FALSE((*copy)->blackBox());
   expectRows(*(*copy)->stream("ticks"), 1234 - 99, 99);
 
+  EXPECT_FALSE((*box)->closed());
+  (*ring)->noteEnd();
+  EXPECT_TRUE((*Recording::open(name))->closed()) << "programs that have mapped it know that the run ended in order";
   (*ring)->removeFile();
   EXPECT_FALSE(Recording::open(name));
+}
+
+/// A copy of the memory takes its bytes in any order, so the number of rows must not be taken from the copy.
+TEST(FlightRing, IsReadWhileItIsWrittenWithoutRowsThatWereNotWrittenYet) {
+  const std::string name = temporary("live");
+  constexpr uint64_t kRows = 1 << 17;
+  auto ring = FlightRing::create(specs(kRows), about(), name);
+  ASSERT_TRUE(ring) << ring.error();
+  std::atomic<bool> stop{false};
+  std::thread writer([&] {
+    for (uint64_t tick = 0; tick < kRows - 1 && !stop; ++tick) {
+      const Row row = rowOf(tick);
+      std::memcpy((*ring)->next(0), &row, sizeof row);
+      (*ring)->commit(0);
+      if (tick % 64 == 0) std::this_thread::yield();
+    }
+  });
+  uint64_t seen = 0, wrong = 0;
+  while (seen < kRows - 1 && wrong == 0) {
+    const auto box = Recording::open(name);
+    if (!box) break;
+    const RecordedStream& ticks = *(*box)->stream("ticks");
+    for (uint64_t i = seen = ticks.rows(); i > 0 && i + 1000 > seen; --i)
+      wrong += ticks.number(i - 1, *ticks.find("tick")) != static_cast<double>(i - 1);
+  }
+  stop = true;
+  writer.join();
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_EQ(seen, kRows - 1);
+  (*ring)->removeFile();
 }
 
 TEST(FlightRing, KilledReadersChangeNothing) {

@@ -273,6 +273,19 @@ TEST(ContactWork, OfASpringIsNothingAndOfOneThatGivesMoreWhatItGives) {
   EXPECT_EQ(gap.given() + gap.taken(), 0);
 }
 
+TEST(ContactWork, OfAHandThatBeginsInsideIsNoMoreThanWasStoredThere) {
+  ContactWork work;  // 500 N/m, 5 mm deep: 6.25 mJ
+  for (uint64_t tick = 0; tick <= 200; ++tick) {
+    const double depth = .005 * std::cos(M_PI * static_cast<double>(tick) / 400);
+    work.add(tick, {0, 500 * depth, 0}, {0, -depth, 0}, depth);
+  }
+  EXPECT_NEAR(work.given(), 0.5 * 500 * .005 * .005, 1e-9);
+  EXPECT_EQ(work.taken(), 0);
+  EXPECT_GE(work.began(), work.given());
+  EXPECT_LE(work.began(), 2.01 * work.given());
+  EXPECT_EQ(pressed(1.8).began(), 0) << "it came from outside";
+}
+
 TEST_F(Report, TellsPeopleOfAModelThatDrivesTheHand) {
   RunReport report = sample();
   const ContactWork work = pressed(1.8);
@@ -284,7 +297,9 @@ TEST_F(Report, TellsPeopleOfAModelThatDrivesTheHand) {
       << summary(report);
   report.models[0].moves = true;  // it may have had that
   EXPECT_EQ(summary(report).find("gave the hand"), std::string::npos);
-  report.models[0].moves = false, report.models[0].given_j = 0.0063, report.models[0].taken_j = 0.00625;
+  report.models[0].moves = false, report.models[0].began_j = 0.0051;
+  EXPECT_EQ(summary(report).find("gave the hand"), std::string::npos) << "the hand began inside";
+  report.models[0].began_j = 0, report.models[0].given_j = 0.0063, report.models[0].taken_j = 0.00625;
   EXPECT_EQ(summary(report).find("gave the hand"), std::string::npos);
 }
 
