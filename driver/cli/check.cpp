@@ -15,6 +15,7 @@
 #include "cli/scene_warnings.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/device_warnings.hpp"
+#include "diagnostics/far_paths.hpp"
 #include "diagnostics/hand_path_warnings.hpp"
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/hand_start.hpp"
@@ -75,7 +76,8 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
                  CheckResult& result) {
   document::Problems more = unstableContacts(full, trial.stiffness);
   for (const document::Problem& one : lateVelocity(full, trial.needs_velocity)) more.push_back(one);
-  for (const auto& found_by : {&farModels, &softModels, &idleBounds, &quarantinedModels, &slowArms, &wideScales})
+  for (const auto& found_by :
+       {&farModels, &farPaths, &softModels, &idleBounds, &quarantinedModels, &slowArms, &wideScales})
     for (const document::Problem& one : found_by(full)) more.push_back(one);
   document::Problems unread;
   if (const auto root = document::parseFile(result.file, unread)) {

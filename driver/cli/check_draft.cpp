@@ -10,6 +10,7 @@
 #include "cli/command.hpp"
 #include "cli/scene_warnings.hpp"
 #include "diagnostics/device_trial.hpp"
+#include "diagnostics/far_paths.hpp"
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/hand_start.hpp"
 #include "diagnostics/key_place.hpp"
@@ -110,6 +111,8 @@ class Models {
     if (!model || *model >= unread_.size() || plugins_[*model] == nullptr) return false;
     if (lacks_[*model] && !concernsGiven(one, *model)) return true;
     if (unread_[*model].sound()) return false;
+    const size_t id = one.key.find(".parameters.");  // an objection to the value that was taken instead
+    if (id != std::string::npos && unread_[*model].ids.contains(one.key.substr(id + 12))) return true;
     const auto& given = draft_.models[*model].parameters;
     const bool of_file = std::any_of(given.begin(), given.end(), [&one](const scene::Value& value) {
       return value.kind == HSP_PATH && one.what.find(value.text + ":") != std::string::npos;
@@ -188,7 +191,7 @@ void checkDraft(scene::Scene draft, document::Problems& problems, document::Prob
   const ModelTrial trial = models.attempt(arms ? servo::maxForceOf(draft) : 0);
   problems.insert(problems.end(), trial.problems.begin(), trial.problems.end());
   warnings.insert(warnings.end(), trial.warnings.begin(), trial.warnings.end());
-  for (const auto& found_by : {&farModels, &softModels, &wideScales, &quarantinedModels, &tune::fastPaths})
+  for (const auto& found_by : {&farModels, &farPaths, &softModels, &wideScales, &quarantinedModels, &tune::fastPaths})
     for (const document::Problem& one : found_by(draft))
       if (models.isRead(one) && !unread.has(one.key)) warnings.push_back(one);
   document::Problems unparsed;

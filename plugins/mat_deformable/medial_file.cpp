@@ -144,14 +144,19 @@ class Reader {
     for (std::size_t i = 0; i < rows->size() && !problems_.full(); ++i) {
       const Json& row = (*rows)[i];
       std::array<int, kCount> corners{};
+      std::string wrong;
       bool good = row.is_array() && row.size() == kCount;
       for (std::size_t k = 0; good && k < kCount; ++k) {
         const double corner = row[k].is_number() ? row[k].get<double>() : -1;
         good = corner >= 0 && corner < static_cast<double>(vertices) && corner == std::floor(corner);
+        if (!good) wrong = "vertex " + row[k].dump() + " does not exist (vertices are counted from 0); ";
         if (good) corners[k] = static_cast<int>(corner);
-        for (std::size_t before = 0; good && before < k; ++before) good = corners[before] != corners[k];
+        for (std::size_t before = 0; good && before < k; ++before) {
+          good = corners[before] != corners[k];
+          if (!good) wrong = "vertex " + row[k].dump() + " stands there twice; ";
+        }
       }
-      if (!good) problems_.add(below(at, i), expected);
+      if (!good) problems_.add(below(at, i), wrong + expected);
       out.push_back(corners);
     }
   }

@@ -48,6 +48,38 @@ double largest(const Json& value) {
   return most;
 }
 
+/// Returns the number in the middle of a list.
+double middleOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Warns of single radii that are far larger than the others, at their own places. @return false if there are none
+bool warnOfRadii(const MedialFile& file, const Json& medial, Problems& odd) {
+  constexpr double kTimes = 100;  // with less, a body with a thin rim could be meant
+  std::vector<double> all;
+  if (file.grid) all = file.grid->grid.radius;
+  if (file.mesh)
+    for (const medial::Sphere& sphere : file.mesh->mesh.vertices) all.push_back(sphere.radius);
+  const double usual = all.empty() ? 0 : middleOf(all);
+  const auto rows = medial.find("radius");
+  const bool listed =
+      file.mesh || (rows != medial.end() && rows->is_array() && !rows->empty() && rows->front().is_array());
+  bool found = false;
+  for (std::size_t i = 0; listed && usual > 0 && i < all.size(); ++i) {
+    if (!(all[i] > kTimes * usual)) continue;
+    Path at = medialAt(file.mesh ? "vertices" : "radius");
+    const std::size_t columns = file.mesh ? 1 : rows->front().size();
+    at.push_back({"", i / columns});
+    at.push_back({"", file.mesh ? 3 : i % columns});
+    odd.add(at, written("%.4g m, but most radii are about %.3g m; the value must be in m: %.4g mm is %.4g m", all[i],
+                        usual, all[i], all[i] / 1000));
+    found = true;
+  }
+  return found;
+}
+
 void warnOfMass(const MedialFile& file, const Eigen::AlignedBox3d& box, Problems& odd) {
   // [kg/m^3] denser than any metal; [kg] less than this is never reported; [m] a larger body is meant in mm
   constexpr double kDensest = 25'000, kEasy = 3, kHuge = 5;
@@ -106,6 +138,7 @@ std::vector<std::string> warnOfMedialFile(const MedialFile& file, const Json& ro
                       largest(medial[key]), size, largest(medial[key]), largest(medial[key]) / 1000));
   if (sized && read("mass")) warnOfMass(file, box, odd);
   if (read("stiffness") || read("young")) warnOfStiffness(file, medial, odd);
+  if (sized && warnOfRadii(file, medial, odd)) return odd.texts();
   // A file without problems gets this warning from the body that is made of it.
   if (problems.any() && sized && size > medial::kLargestUsual)
     odd.add({{"medial", 0}},

@@ -27,8 +27,8 @@ class PushButton final : public TracedShape {
                                    "k1: stiffness of the surface's spring", HSP_P_SAFETY),
                            F::array("detent", &PushButton::detent_, "m, N", 2, 2, 128, 0, 1e3,
                                     "[[0, 0], [0.003, 4], [0.004, 2], [0.005, 3]]",
-                                    "points [travel, force] of the button's own resistance, beginning at [0, 0]; the "
-                                    "button clicks where the force falls"),
+                                    "points [travel, force] of the button's own resistance; it begins at [0, 0], a row "
+                                    "that may be left out; the button clicks where the force falls"),
                            F::real("end_stiffness", &PushButton::end_stiffness_, "N/m", 1, 1e6, 8000,
                                    "slope of the resistance beyond the last point of detent")},
                 formerFields<PushButton>());

@@ -219,6 +219,9 @@ class Reader {
       problems_.add(at / std::size_t{0}, "there is no surface \"" + json[0].get<std::string>() +
                                              "\", expected a name or index of a surface" +
                                              document::suggestion(json[0].get<std::string>(), names));
+    else if (is_name && json[1].is_string())
+      problems_.add(at / std::size_t{1},
+                    "there is no side \"" + json[1].get<std::string>() + "\", expected u0, u1, v0 or v1");
     else
       problems_.add(at, "expected [surface, side]: a name or index of a surface, and u0, u1, v0 or v1");
     return std::nullopt;

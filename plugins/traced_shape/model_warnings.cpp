@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <map>
 #include <set>
+#include <utility>
 
+#include "corner_slips.hpp"
 #include "document.hpp"
 #include "kernels/trace/side_curve.hpp"
 
@@ -119,8 +121,8 @@ void warnOfOrder(const SurfaceData& surface, std::size_t index, Problems& odd) {
       turned < kBitShorter * as_read && runsToAndFro(surface, columns, 1) && !runsToAndFro(surface, 1, rows);
   if (folded || turned < kShorter * as_read)
     odd.add(surfaceAt(index, "points"),
-            written("run to and fro: the net of %zu by %zu is %.3g times as long as it would be if u ran fastest; "
-                    "expected all points of the first u, then of the next: v runs fastest",
+            written("the points seem to be listed with u fastest: as read, the lines of the net of %zu by %zu run to "
+                    "and fro, %.3g times as long; expected all points of the first u, then of the next: v runs fastest",
                     rows, columns, as_read / turned));
 }
 
@@ -165,7 +167,10 @@ void warnOfSpikes(const SurfaceData& surface, std::size_t index, Problems& odd) 
 /// the same. Surfaces that are apart on purpose, such as a lid above its pot, share no corner.
 class Gaps {
  public:
-  Gaps(const trace::Model& model, const ModelFile& file, Problems& odd) : model_(model), file_(file), odd_(odd) {
+  /// @param known pairs of surfaces whose gap is told already
+  Gaps(const trace::Model& model, const ModelFile& file, std::set<std::pair<std::size_t, std::size_t>> known,
+       Problems& odd)
+      : model_(model), file_(file), odd_(odd), known_(std::move(known)) {
     for (int patch = 0; patch < model.patchCount(); ++patch)
       for (int side = 0; side < trace::kSides; ++side)
         if (model.patch(patch).sides[static_cast<std::size_t>(side)].kind == trace::SideKind::kFree) {
@@ -210,6 +215,9 @@ class Gaps {
     const double gap = (at(a.of, a.end, 1) - at(b.of, b.end, 1)).norm();
     if (gap > near || (at(a.of, a.end, 0.5) - at(b.of, b.end, 0.5)).norm() > near) return;
     const int source = model_.patch(a.of.patch).source, other = model_.patch(b.of.patch).source;
+    if (known_.contains(
+            {static_cast<std::size_t>(std::min(source, other)), static_cast<std::size_t>(std::max(source, other))}))
+      return;
     if (source == other || !told_.insert(std::max(source, other)).second) return;
     odd_.add(surfaceAt(static_cast<std::size_t>(std::max(source, other))),
              written("there is a gap between %.80s and %.80s: two of their sides share one corner, but their other "
@@ -256,6 +264,7 @@ class Gaps {
   const trace::Model& model_;
   const ModelFile& file_;
   Problems& odd_;
+  std::set<std::pair<std::size_t, std::size_t>> known_;
   std::vector<SideOf> free_;
   std::set<int> told_;                       ///< surfaces that have been reported
   std::map<int, std::vector<End>> free_at_;  ///< by corner: the free sides that end there
@@ -297,7 +306,7 @@ std::vector<std::string> warnOfModel(const ModelFile& file, const trace::Model& 
   warnOfSize(model.bounds().diagonal().norm(), odd);
   for (std::size_t i = 0; i < file.surfaces.size() && !odd.full(); ++i) warnOfSurface(file.surfaces[i], i, odd);
   warnOfNames(file, odd);
-  Gaps(model, file, odd).tell();
+  Gaps(model, file, warnOfCornerSlips(file, odd), odd).tell();
   return odd.texts();
 }
 

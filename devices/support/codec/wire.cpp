@@ -158,7 +158,7 @@ StartStep readStep(const Tree& tree) {
     tree.fail("is empty; expected the key control, send or expect");
   if (tree.has("tries")) step.tries = static_cast<int>(tree.at("tries").whole(1, 1000));
   if (tree.has("wait")) step.wait = tree.at("wait").number(0, 10, "s");
-  if (tree.has("timeout")) step.timeout = tree.at("timeout").number(0.001, 10);
+  if (tree.has("timeout")) step.timeout = tree.at("timeout").number(0.001, 10, "s");
   return step;
 }
 

@@ -55,6 +55,12 @@ bool onlyOut(Role role) {
 void readTarget(const Tree& tree, size_t joints, bool input, Field& field, FieldFacts& known) {
   const size_t before = tree.problems();
   const Tree is = tree.at("is");
+  const std::string word = is.text();
+  if (tree.problems() != before) return;  // it is missing, or no text
+  if (word == "watchdog" || word == "heartbeat" || word == "alive")
+    return is.fail("\"" + word +
+                   "\", expected the role of a byte that tells the arm that commands come: counter if it must change, "
+                   "constant if it has one value, enable if it switches the motors on");
   field.role = choiceOf(is, kRoles, [input](Role role) { return !(input ? onlyOut(role) : onlyIn(role)); });
   if (tree.problems() != before) return;
   if (input ? onlyOut(field.role) : onlyIn(field.role))

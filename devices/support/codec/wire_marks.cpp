@@ -78,9 +78,10 @@ void placeMarks(const Tree& tree, const Framing& framing, bool framed, const std
     return tree.at("size").fail("1, expected 2 or more: framing.start and framing.end are bytes of the report");
   if (framing.start >= 0 && report.id >= 0 && report.id != framing.start) {
     if (framed)
-      tree.at("id").fail(
-          std::to_string(report.id) + " is the report id, and framing.start puts its mark " + hexOf(framing.start) +
-          " into the same first byte; remove id (a constant field at byte 1 can tell kinds of reports apart)");
+      tree.at("id").fail(std::to_string(report.id) + " is the report id, and framing.start puts its mark " +
+                         hexOf(framing.start) +
+                         " into the same first byte; remove id (a constant field at byte 1 can tell kinds of reports "
+                         "apart), or framing, if the arm has none, as over HID");
   } else if (framing.start >= 0 && report.id < 0) {
     placeMark(tree, {"start", framing.start, 0}, framed, known, report);
   }

@@ -75,6 +75,7 @@ class Overlaps {
       for (size_t i = 0; i < later; ++i) {
         const size_t byte = shared(i, later);
         if (byte == size_ || too_wide_[i] || too_wide_[later]) continue;
+        if (failForOrder(later, i) || failForOrder(i, later)) break;
         const Tree tree = fields_.item(later);
         tree.at(tree.has("at") ? "at" : "bit_offset")
             .fail("takes bits of byte " + std::to_string(byte) + ", which " + nameOf(fields_, all_[i], known_[i], i) +
@@ -84,6 +85,19 @@ class Overlaps {
   }
 
  private:
+  /// Notes that `endian` is missing, if a field would be beside the other one with the byte order of that one.
+  /// @return false if this is not so
+  bool failForOrder(size_t one, size_t other) const {
+    const Tree tree = fields_.item(one);
+    if (tree.has("endian") || !all_[other].big_endian) return false;
+    Field turned = all_[one];
+    turned.big_endian = true;
+    if (firstShared(bitsTaken(turned, size_), taken_[other]) != size_) return false;
+    tree.fail("no endian, so it is little, and its bits are those of " +
+              nameOf(fields_, all_[other], known_[other], other) + ", which is big; expected endian: big here, too");
+    return true;
+  }
+
   /// Returns the first byte in which two fields share a bit that they may not share; the size of the report if there is
   /// none, or if too little is known about them.
   size_t shared(size_t a, size_t b) const {

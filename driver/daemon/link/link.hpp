@@ -22,6 +22,7 @@ struct ArmState {
   Nanoseconds time_ns = 0;
   uint32_t probe_count = 0;
   std::array<std::array<double, 3>, kMaxProbes> position{};  ///< [m] world frame
+  std::array<double, kMaxProbes> depth{};  ///< [m] greatest depth of the probe in a model, one tick ago; 0: no contact
   std::array<bool, kMaxProbes> valid{};
 };
 

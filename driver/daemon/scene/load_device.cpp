@@ -127,6 +127,39 @@ void nameModules(const std::string& as, host::Catalog& catalog, Reader& in) {
       one.what += ": one of " + document::listed(catalog.names(host::Kind::kDevice)) + as;
 }
 
+/// Says what the workspace is, if a file gives a box or a sphere for it.
+void explainWorkspace(const Node& root, Reader& in) {
+  const Node* limits = root.find("limits");
+  const Node* given = limits != nullptr && limits->isMap() ? limits->find("workspace") : nullptr;
+  if (given == nullptr || given->isScalar()) return;
+  for (Problem& one : in.problems())
+    if (one.key == "limits.workspace" && one.place.file == in.file().string())
+      one.what += ": one radius about the origin of the device frame, outside of which forces fade";
+}
+
+/// Returns how many of the keys of `parameters` a module knows.
+size_t knownOf(const Node& parameters, const host::ClassInfo& info) {
+  return static_cast<size_t>(
+      std::count_if(parameters.entries.begin(), parameters.entries.end(), [&info](const auto& entry) {
+        const std::string id = entry.key.scalar, group = id + ".";
+        return std::any_of(info.params.begin(), info.params.end(),
+                           [&](const host::ParamInfo& param) { return param.id == id || param.id.starts_with(group); });
+      }));
+}
+
+/// Tells once that the parameters are those of a simulated arm, as in the file of a twin whose module was replaced.
+void tellOfSimulated(const Node& root, const Node& parameters, const host::ClassInfo& info, host::Catalog& catalog,
+                     Reader& in) {
+  const auto simulated = catalog.device("simulated");
+  const Node* module = root.find("module");
+  if (!simulated || *simulated == &info || module == nullptr || !parameters.isMap()) return;
+  const size_t all = parameters.entries.size();
+  if (parameters.find("wire") != nullptr || knownOf(parameters, info) == all || knownOf(parameters, **simulated) != all)
+    return;
+  in.problem(*module, "module",
+             "is " + info.name + ", but these are parameters of simulated; expected module: simulated");
+}
+
 /// Finds the module of a device file. If its name is unknown or missing, this function reports that, and returns the
 /// module that is probably meant, so that the other problems are found too. @return nullptr if there is none
 const host::ClassInfo* moduleOf(const Node& root, const DeviceText& text, Reader& in, host::Catalog& catalog) {
@@ -161,6 +194,7 @@ std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceRefer
   device.mount = reference.mount.value_or(text.mount);
   device.limits = text.limits;
   refuseNoForce(root, in);
+  explainWorkspace(root, in);
   device.admittance = reference.admittance ? reference.admittance : text.admittance;
   if (text.hd) device.hd = readHd(*text.hd, in);
   const host::ClassInfo* found = moduleOf(root, text, in, catalog);
@@ -170,6 +204,7 @@ std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceRefer
   device.library = info.file;
   if (has_hand != nullptr) *has_hand = hasHand(info);
   ParameterReader reader(in, info);
+  if (text.parameters != nullptr) tellOfSimulated(root, *text.parameters, info, catalog, in);
   if (text.parameters != nullptr) reader.read(*text.parameters, "parameters");
   if (text.hand != nullptr) readHand(*text.hand, "hand", info, in, reader);
   if (scene_in != nullptr && hand != nullptr && hasHand(info)) {

@@ -2,7 +2,9 @@
 #include "scene/parameters.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/nearest_word.hpp"
 #include "document/correction.hpp"
@@ -130,6 +132,12 @@ void ParameterReader::unknown(const Node& around, const Entry& entry, const std:
     return in_->problem(
         entry.key, key,
         "belongs at the top of the device file, beside parameters, because it is not a parameter of " + info_.name);
+  // Catalogues of USB devices give two numbers; hapticd takes one text, because YAML would read 0486 as a number.
+  if ((id == "usb.vendor" || id == "usb.product" || id == "usb.vid" || id == "usb.pid") && info_.indexOf("usb.id") >= 0)
+    return in_->problem(entry.key, key,
+                        "unknown parameter of " + info_.name +
+                            "; expected one key for both numbers: id: \"VENDOR:PRODUCT\", in hexadecimal, such as "
+                            "\"16c0:0486\"");
   // Within a group only names of this group are suggested, because names of other groups are not valid here.
   const std::string group = id.substr(0, id.find('.') == id.npos ? 0 : id.rfind('.'));
   if (!group.empty()) std::erase_if(ids, [&](const std::string& one) { return one.rfind(group + ".", 0) != 0; });
@@ -154,9 +162,12 @@ void ParameterReader::judgeAs(const std::string& meant, const Entry& entry, cons
 void ParameterReader::readOne(const Node& node, const std::string& key, uint32_t index) {
   const host::ParamInfo& param = info_.params[index];
   if (given_[index] != 0)
-    return in_->problem(
-        node, key, "given twice (first in line " + std::to_string(given_[index]) + "), expected each parameter once");
+    return in_->problem(node, key,
+                        "given twice (first in line " + std::to_string(given_[index]) +
+                            (given_as_[index].empty() || given_as_[index] == key ? "" : ", as " + given_as_[index]) +
+                            "), expected each parameter once");
   given_[index] = node.line;
+  given_as_[index] = key;
   seen_[index] = true;
   Value value;
   value.id = param.id;
@@ -167,6 +178,16 @@ void ParameterReader::readOne(const Node& node, const std::string& key, uint32_t
   for (Value& before : values_)
     if (before.index == index) return (void)(before = std::move(value));
   values_.push_back(std::move(value));
+}
+
+/// Returns the choice that a usual word of the field stands for: a serial arm is a chain.
+static std::optional<size_t> otherWordFor(const Node& node, const std::vector<std::string>& choices) {
+  constexpr std::array kWords{std::pair{"serial", "chain"}, std::pair{"open_chain", "chain"}, std::pair{"dh", "chain"},
+                              std::pair{"parallel", "delta"}};
+  for (const auto& [word, meant] : kWords)
+    for (size_t i = 0; node.isScalar() && node.scalar == word && i < choices.size(); ++i)
+      if (choices[i] == meant) return i;
+  return std::nullopt;
 }
 
 bool ParameterReader::readValue(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value) {
@@ -185,6 +206,9 @@ bool ParameterReader::readValue(const Node& node, const std::string& key, const 
     case HSP_ENUM:
       if (const auto index = in_->choice(node, key, param.choices))
         number = static_cast<double>(*index);
+      else if (const auto meant = otherWordFor(node, param.choices))
+        number = static_cast<double>(*meant),
+        in_->problems().back().what += " (did you mean \"" + param.choices[*meant] + "\"?)";
       else if (node.isScalar())  // reported; the likely choice lets the rest of the file be judged
         number = suggestChoice(node.scalar, param.choices);
       break;

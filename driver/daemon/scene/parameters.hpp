@@ -16,7 +16,7 @@ using document::Reader;
 class ParameterReader {
  public:
   ParameterReader(Reader& in, const host::ClassInfo& info)
-      : in_(&in), info_(info), given_(info.params.size()), seen_(info.params.size()) {}
+      : in_(&in), info_(info), given_(info.params.size()), given_as_(info.params.size()), seen_(info.params.size()) {}
 
   /// From now on, the nodes that are read belong to another file. Their values replace earlier values.
   void overrideFrom(Reader& in);
@@ -48,7 +48,8 @@ class ParameterReader {
   const host::ClassInfo& info_;
   std::vector<Value> values_;
   std::vector<int> given_;  // line of each parameter in the file being read, even if its value is wrong; 0: not given
-  std::vector<bool> seen_;  // true for parameters that were given in any file
+  std::vector<std::string> given_as_;  // key of each parameter that was given
+  std::vector<bool> seen_;             // true for parameters that were given in any file
 };
 
 }  // namespace hapticd::scene

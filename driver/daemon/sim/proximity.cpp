@@ -75,7 +75,7 @@ void Proximity::search() {
     if (!arm.valid[probe]) continue;
     const Eigen::Vector3d p_world(arm.position[probe].data());
     for (Model& model : models_)
-      if (model.index != UINT32_MAX) searchModel(model, probe, p_world);
+      if (model.index != UINT32_MAX) searchModel(model, probe, p_world, arm.depth[probe]);
   }
   link_.records.publish();
 }
@@ -91,8 +91,12 @@ void Proximity::receiveTransforms() {
   }
 }
 
-void Proximity::searchModel(Model& model, uint32_t probe, const Eigen::Vector3d& p_world) {
-  const double reach = settings_.activation_radius + settings_.hysteresis;
+void Proximity::searchModel(Model& model, uint32_t probe, const Eigen::Vector3d& p_world, double depth) {
+  // A foot point is as far away as the contact is deep. In one period of the search a probe at 2 m/s moves 10 mm.
+  constexpr double kOnTheWay = 0.01;  // [m]
+  const double held = depth > 0 ? depth + kOnTheWay : 0;
+  const double near_by = std::max(settings_.activation_radius, held);
+  const double reach = std::max(settings_.activation_radius + settings_.hysteresis, held);
   const Eigen::Vector3d p_model = model.orientation.conjugate() * (p_world - model.position);
   const Eigen::Vector3d to_box = p_model - p_model.cwiseMax(model.box_min).cwiseMin(model.box_max);
   const bool may_be_near = !model.has_box || to_box.norm() <= reach;
@@ -108,7 +112,7 @@ void Proximity::searchModel(Model& model, uint32_t probe, const Eigen::Vector3d&
     seen_[near.surface] = 1;
     if (active[near.surface] != 0) {
       send(model, ActivationRecord::Order::kOffer, near);
-    } else if (near.distance_m <= settings_.activation_radius && send(model, ActivationRecord::Order::kStart, near)) {
+    } else if (near.distance_m <= near_by && send(model, ActivationRecord::Order::kStart, near)) {
       active[near.surface] = 1;
       ++model.active_count;
     }

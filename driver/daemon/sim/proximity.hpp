@@ -14,7 +14,8 @@
 namespace hapticd::sim {
 
 /// Distances of the search. In one period of the search (5 ms) a probe at 2 m/s moves 10 mm, which is much less than
-/// activation_radius.
+/// activation_radius. While a probe touches a model, the surfaces about its foot point stay traced, however short these
+/// distances are.
 struct ProximitySettings {
   double activation_radius = 0.10;  ///< [m] a surface nearer than this to a probe is traced
   double hysteresis = 0.05;         ///< [m] tracing stops at activation_radius plus this distance
@@ -67,7 +68,7 @@ class Proximity {
 
   void addModel(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count);
   void receiveTransforms();
-  void searchModel(Model& model, uint32_t probe, const Eigen::Vector3d& p_world);
+  void searchModel(Model& model, uint32_t probe, const Eigen::Vector3d& p_world, double depth);
   void stopLeft(Model& model, uint32_t probe);
   bool send(const Model& model, link::ActivationRecord::Order order, const hsp_near& near);
 

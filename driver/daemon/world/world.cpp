@@ -10,10 +10,13 @@ namespace hapticd::servo {
 
 namespace {
 
+/// Returns the pose of a model at the start. A path replaces the model's own pose: the first search must find the
+/// surfaces where the first tick has them.
 hsp_pose startPose(const scene::Model& model) {
+  const scene::Pose& start = model.kinematic && !model.path.empty() ? model.path.front().pose : model.pose;
   hsp_pose pose{};
-  Eigen::Map<Eigen::Vector3d>(pose.position) = model.pose.position;
-  const Eigen::Quaterniond& q = model.pose.orientation;
+  Eigen::Map<Eigen::Vector3d>(pose.position) = start.position;
+  const Eigen::Quaterniond& q = start.orientation;
   pose.orientation[0] = q.w(), pose.orientation[1] = q.x(), pose.orientation[2] = q.y(), pose.orientation[3] = q.z();
   return pose;
 }

@@ -5,7 +5,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "diagnostics/limit_warnings.hpp"
 #include "diagnostics/node_path.hpp"
@@ -177,6 +179,44 @@ void checkLengths(const ArmUnderCheck& arm_file) {
           less, more, more - less));
 }
 
+const std::vector<double>* numbersOf(const scene::Device& device, const char* id) {
+  for (const scene::Value& value : device.parameters)
+    if (value.id == id) return &value.numbers;
+  return nullptr;
+}
+
+/// Warns of centres of mass beyond the ends of their links. A centre beyond the far end mostly has the wrong sign, and
+/// then the motors carry about three times the weight: they push the arm up.
+void checkCenters(const ArmUnderCheck& arm_file) {
+  // Shares of a link's length: a tool may stand out a little, and a counterweight lies behind the near end.
+  constexpr double kBeyondFar = -0.1, kBehindNear = 1.5;
+  const Node* list = find(arm_file.root, {"parameters", "arm", "centers"});
+  const auto *rows = numbersOf(arm_file.device, "arm.dh"), *centers = numbersOf(arm_file.device, "arm.centers");
+  const auto* tool = numbersOf(arm_file.device, "arm.tool_position");
+  if (list == nullptr || rows == nullptr || centers == nullptr) return;
+  for (size_t i = 0; 4 * i + 3 < rows->size() && 3 * i + 2 < centers->size() && i < list->items.size(); ++i) {
+    const double a = (*rows)[4 * i], alpha = (*rows)[4 * i + 1], d = (*rows)[4 * i + 2];
+    const Eigen::Vector3d back(-a, -d * std::sin(alpha), -d * std::cos(alpha));  // from the far to the near end
+    const double length = back.norm();
+    if (!(length > 0)) continue;
+    const Eigen::Vector3d center = Eigen::Map<const Eigen::Vector3d>(centers->data() + 3 * i);
+    const double at = center.dot(back) / (length * length);  // 0 at the far end, 1 at the near end
+    double far = 0;
+    if (tool != nullptr && tool->size() == 3 && 4 * i + 4 >= rows->size())
+      far = std::min(0.0, Eigen::Map<const Eigen::Vector3d>(tool->data()).dot(back) / (length * length));
+    if (at >= far + kBeyondFar && at <= kBehindNear) continue;
+    const bool turned = at < 0 && at >= -1;  // with the other sign it lies on the link
+    const Eigen::Vector3d meant = turned ? Eigen::Vector3d(-center) : Eigen::Vector3d(back / 2);
+    arm_file.warn(
+        list->items[i], fmt::format("parameters.arm.centers[{}]", i),
+        fmt::format("the centre of mass lies {:.3g} m beyond the {} end of link {}, which is {:g} m long; expected a "
+                    "place on the link, in its frame, from its far end: {} [{:g}, {:g}, {:g}], in m",
+                    length * (at < 0 ? -at : at - 1), at < 0 ? "far" : "near", i + 1, length,
+                    turned ? "with the other sign" : "such as its middle", meant.x() + 0.0, meant.y() + 0.0,
+                    meant.z() + 0.0));
+  }
+}
+
 }  // namespace
 
 void warnOfImplausibleArm(const Node& root, const scene::Device& device, host::DeviceInstance* arm,
@@ -188,6 +228,7 @@ void warnOfImplausibleArm(const Node& root, const scene::Device& device, host::D
   if (arm != nullptr) checkWeight(arm_file, *arm);
   if (arm != nullptr) checkCounts(arm_file);
   checkLengths(arm_file);
+  checkCenters(arm_file);
 }
 
 }  // namespace hapticd::diagnostics

@@ -153,6 +153,7 @@ void checkWholeArm(const Node& root, const scene::Device& device, host::DeviceIn
   warnOfTravel(root, device, joints, &arm, warnings);
   warnOfMotors(root, device, joints, warnings);
   warnOfNoMount(root, device, arm, warnings);
+  warnOfFarMount(root, device, arm, warnings);
   warnOfImplausibleFields(root, device, joints, &arm, warnings);
   warnOfImplausibleLimits(root, device, &arm, warnings);
   warnOfImplausibleArm(root, device, &arm, warnings);

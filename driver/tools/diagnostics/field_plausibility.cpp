@@ -136,7 +136,9 @@ void unlikeOthers(const Side& side, Role role, const std::vector<double>& motors
     return std::abs(field.scale) / part;
   };
   std::vector<size_t> all = side.of({role});
-  std::erase_if(all, [&side](size_t i) { return side.warned(i, "scale"); });  // a wrong scale is no measure of others
+  std::erase_if(all, [&side](size_t i) {
+    return side.warned(i, "scale") || side.warned(i, "scale_degrees");
+  });  // a wrong scale is no measure of others
   if (all.size() < 3 || (role == Role::kTorque && motors.empty())) return;
   for (const size_t i : all) {
     double next = 0, least = 1e300;
@@ -155,6 +157,33 @@ void unlikeOthers(const Side& side, Role role, const std::vector<double>& motors
             finer ? "fine" : "coarse", role == Role::kTorque ? ", measured by arm.max_torque" : "",
             in_degrees ? fmt::format("if it is in degrees, write scale_degrees: {:g}", side.report.fields[i].scale)
                        : "is the decimal point wrong?"));
+  }
+}
+
+/// Warns of a scale in rad under scale_degrees: one joint has this key, its number is like the scales of the others in
+/// rad, and so its step is about 57 times as fine as theirs.
+void radiansAsDegrees(const Side& side) {
+  constexpr double kAlike = 4, kDegree = M_PI / 180;  // joints differ by gear ratios
+  const auto number = [&side](size_t i, const char* key) {
+    const Node* given = side.fields.items[i].find(key);
+    return given == nullptr ? 0 : std::abs(document::toNumber(given->scalar).value_or(0));
+  };
+  std::vector<size_t> all = side.of({Role::kPosition});
+  for (const size_t i : all) {
+    const double degrees = number(i, "scale_degrees");
+    bool like_all = degrees > 0 && all.size() > 1;
+    for (const size_t other : all) {
+      if (other == i) continue;
+      const double radians = number(other, "scale"), ratio = degrees / radians;
+      const bool same_bits = side.report.fields[other].bits == side.report.fields[i].bits;
+      like_all = like_all && radians > 0 && same_bits && ratio < kAlike && ratio > 1 / kAlike;
+    }
+    if (like_all)
+      side.warn(
+          i, "scale_degrees",
+          fmt::format("{0:g} degrees are {1:.3g} rad per count, about 57 times as fine as the scales of the other "
+                      "joints; if the value is in rad, write scale: {0:g}",
+                      degrees, degrees * kDegree));
   }
 }
 
@@ -326,6 +355,7 @@ void warnOfImplausibleFields(const Node& root, const scene::Device& device, size
   for (const Side* side : {&input, &output}) polynomialBackwards(*side);
   idleOffset(input);
   coarseVelocities(input);
+  radiansAsDegrees(input);
   if (!wireOf(device, joints)) return;  // fields are compared with each other only if all of them are right
   for (const Side* side : {&input, &output}) {
     mixedOrder(*side);

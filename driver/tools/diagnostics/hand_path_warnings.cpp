@@ -38,10 +38,12 @@ void reportIdlePath(const scene::Device& device, document::Problems& warnings) {
   const scene::Value *script = given(device, "hand.script"), *path = given(device, "hand.path");
   if (device.module != "simulated" || path == nullptr || path->text.empty() || !pathOf(device).empty()) return;
   if (script == nullptr || script->place.file == path->place.file)
-    document::report(warnings, path->place, "hand.path",
-                     fmt::format("has no effect: the hand of {} does not follow a path; add script: path beside it, or "
-                                 "remove the path",
-                                 device.name));
+    document::report(
+        warnings, path->place, "hand.path",
+        fmt::format("has no effect: the hand of {} does not follow a path; {}, or remove the path", device.name,
+                    script == nullptr
+                        ? "add script: path beside it"
+                        : fmt::format("replace the script in line {} by script: path", script->place.line)));
 }
 
 /// Returns why the arm cannot reach a place, or "". The search starts from the joints of the row before.

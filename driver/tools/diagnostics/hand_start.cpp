@@ -14,6 +14,7 @@
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/key_place.hpp"
 #include "diagnostics/limit_warnings.hpp"
+#include "diagnostics/overlapping_models.hpp"
 #include "diagnostics/unreachable_models.hpp"
 #include "diagnostics/walk_warnings.hpp"
 #include "host/child.hpp"
@@ -117,6 +118,52 @@ uint32_t packFar(const scene::Scene& scene, const servo::World& world, servo::Co
   return count;
 }
 
+/// A key that says where an arm stands, and its place in a file.
+struct MountKey {
+  document::Place place;
+  std::string key;
+};
+
+/// Returns the key of an arm's mount in the scene or, if it is not there, in the device file.
+std::optional<MountKey> mountOf(const scene::Scene& scene, uint32_t device) {
+  for (const std::string& where : {std::string("device"), fmt::format("devices[{}]", device)})
+    for (const char* id : {".mount.position", ".mount"})
+      if (const auto place = placeOfKey(scene.file, where + id)) return MountKey{*place, where + id};
+  for (const char* id : {"mount.position", "mount"})
+    if (const auto place = placeOfKey(scene.devices[device].file, id)) return MountKey{*place, id};
+  return std::nullopt;
+}
+
+/// Returns where to tell that an arm and its nearest model are far apart: at the one that is farther from the origin.
+MountKey keyOfFar(const scene::Scene& scene, uint32_t device, uint32_t model, const Eigen::Vector3d& tip) {
+  const std::string key = fmt::format("models[{}].pose.position", model);
+  const scene::Model& nearest = scene.models[model];
+  const auto mount = mountOf(scene, device);
+  if (mount && tip.norm() > nearest.pose.position.norm()) return *mount;
+  return {placeOfKey(nearest.place.file, key).value_or(nearest.place), key};
+}
+
+/// Warns of a real arm whose tip rests far away from all models, though the arm can reach one. The hand of a simulated
+/// arm shows by itself what it meets.
+void reportFarRest(const scene::Scene& scene, const servo::World& world, servo::Core& core,
+                   const std::vector<Hand>& hands, document::Problems& warnings) {
+  constexpr double kAway = 0.3;  // [m] a reach of the hand
+  for (uint32_t i = 0; i < hands.size(); ++i) {
+    const scene::Device& device = scene.devices[hands[i].device];
+    const auto nearest = nearestModel(scene, world, core, hands[i].probe.position, i);
+    if (device.module == "simulated" || !nearest || nearest->away <= kAway) continue;
+    const MountKey at =
+        keyOfFar(scene, hands[i].device, static_cast<uint32_t>(nearest->index), hands[i].probe.position);
+    const Eigen::Vector3d& tip = hands[i].probe.position;
+    document::report(
+        warnings, at.place, at.key,
+        fmt::format("{} rests with its tip at [{:.3g}, {:.3g}, {:.3g}] m of the world, {:.2g} m away from "
+                    "{}, the nearest model; is a sign or a decimal point wrong? move the arm "
+                    "(mount.position, in m) or the models (pose.position)",
+                    device.name, tip.x(), tip.y(), tip.z(), nearest->away, scene.models[nearest->index].name));
+  }
+}
+
 void packProblems(const document::Problems& problems, host::Packer& found) {
   for (const document::Problem& one : problems) {
     for (const std::string* text : {&one.place.file, &one.key, &one.what}) found.text(*text);
@@ -160,10 +207,13 @@ std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<
   const uint32_t far = packFar(scene, **world, core, hands, found);
   std::vector<TipReach> reaches;
   for (const Hand& hand : hands) reaches.push_back({hand.probe.position, hand.reach});
+  if (far == 0) reportFarRest(scene, **world, core, hands, warnings);
   packProblems(warnings, found);
   if (far == 0 && tips.size() == scene.devices.size())
     packProblems(unreachableModels(scene, **world, core, reaches), found);
-  packProblems(enclosedModels(scene, **world), found);
+  const document::Problems enclosed = enclosedModels(scene, **world);
+  packProblems(enclosed, found);
+  if (enclosed.empty()) packProblems(overlappingModels(scene, **world), found);
   // The hands run their scripts only if they start in the right place, because other warnings would follow from a wrong
   // start.
   if (inside.empty() && far == 0 && may_walk && tips.size() == scene.devices.size())
@@ -219,13 +269,17 @@ void reportFar(const scene::Scene& scene, const std::string& list, uint32_t coun
   for (; count > 0; --count) {
     const uint32_t device = in.count();
     const uint32_t model = in.count();
-    const double x = in.real(), y = in.real(), z = in.real(), away = in.real(), reach = in.real();
+    Eigen::Vector3d tip;
+    for (double& x : tip) x = in.real();
+    const double away = in.real(), reach = in.real();
     if (!in.good() || device >= scene.devices.size() || model >= scene.models.size()) break;
-    document::report(warnings, scene.models[model].place, fmt::format("models[{}].pose.position", model),
-                     fmt::format("{} is the model nearest to {}, but {:.3g} m away from its tip, which is at [{:.3g}, "
-                                 "{:.3g}, {:.3g}] and can move only {:.3g} m from there, so no model can be felt; move "
-                                 "the models (pose.position, in m) or the arm (mount.position)",
-                                 scene.models[model].name, scene.devices[device].name, away, x, y, z, reach));
+    const MountKey at = keyOfFar(scene, device, model, tip);
+    document::report(
+        warnings, at.place, at.key,
+        fmt::format("{} is the model nearest to {}, but {:.3g} m away from its tip, which is at [{:.3g}, "
+                    "{:.3g}, {:.3g}] and can move only {:.3g} m from there, so no model can be felt; move "
+                    "the models (pose.position, in m) or the arm (mount.position)",
+                    scene.models[model].name, scene.devices[device].name, away, tip.x(), tip.y(), tip.z(), reach));
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "diagnostics/key_place.hpp"
 #include "diagnostics/value_plausibility.hpp"
+#include "link/link.hpp"
 #include "tune/stability.hpp"
 
 namespace hapticd::diagnostics {
@@ -36,7 +37,14 @@ void checkGravity(const scene::Scene& scene, document::Problems& warnings) {
 
 void checkServo(const scene::Scene& scene, document::Problems& warnings) {
   constexpr double kWidest = 2, kLeast = 2;  // [m] beyond the reach of arms; [us] of a tick, less than any shape needs
+  constexpr double kFastHand = 2, kSearch = 1e-9 * link::kSearchPeriod;  // [m/s]; [s] between two searches
   const scene::Servo& servo = scene.servo;
+  if (servo.activation_radius < kFastHand * kSearch)
+    document::report(
+        warnings, placeIn(scene, "servo.activation_radius"), "servo.activation_radius",
+        fmt::format("a surface is felt once a search, every {:g} ms, has found it nearer than {:g} m, so a hand faster "
+                    "than {:g} m/s can pass through it unfelt; expected {:g} m or more, or leave this out (0.1 m)",
+                    kSearch * 1e3, servo.activation_radius, servo.activation_radius / kSearch, kFastHand * kSearch));
   if (servo.activation_radius > kWidest)
     document::report(
         warnings, placeIn(scene, "servo.activation_radius"), "servo.activation_radius",

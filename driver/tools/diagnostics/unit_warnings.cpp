@@ -208,7 +208,11 @@ void warnOfZeros(const Node& root, const std::string& file, document::Problems& 
                          "\" begins with a zero: a comma separates numbers, and decimals have a point (0." +
                          root.scalar + " is one number, 0," + root.scalar + " is two)");
   for (const Node& item : root.items) warnOfZeros(item, file, warnings);
-  for (const document::Entry& entry : root.entries) warnOfZeros(entry.value, file, warnings);
+  for (const document::Entry& entry : root.entries) {
+    const std::string& key = entry.key.scalar;
+    const bool of_usb = key == "usb" || key == "vendor" || key == "product" || key == "vid" || key == "pid";
+    if (!of_usb) warnOfZeros(entry.value, file, warnings);  // 0486 is a number of USB, and hexadecimal
+  }
 }
 
 void warnOfTurns(const Node& root, const std::string& file, document::Problems& warnings, const std::string& key) {

@@ -249,6 +249,34 @@ void warnOfCountedId(const Node& root, const codec::Report& report, const char* 
       "if they were counted with it, subtract 1 from each");
 }
 
+/// Warns of a size that is eight times as large as the fields need, because it counts bits.
+void warnOfSizeInBits(const Node& root, const codec::Report& report, const char* side, const scene::Device& device,
+                      document::Problems& warnings) {
+  const Node* size = find(root, {"parameters", "wire", side, "size"});
+  size_t end = 0;
+  for (const Field& field : report.fields) end = std::max(end, field.at + field.bytes());
+  if (size == nullptr || end < 2 || report.size != 8 * end) return;
+  document::report(warnings, device.file.string(), size->line, size->column,
+                   fmt::format("parameters.wire.{}.size", side),
+                   fmt::format("{} bytes, but the fields end after {} bytes, which are {} bits; size must be in bytes",
+                               report.size, end, report.size));
+}
+
+/// Warns of a pause in the start-up sequence that nobody would wait for, because it was meant in ms.
+void warnOfWaits(const Node& root, const scene::Device& device, document::Problems& warnings) {
+  constexpr double kLong = 5;  // [s] firmware starts within a few seconds
+  const Node* steps = find(root, {"parameters", "wire", "startup"});
+  for (size_t i = 0; steps != nullptr && i < steps->items.size(); ++i) {
+    const Node* wait = steps->items[i].isMap() ? steps->items[i].find("wait") : nullptr;
+    const double given = wait != nullptr ? document::toNumber(wait->scalar).value_or(0) : 0;
+    if (given >= kLong)
+      document::report(warnings, device.file.string(), wait->line, wait->column,
+                       fmt::format("parameters.wire.startup[{}].wait", i),
+                       fmt::format("the start waits {0:g} s here; the value must be in s: {0:g} ms is {1:g} s", given,
+                                   given / 1000));
+  }
+}
+
 /// Warns of keys that only an arm on bulk endpoints (module usb_bulk) can obey.
 void warnOfBulkKeys(const Node& root, const scene::Device& device, document::Problems& warnings) {
   const Node* wire = find(root, {"parameters", "wire"});
@@ -275,6 +303,7 @@ void warnOfWire(const Node& root, const scene::Device& device, size_t joints, do
   const Node* in = find(root, {"parameters", "wire", "input", "fields"});
   const Node* out = find(root, {"parameters", "wire", "output", "fields"});
   warnOfBulkKeys(root, device, warnings);
+  warnOfWaits(root, device, warnings);
   const auto wire = wireDraftOf(device, joints);
   if (!wire || in == nullptr || out == nullptr) return;
   if (!maxTorqueTooLarge(root, wire->output, device, warnings)) warnOfTorques(*out, wire->output, device, warnings);
@@ -282,6 +311,8 @@ void warnOfWire(const Node& root, const scene::Device& device, size_t joints, do
   warnOfButtons(*in, wire->input, device, warnings);
   if (wire->input.placed) warnOfChecksum(*in, wire->input, "input", device, warnings);
   if (wire->output.placed) warnOfChecksum(*out, wire->output, "output", device, warnings);
+  if (wire->input.placed) warnOfSizeInBits(root, wire->input, "input", device, warnings);
+  if (wire->output.placed) warnOfSizeInBits(root, wire->output, "output", device, warnings);
   if (!wireOf(device, joints)) return;  // if a field has a mistake, its place may be wrong, too
   warnOfCountedId(root, wire->input, "input", device, warnings);
   warnOfCountedId(root, wire->output, "output", device, warnings);

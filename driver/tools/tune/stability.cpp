@@ -6,10 +6,9 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "document/csv.hpp"
-#include "document/node.hpp"
 #include "servo/core/minimum_jerk.hpp"
 #include "servo/safety/passivity/isolated.hpp"
+#include "tune/path_rows.hpp"
 
 namespace hapticd::tune {
 namespace {
@@ -99,37 +98,11 @@ void checkLoopRate(const scene::Scene& scene, const scene::Device& device, const
         rates + " is faster than the samples of " + device.name + own + ": some ticks get no new sample" + nearest);
 }
 
-/// Where a scene gives the path of a model, and the file of this path.
-struct PathKey {
-  document::Place place;
-  std::filesystem::path csv;  ///< empty if the scene no longer has the path
-};
-
-PathKey keyOfPath(const scene::Model& model) {
-  document::Problems unread;
-  const auto root = document::parseFile(model.place.file, unread);
-  const document::Node* models = root ? root->find("models") : nullptr;
-  if (models == nullptr) return {model.place, {}};
-  for (const document::Node& node : models->items) {
-    if (node.line != model.place.line || node.column != model.place.column) continue;
-    const document::Node *path = node.find("path"), *parameters = node.find("parameters");
-    if (path == nullptr && parameters != nullptr) path = parameters->find("path");
-    if (path != nullptr)
-      return {{model.place.file, path->line, path->column},
-              std::filesystem::path(model.place.file).parent_path() / path->scalar};
-  }
-  return {model.place, {}};
-}
-
 /// Returns " (ball.csv:3)" for a row of the file of a path, or "" if the file does not have this row any more.
 /// @param t [s] time in this row
 std::string lineOf(const std::filesystem::path& csv, size_t row, double t) {
-  constexpr size_t kMostBytes = 256u << 20;
-  document::Problems unread;
-  const document::CsvRules rules{{"t,x,y,z,qw,qx,qy,qz", "t,x,y,z"}, true, true};
-  const auto table = csv.empty() ? std::nullopt : document::readCsv(csv, kMostBytes, rules, unread);
-  if (!table || row >= table->rows() || table->row(row)[0] != t) return "";
-  return " (" + csv.filename().string() + ":" + std::to_string(table->lines[row]) + ")";
+  const auto line = lineOfRow(csv, row, t);
+  return line ? " (" + csv.filename().string() + ":" + std::to_string(*line) + ")" : "";
 }
 
 /// Returns advice if the positions of a path that is too fast seem to be in mm; else "".

@@ -23,6 +23,17 @@ std::string number(double value) {
   return text;
 }
 
+/// Returns true if the second column, and not the first, can be a travel: it grows, and is shorter than a hand.
+bool seemSwapped(const std::vector<DetentCurve::Knot>& knots) {
+  constexpr double kHand = 0.1;  // [m]
+  double most = 0;
+  for (size_t i = 1; i < knots.size(); ++i) {
+    if (!(knots[i].force > knots[i - 1].force)) return false;
+    most = std::fmax(most, knots[i].travel);
+  }
+  return knots.size() > 1 && knots.back().force < kHand && most > kHand;
+}
+
 int footOf(const DetentCurve& detent, int top) noexcept {
   int foot = top + 1;
   while (foot + 1 < detent.pieces() && detent.slope(foot) < 0) ++foot;
@@ -39,7 +50,9 @@ DetentCurve::DetentCurve(std::span<const Knot> knots, double end_stiffness) {
   for (const Knot& knot : knots) knots_.push_back(knot);
   const auto wrong = [&](size_t i, const std::string& what) {
     throw std::invalid_argument("detent: row " + std::to_string(i + (begun ? 0 : 1)) + ": " + what +
-                                "; each row is [travel in m, force in N]");
+                                (seemSwapped(knots_) ? "; the columns seem to be swapped: expected [travel in m, force "
+                                                       "in N] in each row"
+                                                     : "; each row is [travel in m, force in N]"));
   };
   if (knots_.size() > kMaxKnots) wrong(kMaxKnots, "there are more than 64 rows, the most that a detent can have");
   if (!(end_stiffness > 0) || !std::isfinite(end_stiffness))
@@ -47,7 +60,8 @@ DetentCurve::DetentCurve(std::span<const Knot> knots, double end_stiffness) {
   for (size_t i = 0; i < knots_.size(); ++i) {
     if (!std::isfinite(knots_[i].travel) || !std::isfinite(knots_[i].force)) wrong(i, "not a finite number");
     if (i == 0 && (knots_[0].travel != 0 || knots_[0].force != 0))
-      wrong(i, "the curve must begin at travel 0 with force 0");
+      wrong(i, "[" + number(knots_[0].travel) + ", " + number(knots_[0].force) +
+                   "], expected [0, 0], because a button that is not pressed gives no force (the row may be left out)");
     if (i > 0 && !(knots_[i].travel > knots_[i - 1].travel))
       wrong(i, "a travel of " + number(knots_[i].travel) + " m is not more than that of the row before, " +
                    number(knots_[i - 1].travel) + " m");

@@ -68,6 +68,15 @@ void Core::serve(const RequiredResults& uses) {
   uses_.max_torque.resize(probe_count_, 0);
 }
 
+double Core::deepest(uint32_t probe) const noexcept HSP_RT {
+  double depth = 0;
+  for (const uint32_t i : live_) {
+    const Contact& held = contact(i, probe);
+    if (held.traced && held.world.depth_m > depth) depth = held.world.depth_m;
+  }
+  return depth;
+}
+
 void Core::publish(double t, std::span<const Probe> probes) noexcept HSP_RT {
   link::ArmState& arm = link_.arm.back();
   arm.time_ns = static_cast<Nanoseconds>(t * 1e9);
@@ -75,6 +84,7 @@ void Core::publish(double t, std::span<const Probe> probes) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     arm.valid[i] = probes[i].valid;
     Map(arm.position[i].data()) = probes[i].position;
+    arm.depth[i] = deepest(i);
   }
   link_.arm.publish();
 }

@@ -155,6 +155,8 @@ class Core {
   bool change(ModelState& model, const Order& order) noexcept HSP_RT;
   void releaseLeaving() noexcept HSP_RT;
   void receiveRecords() noexcept HSP_RT;
+  /// [m] Returns how deep a probe was in the models in the last tick; 0 if it touched none.
+  double deepest(uint32_t probe) const noexcept HSP_RT;
   void moveKinematic(ModelState& model, double t, double dt) noexcept HSP_RT;
   void findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT;
   void stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
