@@ -112,9 +112,9 @@ class SceneLoader {
     if (motion == nullptr && params != nullptr && motion_index >= 0) motion = params->find("motion");
     const Node* path = text.path;
     if (path == nullptr && params != nullptr && motion_index >= 0) path = params->find("path");
-    model.kinematic =
-        motion != nullptr && motion->isScalar() &&
-        (motion->scalar == "kinematic" || nearest(motion->scalar, {"dynamic", "kinematic", "static"}) == "kinematic");
+    model.kinematic = motion != nullptr && motion->isScalar() &&
+                      (motion->scalar == "kinematic" ||
+                       nearestWord(motion->scalar, {"dynamic", "kinematic", "static"}) == "kinematic");
     addPath(key, path, model);
   }
 
