@@ -55,7 +55,10 @@ Result<Client> Client::connect(const std::string& file) {
   const int fd = connected(file);
   if (fd >= 0) return Client(file, fd);
   const int code = errno;
-  if ((code == ENOENT || code == ECONNREFUSED) && !isAlive(file)) return Error{noDaemonText(file)};
+  const bool none = (code == ENOENT || code == ECONNREFUSED) && !isAlive(file);
+  const std::string said = none ? noDaemonText(file) : "";
+  errno = code;  // libHD.so reports it to its program
+  if (none) return Error{said};
   const std::string why = code == EAGAIN ? "the daemon is busy, and its queue is full" : std::strerror(code);
   return Error{"no daemon answers at " + file + ": " + why + "\n  fix: " +
                (code == EACCES ? "only the daemon's user and group may connect: be one of them" : "try again")};

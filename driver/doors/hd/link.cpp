@@ -32,14 +32,15 @@ long placeOf(const hapticd_column* columns, long count, const char* name) {
   return -1;
 }
 
-/// Rewrites a message that mentions hapticd_connect, because an HDAPI program never calls it.
-std::string forPrograms(std::string text) {
-  constexpr std::string_view kCall = "give hapticd_connect the name of a running one";
-  if (const size_t at = text.find(kCall); at != std::string::npos)
-    text.replace(
-        at, kCall.size(),
-        "start this program with hapticd client PROGRAM, which starts one too; $HAPTICD_NAME names a running one");
-  return text;
+/// Returns the message for a user of an HDAPI program, which never calls hapticd_connect, if no daemon runs.
+/// @param number errno of the connection
+std::string forPrograms(std::string text, int number) {
+  constexpr std::string_view kFix = "\n  fix: ";
+  const size_t cure = number == ENOENT || number == ECONNREFUSED ? text.find(kFix) : std::string::npos;
+  if (cure == std::string::npos) return text;
+  return text.substr(0, cure + kFix.size()) +
+         "start this program with hapticd client PROGRAM, which starts a daemon too, or start one with hapticd run; "
+         "$HAPTICD_NAME names the daemon";
 }
 
 }  // namespace
@@ -51,7 +52,7 @@ std::shared_ptr<Link> Link::open(const std::string& name, DeviceFacts& facts, st
   std::unique_ptr<hapticd_client, Close> client(
       hapticd_connect(wanted != nullptr && *wanted != '\0' ? wanted : nullptr, &error));
   number = client ? 0 : errno != 0 ? errno : ECONNREFUSED;
-  if (!client) return why = forPrograms(error.text), nullptr;
+  if (!client) return why = forPrograms(error.text, number), nullptr;
   const int device = name.empty() ? 0 : hapticd_device(client.get(), name.c_str());
   if (device < 0 || hapticd_device_name(client.get(), device) == nullptr) {
     why = "the daemon has no device \"" + name + "\"; it has " + namesOf(client.get()) +

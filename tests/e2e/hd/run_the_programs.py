@@ -339,7 +339,8 @@ def refused(folder):
                        LD_LIBRARY_PATH=os.path.join(os.path.dirname(HAPTICD), "..", "lib", "hapticd", "hdapi"))
     done = subprocess.run([os.path.join(PROGRAMS, "hd_forces")], env=environment, capture_output=True, text=True,
                           timeout=60)
-    check("no daemon is told with its cure", done.returncode == 1 and "hapticd run" in done.stderr, done)
+    check("no daemon is told with its cure", done.returncode == 1 and "hapticd_connect" not in done.stderr
+          and all(words in done.stderr for words in ("no daemon named nobody runs", "hapticd client PROGRAM", "hapticd run", "$HAPTICD_NAME")), done)
 
 
 def command(folder):
