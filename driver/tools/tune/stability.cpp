@@ -107,7 +107,7 @@ struct PathKey {
 
 PathKey keyOfPath(const scene::Model& model) {
   document::Problems unread;
-  const auto root = document::parseFile(model.place.file, unread);
+  const auto root = document::readFileOn(model.place.file, unread);
   const document::Node* models = root ? root->find("models") : nullptr;
   if (models == nullptr) return {model.place, {}};
   for (const document::Node& node : models->items) {
@@ -125,9 +125,8 @@ PathKey keyOfPath(const scene::Model& model) {
 /// @param t [s] time in this row
 std::string lineOf(const std::filesystem::path& csv, size_t row, double t) {
   constexpr size_t kMostBytes = 256u << 20;
-  document::Problems unread;
   const document::CsvRules rules{{"t,x,y,z,qw,qx,qy,qz", "t,x,y,z"}, true, true};
-  const auto table = csv.empty() ? std::nullopt : document::readCsv(csv, kMostBytes, rules, unread);
+  const auto table = csv.empty() ? std::nullopt : document::readSoundRows(csv, kMostBytes, rules);
   if (!table || row >= table->rows() || table->row(row)[0] != t) return "";
   return " (" + csv.filename().string() + ":" + std::to_string(table->lines[row]) + ")";
 }
