@@ -19,6 +19,7 @@
 #include "diagnostics/hand_path_warnings.hpp"
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/hand_start.hpp"
+#include "diagnostics/hands_of_rest.hpp"
 #include "diagnostics/key_place.hpp"
 #include "diagnostics/model_file_problems.hpp"
 #include "diagnostics/model_trial.hpp"
@@ -61,6 +62,7 @@ struct CheckResult {
   std::string file;
   document::Problems problems, warnings;
   bool whole = true;  ///< false if some checks were left out, because something that they need is missing or wrong
+  bool hands_moved = false;    ///< true if the hands of a scene with problems were moved through its sound models
   bool hand_left_out = false;  ///< true if the scene gives a hand, but it was not moved, because of the problems
 };
 
@@ -69,6 +71,18 @@ bool tells(const document::Problems& told, const document::Problem& one) {
   return std::any_of(told.begin(), told.end(), [&one](const document::Problem& known) {
     return known.key == one.key && known.place.file == one.place.file && known.place.line == one.place.line;
   });
+}
+
+/// Judges the hands of a scene. Models that their plugins refuse are left out.
+document::Problems warningsOfHands(const scene::Scene& full, const ModelTrial& trial, CheckResult& result) {
+  std::vector<bool> refused(full.models.size());
+  for (const document::Problem& one : result.problems)
+    if (const auto model = modelOf(one.key); model && *model < refused.size())
+      refused[*model] = true;
+    else  // `run` refuses the hand, or an arm
+      return fastHands(full);
+  result.hands_moved = true;
+  return warnOfHandsOfRest(full, trial.boxes, refused, std::vector<bool>(full.models.size(), true), catalog());
 }
 
 /// Adds warnings about settings that are allowed, but cannot be stable or are probably a mistake.
@@ -80,17 +94,16 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
        {&farModels, &farPaths, &softModels, &idleBounds, &quarantinedModels, &slowArms, &wideScales})
     for (const document::Problem& one : found_by(full)) more.push_back(one);
   document::Problems unread;
-  if (const auto root = document::parseFile(result.file, unread)) {
+  if (const auto root = document::readFileOn(result.file, unread)) {
     warnOfZeros(*root, result.file, more);
     warnOfTurns(*root, result.file, more);
+    warnOfMounts(*root, result.file, more);
     warnOfTwoHands(*root, result.file, more);
   }
   if (!options.files_only)
     for (const document::Problem& one : pressesThrough(full, trial.boxes)) more.push_back(one);
-  if (!options.files_only)  // only a scene without problems can run, and a run shows more of its hands
-    for (const document::Problems& found :
-         {result.problems.empty() ? unreachableRows(full) : document::Problems(),
-          result.problems.empty() ? warnOfHands(full, strayModels(full, trial.boxes, catalog())) : fastHands(full)})
+  if (!options.files_only)
+    for (const document::Problems& found : {unreachableRows(full), warningsOfHands(full, trial, result)})
       more.insert(more.end(), found.begin(), found.end());
   if (!options.files_only || !options.device.empty())  // the warnings that a check of the device file alone gives
     for (const scene::Device& device : full.devices)
@@ -125,8 +138,9 @@ void tryTheRest(const CheckArguments& options, CheckResult& result) {
   const auto draft = scene::sceneDraft(result.file, catalog());
   result.whole = !draft && std::none_of(result.problems.begin(), result.problems.end(),
                                         [](const document::Problem& problem) { return problem.key.empty(); });
-  if (!draft || options.files_only) return;
-  checkDraft(*draft, result.problems, result.warnings);
+  // What was left out after a syntax error may be what another value depends on.
+  if (!draft || options.files_only || document::leavesOut(result.problems, result.file)) return;
+  result.hands_moved = checkDraft(*draft, result.problems, result.warnings);
   document::sortByPlace(result.problems);
 }
 
@@ -151,6 +165,7 @@ void addOfDevices(CheckResult& result, bool named) {
       if (one.place.file == file) known.push_back(one);
     for (const document::Problem& one : tryDevice(file, catalog(), known))
       known.push_back(one), result.problems.push_back(one);
+    if (document::leavesOut(known, file)) continue;
     for (const document::Problem& one : warnOfDevice(file, catalog(), known)) result.warnings.push_back(one);
   }
   document::sortByPlace(result.problems);
@@ -162,7 +177,7 @@ class KeyPlaces {
   std::optional<document::Place> of(const std::string& file, const std::string& key) {
     document::Problems unread;
     const auto [found, is_new] = files_.try_emplace(file);
-    if (is_new) found->second = document::parseFile(file, unread);
+    if (is_new) found->second = document::readFileOn(file, unread);
     return found->second ? placeOfKey(*found->second, file, key) : std::nullopt;
   }
 
@@ -202,7 +217,8 @@ void checkTheRest(const std::string& file, const CheckArguments& options, CheckR
   }
   const document::Problems more = tryDevice(file, catalog(), found, &result.warnings);
   found.insert(found.end(), more.begin(), more.end());
-  for (const document::Problem& one : warnOfDevice(file, catalog(), found)) result.warnings.push_back(one);
+  if (!document::leavesOut(found, file))
+    for (const document::Problem& one : warnOfDevice(file, catalog(), found)) result.warnings.push_back(one);
   if (found.empty() && !options.files_only) found = refusedAlone(file, catalog(), result.warnings);
   document::sortByPlace(found);
 }
@@ -224,7 +240,7 @@ CheckResult checkOne(const std::string& file, const CheckArguments& options) {
   if (scene && !options.files_only)
     if (document::Problems bad = badModules(*scene); !bad.empty()) {
       found.insert(found.end(), bad.begin(), bad.end());
-      return result;  // the checks that follow would call these modules in this process
+      scene.reset();  // the checks of a whole scene would call these modules in this process
     }
   ModelTrial trial;
   if (scene && !options.files_only) trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)));
@@ -236,9 +252,11 @@ CheckResult checkOne(const std::string& file, const CheckArguments& options) {
   if (scene) addWarnings(withArm(*scene), trial, options, result);
   if (scene) addImplausible(withArm(*scene), trial.boxes, {}, result.warnings);
   result.hand_left_out = !found.empty() && !options.files_only && placeOfKey(std::filesystem::path(file), "hand") &&
-                         placeOfKey(std::filesystem::path(file), "models");
+                         placeOfKey(std::filesystem::path(file), "models") && !result.hands_moved;
   placeWarnings(result.warnings);
+  placeInModelFiles(result.warnings);
   separateModelFiles(result.problems);
+  document::dropFollowUps(result.problems);
   return result;
 }
 

@@ -2,7 +2,7 @@
 #include "cli/check_draft.hpp"
 
 #include <algorithm>
-#include <cstdlib>
+#include <cctype>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -11,10 +11,13 @@
 #include "cli/scene_warnings.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/far_paths.hpp"
+#include "diagnostics/hand_path_warnings.hpp"
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/hand_start.hpp"
+#include "diagnostics/hands_of_rest.hpp"
 #include "diagnostics/key_place.hpp"
 #include "diagnostics/model_trial.hpp"
+#include "diagnostics/pass_through.hpp"
 #include "diagnostics/slow_arm.hpp"
 #include "diagnostics/unit_warnings.hpp"
 #include "diagnostics/velocity_warnings.hpp"
@@ -27,13 +30,6 @@ namespace hapticd::cli {
 
 using namespace diagnostics;
 namespace {
-
-/// Returns the index of the model that a key such as "models[3].pose" is about.
-std::optional<size_t> modelOf(const std::string& key) {
-  constexpr std::string_view kModels = "models[";
-  if (!key.starts_with(kModels)) return std::nullopt;
-  return std::strtoul(key.c_str() + kModels.size(), nullptr, 10);
-}
 
 /// Returns true if the arms are those that the scene names, and nothing is wrong with them.
 bool armsAreRead(const scene::Scene& draft, const document::Problems& problems) {
@@ -71,6 +67,23 @@ class Models {
     for (size_t i = 0; i < trial.stiffness.size(); ++i)
       if (unread_[i].any || !unread_[i].ids.empty()) trial.stiffness[i] = claimOf(i, trial.stiffness[i]);
     return trial;
+  }
+
+  /// Returns the warnings about hands, with the models that have no problem.
+  document::Problems hands(const ModelTrial& trial, const document::Problems& problems) const {
+    std::vector<bool> unsound(draft_.models.size()), placed(draft_.models.size(), true);
+    for (size_t i = 0; i < unsound.size(); ++i) {
+      const scene::Model& model = draft_.models[i];
+      unsound[i] = plugins_[i] == nullptr || lacks_[i] || !unread_[i].sound();
+      for (const document::Problem& one : problems) {
+        const bool own = modelOf(one.key) == i;
+        const bool of_path = model.kinematic && one.place.file.ends_with(".csv");  // which of the files is not known
+        unsound[i] = unsound[i] || own || of_path;
+        const bool turned = one.key.find("].pose.orientation") != std::string::npos;
+        placed[i] = placed[i] && !(own && one.key.find("].pose") != std::string::npos && !turned);
+      }
+    }
+    return warnOfHandsOfRest(draft_, trial.boxes, unsound, placed, catalog());
   }
 
   /// Returns true if a warning about one value of a model can be trusted.
@@ -178,9 +191,23 @@ void checkDraftArms(const scene::Scene& draft, const UnreadKeys& unread, const M
   add(problems, refused);
 }
 
+/// Judges the hands of the arms, with the models that have no problem. Returns true if the hands were moved.
+bool checkDraftHands(const scene::Scene& draft, const UnreadKeys& unread, const Models& models, const ModelTrial& trial,
+                     const document::Problems& problems, document::Problems& warnings) {
+  if (unread.has("hand")) return false;
+  for (const document::Problems& found : {unreachableRows(draft), pressesThrough(draft, trial.boxes)})
+    warnings.insert(warnings.end(), found.begin(), found.end());
+  const bool path = std::any_of(problems.begin(), problems.end(), [](const document::Problem& one) {
+    return one.key == "t" || one.key.starts_with("hand");  // `run` would refuse the hand
+  });
+  if (unread.has("servo") || path) return false;
+  for (document::Problem& one : models.hands(trial, problems)) warnings.push_back(std::move(one));
+  return true;
+}
+
 }  // namespace
 
-void checkDraft(scene::Scene draft, document::Problems& problems, document::Problems& warnings) {
+bool checkDraft(scene::Scene draft, document::Problems& problems, document::Problems& warnings) {
   const UnreadKeys unread(problems);
   bool arms = armsAreRead(draft, problems);
   if (arms) draft = withArm(std::move(draft));
@@ -195,13 +222,19 @@ void checkDraft(scene::Scene draft, document::Problems& problems, document::Prob
     for (const document::Problem& one : found_by(draft))
       if (models.isRead(one) && !unread.has(one.key)) warnings.push_back(one);
   document::Problems unparsed;
-  if (const auto root = document::parseFile(draft.file, unparsed)) {
+  if (const auto root = document::readFileOn(draft.file, unparsed)) {
     warnOfZeros(*root, draft.file.string(), warnings);
     warnOfTurns(*root, draft.file.string(), warnings);
+    warnOfMounts(*root, draft.file.string(), warnings);
   }
-  if (arms) checkDraftArms(draft, unread, trial, problems, warnings);
+  bool hands_moved = false;
+  if (arms) {
+    checkDraftArms(draft, unread, trial, problems, warnings);
+    hands_moved = checkDraftHands(draft, unread, models, trial, problems, warnings);
+  }
   addImplausible(draft, trial.boxes, unread, warnings);
   if (!arms) std::erase_if(warnings, [](const document::Problem& one) { return one.key == "clients.origin"; });
+  return hands_moved;
 }
 
 }  // namespace hapticd::cli

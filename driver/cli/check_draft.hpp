@@ -8,8 +8,9 @@ namespace hapticd::cli {
 
 /// [main] Sets up the models and checks the values that could be read. A check that depends on a value with a problem
 /// is left out.
+/// @return true if the hands of the arms were moved through the models that have no problem
 /// @param draft the part of the scene that could be read
 /// @param problems problems of the scene; those of its models are added
-void checkDraft(scene::Scene draft, document::Problems& problems, document::Problems& warnings);
+bool checkDraft(scene::Scene draft, document::Problems& problems, document::Problems& warnings);
 
 }  // namespace hapticd::cli

@@ -87,12 +87,12 @@ Result<document::CsvTable> readRows(const std::string& file, size_t joints) {
   }
   if (const auto decoded = fromDecoded(text, joints)) {
     auto table = document::parseCsv(*decoded, file, form, problems);
-    if (!table) return Error{problems.front().text()};
+    if (!table) return Error{document::textOf(problems)};
     return std::move(*table);
   }
   auto table =
       input ? document::parseCsv(text, "-", form, problems) : document::readCsv(file, kMaxCsvBytes, form, problems);
-  if (!table) return Error{problems.front().text()};
+  if (!table) return Error{document::textOf(problems)};
   return std::move(*table);
 }
 

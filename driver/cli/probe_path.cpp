@@ -15,7 +15,7 @@ Result<std::vector<PathRow>> readProbePath(const std::string& file) {
   const document::CsvRules rules{{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, false, true, HUGE_VAL};
   document::Problems problems;
   const auto table = document::readCsv(file, kMaxBytes, rules, problems);
-  if (!table) return Error{problems.front().text()};
+  if (!table) return Error{document::textOf(problems)};
   std::vector<PathRow> rows(table->rows());
   constexpr double kLengthError = 1e-3;  // quaternions with seven digits pass; degrees or zeros do not
   for (size_t i = 0; i < rows.size(); ++i) {

@@ -73,6 +73,7 @@ class Parser {
     if (wrong_ == 0 || table_.columns > 0) row(fields);
   }
   bool tooWrong() const { return wrong_ >= kShownProblems; }
+  CsvTable takeSound() { return std::move(table_); }
 
   std::optional<CsvTable> take() {
     line_ = std::max(line_, 1);
@@ -176,13 +177,8 @@ class Parser {
 
 }  // namespace
 
-std::optional<CsvTable> parseCsv(std::string_view text, const std::string& file, const CsvRules& rules,
-                                 Problems& problems) {
-  Parser parser(file, rules, problems);
-  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
-    report(problems, file, 1, 1, "", "the file is in UTF-16, expected UTF-8: save it as CSV UTF-8");
-    return std::nullopt;
-  }
+/// Gives the parser all lines of a text, up to the one where too much is wrong.
+static void readLines(std::string_view text, Parser& parser) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // spreadsheets write it before UTF-8
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   for (size_t start = 0; start < text.size() && !parser.tooWrong();) {
@@ -190,7 +186,28 @@ std::optional<CsvTable> parseCsv(std::string_view text, const std::string& file,
     parser.line(text.substr(start, end - start));
     start = end + 1;
   }
+}
+
+std::optional<CsvTable> parseCsv(std::string_view text, const std::string& file, const CsvRules& rules,
+                                 Problems& problems) {
+  Parser parser(file, rules, problems);
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
+    report(problems, file, 1, 1, "", "the file is in UTF-16, expected UTF-8: save it as CSV UTF-8");
+    return std::nullopt;
+  }
+  readLines(text, parser);
   return parser.take();
+}
+
+std::optional<CsvTable> readSoundRows(const std::filesystem::path& file, size_t max_bytes, const CsvRules& rules) {
+  Problems unread;
+  const auto text = readFile(file, max_bytes, unread);
+  if (!text) return std::nullopt;
+  const std::string name = file.string();
+  Parser parser(name, rules, unread);
+  readLines(*text, parser);
+  CsvTable table = parser.takeSound();
+  return table.columns == 0 ? std::nullopt : std::optional(std::move(table));
 }
 
 std::optional<CsvTable> readCsv(const std::filesystem::path& file, size_t max_bytes, const CsvRules& rules,

@@ -40,6 +40,10 @@ struct CsvTable {
 std::optional<CsvTable> parseCsv(std::string_view text, const std::string& file, const CsvRules& rules,
                                  Problems& problems);
 
+/// [main] Reads the rows of a file that keep the rules, whatever is wrong with others. Returns nothing if its columns
+/// are unknown. The rows are for finding problems, not for use.
+std::optional<CsvTable> readSoundRows(const std::filesystem::path& file, size_t max_bytes, const CsvRules& rules);
+
 /// [main] Reads and parses a file of at most `max_bytes`.
 std::optional<CsvTable> readCsv(const std::filesystem::path& file, size_t max_bytes, const CsvRules& rules,
                                 Problems& problems);

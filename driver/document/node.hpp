@@ -53,6 +53,14 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
 /// [main] Reads and parses a file.
 std::optional<Node> parseFile(const std::filesystem::path& file, Problems& problems);
 
+/// [main] Parses a text as parseText() does. After a syntax error it reads on with the faulty line corrected or left
+/// out, so that the other problems of the file are found too. The result is only for finding problems: a text with a
+/// problem is never used otherwise.
+std::optional<Node> readOn(const std::string& text, const std::string& file, Problems& problems);
+
+/// [main] Reads a file in the same way.
+std::optional<Node> readFileOn(const std::filesystem::path& file, Problems& problems);
+
 /// [main] Reads a file's bytes. Reports a problem if the file is missing, is a folder, is unreadable, or is larger than
 /// `max_bytes`.
 std::optional<std::string> readFile(const std::filesystem::path& file, size_t max_bytes, Problems& problems);

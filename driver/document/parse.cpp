@@ -10,6 +10,7 @@
 #include "base/regular_file.hpp"
 #include "document/foreign_file.hpp"
 #include "document/node.hpp"
+#include "document/recovery.hpp"
 #include "document/syntax_error.hpp"
 
 namespace hapticd::document {
@@ -211,62 +212,113 @@ Place placeOf(const YAML::Mark& mark, const std::string& file) {
   return {file, std::max(mark.line, 0) + 1, std::max(mark.column, 0) + 1};
 }
 
-/// Reads a text of valid UTF-8. @param repairs how many unknown aliases may be replaced by those that were probably
-/// meant
-std::optional<Node> parseRepaired(const std::string& text, const std::string& file, Problems& problems, int repairs) {
-  const size_t before = problems.size();
+/// The tree of a text, or the syntax error in it. Both are absent if the text was refused for another reason.
+struct Attempt {
+  std::optional<Node> root;
+  std::optional<SyntaxError> error;
+};
+
+/// Reports a second document in the text.
+void refuseSecond(YAML::Parser& parser, const std::string& text, const std::string& file, Problems& problems) {
+  Problems ignored;
+  Builder second(file, maxNodes(text.size()), ignored);
+  if (!parser.HandleNextDocument(second)) return;
+  const std::optional<Node> next = second.take();
+  report(problems, file, next ? next->line : 1, next ? next->column : 1, "",
+         "a second document begins here (after ---), expected one document in a file");
+}
+
+/// Parses a text of valid UTF-8.
+Attempt attempt(const std::string& text, const std::string& file, Problems& problems) {
   Builder builder(file, maxNodes(text.size()), problems);
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
     if (!parser.HandleNextDocument(builder)) {
       report(problems, file, 1, 1, "", kEmpty);
-      return std::nullopt;
+      return {};
     }
-    std::optional<Node> root = builder.take();
+    Attempt made{builder.take(), std::nullopt};
     // If a quote is never closed, the parser takes the end of the text for the closing quote.
-    if (const auto open = findOpenQuote(text, placeOf(builder.lastQuoted(), file))) {
-      problems.push_back(*open);
-      return std::nullopt;
-    }
-    Problems ignored;
-    Builder second(file, maxNodes(text.size()), ignored);
-    if (parser.HandleNextDocument(second)) {
-      const std::optional<Node> next = second.take();
-      report(problems, file, next ? next->line : 1, next ? next->column : 1, "",
-             "a second document begins here (after ---), expected one document in a file");
-    }
-    return root;
+    const Place quoted = placeOf(builder.lastQuoted(), file);
+    if (const auto open = findOpenQuote(text, quoted)) return {std::nullopt, SyntaxError{quoted, "", open}};
+    refuseSecond(parser, text, file, problems);
+    return made;
   } catch (const Refused& refused) {
     report(problems, placeOf(refused.mark, file), "", refused.what);
   } catch (const YAML::Exception& error) {
-    const Place place = placeOf(error.mark, file);
-    const std::string meant = withCorrectedAlias(text, place, error.msg);
-    const bool again = repairs > 0 && !meant.empty();
-    if (again) problems.resize(before);  // the corrected text will give the same problems again
-    problems.push_back(findSyntaxError(text, place, error.msg));
-    if (again) return parseRepaired(meant, file, problems, repairs - 1);
+    return {std::nullopt, SyntaxError{placeOf(error.mark, file), error.msg, std::nullopt}};
   } catch (const std::exception& error) {
     report(problems, file, 1, 1, "", std::string("not YAML: ") + error.what());
   }
-  return std::nullopt;
+  return {};
+}
+
+/// Reads a text of valid UTF-8 up to its first syntax error. @param repairs how many unknown aliases may be replaced by
+/// those that were probably meant
+std::optional<Node> parseRepaired(const std::string& text, const std::string& file, Problems& problems, int repairs) {
+  const size_t before = problems.size();
+  Attempt made = attempt(text, file, problems);
+  if (!made.error) return std::move(made.root);
+  const SyntaxError& error = *made.error;
+  const std::string meant = withCorrectedAlias(text, error.place, error.words);
+  const bool again = repairs > 0 && !meant.empty();
+  if (again) problems.resize(before);  // the corrected text will give the same problems again
+  problems.push_back(error.problem ? *error.problem : findSyntaxError(text, error.place, error.words));
+  return again ? parseRepaired(meant, file, problems, repairs - 1) : std::nullopt;
+}
+
+/// Reads a text of valid UTF-8, and goes on after syntax errors.
+std::optional<Node> parseOn(const std::string& text, const std::string& file, Problems& problems) {
+  std::optional<Recovery> recovery;
+  for (;;) {
+    Problems found;
+    Attempt made = attempt(recovery ? recovery->text() : text, file, found);
+    if (made.error && !recovery) recovery.emplace(text, file);
+    if (made.error && recovery->mend(*made.error)) continue;
+    if (recovery) {
+      if (made.root) recovery->toFile(*made.root);
+      recovery->toFile(found);
+      // It is empty only without what was left out.
+      std::erase_if(found, [](const Problem& one) { return one.what == kEmpty; });
+      problems.insert(problems.end(), recovery->problems().begin(), recovery->problems().end());
+    }
+    problems.insert(problems.end(), found.begin(), found.end());
+    return std::move(made.root);
+  }
+}
+
+using Parse = std::optional<Node> (*)(const std::string& text, const std::string& file, Problems& problems);
+
+/// Refuses files of other kinds and other encodings, and parses the rest.
+std::optional<Node> parseAny(const std::string& text, const std::string& file, Parse parse, Problems& problems) {
+  if (const std::string foreign = foreignFile(text, file); !foreign.empty()) {
+    report(problems, file, 1, 1, "", foreign);
+    return std::nullopt;
+  }
+  const size_t bad = firstBadByte(text);
+  if (bad == std::string::npos) return parse(text, file, problems);
+  report(problems, placeOf(text, bad, file), "",
+         "a byte that is not text (code " + std::to_string(static_cast<unsigned char>(text[bad])) +
+             "), expected YAML in UTF-8");
+  const std::string readable = withoutLatin(text);
+  return readable.empty() ? std::nullopt : parse(readable, file, problems);
 }
 
 }  // namespace
 
 std::optional<Node> parseText(const std::string& text, const std::string& file, Problems& problems) {
   constexpr int kRepairs = 8;
-  if (const std::string foreign = foreignFile(text, file); !foreign.empty()) {
-    report(problems, file, 1, 1, "", foreign);
-    return std::nullopt;
-  }
-  const size_t bad = firstBadByte(text);
-  if (bad == std::string::npos) return parseRepaired(text, file, problems, kRepairs);
-  report(problems, placeOf(text, bad, file), "",
-         "a byte that is not text (code " + std::to_string(static_cast<unsigned char>(text[bad])) +
-             "), expected YAML in UTF-8");
-  const std::string readable = withoutLatin(text);
-  return readable.empty() ? std::nullopt : parseRepaired(readable, file, problems, kRepairs);
+  return parseAny(
+      text, file,
+      [](const std::string& some, const std::string& of, Problems& found) {
+        return parseRepaired(some, of, found, kRepairs);
+      },
+      problems);
+}
+
+std::optional<Node> readOn(const std::string& text, const std::string& file, Problems& problems) {
+  return parseAny(text, file, parseOn, problems);
 }
 
 std::optional<std::string> readFile(const std::filesystem::path& file, size_t max_bytes, Problems& problems) {
@@ -279,6 +331,11 @@ std::optional<std::string> readFile(const std::filesystem::path& file, size_t ma
 std::optional<Node> parseFile(const std::filesystem::path& file, Problems& problems) {
   const std::optional<std::string> text = readFile(file, kMaxFileBytes, problems);
   return text ? parseText(*text, file.string(), problems) : std::nullopt;
+}
+
+std::optional<Node> readFileOn(const std::filesystem::path& file, Problems& problems) {
+  const std::optional<std::string> text = readFile(file, kMaxFileBytes, problems);
+  return text ? readOn(*text, file.string(), problems) : std::nullopt;
 }
 
 }  // namespace hapticd::document

@@ -16,6 +16,9 @@ struct Problem {
   Place place;
   std::string key;   ///< such as "models[2].parameters.stiffness"; "" for the file as a whole
   std::string what;  ///< what is wrong, and what was expected
+  /// Of a syntax error: the text that was not read because of it, or that may stand in another place than the writer
+  /// meant. Problems that may follow from it are not told (see dropFollowUps()).
+  std::string left_out{};
 
   /// Returns a message such as "scene.yaml:12:18: models[2].parameters.stiffness: -5 N/m is out of range, expected 0 to
   /// 20000 N/m".
@@ -29,7 +32,17 @@ void report(Problems& problems, const Place& place, const std::string& key, cons
 void report(Problems& problems, const std::string& file, int line, int column, const std::string& key,
             const std::string& what);
 
+/// Returns all problems as text, one in a line.
+std::string textOf(const Problems& problems);
+
 /// Sorts problems by line within each file, as editors list them, and keeps the order of the files.
 void sortByPlace(Problems& problems);
+
+/// [any] Removes problems that may only follow from text that was left out after a syntax error: a key is said to be
+/// missing that is in this text, or a message names such a key.
+void dropFollowUps(Problems& problems);
+
+/// [any] Returns true if a part of a file was left out after a syntax error.
+bool leavesOut(const Problems& problems, const std::string& file);
 
 }  // namespace hapticd::document

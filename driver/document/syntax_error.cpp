@@ -120,6 +120,32 @@ std::string closing(char open) {
   return open == '[' ? "]" : "}";
 }
 
+/// Finds a bracket, in a line up to `last`, that is open where the next line begins a key that is no deeper. Mistakes
+/// in later lines do not hide it.
+std::optional<Problem> openAtEnd(const std::string& text, int last, const std::string& file) {
+  std::istringstream in(text);
+  std::optional<Mark> open;
+  size_t indent = 0;
+  int number = 0;
+  for (std::string line; number < last && std::getline(in, line);) {
+    const size_t first = line.find_first_not_of(" \t\r");
+    ++number;
+    if (first == std::string::npos || line[first] == '#') continue;
+    const size_t key = std::min(line.find_first_not_of(" -", first), line.size()), colon = line.find(':', key);
+    const bool begins = colon != std::string::npos && std::isalpha(static_cast<unsigned char>(line[key])) != 0 &&
+                        line.find_first_of(" ,[]{}\"'", key) >= colon;
+    if (open && begins && first <= indent)
+      return at(
+          *open, file,
+          std::string("the ") + open->what + " that begins here is never closed, expected " + closing(open->what));
+    const Scan scan = scanYaml(line);
+    open = scan.open.empty() ? std::nullopt : std::optional(scan.open.front());
+    if (open) open->line = number;
+    indent = first;
+  }
+  return std::nullopt;
+}
+
 /// Finds a quote or a bracket that is never closed, is closed by the wrong one, or is closed too late.
 std::optional<Problem> wrongPair(const std::string& text, const std::string& file) {
   const Scan scan = scanYaml(text);
@@ -225,11 +251,18 @@ std::string withCorrectedAlias(const std::string& text, const Place& place, cons
   return std::string(text).replace(alias.begin, alias.name.size(), alias.meant);
 }
 
+std::vector<Problem> likelySyntaxErrors(const std::string& text, const Place& place, const std::string& words) {
+  std::vector<Problem> all;
+  if (auto open = openAtEnd(text, place.line, place.file)) all.push_back(*std::move(open));
+  if (auto blank = wrongBlank(text, place.line, place.file)) all.push_back(*std::move(blank));
+  if (auto pair = wrongPair(text, place.file)) all.push_back(*std::move(pair));
+  if (auto indent = wrongIndent(text, place.line, place.file)) all.push_back(*std::move(indent));
+  all.push_back({place, "", "not YAML: " + plainMessage(text, place, words)});
+  return all;
+}
+
 Problem findSyntaxError(const std::string& text, const Place& place, const std::string& words) {
-  if (auto blank = wrongBlank(text, place.line, place.file)) return *std::move(blank);
-  if (auto pair = wrongPair(text, place.file)) return *std::move(pair);
-  if (auto indent = wrongIndent(text, place.line, place.file)) return *std::move(indent);
-  return {place, "", "not YAML: " + plainMessage(text, place, words)};
+  return likelySyntaxErrors(text, place, words).front();
 }
 
 }  // namespace hapticd::document

@@ -5,6 +5,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "document/problem.hpp"
 
@@ -13,6 +14,10 @@ namespace hapticd::document {
 /// [any] Returns what is wrong with a text. @param place the place where the parser gave up
 /// @param words the parser's message
 Problem findSyntaxError(const std::string& text, const Place& place, const std::string& words);
+
+/// [any] Returns everything that may be wrong, the likeliest first. The last one is the parser's own message in plain
+/// words, at the place where it gave up.
+std::vector<Problem> likelySyntaxErrors(const std::string& text, const Place& place, const std::string& words);
 
 /// [any] Returns the text with an unknown alias (*name) replaced by the marked name that resembles it, so that the rest
 /// of the file can be read; "" if the parser gave up for another reason.

@@ -301,8 +301,8 @@ MedialFile parseMedialFile(const std::string& text, const std::string& name, con
   if (name.ends_with(".ma")) {
     file.mesh = medial::MeshBodyData{parseMa(text, name), {material.stiffness}, {material.damping}, {material.mass}};
   } else {
-    const Json root = parseDocument(text, name);
     Problems problems(name, text);
+    const Json root = parseDocument(text, name, problems);
     Reader(problems, material).read(root, file);
     if (problems.any()) problems.throwIfAny(warnOfMedialFile(file, root, problems, text, name));
     file.odd = warnOfMedialFile(file, root, problems, text, name);

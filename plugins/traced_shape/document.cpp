@@ -53,7 +53,8 @@ Json treeOf(const Node& node) {
     }
     case Node::Kind::kMap: {
       Json map = Json::object();
-      for (const document::Entry& entry : node.entries) map[entry.key.scalar] = treeOf(entry.value);
+      for (const document::Entry& entry : node.entries)  // of a key that is given twice, the first counts
+        if (!map.contains(entry.key.scalar)) map[entry.key.scalar] = treeOf(entry.value);
       return map;
     }
     default:
@@ -132,9 +133,9 @@ std::string withGiven(const Node& node, const Path& path, const std::string& wha
 }  // namespace
 
 document::Problems Problems::placed() const {
-  document::Problems all, unread;
+  document::Problems all = of_text_, unread;
   // empty for JSON that the YAML reader does not accept; then there are no positions
-  const auto root = document::parseText(text_, file_, unread);
+  const auto root = document::readOn(text_, file_, unread);
   for (const Problem& problem : found_) {
     document::Place place{file_, 1, 1};
     std::string what = problem.what;
@@ -146,12 +147,13 @@ document::Problems Problems::placed() const {
     }
     all.push_back({place, nameOf(problem.path), what});
   }
+  document::sortByPlace(all);
   return all;
 }
 
 std::vector<std::string> Problems::texts() const {
   std::vector<std::string> all;
-  if (found_.empty()) return all;
+  if (!any()) return all;
   for (const document::Problem& problem : placed()) all.push_back(problem.text());
   return all;
 }
@@ -164,7 +166,7 @@ bool Problems::about(const std::string& key) const {
 }
 
 void Problems::throwIfAny(std::vector<std::string> odd) const {
-  if (!found_.empty()) throwAll(placed(), std::move(odd));
+  if (any()) throwAll(placed(), std::move(odd));
 }
 
 std::string readModelText(const std::string& path) {
@@ -176,7 +178,7 @@ std::string readModelText(const std::string& path) {
                      "make a part file: " + kPartWay);
 }
 
-Json parseDocument(const std::string& text, const std::string& file) {
+Json parseDocument(const std::string& text, const std::string& file, Problems& problems) {
   if (looksLikeJson(text)) {
     Json json = Json::parse(text, nullptr, false);
     if (!json.is_discarded()) return json;
@@ -186,9 +188,10 @@ Json parseDocument(const std::string& text, const std::string& file) {
         file,
         std::string("is larger than 2 MiB, the most for YAML; write it as JSON (up to 32 MiB), or make a part file: ") +
             kPartWay);
-  document::Problems problems;
-  const auto root = document::parseText(text, file, problems);
-  if (!root || !problems.empty()) throwAll(problems);
+  document::Problems of_text;
+  const auto root = document::readOn(text, file, of_text);
+  if (!root || document::leavesOut(of_text, file)) throwAll(of_text);
+  problems.add(of_text);
   return treeOf(*root);
 }
 

@@ -22,7 +22,9 @@ class Problems {
  public:
   Problems(std::string file, const std::string& text) : file_(std::move(file)), text_(text) {}
   void add(const Path& path, const std::string& what);
-  bool any() const { return !found_.empty(); }
+  /// Adds what was found when the text was parsed, such as keys that are given twice.
+  void add(const document::Problems& of_text) { of_text_.insert(of_text_.end(), of_text.begin(), of_text.end()); }
+  bool any() const { return !found_.empty() || !of_text_.empty(); }
   std::size_t count() const { return found_.size(); }
   /// Returns true if some problem is about this key, or a value inside it, anywhere in the file.
   bool about(const std::string& key) const;
@@ -41,13 +43,16 @@ class Problems {
   std::string file_;
   const std::string& text_;
   std::vector<Problem> found_;
+  document::Problems of_text_;
 };
 
 /// [main] Returns the whole text of a model file. @throws ModelFileError if it cannot be read or is larger than 32 MiB.
 std::string readModelText(const std::string& path);
 
 /// [main] Returns the text as a tree. Numbers become numbers, including `.nan` and `.inf`; other scalars of YAML stay
-/// texts, except true and false. @throws ModelFileError if it is neither YAML nor JSON.
-nlohmann::json parseDocument(const std::string& text, const std::string& file);
+/// texts, except true and false. After a syntax error it reads on, if nothing must be left out.
+/// @param problems receives what is wrong with the text
+/// @throws ModelFileError if it is neither YAML nor JSON.
+nlohmann::json parseDocument(const std::string& text, const std::string& file, Problems& problems);
 
 }  // namespace hapticd

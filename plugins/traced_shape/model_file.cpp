@@ -280,8 +280,8 @@ ModelFile readModelFile(const std::string& path) {
 }
 
 ModelFile parseModelFile(const std::string& text, const std::string& name) {
-  const Json root = parseDocument(text, name);
   Problems problems(name, text);
+  const Json root = parseDocument(text, name, problems);
   Reader reader(problems);
   ModelFile file = reader.read(root);
   if (problems.any()) problems.throwIfAny(warnOfSurfaces(file, reader.sound(), text, name));

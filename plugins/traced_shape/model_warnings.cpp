@@ -31,12 +31,29 @@ Path surfaceAt(std::size_t surface, const char* key = nullptr) {
   return path;
 }
 
-void warnOfSize(double size, Problems& odd) {
+/// Returns the path of the control point that is farthest from the origin of the model's frame.
+Path farthestPoint(const ModelFile& file, const std::vector<bool>* sound = nullptr) {
+  Path farthest{{"surfaces", 0}};
+  double most = 0;
+  for (std::size_t i = 0; i < file.surfaces.size(); ++i) {
+    if (sound != nullptr && (i >= sound->size() || !(*sound)[i])) continue;
+    const auto& points = file.surfaces[i].points;
+    for (std::size_t k = 0; k < points.size(); ++k)
+      if (points[k].norm() > most) {
+        most = points[k].norm();
+        farthest = surfaceAt(i, "points");
+        farthest.push_back({"", k});
+      }
+  }
+  return farthest;
+}
+
+void warnOfSize(double size, const Path& at, Problems& odd) {
   constexpr double kHuge = 5, kTiny = 1e-3;        // [m] sizes beyond these are unusual
   if (size > kHuge || (size > 0 && size < kTiny))  // a size of 0 is reported as surfaces without area
-    odd.add({{"surfaces", 0}}, written("the model is %.3g m large; a hand feels models from 0.001 to 5 m, and lengths "
-                                       "must be in m: %.3g mm is %.3g m",
-                                       size, size, size / 1000));
+    odd.add(at, written("the model is %.3g m large; a hand feels models from 0.001 to 5 m, and lengths "
+                        "must be in m: %.3g mm is %.3g m",
+                        size, size, size / 1000));
 }
 
 /// True if all control points lie in one place or on one line.
@@ -293,7 +310,7 @@ std::vector<std::string> warnOfSurfaces(const ModelFile& file, const std::vector
   for (std::size_t i = 0; i < sound.size() && i < file.surfaces.size(); ++i)
     if (sound[i])
       for (const Vector3d& point : file.surfaces[i].points) box.extend(point);
-  if (!box.isEmpty()) warnOfSize(box.diagonal().norm(), odd);
+  if (!box.isEmpty()) warnOfSize(box.diagonal().norm(), farthestPoint(file, &sound), odd);
   for (std::size_t i = 0; i < sound.size() && i < file.surfaces.size() && !odd.full(); ++i)
     if (sound[i]) warnOfSurface(file.surfaces[i], i, odd);
   warnOfNames(file, odd);
@@ -303,7 +320,7 @@ std::vector<std::string> warnOfSurfaces(const ModelFile& file, const std::vector
 std::vector<std::string> warnOfModel(const ModelFile& file, const trace::Model& model, const std::string& text,
                                      const std::string& name) {
   Problems odd(name, text);
-  warnOfSize(model.bounds().diagonal().norm(), odd);
+  warnOfSize(model.bounds().diagonal().norm(), farthestPoint(file), odd);
   for (std::size_t i = 0; i < file.surfaces.size() && !odd.full(); ++i) warnOfSurface(file.surfaces[i], i, odd);
   warnOfNames(file, odd);
   Gaps(model, file, warnOfCornerSlips(file, odd), odd).tell();

@@ -66,7 +66,8 @@ struct Field {
   uint64_t code = 0;      ///< the bits of an integer constant
   uint64_t modulo = 0;    ///< a sequence counts from 0 to modulo - 1; 0 if it uses all of its bits
   bool inverted = false;  ///< true if a bit of 0 means yes
-  Check check;            ///< method of a checksum
+  bool sound = true;  ///< false if something is wrong with the field in the file, so that others are not compared to it
+  Check check;        ///< method of a checksum
   /// Returns how many bytes the field touches, counted from `at`.
   size_t bytes() const noexcept { return (size_t{bit_skip} + bits + 7) / 8; }
 };

@@ -114,7 +114,9 @@ size_t Tree::problems() const {
 bool Tree::has(const char* key) const {
   if (value_ == nullptr || !jsonOf(value_).is_object()) return false;
   const Instead* instead = insteadOf(key);
-  return jsonOf(value_).contains(key) || (instead != nullptr && instead->value != nullptr);
+  // A number or text under a misspelt key is only read where it is needed: the key may mean another thing.
+  const bool block = instead != nullptr && instead->value != nullptr && jsonOf(instead->value).is_structured();
+  return jsonOf(value_).contains(key) || block;
 }
 
 bool Tree::isMapping() const {
@@ -222,7 +224,8 @@ std::string Tree::text() const {
   return "";
 }
 
-bool Tree::only(std::span<const char* const> keys, std::span<const char* const> around) const {
+bool Tree::only(std::span<const char* const> keys, std::span<const char* const> around,
+                std::span<const char* const> within, const char* where) const {
   if (!isMapping()) return false;
   bool all_known = true;
   const std::vector<std::string> names(keys.begin(), keys.end());
@@ -234,10 +237,12 @@ bool Tree::only(std::span<const char* const> keys, std::span<const char* const> 
       unknown.fail("belongs one level up, beside " + path_.substr(path_.rfind('.') + 1) + ", not inside of it");
       continue;
     }
-    unknown.fail("unknown key, expected one of " + document::listed(names, names.size()) +
-                 document::suggestion(key, names));
-    const std::string meant = nearestWord(key, names);
-    if (value.is_structured() && !meant.empty()) readInstead(meant.c_str(), unknown);
+    const bool inside = std::find(within.begin(), within.end(), key) != within.end();
+    unknown.fail(
+        "unknown key, expected one of " + document::listed(names, names.size()) +
+        (inside ? "; " + key + " belongs one level deeper, inside " + where : document::suggestion(key, names)));
+    const std::string meant = inside ? "" : nearestWord(key, names);
+    if (!meant.empty()) readInstead(meant.c_str(), unknown);
   }
   return all_known;
 }

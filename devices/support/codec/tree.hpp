@@ -27,8 +27,12 @@ class Tree {
   bool boolean() const;
   std::string text() const;
   /// Returns false and notes a problem if there are other keys. A block under a misspelt key is then read as that of
-  /// the nearest key. @param around keys of the mapping around this one, which stand one level too deep here
-  bool only(std::span<const char* const> keys, std::span<const char* const> around = {}) const;
+  /// the nearest key, and so is a number or text that must not be missing.
+  /// @param around keys of the mapping around this one, which stand one level too deep here
+  /// @param within keys of the mappings in this one, which stand one level too high here
+  /// @param where name of these mappings, such as "input or output"
+  bool only(std::span<const char* const> keys, std::span<const char* const> around = {},
+            std::span<const char* const> within = {}, const char* where = "") const;
   /// makes has() and at() take this value for a key that is not given
   void readInstead(const char* key, const Tree& value) const;
   void fail(const std::string& what) const;  ///< notes the problem "path: what"

@@ -104,6 +104,7 @@ void readFields(const Tree& fields, size_t joints, bool input, ReadReport& read)
   for (size_t i = 0; i < fields.count(); ++i) {
     const ReadField one = readField(fields.item(i), report, joints, input);
     report.fields.push_back(one.field);
+    report.fields.back().sound = one.known.all;
     read.known.push_back(one.known);
   }
   if (!fields.exists()) return;
@@ -269,7 +270,7 @@ void readMisplaced(const Tree& tree) {
 Wire readAll(const Document& document, size_t joints) {
   const Tree tree = document.root();
   Wire wire;
-  tree.only(kWireKeys);
+  tree.only(kWireKeys, {}, kReportKeys, "input or output");
   readMisplaced(tree);
   readTimes(tree, wire);
   bool marks_known = true;

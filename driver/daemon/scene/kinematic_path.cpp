@@ -43,7 +43,8 @@ std::vector<PathPoint> parseKinematicPath(const std::string& text, const std::st
 }
 
 std::vector<PathPoint> readKinematicPath(const std::filesystem::path& file, Problems& problems) {
-  const auto table = readCsv(file, kMaxPathBytes, kRules, problems);
+  auto table = readCsv(file, kMaxPathBytes, kRules, problems);
+  if (!table) table = readSoundRows(file, kMaxPathBytes, kRules);  // so that a check can judge them
   return table ? pointsOf(*table) : std::vector<PathPoint>{};
 }
 

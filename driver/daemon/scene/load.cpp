@@ -107,9 +107,10 @@ bool detail::hasFormat(const Node& root, const char* wanted, Reader& in) {
 Loaded load(const std::filesystem::path& file, host::Catalog& catalog, const LoadOptions& options) {
   Loaded loaded;
   Reader in(file, loaded.problems);
-  const auto root = parseFile(file, loaded.problems);
+  const auto root = readFileOn(file, loaded.problems);
   if (root && detail::hasFormat(*root, "hapticd", in)) loaded.scene = detail::loadScene(*root, in, catalog, options);
   if (!loaded.problems.empty()) loaded.scene.reset();
+  dropFollowUps(loaded.problems);
   sortByPlace(loaded.problems);
   return loaded;
 }
@@ -118,6 +119,7 @@ LoadedDevice loadDevice(const std::filesystem::path& file, host::Catalog& catalo
   LoadedDevice loaded;
   loaded.device = detail::loadDeviceFile({file, "", {}, nullptr}, catalog, loaded.problems, nullptr, nullptr, nullptr);
   if (!loaded.problems.empty()) loaded.device.reset();
+  dropFollowUps(loaded.problems);
   sortByPlace(loaded.problems);
   return loaded;
 }
@@ -130,7 +132,7 @@ std::optional<Device> deviceDraft(const std::filesystem::path& file, host::Catal
 std::optional<Scene> sceneDraft(const std::filesystem::path& file, host::Catalog& catalog) {
   Problems known;
   Reader in(file, known);
-  const auto root = parseFile(file, known);
+  const auto root = readFileOn(file, known);
   const Format* format = root ? detail::formatOf(*root) : nullptr;
   if (format == nullptr || format->table != &kSceneTable) return std::nullopt;
   return detail::loadScene(*root, in, catalog, {.default_device = true, .device_file = {}});
@@ -139,9 +141,10 @@ std::optional<Scene> sceneDraft(const std::filesystem::path& file, host::Catalog
 LoadedDaemon loadDaemon(const std::filesystem::path& file) {
   LoadedDaemon loaded;
   Reader in(file, loaded.problems);
-  const auto root = parseFile(file, loaded.problems);
+  const auto root = readFileOn(file, loaded.problems);
   if (root && detail::hasFormat(*root, "hapticd-daemon", in)) loaded.daemon = detail::loadDaemon(*root, in);
   if (!loaded.problems.empty()) loaded.daemon.reset();
+  dropFollowUps(loaded.problems);
   sortByPlace(loaded.problems);
   return loaded;
 }
@@ -156,9 +159,10 @@ Problems checkText(const std::string& text, const std::filesystem::path& file, h
                    std::optional<Scene>* scene) {
   Problems problems;
   Reader in(file, problems);
-  const auto root = parseText(text, file.string(), problems);
+  const auto root = readOn(text, file.string(), problems);
   if (root) checkRoot(*root, in, catalog, scene);
   if (scene != nullptr && !problems.empty()) scene->reset();
+  dropFollowUps(problems);
   sortByPlace(problems);
   return problems;
 }

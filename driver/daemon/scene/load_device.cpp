@@ -234,7 +234,7 @@ std::optional<Device> loadMeantDevice(const Node& root, Reader& in, const Device
 std::optional<Device> loadDeviceFile(const DeviceReference& reference, host::Catalog& catalog, Problems& problems,
                                      Reader* scene_in, const Node* hand, bool* has_hand) {
   Reader in(reference.file, problems);
-  const auto root = parseFile(reference.file, problems);
+  const auto root = readFileOn(reference.file, problems);
   if (!root) return std::nullopt;
   if (!hasFormat(*root, "hapticd-device", in))
     return isMeantAsDevice(*root) ? loadMeantDevice(*root, in, reference, catalog) : std::nullopt;

@@ -163,7 +163,7 @@ class SceneLoader {
       in_.problem(*text_.hand, "hand",
                   "none of the scene's devices has a simulated hand; remove this key, or use a device whose module has "
                   "hand.* parameters");
-    if (text_.hand != nullptr && scene_.devices.empty() && !hand_used_) checkHandPath(*text_.hand);
+    if (text_.hand != nullptr && scene_.devices.empty() && !hand_used_) checkHandAlone(*text_.hand);
   }
 
   /// Refuses a device beside a list of devices, and reports the problems of its file, unless the list names it too.
@@ -176,10 +176,12 @@ class SceneLoader {
     scene_.devices.erase(scene_.devices.begin() + static_cast<std::ptrdiff_t>(count), scene_.devices.end());
   }
 
-  /// Checks that the file of the hand's path exists. Without a device, nothing else of the hand can be checked.
-  void checkHandPath(const Node& hand) {
-    const Node* path = hand.isMap() ? hand.find("path") : nullptr;
-    if (path != nullptr) in_.existingFile(*path, "hand.path");
+  /// Checks the hand of a scene whose device could not be read. Only simulated arms have a hand.
+  void checkHandAlone(const Node& hand) {
+    const auto simulated = catalog_.device("simulated");
+    if (!simulated) return;
+    ParameterReader reader(in_, **simulated);
+    reader.read(hand, "hand", "hand");
   }
 
   void addList(const Node& list) {

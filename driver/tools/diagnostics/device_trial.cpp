@@ -167,7 +167,7 @@ document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& c
   if (!draft) return problems;  // this is a scene, or its module is unknown
   const ModuleTrial trial = tryModule(*draft);
   document::Problems unread;  // not reported here, because the loader of the file reports them
-  auto root = document::parseFile(file, unread);
+  auto root = document::readFileOn(file, unread);
   if (!root) return problems;
   root = withMeantParameters(std::move(*root), *draft);
   const Node* parameters = root->find("parameters");

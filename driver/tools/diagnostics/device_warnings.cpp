@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "diagnostics/arm_plausibility.hpp"
 #include "diagnostics/arm_table.hpp"
@@ -141,6 +142,40 @@ size_t jointsIn(const Node& root) {
   return std::min<size_t>(rows->items.size() + static_cast<size_t>(std::clamp(more, 0.0, 16.0)), HDV_MAX_JOINTS);
 }
 
+/// Returns the device with the simplest wire format, address and calibration in the place of its own, in which there
+/// are mistakes, so that the rest of the arm can be judged.
+scene::Device withPlainBoard(scene::Device device, size_t joints) {
+  std::string positions, torques;
+  for (size_t i = 0; i < joints; ++i) {
+    const std::string rest = fmt::format(R"("joint": {}, "at": {}, "type": "f32"}})", i + 1, 4 * i);
+    positions += (i > 0 ? ", " : "") + (R"({"is": "position", )" + rest);
+    torques += (i > 0 ? ", " : "") + (R"({"is": "torque", )" + rest);
+  }
+  std::erase_if(device.parameters, [](const scene::Value& value) { return value.id.starts_with("calibration."); });
+  for (scene::Value& value : device.parameters)
+    if (value.id == "usb.id")
+      value.text = "1234:5678";
+    else if (value.id == "wire")
+      value.text = fmt::format(
+          R"({{"rate": 1000, "input": {{"size": {0}, "fields": [{1}]}}, "output": {{"size": {0}, "fields": [{2}]}}}})",
+          4 * joints, positions, torques);
+  return device;
+}
+
+/// Makes the arm of a file with problems; nullptr if its geometry is among them. A module that was not tried because of
+/// other problems may crash, so it is tried in a child process first.
+std::unique_ptr<host::DeviceInstance> makeArm(const Node& root, const scene::Device& device,
+                                              const document::Problems& known) {
+  if (!kinematicsKnown(known)) return nullptr;
+  std::vector<scene::Device> ways{device};
+  if (const size_t joints = jointsIn(root); !known.empty() && joints > 0)
+    ways.push_back(withPlainBoard(device, joints));
+  for (const scene::Device& one : ways)
+    if (known.empty() || tryModule(one).error.empty())
+      if (auto made = host::DeviceInstance::create(one, nullptr)) return std::move(*made);
+  return nullptr;
+}
+
 /// Judges everything, with the arm that the file describes.
 void checkWholeArm(const Node& root, const scene::Device& device, host::DeviceInstance& arm,
                    document::Problems& warnings) {
@@ -215,7 +250,7 @@ document::Problems warnOfDevice(const std::filesystem::path& file, host::Catalog
                                 const document::Problems& known) {
   document::Problems warnings, unread;
   const auto device = known.empty() ? scene::loadDevice(file, catalog).device : scene::deviceDraft(file, catalog);
-  auto root = device ? document::parseFile(file, unread) : std::nullopt;
+  auto root = device ? document::readFileOn(file, unread) : std::nullopt;
   if (!root) return warnings;
   if (!known.empty()) root = withMeantWire(withMeantParameters(std::move(*root), *device), *device);
   countsWithoutScale(*root, file.string(), warnings);
@@ -223,11 +258,7 @@ document::Problems warnOfDevice(const std::filesystem::path& file, host::Catalog
   massesAtTheEnds(*root, file.string(), warnings);
   warnOfUnits(*root, file.string(), warnings);
   warnOfTable(*root, file.string(), warnings);
-  std::unique_ptr<host::DeviceInstance> arm;
-  // A module that was not tried because of other problems may crash, so it is tried in a child process first.
-  if (kinematicsKnown(known) && (known.empty() || tryModule(*device).error.empty()))
-    if (auto made = host::DeviceInstance::create(*device, nullptr)) arm = std::move(*made);
-  if (arm)
+  if (const auto arm = makeArm(*root, *device, known))
     checkWholeArm(*root, *device, *arm, warnings);
   else
     checkParts(*root, *device, warnings);

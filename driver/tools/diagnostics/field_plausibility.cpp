@@ -53,16 +53,22 @@ struct Side {
   std::vector<size_t> ordered() const {
     std::vector<size_t> found;
     for (size_t i = 0; i < count(); ++i)
-      if (report.fields[i].bits > 8 && !codec::isText(report.fields[i].type) && report.fields[i].role != Role::kButton)
+      if (report.fields[i].bits > 8 && !codec::isText(report.fields[i].type) &&
+          report.fields[i].role != Role::kButton && report.fields[i].sound)
         found.push_back(i);
     return found;
   }
-  /// Returns the fields of these kinds, for all joints.
+  /// Returns the fields of these kinds, for all joints, except those with mistakes.
   std::vector<size_t> of(std::initializer_list<Role> roles) const {
     std::vector<size_t> found;
     for (size_t i = 0; i < count(); ++i)
-      if (std::find(roles.begin(), roles.end(), report.fields[i].role) != roles.end()) found.push_back(i);
+      if (std::find(roles.begin(), roles.end(), report.fields[i].role) != roles.end() && report.fields[i].sound)
+        found.push_back(i);
     return found;
+  }
+  /// Returns true if nothing is wrong with any field.
+  bool sound() const {
+    return std::all_of(report.fields.begin(), report.fields.end(), [](const Field& field) { return field.sound; });
   }
 };
 
@@ -213,6 +219,24 @@ void coarseCounts(const Node& root, const Side& side, const host::DeviceInstance
   }
 }
 
+/// Warns of a scale of 360 / N, where N is a usual number of counts in a turn: such a number is in degrees per count.
+void degreesPerCount(const Side& side) {
+  constexpr double kTurns = 4, kRounding = 3e-4, kDecimal = 500;  // turns that a field covers; relative error
+  for (const size_t i : side.of({Role::kPosition})) {
+    const Field& field = side.report.fields[i];
+    const double scale = std::abs(field.scale), counts = 360 / scale;
+    const bool wide = field.type != codec::Type::kFloat && std::ldexp(scale, field.bits) > kTurns * 2 * M_PI;
+    if (!(scale > 0) || !wide || side.fields.items[i].find("scale") == nullptr) continue;
+    const double binary = std::exp2(std::round(std::log2(counts))), decimal = kDecimal * std::round(counts / kDecimal);
+    const auto is = [counts](double usual, double error) { return std::abs(counts / usual - 1) < error; };
+    if (!is(binary, kRounding) && !(counts < 100 * kDecimal && is(decimal, kRounding / 10))) continue;
+    side.warn(i, "scale",
+              fmt::format("this scale is 360 / {:.0f}, so it is in degrees per count, and the field covers {:.4g} rad; "
+                          "the value must be in rad per count; write scale_degrees: {:g}",
+                          is(binary, kRounding) ? binary : decimal, std::ldexp(scale, field.bits), field.scale));
+  }
+}
+
 /// Warns if one count is a large angle, of an arm whose lengths are unknown.
 void coarseAngles(const Side& side) {
   constexpr double kLarge = 0.01;  // [rad] 2 mm at a link of 0.2 m
@@ -253,7 +277,7 @@ void crossedJoints(const Side& in, const Side& out) {
     return fields;
   };
   const std::vector<size_t> positions = order(in, Role::kPosition), torques = order(out, Role::kTorque);
-  if (positions.size() != torques.size()) return;
+  if (positions.size() != torques.size() || !in.sound() || !out.sound()) return;
   for (size_t k = 0; k < torques.size(); ++k) {
     const unsigned read = in.report.fields[positions[k]].index, sent = out.report.fields[torques[k]].index;
     if (read == sent) continue;
@@ -271,6 +295,7 @@ void twice(const Side& side) {
     for (size_t first = 0; first < i; ++first) {
       const Field &a = side.report.fields[first], &b = side.report.fields[i];
       if (a.role != b.role || a.role != Role::kSequence || a.at != b.at || a.bit_skip != b.bit_skip) continue;
+      if (!a.sound || !b.sound) continue;
       side.warn(i, "at",
                 fmt::format("these bytes are already the counter of fields[{}], so this counter adds nothing; give it "
                             "another place, or remove it",
@@ -289,7 +314,7 @@ void sameFlags(const Side& side) {
   for (size_t i = 0; i < side.count(); ++i)
     for (size_t first = 0; first < i; ++first) {
       const Field &a = side.report.fields[first], &b = side.report.fields[i];
-      if (!is_flag(a) || !is_flag(b) || a.inverted != b.inverted) continue;
+      if (!is_flag(a) || !is_flag(b) || a.inverted != b.inverted || !a.sound || !b.sound) continue;
       if (codec::isText(a.type) && a.bit != b.bit) continue;
       if (codec::bitsTaken(a, side.report.size) != codec::bitsTaken(b, side.report.size)) continue;
       const Node* is = side.fields.items[first].find("is");
@@ -343,7 +368,7 @@ void warnOfImplausibleFields(const Node& root, const scene::Device& device, size
                              const host::DeviceInstance* arm, document::Problems& warnings) {
   const Node* in = find(root, {"parameters", "wire", "input", "fields"});
   const Node* out = find(root, {"parameters", "wire", "output", "fields"});
-  const auto wire = arm != nullptr ? wireOf(device, joints) : wireDraftOf(device, joints);
+  const auto wire = wireDraftOf(device, joints);
   if (!wire || in == nullptr || out == nullptr) return;
   const Side input{"input", wire->input, *in, device, warnings}, output{"output", wire->output, *out, device, warnings};
   const Node* kind = find(root, {"parameters", "arm", "kind"});
@@ -352,11 +377,11 @@ void warnOfImplausibleFields(const Node& root, const scene::Device& device, size
     coarseCounts(root, input, *arm);
   else
     coarseAngles(input);
+  degreesPerCount(input);
   for (const Side* side : {&input, &output}) polynomialBackwards(*side);
   idleOffset(input);
   coarseVelocities(input);
   radiansAsDegrees(input);
-  if (!wireOf(device, joints)) return;  // fields are compared with each other only if all of them are right
   for (const Side* side : {&input, &output}) {
     mixedOrder(*side);
     mixedSigns(*side, side == &input ? Role::kPosition : Role::kTorque);

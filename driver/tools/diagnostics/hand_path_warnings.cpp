@@ -71,10 +71,11 @@ std::string obstacle(const host::DeviceInstance& arm, const double* place, std::
 /// Returns a text with the line of the first row that the arm cannot follow, the reason, and how many rows there are;
 /// "=" if it can follow all.
 std::string tryRows(const scene::Device& device, const std::string& file) {
-  document::Problems told_by_who_opens;
-  const auto table =
-      document::readCsv(file, kMaxBytes, {{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, true, true}, told_by_who_opens);
-  auto arm = host::DeviceInstance::create(device, nullptr);
+  const auto table =  // wrong rows are told by the module, which opens the file
+      document::readSoundRows(file, kMaxBytes, {{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, true, true});
+  scene::Device at_rest = device;  // its module refuses a file with a wrong row
+  std::erase_if(at_rest.parameters, [](const scene::Value& value) { return value.id.starts_with("hand."); });
+  auto arm = host::DeviceInstance::create(at_rest, nullptr);
   hdv_start how{};
   how.struct_size = sizeof how;
   how.rate_hz = 1000;

@@ -33,10 +33,9 @@ double numberOf(const scene::Device& device, const hdv_class& module, const char
 
 void readPath(const scene::Device& device, HandScript& hand) {
   const scene::Value* path = givenIn(device.parameters, "hand.path");
-  document::Problems told_by_who_opens;
   if (path == nullptr) return;
-  const auto table =
-      document::readCsv(path->text, kMaxPathBytes, {{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, true, true}, told_by_who_opens);
+  const auto table =  // wrong rows are told by the module, which opens the file
+      document::readSoundRows(path->text, kMaxPathBytes, {{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, true, true});
   if (!table || table->rows() == 0) return;
   hand.path_end = table->row(table->rows() - 1)[0];
   hand.path_times = {path->text, table->lines[std::min<size_t>(1, table->rows() - 1)], 1};

@@ -184,7 +184,7 @@ document::Problems readProblems(host::Unpacker& in) {
   }
 }
 
-std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<bool>& strays) {
+std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<bool>& strays, bool all_models) {
   std::vector<Hand> hands;
   std::vector<servo::Probe> tips;
   for (uint32_t device = 0; device < scene.devices.size(); ++device)
@@ -217,7 +217,7 @@ std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<
   // The hands run their scripts only if they start in the right place, because other warnings would follow from a wrong
   // start.
   if (inside.empty() && far == 0 && may_walk && tips.size() == scene.devices.size())
-    packProblems(warnOfWalk(scene, **world, strays), found);
+    packProblems(warnOfWalk(scene, **world, strays, all_models), found);
   return found.take();
 }
 
@@ -327,16 +327,17 @@ bool moveAsMeant(const scene::Scene& scene, const document::Problems& warnings) 
 
 }  // namespace
 
-document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool>& strays) {
+document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool>& strays, bool all_models) {
   document::Problems warnings;
   if (scene.models.empty() || scene.models.size() > kMostModels || scene.devices.empty()) return warnings;
   warnings = fastHands(scene);
   const bool may_walk = moveAsMeant(scene, warnings);
-  const auto told = host::runInChild([&] { return tryTips(scene, may_walk, strays); }, kHandLimitMs);
+  const auto told = host::runInChild([&] { return tryTips(scene, may_walk, strays, all_models); }, kHandLimitMs);
   if (!told) return warnings;  // the trial of the models reports a model that crashes
   host::Unpacker in(*told);
   const uint32_t far = in.count();
-  reportFar(scene, in.text(), far, warnings);
+  const std::string far_arms = in.text();
+  if (all_models) reportFar(scene, far_arms, far, warnings);
   for (document::Problem& one : readProblems(in)) warnings.push_back(std::move(one));
   return warnings;
 }

@@ -17,7 +17,9 @@ namespace hapticd::diagnostics {
 /// (see walk_warnings.hpp). The models are set up in a child process.
 /// @param scene scene with the devices that a run would use
 /// @param strays as for warnOfWalk()
-document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool>& strays = {});
+/// @param all_models false if the hands may be meant for a model that is not in the scene; then no hand is said to feel
+/// nothing
+document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool>& strays = {}, bool all_models = true);
 
 /// [main] Returns a problem for each simulated arm that `run` would refuse, with the text of `run`: an arm that cannot
 /// reach the start of its hand's motion, or that lacks the enable button. The arms are started in a child process.

@@ -35,7 +35,7 @@ std::optional<document::Place> placeOfKey(const document::Node& root, const std:
 
 std::optional<document::Place> placeOfKey(const std::filesystem::path& file, const std::string& key) {
   document::Problems unread;
-  const auto root = document::parseFile(file, unread);
+  const auto root = document::readFileOn(file, unread);
   return root ? placeOfKey(*root, file, key) : std::nullopt;
 }
 

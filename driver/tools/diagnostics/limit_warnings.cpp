@@ -28,10 +28,13 @@ const scene::Value* valueOf(const scene::Device& device, std::initializer_list<c
 }
 
 /// Warns if limits.force is larger than the force of the arm. A force of 0 means that it is unknown.
-void forceBeyondArm(const scene::Device& device, document::Problems& warnings) {
+void forceBeyondArm(const Node& root, const scene::Device& device, document::Problems& warnings) {
   const scene::Value* most = valueOf(device, {"device.max_force", "max_force"});
   if (most == nullptr || most->number <= 0 || device.limits.force <= most->number) return;
-  document::report(warnings, most->place, "limits.force",
+  const Node* limit = find(root, {"limits", "force"});
+  const document::Place place =
+      limit != nullptr ? document::Place{device.file.string(), limit->line, limit->column} : most->place;
+  document::report(warnings, place, "limits.force",
                    document::numberText(device.limits.force) + " N is more than the arm's " + most->id + " of " +
                        document::numberText(most->number) + " N, expected no more");
 }
@@ -148,7 +151,7 @@ static std::optional<MotorForce> motorForce(const Node& root, const scene::Devic
 
 void warnOfLimits(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                   document::Problems& warnings) {
-  forceBeyondArm(device, warnings);
+  forceBeyondArm(root, device, warnings);
   const std::string file = device.file.string();
   const std::vector<double> motors = motorsOf(device, arm.kinematics().joint_count);
   const auto angular = jacobianAt(restJoints(root, arm.kinematics().joint_count), arm, 3);

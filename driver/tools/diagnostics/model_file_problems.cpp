@@ -96,4 +96,17 @@ void separateModelFiles(document::Problems& problems) {
   problems = std::move(all);
 }
 
+void placeInModelFiles(document::Problems& warnings) {
+  document::Problems all;
+  for (document::Problem& one : warnings) {
+    const bool of_model = one.key.starts_with("models[") && one.what.starts_with("/");
+    auto part = of_model && one.what.find('\n') == std::string::npos ? problemOf(one.what) : std::nullopt;
+    if (!part)
+      all.push_back(std::move(one));
+    else if (!isTold(all, *part))
+      all.push_back(*std::move(part));
+  }
+  warnings = std::move(all);
+}
+
 }  // namespace hapticd::diagnostics

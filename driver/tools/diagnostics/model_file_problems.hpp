@@ -9,4 +9,7 @@ namespace hapticd::diagnostics {
 /// that file. The message then tells only how many there are.
 void separateModelFiles(document::Problems& problems);
 
+/// [main] Does the same with warnings, each of which tells one thing about a model file: it moves to its place there.
+void placeInModelFiles(document::Problems& warnings);
+
 }  // namespace hapticd::diagnostics

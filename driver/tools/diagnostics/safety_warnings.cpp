@@ -209,7 +209,7 @@ void warnOfSafety(const Node& root, const scene::Device& device, const host::Dev
                   document::Problems& warnings) {
   const File file{root, device, warnings};
   const auto wire = wireOf(device, arm.kinematics().joint_count);
-  if (!wire) return;
+  if (!wire) return tooHeavy(file, arm);  // the rest needs the wire format
   noForceLimit(file, arm);
   noTorqueLimit(file, *wire, arm);
   oppositeSigns(file, *wire);

@@ -54,6 +54,11 @@ std::vector<double> limitsOf(const scene::Device& device) {
   return {};
 }
 
+/// Returns true if a joint can have these stops. Others have a warning of their own, and are no measure of a field.
+bool areStops(const PositionRange& stops) {
+  return std::max(std::abs(stops.low), std::abs(stops.high)) <= 2 * M_PI;
+}
+
 /// Returns true if the zero is where the arm was held during calibration, so that only the length of a range is known.
 bool zeroedByPose(const scene::Device& device) {
   return std::any_of(device.parameters.begin(), device.parameters.end(),
@@ -180,12 +185,12 @@ void narrowWorkspace(const Node& root, const scene::Device& device, const host::
 void warnOfTravel(const Node& root, const scene::Device& device, size_t joints, const host::DeviceInstance* arm,
                   document::Problems& warnings) {
   if (arm != nullptr) workspaceBeyondReach(root, device, *arm, warnings);
-  const auto wire = arm != nullptr ? wireOf(device, joints) : wireDraftOf(device, joints);
+  const auto wire = wireDraftOf(device, joints);
   const Node* fields = find(root, {"parameters", "wire", "input", "fields"});
   if (!wire || fields == nullptr) return;
   const std::vector<double> limits = limitsOf(device);
   if (limits.size() != 2 * joints) {
-    if (arm != nullptr) narrowWorkspace(root, device, *arm, *wire, warnings);
+    if (arm != nullptr && wireOf(device, joints)) narrowWorkspace(root, device, *arm, *wire, warnings);
     return;
   }
   for (size_t i = 0; i < wire->input.fields.size() && i < fields->items.size(); ++i) {
@@ -194,6 +199,7 @@ void warnOfTravel(const Node& root, const scene::Device& device, size_t joints, 
     if (field.role != Role::kPosition || field.index >= joints) continue;
     const auto [low, high] = std::minmax(limits[2u * field.index], limits[2u * field.index + 1]);
     const PositionRange stops{low, high};  // in order, also where the file has them in the other one: told elsewhere
+    if (!areStops(stops)) continue;
     if (const std::string turned = said && !zeroedByPose(device) ? offsetTurnedRound(field, *said, stops) : "";
         !turned.empty() && tellOffset(fields->items[i], i, device, turned, warnings))
       continue;

@@ -157,12 +157,13 @@ void offsetBeyondATurn(const Node* fields, const std::string& file, document::Pr
   }
 }
 
-void mountFarAway(const Node* position, const std::string& file, document::Problems& warnings) {
+void mountFarAway(const Node* position, const std::string& file, document::Problems& warnings,
+                  const std::string& key = "mount.position") {
   constexpr double kFar = 5;  // [m] farther than anybody reaches
   const double most = largest(numbersIn(position));
   if (most <= kFar) return;
   document::report(
-      warnings, file, position->line, position->column, "mount.position",
+      warnings, file, position->line, position->column, key,
       fmt::format("the arm stands {:g} m from the world's origin, where scenes have their shapes; the value must be "
                   "in m: {:g} mm is {:g} m",
                   most, most, most / 1000));
@@ -213,6 +214,15 @@ void warnOfZeros(const Node& root, const std::string& file, document::Problems& 
     const bool of_usb = key == "usb" || key == "vendor" || key == "product" || key == "vid" || key == "pid";
     if (!of_usb) warnOfZeros(entry.value, file, warnings);  // 0486 is a number of USB, and hexadecimal
   }
+}
+
+void warnOfMounts(const Node& root, const std::string& file, document::Problems& warnings) {
+  if (const Node* device = root.find("device"))
+    mountFarAway(find(*device, {"mount", "position"}), file, warnings, "device.mount.position");
+  const Node* devices = root.find("devices");
+  for (size_t i = 0; devices != nullptr && i < devices->items.size(); ++i)
+    mountFarAway(find(devices->items[i], {"mount", "position"}), file, warnings,
+                 fmt::format("devices[{}].mount.position", i));
 }
 
 void warnOfTurns(const Node& root, const std::string& file, document::Problems& warnings, const std::string& key) {

@@ -89,6 +89,9 @@ void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& han
   const std::string in_list = fmt::format("devices[{}].mount.position", index);
   for (const std::string& id : {std::string("device.mount.position"), in_list})
     if (const auto place = placeOfKey(scene.file, id)) return document::report(warnings, *place, id, what + at);
+  const HandKey own = keyOfHand(scene, device, {"hand.center"});
+  if (own.id == "hand.center" && own.place.file == scene.file.string() && own.place.line > 1)
+    return document::report(warnings, own.place, own.id, what + at);
   document::report(warnings, nearest.place, fmt::format("models[{}].pose.position", seen.nearest), what + at);
 }
 
@@ -185,7 +188,7 @@ void reportCut(const scene::Scene& scene, const scene::Device& device, const Han
 }
 
 void checkWalkOfArm(const scene::Scene& scene, uint32_t index, const Walk& walk, const servo::World& world,
-                    const std::vector<bool>& strays, document::Problems& warnings) {
+                    const std::vector<bool>& strays, bool all_models, document::Problems& warnings) {
   constexpr double kOften = 0.05;  // share of the ticks with a force
   const auto strayed = [&strays](size_t model) { return model < strays.size() && strays[model]; };
   const WalkedArm& seen = walk.arms[index];
@@ -193,7 +196,7 @@ void checkWalkOfArm(const scene::Scene& scene, uint32_t index, const Walk& walk,
   if (!hand || !hand->moves()) return;
   if (reportLimiterFault(scene.devices[index], walk.limiters[index], warnings)) return;
   if (!seen.touched) {
-    if (walk.whole && std::isfinite(seen.away) && !strayed(seen.nearest))
+    if (all_models && walk.whole && std::isfinite(seen.away) && !strayed(seen.nearest))
       reportAway(scene, index, *hand, seen, world, warnings);
     return;
   }
@@ -214,12 +217,14 @@ void checkWalkOfModel(const scene::Scene& scene, size_t index, const Walk& walk,
 
 }  // namespace
 
-document::Problems warnOfWalk(const scene::Scene& scene, servo::World& world, const std::vector<bool>& strays) {
+document::Problems warnOfWalk(const scene::Scene& scene, servo::World& world, const std::vector<bool>& strays,
+                              bool all_models) {
   document::Problems warnings;
   const auto walk = walkHands(scene, world);
   if (!walk) return warnings;
   for (size_t i = 0; i < scene.models.size(); ++i) checkWalkOfModel(scene, i, *walk, world, warnings);
-  for (uint32_t i = 0; i < scene.devices.size(); ++i) checkWalkOfArm(scene, i, *walk, world, strays, warnings);
+  for (uint32_t i = 0; i < scene.devices.size(); ++i)
+    checkWalkOfArm(scene, i, *walk, world, strays, all_models, warnings);
   return warnings;
 }
 

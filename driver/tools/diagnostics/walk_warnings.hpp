@@ -15,6 +15,9 @@ namespace hapticd::diagnostics {
 /// @param world world of the scene, built for as many probes as the scene has arms
 /// @param strays true for each model that will move in a way that was hardly meant (see strayModels()). Effects of such
 /// a model are not reported, because it has a warning already
-document::Problems warnOfWalk(const scene::Scene& scene, servo::World& world, const std::vector<bool>& strays);
+/// @param all_models false if a hand may be meant for a model that is not in the scene; then no hand is said to feel
+/// nothing
+document::Problems warnOfWalk(const scene::Scene& scene, servo::World& world, const std::vector<bool>& strays,
+                              bool all_models);
 
 }  // namespace hapticd::diagnostics

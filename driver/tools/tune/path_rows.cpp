@@ -8,7 +8,7 @@ namespace hapticd::tune {
 
 PathKey keyOfPath(const scene::Model& model) {
   document::Problems unread;
-  const auto root = document::parseFile(model.place.file, unread);
+  const auto root = document::readFileOn(model.place.file, unread);
   const document::Node* models = root ? root->find("models") : nullptr;
   if (models == nullptr) return {model.place, {}};
   for (const document::Node& node : models->items) {
@@ -24,9 +24,8 @@ PathKey keyOfPath(const scene::Model& model) {
 
 std::optional<int> lineOfRow(const std::filesystem::path& csv, size_t row, double t) {
   constexpr size_t kMostBytes = 256u << 20;
-  document::Problems unread;
   const document::CsvRules rules{{"t,x,y,z,qw,qx,qy,qz", "t,x,y,z"}, true, true};
-  const auto table = csv.empty() ? std::nullopt : document::readCsv(csv, kMostBytes, rules, unread);
+  const auto table = csv.empty() ? std::nullopt : document::readSoundRows(csv, kMostBytes, rules);
   if (!table || row >= table->rows() || table->row(row)[0] != t) return std::nullopt;
   return table->lines[row];
 }

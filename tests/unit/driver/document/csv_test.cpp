@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <random>
 
 namespace hapticd::document {
@@ -92,6 +93,16 @@ TEST(Csv, StopsTellingAfterTwentyProblems) {
   Problems problems;
   EXPECT_FALSE(parseCsv(text, "p.csv", kPath, problems));
   EXPECT_EQ(problems.size(), 20u);
+}
+
+TEST(Csv, KeepsTheSoundRowsOfAFileWithMistakesForJudging) {
+  const std::string file = testing::TempDir() + "sound_rows.csv";
+  std::ofstream(file) << "t,x\n0,1\n2,50\n1,3\n4,5,6\n5,x\n6,7\n";
+  const auto rows = readSoundRows(file, 1000, {{"t,x"}, true, true});
+  ASSERT_TRUE(rows);
+  EXPECT_EQ(rows->values, (std::vector<double>{0, 1, 2, 50, 6, 7}));
+  EXPECT_EQ(rows->lines, (std::vector<int>{2, 3, 7}));
+  EXPECT_FALSE(readSoundRows(file, 1000, {{"a,b,c"}, true, true}));
 }
 
 TEST(Csv, NeverReturnsATableOfTheWrongSize) {

@@ -259,7 +259,7 @@ TEST(Wire, AllMistakesAreToldAtOnce) {
       R"({"is":"checksum","at":0,"type":"u8","method":"crc16-modbus","from":0,"to":4,"initial":3},{"is":"nothing"}]},)"
       R"("output":{"size":2,"fields":[{"is":"torque","joint":1,"at":1,"type":"i16"},{"is":"enable","at":0,"type":"u4","bit":4}]}})");
   for (const char* expected :
-       {"wire.rat: unknown key", "wire: lacks the key \"rate\"", "wire.watchdog: -1", "wire.framing.start: 300",
+       {"wire.rat: unknown key", "wire.watchdog: -1", "wire.framing.start: 300",
         "wire.framing.escape.codes[0]: expected a byte", "wire.startup[0].wait: 99", "wire.startup[0]: is empty",
         "wire.endpoints.in: 1", "wire.endpoints: lacks the key \"out\"", "wire.input.id: 0",
         "wire.input.fields[0].joint: 4", "wire.input.fields[0].at: 9", "wire.input.fields[0].type: \"i99\"",
@@ -269,6 +269,20 @@ TEST(Wire, AllMistakesAreToldAtOnce) {
         "wire.input.fields[2].is: \"nothing\"", "wire.output.fields[0].at: 1", "wire.output.fields[1].bit: 4"})
     EXPECT_NE(said.find(expected), std::string::npos) << expected << "\n  in:\n" << said;
   EXPECT_LE(lines(said), 24u) << said;
+  EXPECT_EQ(said.find("lacks the key \"rate\""), std::string::npos) << said;
+}
+
+TEST(Wire, AMisspeltKeyIsNotMissingAsWell) {
+  EXPECT_EQ(lines(complaint(changed("\"rate\"", "\"rat\""))), 1u);
+  const std::string low = complaint(changed("\"rate\":1000", "\"rat\":1"));
+  EXPECT_NE(low.find("wire.rat: 1, expected a number from 50"), std::string::npos) << low;
+  EXPECT_EQ(lines(low), 2u) << low;
+}
+
+TEST(Wire, AnIdBesideTheReportsIsToldWhereItBelongs) {
+  const std::string said = complaint(changed("{\"rate\"", "{\"id\":2,\"rate\""));
+  EXPECT_NE(said.find("wire.id: unknown key"), std::string::npos) << said;
+  EXPECT_NE(said.find("; id belongs one level deeper, inside input or output"), std::string::npos) << said;
 }
 
 TEST(Wire, ADraftKeepsTheFieldsThatAreRight) {

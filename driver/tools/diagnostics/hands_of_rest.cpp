@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/hands_of_rest.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "diagnostics/hand_script.hpp"
+#include "diagnostics/hand_start.hpp"
+#include "diagnostics/key_place.hpp"
+#include "diagnostics/value_plausibility.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+constexpr std::string_view kModels = "models[";
+
+/// Returns true if a hand may be meant for a model: it moves near it, or follows a path.
+bool mayBeMeantFor(const scene::Scene& scene, const scene::Model& model) {
+  constexpr double kNear = 0.15;  // [m] most models for a hand are smaller
+  return std::any_of(scene.devices.begin(), scene.devices.end(), [&](const scene::Device& device) {
+    const auto hand = handScriptOf(device);
+    if (!hand || hand->kind == HandScript::Kind::kPath || model.kinematic) return true;
+    const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand->center;
+    return (center - model.pose.position).norm() < kNear + hand->radius + hand->rise;
+  });
+}
+
+/// Gives a warning about a model of the smaller scene the index and the place that it has in the whole scene.
+void renumber(const scene::Scene& scene, const std::vector<size_t>& indices, document::Problem& warning) {
+  const auto index = modelOf(warning.key);
+  if (!index || *index >= indices.size()) return;
+  const size_t whole = indices[*index];
+  warning.key = std::string(kModels) + std::to_string(whole) + warning.key.substr(warning.key.find(']'));
+  if (warning.place.file != scene.file.string()) return;
+  warning.place = placeOfKey(scene.file, warning.key).value_or(scene.models[whole].place);
+}
+
+}  // namespace
+
+std::optional<size_t> modelOf(const std::string& key) {
+  if (!key.starts_with(kModels)) return std::nullopt;
+  return std::strtoul(key.c_str() + kModels.size(), nullptr, 10);
+}
+
+document::Problems warnOfHandsOfRest(const scene::Scene& scene, const ModelBoxes& boxes,
+                                     const std::vector<bool>& left_out, const std::vector<bool>& placed,
+                                     host::Catalog& catalog) {
+  scene::Scene rest = scene;
+  rest.models.clear();
+  ModelBoxes boxes_of_rest;
+  std::vector<size_t> indices;
+  bool all = true;
+  for (size_t i = 0; i < scene.models.size(); ++i) {
+    if (left_out[i]) {
+      all = all && placed[i] && !mayBeMeantFor(scene, scene.models[i]);
+      continue;
+    }
+    indices.push_back(i);
+    rest.models.push_back(scene.models[i]);
+    boxes_of_rest.push_back(i < boxes.size() ? boxes[i] : std::nullopt);
+  }
+  document::Problems warnings = warnOfHands(rest, strayModels(rest, boxes_of_rest, catalog), all);
+  for (document::Problem& one : warnings) renumber(scene, indices, one);
+  return warnings;
+}
+
+}  // namespace hapticd::diagnostics
