@@ -124,8 +124,7 @@ class Models {
     if (!model || *model >= unread_.size() || plugins_[*model] == nullptr) return false;
     if (lacks_[*model] && !concernsGiven(one, *model)) return true;
     if (unread_[*model].sound()) return false;
-    const size_t id = one.key.find(".parameters.");  // an objection to the value that was taken instead
-    if (id != std::string::npos && unread_[*model].ids.contains(one.key.substr(id + 12))) return true;
+    if (objectsToStandIn(one, *model)) return true;
     const auto& given = draft_.models[*model].parameters;
     const bool of_file = std::any_of(given.begin(), given.end(), [&one](const scene::Value& value) {
       return value.kind == HSP_PATH && one.what.find(value.text + ":") != std::string::npos;
@@ -135,6 +134,16 @@ class Models {
       return isUnread(*model, param.id) &&
              (of_file ? one.what.find("`" + param.id + "`") != std::string::npos : hasWord(one.what, param.id));
     });
+  }
+
+  /// Returns true if a plugin objects to the number that was taken instead of one out of range. Of lists, the other
+  /// numbers are as given.
+  bool objectsToStandIn(const document::Problem& one, size_t model) const {
+    constexpr std::string_view kParameters = ".parameters.";
+    const size_t at = one.key.find(kParameters);
+    const std::string id = at == std::string::npos ? "" : one.key.substr(at + kParameters.size());
+    const scene::Value* value = givenIn(draft_.models[model].parameters, id.c_str());
+    return value != nullptr && value->kind == HSP_REAL && unread_[model].ids.contains(id);
   }
 
   /// Returns true if a message about a model that lacks a needed parameter is about those that it has.

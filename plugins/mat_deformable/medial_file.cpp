@@ -133,6 +133,14 @@ class Reader {
     return all;
   }
 
+  /// Returns a vertex as the file gives it: 4, and not 4.0 as the tree has it.
+  static std::string shown(const Json& corner) {
+    if (!corner.is_number()) return corner.dump();
+    char text[32];
+    std::snprintf(text, sizeof text, "%.15g", corner.get<double>());
+    return text;
+  }
+
   template <std::size_t kCount>
   void readCorners(const Json& medial, const Path& at, const char* key, std::size_t vertices,
                    std::vector<std::array<int, kCount>>& out) {
@@ -149,11 +157,11 @@ class Reader {
       for (std::size_t k = 0; good && k < kCount; ++k) {
         const double corner = row[k].is_number() ? row[k].get<double>() : -1;
         good = corner >= 0 && corner < static_cast<double>(vertices) && corner == std::floor(corner);
-        if (!good) wrong = "vertex " + row[k].dump() + " does not exist (vertices are counted from 0); ";
+        if (!good) wrong = "vertex " + shown(row[k]) + " does not exist (vertices are counted from 0); ";
         if (good) corners[k] = static_cast<int>(corner);
         for (std::size_t before = 0; good && before < k; ++before) {
           good = corners[before] != corners[k];
-          if (!good) wrong = "vertex " + row[k].dump() + " stands there twice; ";
+          if (!good) wrong = "vertex " + shown(row[k]) + " stands there twice; ";
         }
       }
       if (!good) problems_.add(below(at, i), wrong + expected);

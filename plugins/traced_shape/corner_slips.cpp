@@ -138,6 +138,7 @@ class CornerSlips {
 
   void tell(const Slip& slip) {
     told_.insert({std::min(slip.surface, slip.other), std::max(slip.surface, slip.other)});
+    if (!points_.insert({slip.surface, slip.point}).second) return;  // two neighbours miss the same corner
     const Vector3d &p = at(slip.surface, slip.point), &q = at(slip.other, slip.meant);
     char text[800];
     std::snprintf(text, sizeof text,
@@ -157,7 +158,7 @@ class CornerSlips {
   Problems& odd_;
   std::vector<Side> sides_;
   double same_ = 0;
-  std::set<std::pair<std::size_t, std::size_t>> joined_, told_;
+  std::set<std::pair<std::size_t, std::size_t>> joined_, told_, points_;
 };
 
 }  // namespace

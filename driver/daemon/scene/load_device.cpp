@@ -154,8 +154,8 @@ void tellOfSimulated(const Node& root, const Node& parameters, const host::Class
   const Node* module = root.find("module");
   if (!simulated || *simulated == &info || module == nullptr || !parameters.isMap()) return;
   const size_t all = parameters.entries.size();
-  if (parameters.find("wire") != nullptr || knownOf(parameters, info) == all || knownOf(parameters, **simulated) != all)
-    return;
+  const bool own = knownOf(parameters, info) == all && (root.find("hand") == nullptr || hasHand(info));
+  if (parameters.find("wire") != nullptr || own || knownOf(parameters, **simulated) != all) return;
   in.problem(*module, "module",
              "is " + info.name + ", but these are parameters of simulated; expected module: simulated");
 }

@@ -143,7 +143,8 @@ MountKey keyOfFar(const scene::Scene& scene, uint32_t device, uint32_t model, co
   return {placeOfKey(nearest.place.file, key).value_or(nearest.place), key};
 }
 
-/// Warns of a real arm whose tip rests far away from all models, though the arm can reach one. The hand of a simulated
+/// Warns of a real arm whose tip rests far away from all models, though the arm can reach one. Arms whose file gives no
+/// pose at rest are not judged. The hand of a simulated
 /// arm shows by itself what it meets.
 void reportFarRest(const scene::Scene& scene, const servo::World& world, servo::Core& core,
                    const std::vector<Hand>& hands, document::Problems& warnings) {
@@ -151,7 +152,8 @@ void reportFarRest(const scene::Scene& scene, const servo::World& world, servo::
   for (uint32_t i = 0; i < hands.size(); ++i) {
     const scene::Device& device = scene.devices[hands[i].device];
     const auto nearest = nearestModel(scene, world, core, hands[i].probe.position, i);
-    if (device.module == "simulated" || !nearest || nearest->away <= kAway) continue;
+    const scene::Value* pose = givenIn(device.parameters, "calibration.pose");
+    if (pose == nullptr || device.module == "simulated" || !nearest || nearest->away <= kAway) continue;
     const MountKey at =
         keyOfFar(scene, hands[i].device, static_cast<uint32_t>(nearest->index), hands[i].probe.position);
     const Eigen::Vector3d& tip = hands[i].probe.position;

@@ -39,6 +39,8 @@ std::optional<Eigen::Vector3d> restingTip(const Node& root, const host::DeviceIn
 void warnOfFarMount(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                     document::Problems& warnings) {
   const Node* given = root.find("mount");
+  // Only where the file says how the arm is held at the start, the place of its tip at rest is known.
+  if (find(root, {"parameters", "calibration", "pose"}) == nullptr) return;
   const auto tip = restingTip(root, arm);
   if (given == nullptr || !given->isMap() || given->entries.empty() || !tip) return;
   const Eigen::Vector3d turned = device.mount.orientation * *tip, at = device.mount.position + turned;

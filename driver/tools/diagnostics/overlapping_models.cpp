@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "diagnostics/key_place.hpp"
@@ -126,6 +127,16 @@ double depthIn(const Solid& inner, const Solid& outer, size_t& tests) {
   return deepest;
 }
 
+/// Returns true for two models of one geometry: rows of equal shapes often run into one another on purpose.
+bool areAlike(const scene::Model& one, const scene::Model& other) {
+  const auto file = [](const scene::Model& model) {
+    for (const scene::Value& value : model.parameters)
+      if (value.id == "geometry") return value.text;
+    return std::string();
+  };
+  return one.plugin == other.plugin && file(one) == file(other);
+}
+
 bool inOneGroup(const std::vector<std::vector<size_t>>& groups, size_t a, size_t b) {
   const auto holds = [](const std::vector<size_t>& group, size_t model) {
     return std::find(group.begin(), group.end(), model) != group.end();
@@ -152,6 +163,7 @@ document::Problems overlappingModels(const scene::Scene& scene, const servo::Wor
   for (size_t second = 1; second < boxes.size(); ++second)
     for (size_t first = 0; first < second; ++first) {
       if (!boxes[first].intersects(boxes[second]) || inOneGroup(told, first, second)) continue;
+      if (areAlike(scene.models[first], scene.models[second])) continue;
       const double depth =
           std::max(depthIn(solid(second), solid(first), tests), depthIn(solid(first), solid(second), tests));
       if (depth <= kOverlap) continue;

@@ -255,7 +255,9 @@ void warnOfSizeInBits(const Node& root, const codec::Report& report, const char*
   const Node* size = find(root, {"parameters", "wire", side, "size"});
   size_t end = 0;
   for (const Field& field : report.fields) end = std::max(end, field.at + field.bytes());
-  if (size == nullptr || end < 2 || report.size != 8 * end) return;
+  const bool full_packet =
+      (report.size & (report.size - 1)) == 0;  // some firmware fills packets, of 64 bytes for example
+  if (size == nullptr || full_packet || report.size != 8 * end) return;
   document::report(warnings, device.file.string(), size->line, size->column,
                    fmt::format("parameters.wire.{}.size", side),
                    fmt::format("{} bytes, but the fields end after {} bytes, which are {} bits; size must be in bytes",

@@ -59,8 +59,9 @@ DetentCurve::DetentCurve(std::span<const Knot> knots, double end_stiffness) {
     throw std::invalid_argument("detent: end_stiffness must be above 0 N/m");
   for (size_t i = 0; i < knots_.size(); ++i) {
     if (!std::isfinite(knots_[i].travel) || !std::isfinite(knots_[i].force)) wrong(i, "not a finite number");
-    if (i == 0 && (knots_[0].travel != 0 || knots_[0].force != 0))
-      wrong(i, "[" + number(knots_[0].travel) + ", " + number(knots_[0].force) +
+    const bool starts = i == (begun ? 1U : 0U) && knots_[i].force == 0;  // without force, it can only be the beginning
+    if ((i == 0 || starts) && (knots_[i].travel != 0 || knots_[i].force != 0))
+      wrong(i, "[" + number(knots_[i].travel) + ", " + number(knots_[i].force) +
                    "], expected [0, 0], because a button that is not pressed gives no force (the row may be left out)");
     if (i > 0 && !(knots_[i].travel > knots_[i - 1].travel))
       wrong(i, "a travel of " + number(knots_[i].travel) + " m is not more than that of the row before, " +

@@ -58,4 +58,4 @@ CHAIN = WIRED.replace("""    kind: phantom
       - [0, 1.5707963, 0, 0]
       - [0.22, 0, 0, 0]
       - [0.2, 0, 0, 0]
-""").replace("workspace: 0.3, ", "")
+""").replace("workspace: 0.3, ", "").replace("position: [0, 0, 0.09]", "position: [-0.42, 0, 0.09]")

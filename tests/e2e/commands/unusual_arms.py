@@ -53,7 +53,7 @@ CASES = [
     (WIRED.replace("{position: [0, 0, 0.09]}", "{}"), {"mount: {}": "mount: |{}"}, "mount", "inside the shapes"),
     (WIRED.replace("size: 12", "size: 14").replace("from: 0, to: 10}", "from: 0, to: 10}\n        - {is: velocity, joint: 1, at: 12, type: i16, scale: 1000}"),
      {"scale: 1000": "scale: |1000"}, f"{IN}[6].scale", "one count of the velocity of joint 1 is 1000 rad/s"),
-    (CHAIN.replace("mount: {position: [0, 0, 0.09]}\n", ""), {"hapticd-device": "|hapticd-device"}, "mount", "mount: {position: [-0.42, 0, 0.09]} puts"),
+    (CHAIN.replace("mount: {position: [-0.42, 0, 0.09]}\n", ""), {"hapticd-device": "|hapticd-device"}, "mount", "mount: {position: [-0.42, 0, 0.09]} puts"),
     (CHAIN, {"force: 2": "force: |200"}, "limits.force", "in half of twelve poses, as it rests stretched out"),
     (CHAIN, {"- [0.22, 0": "- [|2.2, 0"}, "parameters.arm.dh[1][0]", "was 0.22 m meant?"),
     (WIRED, {"force: 2,": "force: 2, slew: |2,"}, "limits.slew", "2 N/ms is 2000 N/s"),
@@ -287,7 +287,7 @@ def refused(folder):
     told = [line for line in done.stdout.splitlines() if f"{os.path.realpath(file)}:" in line]
     chain = os.path.join(folder, "chain.yaml")
     with open(chain, "w") as out:
-        out.write(CHAIN.replace("mount: {position: [0, 0, 0.09]}\n", ""))
+        out.write(CHAIN.replace("mount: {position: [-0.42, 0, 0.09]}\n", ""))
     base = subprocess.run([HAPTICD, "check", os.path.join(SOURCE, "config", "scenes", "sphere.yaml"), "--device", chain], capture_output=True, text=True, timeout=120)
     check("a chain without a mount stands in a sphere", f"{chain}:1:1: mount: warning: mine stands with its base in the middle of sphere" in base.stdout, base.stdout)
     new = subprocess.run([HAPTICD, "device", "new", "a3", "--no-questions", "--checksum", "crc9"], capture_output=True, text=True, timeout=120, cwd=folder)

@@ -115,8 +115,7 @@ def cube(change=lambda all: None, half=0.05):
 
 
 def mistyped(lines):  # a corner of the front face
-    lines["front"][-1] = "      - [0.055, 0.05, 0.05]"
-    lines["front"][0] = "  - |name: front"
+    lines["front"][-1] = "      - |[0.055, 0.05, 0.05]"
 
 
 def shifted(lines):  # the whole front face
@@ -149,7 +148,7 @@ MODELS = [
     ("a cube in cm", "nurbs_rigid", cube(half=5).replace("  - name: right", "  |- name: right"), "17.3 m large"),
     ("a face without area", "nurbs_rigid", cube(flat), "no area"),
     ("a name given twice", "nurbs_rigid", cube(second_right), '"right" is also the name of surfaces[0]'),
-    ("a corner mistyped", "nurbs_rigid", cube(mistyped), "their other ends are 5 mm apart"),
+    ("a corner mistyped", "nurbs_rigid", cube(mistyped), "5 mm away"),
     ("a face beside its place", "nurbs_rigid", cube(shifted), "joins none of the 4 surfaces"),
     ("points with u fastest", "nurbs_rigid", bulge(True), "v runs fastest"),
     ("a decimal point elsewhere", "nurbs_rigid", net([3, 2], f"[{CUBIC}, {QUADRIC}]", points=flat_net(0.02).replace("[0.04, 0.02, 0]", "|[0.04, 0.02, 0.2]")), "decimal point"),
