@@ -21,7 +21,6 @@
 #include "status/page_file.hpp"
 
 namespace hapticd::cli {
-
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -56,8 +55,7 @@ std::string socketOf(const CtlArguments& options) {
   return status::runtimeFolder(false) + "/" + options.name + ".sock";
 }
 
-/// Waits for the start of the daemon as long as --wait allows, and says that it waits. If there is none then, the
-/// request says so.
+/// Waits for the start of the daemon as long as --wait allows, and says so. If there is none then, the request says it.
 void awaitDaemon(const CtlArguments& options) {
   if (options.wait <= 0 || control::connectTo(socketOf(options))) return;
   std::fprintf(stderr, "waiting at most %g s for the daemon %s; %s\n", options.wait, options.name.c_str(),
@@ -69,8 +67,7 @@ std::string lineOf(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Does `ctl socket`: prints only the path of the socket, for programs that connect to it. Fails if no daemon serves
-/// it.
+/// Does `ctl socket`: prints only the path of the socket, for programs that connect to it. Fails if nobody serves it.
 int showSocket(const CtlArguments& options) {
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());
