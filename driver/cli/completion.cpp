@@ -194,7 +194,7 @@ std::string fish(const std::vector<CommandNode>& nodes) {
 
 /// Returns the list of this name in a running daemon's answer, or an empty list.
 nlohmann::json listOfDaemon(const char* request, const std::string& name) {
-  const auto answer = control::ask(status::runtimeFolder(false) + "/hapticd.sock", request);
+  const auto answer = control::ask(status::runtimeFolderOf("hapticd") + "/hapticd.sock", request);
   const auto json = answer ? nlohmann::json::parse(*answer, nullptr, false) : nlohmann::json();
   return json.is_object() && json.contains(name) ? json[name] : nlohmann::json::array();
 }

@@ -52,7 +52,7 @@ int saveObj(const Json& json, const std::string& file) {
 }
 
 std::string socketOf(const CtlArguments& options) {
-  return status::runtimeFolder(false) + "/" + options.name + ".sock";
+  return status::runtimeFolderOf(options.name) + "/" + options.name + ".sock";
 }
 
 /// Waits for the start of the daemon as long as --wait allows, and says so. If there is none then, the request says it.

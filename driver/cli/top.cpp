@@ -263,7 +263,7 @@ bool ended(const status::Page& page) {
 
 /// Reports the end of the daemon. A daemon that ended in order has removed its files.
 int endOfDaemon(const TopArguments& options) {
-  if (!control::wasKilled(status::runtimeFolder(false) + "/" + options.name + ".sock")) return kWorked;
+  if (!control::wasKilled(status::runtimeFolderOf(options.name) + "/" + options.name + ".sock")) return kWorked;
   return fail(kFailed,
               "the daemon " + options.name + " was killed, or it crashed\n  fix: start it again with hapticd run");
 }
@@ -324,7 +324,7 @@ bool standsStill(const status::Page& page, uint64_t tick) {
 }
 
 int top(const TopArguments& options) {
-  const std::string base = status::runtimeFolder(false) + "/" + options.name;
+  const std::string base = status::runtimeFolderOf(options.name) + "/" + options.name;
   auto opened = status::PageFile::open(base + ".status");
   if (!opened)
     return fail(kFailed, control::isAlive(base + ".sock") ? opened.error() : control::noDaemonText(base + ".sock"));

@@ -57,7 +57,7 @@ int viewRecording(const ViewArguments& options) {
 
 /// Says that the page will wait, if no daemon of this name runs.
 void tellOfWaiting(const ViewArguments& options) {
-  const std::string socket = status::runtimeFolder(false) + "/" + options.name + ".sock";
+  const std::string socket = status::runtimeFolderOf(options.name) + "/" + options.name + ".sock";
   if (control::isAlive(socket)) return;
   std::fprintf(stderr,
                "no daemon named %s runs yet, so the page waits for it; %s\n  fix: start it with %s, or name another "

@@ -59,6 +59,14 @@ std::string runtimeFolder(bool create) {
   return ownFolder(own) ? own : "";
 }
 
+std::string runtimeFolderOf(const std::string& daemon, const std::string& system) {
+  const std::string own = runtimeFolder(false), socket = "/" + daemon + ".sock";
+  std::error_code error;
+  const bool only_there =
+      !std::filesystem::exists(own + socket, error) && std::filesystem::exists(system + socket, error);
+  return only_there ? system : own;
+}
+
 Result<std::unique_ptr<PageFile>> PageFile::create(const std::string& file) {
   std::unique_ptr<PageFile> owner(new PageFile);
   void* memory = MAP_FAILED;

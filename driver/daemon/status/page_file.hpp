@@ -14,6 +14,10 @@ namespace hapticd::status {
 /// /run/hapticd if the system's daemon runs there, else /dev/shm/hapticd-UID. @param create true: make it if necessary
 std::string runtimeFolder(bool create);
 
+/// Returns the folder that has the socket of a daemon of this name: runtimeFolder(), or the system's folder if the
+/// socket is only there; runtimeFolder() if no daemon of this name runs.
+std::string runtimeFolderOf(const std::string& daemon, const std::string& system = "/run/hapticd");
+
 class PageFile {
  public:
   /// [main] Creates a page of zeros. @param file "": memory of this process only

@@ -87,7 +87,7 @@ std::unique_ptr<PeerSession> startSession(Subprotocol protocol, Peer& peer, Stag
 int view(const Options& options) {
   boost::asio::io_context io(1);
   StageOptions what;
-  what.folder = hapticd::status::runtimeFolder(false);
+  what.folder = hapticd::status::runtimeFolderOf(options.name);
   what.name = options.name;
   what.file = options.file;
   what.drawings = options.drawings;

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "status/page_file.hpp"
@@ -88,6 +89,24 @@ TEST(RuntimeFolder, IsInMemoryWhereverTheSessionKeepsItsFiles) {
   EXPECT_EQ(runtimeFolder(false), made) << "others look elsewhere";
   unsetenv("XDG_RUNTIME_DIR");
   std::filesystem::remove_all(session);
+}
+
+TEST(RuntimeFolder, OfADaemonOfTheSystemIsFoundBesideOnesOwnFolder) {
+  const std::string base = "/dev/shm/hapticd-status-test-" + std::to_string(getpid());
+  const std::string own = base + "/session/hapticd", system = base + "/system";
+  std::filesystem::create_directories(own);
+  std::filesystem::create_directories(system);
+  unsetenv("RUNTIME_DIRECTORY");
+  setenv("XDG_RUNTIME_DIR", (base + "/session").c_str(), 1);
+  const auto run = [](const std::string& folder) { std::ofstream(folder + "/arm.sock") << ""; };
+  EXPECT_EQ(runtimeFolderOf("arm", system), own) << "none runs";
+  run(system);
+  EXPECT_EQ(runtimeFolderOf("arm", system), system);
+  EXPECT_EQ(runtimeFolderOf("other", system), own);
+  run(own);
+  EXPECT_EQ(runtimeFolderOf("arm", system), own) << "one's own comes first";
+  unsetenv("XDG_RUNTIME_DIR");
+  std::filesystem::remove_all(base);
 }
 
 TEST(PageFile, RefusesWhatIsNoPage) {
