@@ -189,7 +189,7 @@ def snaps(folder, stop):
     python = [sys.executable, os.path.join(CLIENT, "examples", "button.py"), "--name", "snaps"]
     programs = {"button.c": [BUTTON, "snaps"], "button.py": python, "a program that follows, leads and pushes": [sys.executable, "-c", FOLLOWS]}
     running = {name: subprocess.Popen(command, env=there, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for name, command in programs.items()}
-    said = {name: program.stdout.readline() + program.stdout.readline() * (name != list(programs)[-1]) for name, program in running.items()}
+    said = {name: "".join(program.stdout.readline() for _ in range(2 if "button" in name else 1)) for name, program in running.items()}
     time.sleep(0.3)
     if stop:
         subprocess.run([HAPTICD, "ctl", "--name", "snaps", "clear"], env=environment, capture_output=True)  # a busy machine may have latched a fault

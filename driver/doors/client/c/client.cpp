@@ -124,10 +124,12 @@ std::byte* hapticd_client::page(const char* request, hapticd::client::Mapping& k
 /// Reports why there was no answer: the daemon has ended, it has closed this connection, or it takes too long.
 void hapticd_client::reportSilence(const std::string& problem, hapticd_error* error) {
   if (!line.ended()) return setError(error, "timeout", problem);
-  // [us] wait before the check, because a daemon that ends closes its connections first.
+  // A daemon that ends closes its connections first, so it is asked a few times. [us] between two checks
   constexpr useconds_t kMeanwhile = 20'000;
-  usleep(kMeanwhile);
-  if (ended() || access((base + ".sock").c_str(), F_OK) != 0) return setError(error, "gone", problem);
+  for (int i = 0; i < 25; ++i) {
+    usleep(kMeanwhile);
+    if (ended() || access((base + ".sock").c_str(), F_OK) != 0) return setError(error, "gone", problem);
+  }
   setError(error, "too_many",
            "the daemon closed this connection, because it was silent and other programs needed its place\n"
            "  fix: connect again");

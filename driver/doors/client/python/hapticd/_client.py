@@ -19,6 +19,8 @@ from ._push import ForceThread
 from ._rows import BlackBox, Stream
 from ._state import Bell, State, StatePage
 
+_TAKES_TO_END = 0.5  # s: at most, until a process whose sockets are closed has ended
+
 
 class Events:
     """An iterator over the events of a daemon, as they happen."""
@@ -141,6 +143,14 @@ class Client:
         # A daemon of before does not note its end, but it removes its socket if it ends in order.
         return self.ended() and not self._box.ended() and os.path.exists(self._base + ".sock")
 
+    def _ends(self) -> bool:
+        """Like ended(), for a connection that has just ended: a process that is killed closes its sockets before it frees
+        its name, so this waits a little."""
+        end = time.monotonic() + _TAKES_TO_END
+        while not self.ended() and time.monotonic() < end:
+            time.sleep(0.01)
+        return self.ended()
+
     def _gone(self) -> HapticdError:
         died = self.died()
         return HapticdError(f"the daemon is gone: {self.name} " + ("was killed, or it crashed" if died else "has ended")
@@ -204,7 +214,7 @@ class Client:
         """Returns the events from now on, as an iterator over dicts with `event`, `tick`, `t` and further keys of the
         event. It ends with the daemon, or if no event came for `timeout` seconds. It raises HapticdError if the
         daemon was killed or crashed. It uses a separate connection."""
-        return Events(Line(self._base + ".sock"), self.timeout, timeout, self.died)
+        return Events(Line(self._base + ".sock"), self.timeout, timeout, lambda: self._ends() and self.died())
 
     # ---- leads
 
@@ -244,14 +254,13 @@ class Client:
         """Returns why the leads of this connection have no effect any more, or None if they have."""
         if not self._line.ended():
             return None
-        return self._gone() if self.ended() else HapticdError("the daemon closed the connection, which ended this lead; connect again", "too_many")
+        return self._gone() if self._ends() else HapticdError("the daemon closed the connection, which ended this lead; connect again", "too_many")
 
     def _lost(self) -> Optional[HapticdError]:
         """Returns why no answer can come on this connection, or None if one may still come."""
         if not self._line.ended():
             return None
-        time.sleep(0.02)  # a daemon that ends closes its connections first
-        if self.ended() or not os.path.exists(self._base + ".sock"):
+        if self._ends() or not os.path.exists(self._base + ".sock"):
             return self._gone()
         return HapticdError("the daemon closed this connection, because it was silent and other programs needed its place\n"
                             "  fix: connect again", "too_many")

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -204,7 +205,7 @@ TEST(FlightRing, IsReadWhileItIsWrittenWithoutRowsThatWereNotWrittenYet) {
       const Row row = rowOf(tick);
       std::memcpy((*ring)->next(0), &row, sizeof row);
       (*ring)->commit(0);
-      if (tick % 64 == 0) std::this_thread::yield();
+      if (tick % 64 == 0) std::this_thread::sleep_for(std::chrono::microseconds(50));
     }
   });
   uint64_t seen = 0, wrong = 0;
