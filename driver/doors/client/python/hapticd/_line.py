@@ -36,8 +36,7 @@ class Line:
             foreign = isinstance(error, PermissionError)
             cure = ("be the daemon's user or in its group: only they may connect" if foreign
                     else "start the daemon with hapticd run")
-            raise HapticdError(f"no daemon answers at {file}: {error.strerror}
-  fix: {cure}",
+            raise HapticdError(f"no daemon answers at {file}: {error.strerror}\n  fix: {cure}",
                                "failed" if foreign else "gone") from None
         self._begun = b""  # the beginning of a line that is not yet complete
         self._begun_with: list[int] = []  # the descriptors that came with this beginning
