@@ -70,7 +70,8 @@ class Models {
   }
 
   /// Returns the warnings about hands, with the models that have no problem.
-  document::Problems hands(const ModelTrial& trial, const document::Problems& problems) const {
+  /// @param moved becomes true if there is such a model, so that the hands were moved
+  document::Problems hands(const ModelTrial& trial, const document::Problems& problems, bool& moved) const {
     std::vector<bool> unsound(draft_.models.size()), placed(draft_.models.size(), true);
     for (size_t i = 0; i < unsound.size(); ++i) {
       const scene::Model& model = draft_.models[i];
@@ -83,6 +84,7 @@ class Models {
         placed[i] = placed[i] && !(own && one.key.find("].pose") != std::string::npos && !turned);
       }
     }
+    moved = std::find(unsound.begin(), unsound.end(), false) != unsound.end();
     return warnOfHandsOfRest(draft_, trial.boxes, unsound, placed, catalog());
   }
 
@@ -210,8 +212,9 @@ bool checkDraftHands(const scene::Scene& draft, const UnreadKeys& unread, const 
     return one.key == "t" || one.key.starts_with("hand");  // `run` would refuse the hand
   });
   if (unread.has("servo") || path) return false;
-  for (document::Problem& one : models.hands(trial, problems)) warnings.push_back(std::move(one));
-  return true;
+  bool moved = false;
+  for (document::Problem& one : models.hands(trial, problems, moved)) warnings.push_back(std::move(one));
+  return moved;
 }
 
 }  // namespace

@@ -134,13 +134,14 @@ class Parser {
     const bool begun = take(fields[0], 0);
     for (size_t i = 1; i < fields.size() && !tooWrong(); ++i) take(fields[i], i);
     if (!begun || tooWrong()) return rejectRow();
+    const bool readable = wrong_ == wrong_before;
     const double* now = table_.values.data() + table_.lines.size() * table_.columns;
     if (rules_.growing && last_ && *now <= *last_)
       problem(0, nameOf(0),
               numberText(*now) + " does not grow from row to row, expected more than " + numberText(*last_));
     else
       last_ = *now;
-    if (rules_.wrongIn != nullptr && wrong_ == wrong_before)
+    if (rules_.wrongIn != nullptr && readable)
       if (const std::string what = rules_.wrongIn(now, table_.columns); !what.empty())
         problem(0, rules_.column_of_wrong, what);
     if (wrong_ != wrong_before) return rejectRow();

@@ -150,12 +150,12 @@ size_t knownOf(const Node& parameters, const host::ClassInfo& info) {
 /// Tells once that the parameters are those of a simulated arm, as in the file of a twin whose module was replaced.
 void tellOfSimulated(const Node& root, const Node& parameters, const host::ClassInfo& info, host::Catalog& catalog,
                      Reader& in) {
-  const auto simulated = catalog.device("simulated");
   const Node* module = root.find("module");
-  if (!simulated || *simulated == &info || module == nullptr || !parameters.isMap()) return;
+  if (module == nullptr || !parameters.isMap() || parameters.find("wire") != nullptr) return;
   const size_t all = parameters.entries.size();
-  const bool own = knownOf(parameters, info) == all && (root.find("hand") == nullptr || hasHand(info));
-  if (parameters.find("wire") != nullptr || own || knownOf(parameters, **simulated) != all) return;
+  if (knownOf(parameters, info) == all && (root.find("hand") == nullptr || hasHand(info))) return;
+  const auto simulated = catalog.device("simulated");
+  if (!simulated || *simulated == &info || knownOf(parameters, **simulated) != all) return;
   in.problem(*module, "module",
              "is " + info.name + ", but these are parameters of simulated; expected module: simulated");
 }

@@ -115,7 +115,7 @@ class SceneLoader {
     model.kinematic = motion != nullptr && motion->isScalar() &&
                       (motion->scalar == "kinematic" ||
                        nearestWord(motion->scalar, {"dynamic", "kinematic", "static"}) == "kinematic");
-    addPath(key, path, model);
+    addPath(key, path, motion, model);
   }
 
   /// Reads the model's key `motion`. It is meant for the host, and also for the plugin if it has such a parameter.
@@ -133,14 +133,18 @@ class SceneLoader {
                       " does not move its models, so motion cannot be dynamic; expected static or kinematic");
   }
 
-  void addPath(const std::string& key, const Node* path, Model& model) {
+  /// Reads the file of a path, also for a model that does not follow it yet: the mistakes of both are told.
+  void addPath(const std::string& key, const Node* path, const Node* motion, Model& model) {
     if (path == nullptr) return;  // without a path, a kinematic model rests until a program leads it
     if (!model.kinematic)
-      in_.problem(
-          *path, key + ".path",
-          "the model does not follow its path, because it is not kinematic; add motion: kinematic to the model");
+      in_.problem(*path, key + ".path",
+                  "the model does not follow its path, because it is not kinematic; " +
+                      (motion == nullptr ? "add motion: kinematic to the model"
+                                         : "write motion: kinematic in line " + std::to_string(motion->line)));
     const auto file = in_.existingFile(*path, key + ".path");
-    if (file && model.kinematic) model.path = readKinematicPath(*file, in_.problems());
+    if (!file) return;
+    std::vector<PathPoint> points = readKinematicPath(*file, in_.problems());
+    if (model.kinematic) model.path = std::move(points);
   }
 
   /// Reads `clients`: a mode alone, or a mapping that contains the mode.

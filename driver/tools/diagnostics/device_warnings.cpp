@@ -238,6 +238,8 @@ void dropKnown(const Node& root, const document::Problems& known, document::Prob
         if (hasAngles(root, one)) return false;
       if (one.key.ends_with(".type") && warning.key == one.key.substr(0, one.key.size() - 4) + "to")
         return false;  // which bytes a checksum covers does not depend on its type
+      if (warning.key == "mount" && (isBelow(one.key, "parameters.calibration") || isBelow(one.key, "parameters.arm")))
+        return true;  // where the tip rests follows from these
       const std::string part = partOf(one.key);
       return !part.empty() && part != "parameters" && (isBelow(warning.key, part) || isBelow(part, warning.key));
     });

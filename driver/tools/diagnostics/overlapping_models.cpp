@@ -127,14 +127,19 @@ double depthIn(const Solid& inner, const Solid& outer, size_t& tests) {
   return deepest;
 }
 
-/// Returns true for two models of one geometry: rows of equal shapes often run into one another on purpose.
-bool areAlike(const scene::Model& one, const scene::Model& other) {
-  const auto file = [](const scene::Model& model) {
-    for (const scene::Value& value : model.parameters)
-      if (value.id == "geometry") return value.text;
-    return std::string();
-  };
-  return one.plugin == other.plugin && file(one) == file(other);
+std::string geometryOf(const scene::Model& model) {
+  for (const scene::Value& value : model.parameters)
+    if (value.id == "geometry") return model.plugin + " " + value.text;
+  return model.plugin;
+}
+
+/// Returns true for two models of a row of equal shapes, which often run into one another on purpose.
+bool areOfOneRow(const scene::Scene& scene, size_t first, size_t second) {
+  constexpr long kRow = 4;
+  const std::string geometry = geometryOf(scene.models[first]);
+  return geometry == geometryOf(scene.models[second]) &&
+         std::count_if(scene.models.begin(), scene.models.end(),
+                       [&](const scene::Model& model) { return geometryOf(model) == geometry; }) >= kRow;
 }
 
 bool inOneGroup(const std::vector<std::vector<size_t>>& groups, size_t a, size_t b) {
@@ -163,7 +168,7 @@ document::Problems overlappingModels(const scene::Scene& scene, const servo::Wor
   for (size_t second = 1; second < boxes.size(); ++second)
     for (size_t first = 0; first < second; ++first) {
       if (!boxes[first].intersects(boxes[second]) || inOneGroup(told, first, second)) continue;
-      if (areAlike(scene.models[first], scene.models[second])) continue;
+      if (areOfOneRow(scene, first, second)) continue;
       const double depth =
           std::max(depthIn(solid(second), solid(first), tests), depthIn(solid(first), solid(second), tests));
       if (depth <= kOverlap) continue;

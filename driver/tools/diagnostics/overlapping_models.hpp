@@ -8,8 +8,8 @@
 namespace hapticd::diagnostics {
 
 /// [main] Warns of pairs of rigid solids that overlap at the start by more than 1 mm, because a hand there feels the
-/// sum of both. Models that touch, models of the same geometry, open surfaces, soft bodies and models that their
-/// plugins move are not judged.
+/// sum of both. Models that touch, rows of four and more of the same geometry, open surfaces, soft bodies and models
+/// that their plugins move are not judged.
 /// @param world world of the scene
 document::Problems overlappingModels(const scene::Scene& scene, const servo::World& world);
 

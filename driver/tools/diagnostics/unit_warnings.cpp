@@ -216,7 +216,17 @@ void warnOfZeros(const Node& root, const std::string& file, document::Problems& 
   }
 }
 
+/// Returns true if a model of the scene stands far from the world's origin, too: it may be there for an arm.
+bool isWide(const Node& root) {
+  constexpr double kFar = 5;  // [m] as for arms
+  const Node* models = root.find("models");
+  return models != nullptr && std::any_of(models->items.begin(), models->items.end(), [](const Node& model) {
+           return largest(numbersIn(find(model, {"pose", "position"}))) > kFar;
+         });
+}
+
 void warnOfMounts(const Node& root, const std::string& file, document::Problems& warnings) {
+  if (isWide(root)) return;
   if (const Node* device = root.find("device"))
     mountFarAway(find(*device, {"mount", "position"}), file, warnings, "device.mount.position");
   const Node* devices = root.find("devices");

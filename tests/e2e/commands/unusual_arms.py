@@ -54,7 +54,7 @@ CASES = [
     (WIRED.replace("size: 12", "size: 14").replace("from: 0, to: 10}", "from: 0, to: 10}\n        - {is: velocity, joint: 1, at: 12, type: i16, scale: 1000}"),
      {"scale: 1000": "scale: |1000"}, f"{IN}[6].scale", "one count of the velocity of joint 1 is 1000 rad/s"),
     (CHAIN.replace("mount: {position: [-0.42, 0, 0.09]}\n", ""), {"hapticd-device": "|hapticd-device"}, "mount", "mount: {position: [-0.42, 0, 0.09]} puts"),
-    (CHAIN, {"force: 2": "force: |200"}, "limits.force", "in half of twelve poses, as it rests stretched out"),
+    (CHAIN, {"force: 2": "force: |200", "max_force: 5": "max_force: 500"}, "limits.force", "in half of twelve poses, as it rests stretched out"),
     (CHAIN, {"- [0.22, 0": "- [|2.2, 0"}, "parameters.arm.dh[1][0]", "was 0.22 m meant?"),
     (WIRED, {"force: 2,": "force: 2, slew: |2,"}, "limits.slew", "2 N/ms is 2000 N/s"),
     (WIRED, {"force: 2,": "force: 2, power: |0.0001,"}, "limits.power", "cannot be felt"),

@@ -114,6 +114,12 @@ def cube(change=lambda all: None, half=0.05):
     return "format: hapticd-model/1\nsurfaces:\n" + "".join("\n".join(lines) + "\n" for lines in all_of_them.values())
 
 
+def in_large_units(lines):  # told at the first point that is farthest from the middle
+    first = next(iter(lines.values()))
+    at = next(i for i, line in enumerate(first) if line.startswith("      - ["))
+    first[at] = first[at].replace("- [", "- |[")
+
+
 def mistyped(lines):  # a corner of the front face
     lines["front"][-1] = "      - |[0.055, 0.05, 0.05]"
 
@@ -144,8 +150,8 @@ def bulge(turned):
 
 
 MODELS = [
-    ("a cube in mm", "nurbs_rigid", cube(half=50).replace("  - name: right", "  |- name: right"), "173 mm is 0.173 m"),
-    ("a cube in cm", "nurbs_rigid", cube(half=5).replace("  - name: right", "  |- name: right"), "17.3 m large"),
+    ("a cube in mm", "nurbs_rigid", cube(in_large_units, half=50), "173 mm is 0.173 m"),
+    ("a cube in cm", "nurbs_rigid", cube(in_large_units, half=5), "17.3 m large"),
     ("a face without area", "nurbs_rigid", cube(flat), "no area"),
     ("a name given twice", "nurbs_rigid", cube(second_right), '"right" is also the name of surfaces[0]'),
     ("a corner mistyped", "nurbs_rigid", cube(mistyped), "5 mm away"),

@@ -53,7 +53,7 @@ def named(house):
     name = f"hapticd-{second.pid}"
     check("a second run has a name with its number", house.serves(name), house.files())
     code, _, err = house.ask("ctl", "--name", "nobody", "status")
-    check("who asks for another is told those that run", code == 1 and f"(hapticd, {name})" in err, err)
+    check("who asks for another is told those that run", code == 1 and f"these run: hapticd, {name}" in err, err)
     second.kill()
     second.wait()
     left = [file for file in house.files() if file.startswith(name)]
