@@ -219,11 +219,6 @@ void coarseCounts(const Node& root, const Side& side, const host::DeviceInstance
   }
 }
 
-double nearestPowerOfTwo(double x) {
-  int exponent = 0;
-  return std::ldexp(std::frexp(x, &exponent) < M_SQRT1_2 ? 0.5 : 1.0, exponent);
-}
-
 /// Warns of a scale of 360 / N, where N is a usual number of counts in a turn: such a number is in degrees per count.
 void degreesPerCount(const Side& side) {
   constexpr double kTurns = 4, kRounding = 3e-4, kDecimal = 500;  // turns that a field covers; relative error
@@ -232,7 +227,8 @@ void degreesPerCount(const Side& side) {
     const double scale = std::abs(field.scale), counts = 360 / scale;
     const bool wide = field.type != codec::Type::kFloat && std::ldexp(scale, field.bits) > kTurns * 2 * M_PI;
     if (!(scale > 0) || !wide || side.fields.items[i].find("scale") == nullptr) continue;
-    const double binary = nearestPowerOfTwo(counts), decimal = kDecimal * std::round(counts / kDecimal);
+    const double binary = std::ldexp(1.0, std::ilogb(counts * M_SQRT2));  // the nearest power of two
+    const double decimal = kDecimal * std::round(counts / kDecimal);
     const auto is = [counts](double usual, double error) { return std::abs(counts / usual - 1) < error; };
     if (!is(binary, kRounding) && !(counts < 100 * kDecimal && is(decimal, kRounding / 10))) continue;
     side.warn(i, "scale",
