@@ -33,7 +33,8 @@ set(HAPTICD_MODULE_DIR lib/hapticd) # plugins/ and devices/ below it
 add_library(hapticd_options INTERFACE)
 target_compile_options(hapticd_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow $<$<BOOL:${HAPTICD_WERROR}>:-Werror>
-  # std::stable_sort of libstdc++ 12 calls a deprecated function of its own, and clang 22 says so at each use
+  # std::stable_sort of libstdc++ 12 calls a deprecated function of its own, and clang 22 says so at each use; g++ still
+  # tells of deprecated calls of our own
   $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-deprecated-declarations>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # g++ 12 sees overlaps in std::string operator+ that are not there (GCC 105651)
   # in a unity build every file is included: its anonymous namespace is none of a header

@@ -13,6 +13,7 @@
 
 #include "diagnostics/key_place.hpp"
 #include "diagnostics/value_plausibility.hpp"
+#include "kernels/brep/triangle_foot.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -98,21 +99,6 @@ double windings(const Solid& solid, const Vector3d& p) {
   return angle / (4 * M_PI);
 }
 
-double distanceToSegment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
-  const Vector3d way = b - a;
-  const double length = way.squaredNorm();
-  const double share = length > 0 ? std::clamp((p - a).dot(way) / length, 0.0, 1.0) : 0;
-  return (a + share * way - p).norm();
-}
-
-double distanceTo(const Triangle& t, const Vector3d& p) {
-  const Vector3d normal = (t.b - t.a).cross(t.c - t.a);
-  const bool above = normal.cross(t.b - t.a).dot(p - t.a) >= 0 && normal.cross(t.c - t.b).dot(p - t.b) >= 0 &&
-                     normal.cross(t.a - t.c).dot(p - t.c) >= 0;
-  if (above && normal.squaredNorm() > 0) return std::abs(normal.normalized().dot(p - t.a));
-  return std::min({distanceToSegment(p, t.a, t.b), distanceToSegment(p, t.b, t.c), distanceToSegment(p, t.c, t.a)});
-}
-
 /// Returns the greatest depth [m] of the points of one solid in another.
 double depthIn(const Solid& inner, const Solid& outer, size_t& tests) {
   constexpr double kInside = 0.9;
@@ -121,7 +107,8 @@ double depthIn(const Solid& inner, const Solid& outer, size_t& tests) {
     if (!outer.box.contains(p) || tests + outer.triangles.size() > kMostTests) continue;
     tests += outer.triangles.size();
     double depth = std::numeric_limits<double>::max();
-    for (const Triangle& t : outer.triangles) depth = std::min(depth, distanceTo(t, p));
+    for (const Triangle& t : outer.triangles)
+      depth = std::min(depth, (brep::triangleFoot(p, t.a, t.b, t.c).point - p).norm());
     if (depth > std::max(deepest, kOverlap) && windings(outer, p) > kInside) deepest = depth;
   }
   return deepest;

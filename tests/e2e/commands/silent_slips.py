@@ -64,12 +64,16 @@ TOLD = [
     (scene(model("door", "box", below="    motion: kinematic\n    path: rise.csv\n"), top=ARM + "hand: {script: guided}\n"), {}, "models[0].pose", "33.5 mm deep"),
     (scene(model("door", "box", below="    motion: kinetic\n    path: rise.csv\n")), {}, "models[0].motion", 'did you mean "kinematic"?'),
     (scene(model(below="    motion: static\n", more="stiffness: 800, motion: dynamic, mass: 1")), {}, "models[0].motion", "as models[0].parameters.motion"),
+    (scene(model("door", "box", below="    motion: static\n    path: rise.csv\n")), {}, "models[0].path", "write motion: kinematic in line 7"),
+    (scene(model("door", "box", below="    path: turns.csv\n")), {}, "t", "does not grow"),
+    (scene(model("door", "box", below="    path: turns.csv\n")), {}, "qw", "the quaternion has length 2"),
     (BUTTON, {"[]": "[[0, 0], [4, 0.003], [2, 0.004], [3, 0.005]]"}, "models[0].parameters.detent", "the columns seem to be swapped"),
     (BUTTON, {"[]": "[[0, 1], [0.003, 4], [0.004, 2]]"}, "models[0].parameters.detent", "[0, 1], expected [0, 0]"),
     (scene(model(), top=ARM + "hand: {script: press, path: rise.csv, radius: 0.053}\n"), {}, "hand.path", "replace the script in line 3 by script: path"),
 ]
 # What must not be told of a file, whatever else is.
 UNTOLD = [
+    (CHAIN.replace("pose: [0, 0, 0]", "pose: [0, 0, x]").replace("[-0.42, 0, 0.09]", "[0.42, 0, 0.09]"), "is a sign or a decimal point wrong?"),
     (scene(model("door", "box", below="    motion: kinetic\n    path: rise.csv\n")), "does not follow its path"),
     (scene(model(more="stiffness: 800, texture: {amplitude: 0.1, wavelength: 0.002}")), "cannot be set up"),
     (WIRED.replace('{id: "1209:0a0a"}', "{vendor: 1209, product: 0486}"), "begins with a zero"),
@@ -102,9 +106,10 @@ def changed(text, changes):
 
 
 def files(folder):
-    for name, rows in (("far.csv", "0,0,0,0\n2000,50,0,0\n"), ("rise.csv", "0,0,0,0.05\n2,0.02,0,0.05\n")):
+    for name, rows in (("far.csv", "0,0,0,0\n2000,50,0,0\n"), ("rise.csv", "0,0,0,0.05\n2,0.02,0,0.05\n"),
+                       ("turns.csv", "2,0,0,0.05,1,0,0,0\n1,0.02,0,0.05,0,0,0,2\n")):
         with open(os.path.join(folder, name), "w") as out:
-            out.write("t,x,y,z\n" + rows)
+            out.write("t,x,y,z" + (",qw,qx,qy,qz" if name == "turns.csv" else "") + "\n" + rows)
     for number, (text, changes, key, word) in enumerate(TOLD):
         told = answer(folder, number, changed(text, changes))
         hits = [one for one in told if one["key"] == key and word in one["what"]]
