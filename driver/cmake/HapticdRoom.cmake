@@ -42,3 +42,11 @@ function(hapticd_no_deadline)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endforeach()
 endfunction()
+
+# hapticd_interactive(TARGET...): a person waits for this code. It handles text and leaves computing to other rooms, so -Og is
+# enough, which compiles in four fifths of the time that -O1 needs.
+function(hapticd_interactive)
+  foreach(target ${ARGN})
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Og>)
+  endforeach()
+endfunction()
