@@ -70,6 +70,18 @@ def around_the_tip(client, ball):
         check("the same when it is enabled around the tip", largest(client, 200) == 0, largest(client, 200))
 
 
+def away_from_the_tip(client):
+    """A model that no tip is in does not wait, whether it is traced (near) or not (far)."""
+    with client.lead_hand(ARM) as hand:
+        for x in (0.03, -0.06):
+            hand.put([x, 0, 0])
+            check("the hand is elsewhere", until(lambda: abs(client.state(ARM).position[0] - x) < 0.002))
+            client.ask(do="disable", model="ball")
+            answer = client.ask(do="enable", model="ball")
+            check(f"nobody is told to leave a model that is elsewhere, x = {x}", "waiting" not in answer, answer)
+            check("nor by list", client.ask(do="list")["models"][-1]["waits"] is False, client.ask(do="list"))
+
+
 def words_of_answers(client, folder):
     status = client.ask(do="status")
     check("status says where the daemon is found", status.get("name") == "changed" and status.get("socket") == os.path.join(folder, "changed.sock"), status)
@@ -154,6 +166,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     until(lambda: os.path.exists(os.path.join(scratch, "changed.sock")), 30)
     with hapticd.connect("changed", folder=scratch) as client:
         around_the_tip(client, write(scratch, "ball", [("ball", 0.1)]))
+        away_from_the_tip(client)
         client.ask(do="remove", model="ball")
         words_of_answers(client, scratch)
         permission(client, scratch)
