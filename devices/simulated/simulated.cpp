@@ -27,7 +27,7 @@ class SimulatedArm : public Device, public Parameters {
                                     "any serial chain), and the hand that holds it."};
   static constexpr auto fields() {
     using Table = ParameterTable<SimulatedArm>;
-    return join(Table::arm(), Table::joint(), Table::hand());
+    return join(Table::arm(), Table::device(), Table::joint(), Table::hand());
   }
 
   void open(hdv_info& info) {
