@@ -126,7 +126,8 @@ void printCapabilities(uint32_t flags) {
                 {HDV_C_WATCHDOG, "hardware watchdog cuts its motors"},
                 {HDV_C_SIMULATED, "simulated"},
                 {HDV_C_CALIBRATION, "must be calibrated: hapticd device calibrate FILE"},
-                {HDV_C_UNVERIFIED, "description not tried on hardware"}};
+                {HDV_C_UNVERIFIED, "description not tried on hardware"},
+                {HDV_C_FORCE_ASSUMED, "continuous force is not stated for this arm"}};
   for (const auto& capability : kTexts)
     if ((flags & capability.flag) != 0) std::printf("  %s\n", capability.text);
 }
