@@ -55,7 +55,8 @@ std::string socketOf(const CtlArguments& options) {
   return status::runtimeFolderOf(options.name) + "/" + options.name + ".sock";
 }
 
-/// Waits for the start of the daemon as long as --wait allows, and says so. If there is none then, the request says it.
+/// Waits for the start of the daemon as long as --wait allows, and says so. If there is still none, the request reports
+/// it.
 void awaitDaemon(const CtlArguments& options) {
   if (options.wait <= 0 || control::connectTo(socketOf(options))) return;
   std::fprintf(stderr, "waiting at most %g s for the daemon %s; %s\n", options.wait, options.name.c_str(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd device list|info`: modules, device files, what is plugged in, and the facts of one arm.
+/// `hapticd device list|info`: prints modules, device files and what is plugged in, or the facts of one arm.
 #include <algorithm>
 #include <array>
 #include <memory>
