@@ -45,7 +45,12 @@ struct ParameterTable {
                  "phantom: l1 l2 l3 l5 l6; default: those of the Premium 1.5."),
         F::array("arm.max_torque", &T::arm_torque, "N m", 1, 0, 16, 0, 1e5, "[]",
                  "Largest torque of each joint, behind its gear, as in the device file of a real arm. It replaces "
-                 "joint.max_torque."),
+                 "joint.max_torque.")};
+  }
+
+  /// What the arm reports of itself, and how it is simulated.
+  static constexpr auto device() {
+    return std::array{
         F::real("device.rate", &T::rate, "Hz", 1, 100000, 1000,
                 "Sample rate that the arm reports. With servo.pace: device, its samples come at this rate."),
         F::real("device.max_force", &T::max_force, "N", 0, 10000, 8.5, "Largest force that the arm reports."),

@@ -27,7 +27,11 @@ class SimulatedArm : public Device, public Parameters {
                                     "any serial chain), and the hand that holds it."};
   static constexpr auto fields() {
     using Table = ParameterTable<SimulatedArm>;
-    return join(Table::arm(), Table::joint(), Table::hand());
+    return join(Table::arm(), Table::device(), Table::joint(), Table::hand());
+  }
+
+  void given(const char* id) {
+    if (std::strcmp(id, "device.continuous_force") == 0) force_stated_ = true;
   }
 
   void open(hdv_info& info) {
@@ -152,6 +156,8 @@ class SimulatedArm : public Device, public Parameters {
     info.joint_count = static_cast<uint32_t>(count);
     info.capabilities = HDV_C_SIMULATED | HDV_C_PACING | (torque_sensors ? uint32_t{HDV_C_TORQUE} : 0u) |
                         (joints_.stiffness.size() > 0 ? uint32_t{HDV_C_POSITION} : 0u);
+    // the default is what the motors of a Premium 1.5 sustain
+    if (arm() != Kind::kPremium15 && !force_stated_) info.capabilities |= HDV_C_FORCE_ASSUMED;
     info.rate_hz = rate;
     info.max_force = max_force;
     info.continuous_force = continuous_force;
@@ -242,6 +248,7 @@ class SimulatedArm : public Device, public Parameters {
   std::unique_ptr<Hand> hand_;
   hdv_ext_kinematics extension_{};
   hdv_ext_links links_{};
+  bool force_stated_ = false;  ///< the device file gives device.continuous_force
   JointSettings joints_;
   HandTarget target_;
   std::array<Drive, kMaxDelay + 1> drives_;  ///< the newest drive is at index written_

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd check`: validates files and prints every problem, warns of what cannot be stable; also prints the JSON
+/// `hapticd check`: validates files, prints every problem, and warns of what cannot be stable. It also prints the JSON
 /// Schema of a format.
 #include <algorithm>
 #include <map>

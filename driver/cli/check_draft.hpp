@@ -11,6 +11,7 @@ namespace hapticd::cli {
 /// @return true if the hands of the arms were moved through the models that have no problem
 /// @param draft the part of the scene that could be read
 /// @param problems problems of the scene; those of its models are added
+/// @param warnings warnings about the scene; those about its models are added
 bool checkDraft(scene::Scene draft, document::Problems& problems, document::Problems& warnings);
 
 }  // namespace hapticd::cli

@@ -26,10 +26,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct CtlArguments {
-  std::string name = "hapticd", model, device, hand, parameter, value, file, line, obj;
+  std::string name = "hapticd", model, device, parameter, value, file, line, obj;
   std::vector<double> position, orientation;
   std::optional<double> seconds;
-  double tolerance = 0, hold = 1, wait = 0;
+  double tolerance = 0, wait = 0;
   uint32_t number = 0;
   bool consent = false, follow = false, tells_socket = false;
 };
@@ -55,7 +55,8 @@ std::string socketOf(const CtlArguments& options) {
   return status::runtimeFolderOf(options.name) + "/" + options.name + ".sock";
 }
 
-/// Waits for the start of the daemon as long as --wait allows, and says so. If there is none then, the request says it.
+/// Waits for the start of the daemon as long as --wait allows, and says so. If there is still none, the request reports
+/// it.
 void awaitDaemon(const CtlArguments& options) {
   if (options.wait <= 0 || control::connectTo(socketOf(options))) return;
   std::fprintf(stderr, "waiting at most %g s for the daemon %s; %s\n", options.wait, options.name.c_str(),
@@ -277,21 +278,12 @@ void addEvents(const Command& ctl, const std::shared_ptr<CtlArguments>& options,
 void addLead(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
   const Command lead =
       ctl.addSubcommand("lead", "Move a kinematic model, or the simulated hand, by lines of standard input.");
-  lead.addOption("model", options->model, "name of the model");
-  lead.addOption("--hand", options->hand, "device whose simulated hand is led, instead of a model");
-  lead.addOption("--hold", options->hold, "how long the lead goes on after the last line [s]; default: 1")
-      .within(0, 1e9);
-  lead.footer(
-      "A line is \"x y z\" in m, or \"x y z qw qx qy qz\", world frame. The model follows with at most 1 m/s and\n"
-      "20 m/s^2. When the lead ends, the model or the hand brakes and stays.\n"
-      "Example:\n  echo 0.1 0 0 | hapticd ctl lead door");
-  lead.callback([options, &exit_code] {
-    if (options->model.empty() == options->hand.empty()) {
-      exit_code = fail(kBadInput, "lead: expected either a model or --hand DEVICE");
-    } else {
-      awaitDaemon(*options);
-      exit_code = leadByLines({socketOf(*options), options->model, options->hand, options->hold});
-    }
+  const auto what = std::make_shared<LeadOptions>();
+  addLeadOptions(lead, *what);
+  lead.callback([options, what, &exit_code] {
+    what->socket = socketOf(*options);
+    if (what->complete()) awaitDaemon(*options);
+    exit_code = leadByLines(*what);
   });
 }
 
@@ -308,6 +300,22 @@ void addModelRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& o
         .addOption("model", options->model, "name of the model")
         .required();
 
+  const Command move = addRequest(ctl, "move", "Move a kinematic model.", options, exit_code, [options](Json& json) {
+    json["model"] = options->model, json["position"] = options->position;
+    if (!options->orientation.empty()) json["orientation"] = options->orientation;
+    if (options->seconds) json["seconds"] = *options->seconds;
+  });
+  move.addOption("model", options->model, "name of the model").required();
+  move.addOption("--position", options->position, "x y z [m], world frame").required().expected(3);
+  move.addOption("--orientation", options->orientation,
+                 "w x y z, a unit quaternion; default: the model keeps its orientation")
+      .expected(4);
+  move.addOption("--seconds", options->seconds,
+                 "duration of the motion [s]; the daemon takes longer if this would be too fast; default: a speed of "
+                 "at most 0.2 m/s");
+}
+
+void addParameterRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
   const Command set =
       addRequest(ctl, "set", "Set a live parameter of a model.", options, exit_code, [options](Json& json) {
         json["model"] = options->model, json["parameter"] = options->parameter;
@@ -328,20 +336,6 @@ void addModelRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& o
                                  });
   get.addOption("model", options->model, "name of the model").required();
   get.addOption("parameter", options->parameter, "name of one parameter; if it is left out, all parameters are shown");
-
-  const Command move = addRequest(ctl, "move", "Move a kinematic model.", options, exit_code, [options](Json& json) {
-    json["model"] = options->model, json["position"] = options->position;
-    if (!options->orientation.empty()) json["orientation"] = options->orientation;
-    if (options->seconds) json["seconds"] = *options->seconds;
-  });
-  move.addOption("model", options->model, "name of the model").required();
-  move.addOption("--position", options->position, "x y z [m], world frame").required().expected(3);
-  move.addOption("--orientation", options->orientation,
-                 "w x y z, a unit quaternion; default: the model keeps its orientation")
-      .expected(4);
-  move.addOption("--seconds", options->seconds,
-                 "duration of the motion [s]; the daemon takes longer if this would be too fast; default: a speed of "
-                 "at most 0.2 m/s");
 }
 
 void addSceneRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
@@ -386,6 +380,7 @@ void addCtl(const Command& app, int& exit_code) {
   socket.callback([options, &exit_code] { awaitDaemon(*options), exit_code = showSocket(*options); });
   addRequest(ctl, "list", "List the models and their live parameters.", options, exit_code, nothing);
   addModelRequests(ctl, options, exit_code);
+  addParameterRequests(ctl, options, exit_code);
   addSceneRequests(ctl, options, exit_code);
   addDeviceRequests(ctl, options, exit_code);
   addGeometryRequest(ctl, options, exit_code);

@@ -82,7 +82,19 @@ int putLines(const control::Client& client, link::PoseSlot& slot) {
 
 }  // namespace
 
+void addLeadOptions(const Command& lead, LeadOptions& options) {
+  lead.addOption("model", options.model, "name of the model");
+  lead.addOption("--hand", options.hand, "device whose simulated hand is led, instead of a model");
+  lead.addOption("--hold", options.hold, "how long the lead goes on after the last line [s]; default: 1")
+      .within(0, 1e9);
+  lead.footer(
+      "A line is \"x y z\" in m, or \"x y z qw qx qy qz\", world frame. The model follows with at most 1 m/s and\n"
+      "20 m/s^2. When the lead ends, the model or the hand brakes and stays.\n"
+      "Example:\n  echo 0.1 0 0 | hapticd ctl lead door");
+}
+
 int leadByLines(const LeadOptions& options) {
+  if (!options.complete()) return fail(kBadInput, "lead: expected either a model or --hand DEVICE");
   auto client = control::Client::connect(options.socket);
   if (!client) return fail(kFailed, client.error());
   Json request = {{"do", "lead"}};

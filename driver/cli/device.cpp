@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd device list|info`: modules, device files, what is plugged in, and the facts of one arm.
+/// `hapticd device list|info`: prints modules, device files and what is plugged in, or the facts of one arm.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -126,7 +126,8 @@ void printCapabilities(uint32_t flags) {
                 {HDV_C_WATCHDOG, "hardware watchdog cuts its motors"},
                 {HDV_C_SIMULATED, "simulated"},
                 {HDV_C_CALIBRATION, "must be calibrated: hapticd device calibrate FILE"},
-                {HDV_C_UNVERIFIED, "description not tried on hardware"}};
+                {HDV_C_UNVERIFIED, "description not tried on hardware"},
+                {HDV_C_FORCE_ASSUMED, "continuous force is not stated for this arm"}};
   for (const auto& capability : kTexts)
     if ((flags & capability.flag) != 0) std::printf("  %s\n", capability.text);
 }

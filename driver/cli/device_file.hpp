@@ -9,8 +9,8 @@
 
 namespace hapticd::cli {
 
-/// [main] Returns every problem of a device file, those that only its module can find among them, as `hapticd check`
-/// does. Touches no hardware.
+/// [main] Returns the problems of a device file that `hapticd check` tells, also those that only its module can find.
+/// Touches no hardware.
 document::Problems problemsOfDevice(const std::string& file);
 
 /// [main] Loads a device file, or prints every problem on standard error and returns nothing.

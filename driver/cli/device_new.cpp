@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd device new`: a commented device file to start from, from a few questions or options.
+/// `hapticd device new`: writes a commented device file to start from. It asks for what no option gives.
 #include <fmt/format.h>
 #include <unistd.h>
 

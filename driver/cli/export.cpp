@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd export`: converts a recording for other tools.
+/// `hapticd export`: converts a recording, or the last seconds of a running daemon, for other tools.
 #include "export/export.hpp"
 
 #include <cstdio>
@@ -11,14 +11,16 @@
 #include "cli/command.hpp"
 #include "cli/open_end.hpp"
 #include "cli/output_file.hpp"
+#include "control/liveness.hpp"
 #include "document/suggestion.hpp"
+#include "status/page_file.hpp"
 
 namespace hapticd::cli {
 
 namespace {
 
 struct ExportArguments {
-  std::string file, mcap, csv, stream;
+  std::string name = "hapticd", file, mcap, csv, stream;
 };
 
 void printExport(const std::string& file, const record::Exported& done) {
@@ -107,19 +109,35 @@ int exportRecording(const ExportArguments& options) {
   return code == kWorked && !options.csv.empty() ? toCsv(**recording, options) : code;
 }
 
+/// Exports the black box of a daemon, which has the last 10 s. A daemon that was killed has left it, too.
+int exportDaemon(ExportArguments options, bool named) {
+  const std::string base = status::runtimeFolderOf(options.name) + "/" + options.name;
+  options.file = base + ".blackbox.h5";
+  std::error_code none;
+  if (control::isAlive(base + ".sock") || std::filesystem::exists(options.file, none)) return exportRecording(options);
+  return fail(kFailed, (named ? "" : "no recording is given (hapticd export RECORDING), and ") +
+                           control::noDaemonText(base + ".sock"));
+}
+
 }  // namespace
 
 void addExport(const Command& app, int& exit_code) {
   auto options = std::make_shared<ExportArguments>();
-  const Command command = app.addSubcommand("export", "Convert a recording for other tools: MCAP or CSV.");
-  command.addOption("recording", options->file, "recording, dump, or black box of a crash").required();
+  const Command command = app.addSubcommand(
+      "export", "Convert a recording, or the last 10 s of a running daemon, for other tools: MCAP or CSV.");
+  command.addOption("recording", options->file,
+                    "recording, dump, or black box of a crash; default: the last 10 s of a running daemon");
+  command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`; default: hapticd")
+      .excludes("recording");
   command.addOption("--mcap", options->mcap, "MCAP file, for Foxglove, PlotJuggler and rosbag2");
   command.addOption("--csv", options->csv,
                     "folder for one CSV file per stream; with --stream, the CSV file of that stream");
   command.addOption("--stream", options->stream, "with --csv: the only stream to write (ticks, contacts, poses, ...)")
       .needs("--csv");
-  command.footer("Example:\n  hapticd export run.h5 --mcap run.mcap");
-  command.callback([options, &exit_code] { exit_code = exportRecording(*options); });
+  command.footer("Examples:\n  hapticd export run.h5 --mcap run.mcap\n  hapticd export --name left --csv last-seconds");
+  command.callback([options, command, &exit_code] {
+    exit_code = options->file.empty() ? exportDaemon(*options, command.given("--name")) : exportRecording(*options);
+  });
 }
 
 }  // namespace hapticd::cli

@@ -94,8 +94,8 @@ std::vector<std::string> leaveOutQuarantined(scene::Scene& scene, const std::fil
   return messages;
 }
 
-/// Warns, before any force is sent, of paths that are too fast, of arms that give less force, and of stiffnesses that
-/// cannot be stable on the opened arms.
+/// Warns, before any force is sent, of paths that are too fast, of arms that push less because they are slow, and of
+/// stiffnesses that cannot be stable on the opened arms.
 void warnOfSettings(servo::Runner& runner, double rate) {
   scene::Scene scene = runner.scene();
   scene.servo.rate = rate;

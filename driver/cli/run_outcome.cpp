@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/run_outcome.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -71,20 +70,6 @@ std::string onlyPusher(const std::vector<servo::BlackBoxRow>& rows, const record
   return hardest == nullptr ? "" : "process " + std::to_string(hardest->pid) + " (" + hardest->program + ")";
 }
 
-/// [N] Returns the force that an arm sustains; 0 if nobody says it: a simulated arm of another kind than the
-/// Premium 1.5 has the Premium's force, unless its file gives one.
-double sustainedBy(const scene::Device& device, double stated) {
-  const auto given = [&device](const char* id) {
-    return std::find_if(device.parameters.begin(), device.parameters.end(),
-                        [id](const scene::Value& value) { return value.id == id; });
-  };
-  const auto kind = given("arm.kind");
-  const bool premium = kind == device.parameters.end() || kind->number == 0;
-  return device.module == "simulated" && !premium && given("device.continuous_force") == device.parameters.end()
-             ? 0
-             : stated;
-}
-
 /// Warns if the first arm gave more force over the last seconds than it sustains. The black box keeps the forces of the
 /// first arm.
 void warnOfHeat(const servo::Runner& runner, const record::RunReport& report) {
@@ -93,9 +78,10 @@ void warnOfHeat(const servo::Runner& runner, const record::RunReport& report) {
   const std::vector<servo::BlackBoxRow> rows = runner.telemetry().blackBox();
   for (const servo::BlackBoxRow& row : rows) forces.push_back(std::hypot(row.force[0], row.force[1], row.force[2]));
   if (runner.arms().empty() || static_cast<double>(forces.size()) < kHeatSeconds * report.rate_hz) return;
-  const scene::Device& device = runner.scene().devices[0];
-  const double sustained = sustainedBy(device, runner.arms()[0]->info().continuous_force);
-  const std::string text = tune::overheating(device.name, sustained, forces, report.rate_hz, onlyPusher(rows, report));
+  const hdv_info& info = runner.arms()[0]->info();
+  const double sustained = (info.capabilities & HDV_C_FORCE_ASSUMED) != 0 ? 0 : info.continuous_force;
+  const std::string text =
+      tune::overheating(runner.scene().devices[0].name, sustained, forces, report.rate_hz, onlyPusher(rows, report));
   if (!text.empty()) log::write(HSP_LOG_WARNING, "", text);
 }
 

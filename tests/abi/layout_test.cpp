@@ -117,9 +117,9 @@ TEST(Layout, KeepsTheValuesOfItsConstants) {
                             HSP_R_ORIENTATION, HSP_C_MOVES,    HSP_C_DEFORMS};
   const unsigned expected_flags[] = {1, 2, 1, 2, 4, 1, 2};
   for (size_t i = 0; i < std::size(flags); ++i) EXPECT_EQ(flags[i], expected_flags[i]);
-  const unsigned device[] = {HDV_C_VELOCITY, HDV_C_TORQUE,    HDV_C_POSITION,    HDV_C_PACING,
-                             HDV_C_WATCHDOG, HDV_C_SIMULATED, HDV_C_CALIBRATION, HDV_C_UNVERIFIED};
-  for (unsigned i = 0; i < 8; ++i) EXPECT_EQ(device[i], 1u << i);
+  const unsigned device[] = {HDV_C_VELOCITY,  HDV_C_TORQUE,      HDV_C_POSITION,   HDV_C_PACING,       HDV_C_WATCHDOG,
+                             HDV_C_SIMULATED, HDV_C_CALIBRATION, HDV_C_UNVERIFIED, HDV_C_FORCE_ASSUMED};
+  for (unsigned i = 0; i < std::size(device); ++i) EXPECT_EQ(device[i], 1u << i);
   const unsigned samples[] = {HDV_S_VELOCITY, HDV_S_TORQUE, HDV_S_CALIBRATED, HDV_S_FAULT, HDV_S_LOST};
   for (unsigned i = 0; i < 5; ++i) EXPECT_EQ(samples[i], 1u << i);
   EXPECT_EQ(HDV_OFF, 0);

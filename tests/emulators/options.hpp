@@ -23,19 +23,20 @@ struct Options {
 
 inline volatile std::sig_atomic_t g_unplug = 0, g_begin = 0, g_order = 0, g_end = 0;
 
+[[noreturn]] inline void exitWithUsage(const char* program) {
+  std::fprintf(stderr,
+               "usage: %s KIND [--serial S] [--replug-after S] [--hand-stiffness N/m] [--hand-rise M]\n"
+               "       [--hold 1] [--latency 1] [--faults FILE]\n  kinds:",
+               program);
+  for (const std::string& kind : emulatedKinds()) std::fprintf(stderr, " %s", kind.c_str());
+  std::fprintf(stderr, "\n");
+  std::exit(2);
+}
+
 /// Exits with a usage text when the arguments are wrong.
 inline Options readOptions(int argc, char** argv) {
   Options o;
-  const auto usage = [&] {
-    std::fprintf(stderr,
-                 "usage: %s KIND [--serial S] [--replug-after S] [--hand-stiffness N/m] [--hand-rise M]\n"
-                 "       [--hold 1] [--latency 1] [--faults FILE]\n  kinds:",
-                 argv[0]);
-    for (const std::string& kind : emulatedKinds()) std::fprintf(stderr, " %s", kind.c_str());
-    std::fprintf(stderr, "\n");
-    std::exit(2);
-  };
-  if (argc < 2 || argc % 2 != 0) usage();
+  if (argc < 2 || argc % 2 != 0) exitWithUsage(argv[0]);
   o.kind = argv[1];
   o.hand = defaultHand(o.kind);
   for (int i = 2; i + 1 < argc; i += 2) {
@@ -55,7 +56,7 @@ inline Options readOptions(int argc, char** argv) {
     else if (name == "--hold")
       o.hold = std::atoi(argv[i + 1]) != 0;
     else
-      usage();
+      exitWithUsage(argv[0]);
   }
   std::signal(SIGUSR1, [](int) { g_unplug = 1; });
   std::signal(SIGUSR2, [](int) { g_begin = 1; });

@@ -67,12 +67,55 @@ Nanoseconds latenessBy(uint32_t dice) {
   return dice % 500 == 0 ? dice % 7'000'000 : 0;
 }
 
+constexpr int kModels = 60;
+
+/// Models whose plugins fail at some tick of the run.
+std::vector<scene::Model> failingModels(std::mt19937& random, uint64_t ticks) {
+  std::vector<scene::Model> models;
+  for (int i = 0; i < kModels; ++i) {
+    scene::Model model =
+        testModel("misbehaving", {number(0, HSP_ENUM, i % 4),
+                                  number(1, HSP_INT, static_cast<double>(random() % std::max<uint64_t>(1, ticks))),
+                                  number(2, HSP_INT, 1 + static_cast<double>(random() % 40))});
+    model.name += std::to_string(i);
+    models.push_back(model);
+  }
+  return models;
+}
+
+/// What the whole run came to.
+struct Outcome {
+  record::RunReport report;
+  uint64_t late = 0, killed = 0, allocations = 0;
+  int silenced = 0;
+  double grown = 0;  ///< [MB]
+};
+
+/// Prints what came about. @return false if that was too little for a test
+bool enoughCame(const Check& check, const Outcome& run) {
+  using Long = unsigned long long;
+  std::printf(
+      "%llu ticks, %llu device faults (%llu cleared), %llu late wake-ups, %d of %d plugins silenced, %llu readers "
+      "killed, %llu allocations, memory %+.3f MB, %llu violations\n",
+      Long{run.report.ticks}, Long{check.faults}, Long{check.zeroed}, Long{run.late}, run.silenced, kModels,
+      Long{run.killed}, Long{run.allocations}, run.grown, Long{check.bad});
+  bool enough = check.faults > run.report.ticks / 10000 && run.silenced >= kModels / 4 && run.killed > 0;
+  for (const Fault fault : kInjected) {
+    const uint64_t times = check.kinds[static_cast<size_t>(fault)];
+    const std::string words = describe(fault);
+    std::printf("  %llu times: %s\n", Long{times}, words.substr(0, words.find(';')).c_str());
+    enough = enough && times > 0;
+  }
+  if (!enough) std::printf("too few faults came about: this was no test\n");
+  return enough;
+}
+
 int soak(uint64_t ticks, unsigned seed) {
-  constexpr int kModels = 60;
   std::mt19937 random(seed);
   Check check;
+  Outcome outcome;
   Rig* running = nullptr;
-  uint64_t count = 0, late = 0;
+  uint64_t count = 0;
   size_t memory = 0;
   uint64_t looked = 0;  // allocations of this program's own look at the memory
   const auto lateness = [&](Nanoseconds deadline) {
@@ -84,19 +127,10 @@ int soak(uint64_t ticks, unsigned seed) {
       looked = allocationsOfThread() - before;
     }
     const Nanoseconds by = latenessBy(random());
-    late += by > 0 ? 1 : 0;
+    outcome.late += by > 0 ? 1 : 0;
     return by;
   };
-  std::vector<scene::Model> more;
-  for (int i = 0; i < kModels; ++i) {  // plugin errors, spread over the run
-    scene::Model model =
-        testModel("misbehaving", {number(0, HSP_ENUM, i % 4),
-                                  number(1, HSP_INT, static_cast<double>(random() % std::max<uint64_t>(1, ticks))),
-                                  number(2, HSP_INT, 1 + static_cast<double>(random() % 40))});
-    model.name += std::to_string(i);
-    more.push_back(model);
-  }
-  Rig rig(6, lateness, ticks, "wall", {}, more, {number(4, HSP_BOOL, 1)});
+  Rig rig(6, lateness, ticks, "wall", {}, failingModels(random, ticks), {number(4, HSP_BOOL, 1)});
   running = &rig;
   const std::string page = std::filesystem::temp_directory_path() / ("soak-page-" + std::to_string(getpid()));
   auto file = status::PageFile::create(page);
@@ -104,29 +138,13 @@ int soak(uint64_t ticks, unsigned seed) {
   rig.telemetry->attach(std::make_unique<StatusWriter>(std::move(*file), rig.scene, rig.arms, 1000));
   DyingReaders readers(page);
   rig.loop->run();
-  const uint64_t killed = readers.stop();
+  outcome.killed = readers.stop();
   running = nullptr;
-  const double grown = (static_cast<double>(os::residentBytes()) - static_cast<double>(memory)) / 1e6;
-  int silenced = 0;
-  for (const ModelState& model : rig.world->core().models()) silenced += model.guard.quarantined() ? 1 : 0;
-  const record::RunReport report = rig.telemetry->report({});
-  std::printf(
-      "%llu ticks, %llu device faults (%llu cleared), %llu late wake-ups, %d of %d plugins silenced, %llu readers "
-      "killed, "
-      "%llu allocations, memory %+.3f MB, %llu violations\n",
-      static_cast<unsigned long long>(report.ticks), static_cast<unsigned long long>(check.faults),
-      static_cast<unsigned long long>(check.zeroed), static_cast<unsigned long long>(late), silenced, kModels,
-      static_cast<unsigned long long>(killed), static_cast<unsigned long long>(report.servo_allocations - looked),
-      grown, static_cast<unsigned long long>(check.bad));
-  bool enough = check.faults > ticks / 10000 && silenced >= kModels / 4 && killed > 0;
-  for (const Fault fault : kInjected) {
-    const uint64_t times = check.kinds[static_cast<size_t>(fault)];
-    const std::string words = describe(fault);
-    std::printf("  %llu times: %s\n", static_cast<unsigned long long>(times), words.substr(0, words.find(';')).c_str());
-    enough = enough && times > 0;
-  }
-  if (!enough) std::printf("too few faults came about: this was no test\n");
-  return check.bad == 0 && enough && report.servo_allocations == looked && grown < 1 ? 0 : 1;
+  outcome.grown = (static_cast<double>(os::residentBytes()) - static_cast<double>(memory)) / 1e6;
+  for (const ModelState& model : rig.world->core().models()) outcome.silenced += model.guard.quarantined() ? 1 : 0;
+  outcome.report = rig.telemetry->report({});
+  outcome.allocations = outcome.report.servo_allocations - looked;
+  return enoughCame(check, outcome) && check.bad == 0 && outcome.allocations == 0 && outcome.grown < 1 ? 0 : 1;
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// The state of the whole library. It is made at the first call, which may come from a static constructor. It is never
-/// destroyed, so that a program that leaves main() while the servo thread runs does not crash.
+/// destroyed, so that a program that leaves main() while the scheduler runs does not crash.
 #pragma once
 #include <array>
 #include <mutex>
@@ -13,7 +13,8 @@
 
 namespace hapticd::hd {
 
-constexpr size_t kMostArms = 16;  // handles are 0 to 15; some programs take the handle 260 for an error
+constexpr size_t kMostArms =
+    16;  // handles are 0 to 15, so none equals HD_BAD_HANDLE (260), which some programs test for
 
 class Library {
  public:

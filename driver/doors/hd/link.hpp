@@ -10,7 +10,7 @@
 
 namespace hapticd::hd {
 
-/// Only one thread at a time may call open, lead and close. Other threads may wait, push and read at the same time.
+/// Only one thread at a time may call open() and lead(). Other threads may wait, push and read at the same time.
 class Link {
  public:
   /// [main] Connects to the daemon of $HAPTICD_NAME. @param name name of the arm; empty for the first arm @param why

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Estimates the velocities of an arm from its states in the last ticks, because the daemon sends no velocities.
+/// Estimates the velocities of an arm from its states in the last ticks. The daemon sends no angular velocity, and the
+/// velocity of the tip only if its scene uses it.
 #pragma once
 #include <array>
 #include <cstddef>

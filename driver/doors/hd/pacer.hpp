@@ -22,7 +22,7 @@ class Pacer {
   /// [any] Sets how long before a tick is due [us] wait() begins to poll instead of sleeping. With 0 it only sleeps
   /// (see hapticd_listen).
   void listen(unsigned microseconds) { listen_us_ = microseconds; }
-  void endTick();  ///< [servo] tells the daemon, for every arm, that the program still runs
+  void endTick();  ///< tells the daemon, for every arm, that the program still runs
   double rate() const;
 
  private:

@@ -37,9 +37,10 @@ bool becomeRealTime() {
   return false;
 }
 
-/// Returns the time [us], before and after a tick is due, in which the servo loop polls for it instead of sleeping. It
-/// is the value of $HAPTICD_LISTEN. Without this variable it is a tenth of the period, at most 100 us, if the loop has
-/// real-time priority, and 0 if not: a busy loop would then only use up the time that the kernel gives to the thread.
+/// Returns the time [us], before and after a tick is due, in which the scheduler polls for it instead of sleeping. It
+/// is the value of $HAPTICD_LISTEN. Without this variable it is a tenth of the period, at most 100 us, if the
+/// scheduler's thread has real-time priority, and 0 if not: polling would then only use up the time that the kernel
+/// gives to the thread.
 unsigned listeningTime(bool real_time, double rate) {
   constexpr double kMost = 100, kShare = 0.1, kUsPerSecond = 1e6;
   if (const char* text = std::getenv("HAPTICD_LISTEN"); text != nullptr && *text != '\0') {
@@ -176,8 +177,8 @@ HDSchedulerHandle Scheduler::schedule(HDSchedulerCallback function, void* data, 
   return handle;
 }
 
-/// Runs a callback in ticks of the calling thread, because no servo loop runs, or because the caller is in the servo
-/// loop itself.
+/// Runs a callback in ticks of the calling thread, because the scheduler does not run, or because the caller is a
+/// callback itself.
 void Scheduler::runHere(HDSchedulerCallback function, void* data) {
   const bool nested = ticks_of_this_thread > 0;
   HDCallbackCode code = HD_CALLBACK_CONTINUE;
@@ -201,7 +202,7 @@ bool Scheduler::runToEnd(HDSchedulerCallback function, void* data, HDushort prio
     task->gone = true;
     tasks_.erase(std::remove(tasks_.begin(), tasks_.end(), task), tasks_.end());
   }
-  runHere(function, data);  // the servo loop has been stopped meanwhile
+  runHere(function, data);  // the scheduler has been stopped meanwhile
   return true;
 }
 

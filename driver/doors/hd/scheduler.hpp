@@ -28,6 +28,8 @@ class Scheduler {
   /// callbacks
   bool runToEnd(HDSchedulerCallback function, void* data, HDushort priority);
   bool unschedule(HDSchedulerHandle handle);  ///< removes a callback; returns false if it has ended or never existed
+  /// Returns true while a callback has not ended. @param wait true: first waits until it has ended or the scheduler
+  /// stops, unless a callback calls this function
   bool isScheduled(HDSchedulerHandle handle, bool wait);
 
   /// Sets the rate [Hz] of the callbacks. Returns false if it is not the daemon's rate divided by a whole number.

@@ -3,7 +3,7 @@
 ///
 /// To the page: {"type": "about" | "list" | "status" | "end" | "reset" | "playback", ...}, and {"type": "answer", "id":
 /// N, ...}. From the page: requests as in control.md with an "id", and for a recording also play, pause and seek. A
-/// page without the right to control may only send status, list and geometry.
+/// page without the right to control may only send status, list, geometry and feature.
 #pragma once
 #include <memory>
 

@@ -95,7 +95,7 @@ typedef struct hapticd_lead_page {
  * says what happened, and then which members of hapticd_event are set. */
 enum {
   HAPTICD_CLICK = 1, /* a button or switch snapped; model, probe, code: HAPTICD_WENT_IN or HAPTICD_CAME_OUT, or 0 if the
-                        direction is not known (a plugin that does not tell it, or a daemon of before) */
+                        direction is not known (a plugin that does not tell it, or an older daemon) */
   HAPTICD_TOUCH,     /* a probe touched a model, after 50 ms or more without contact; model, probe, value: force in N */
   HAPTICD_FAULT,     /* an arm's force was taken away; probe, code: which fault, value: the measured quantity */
   HAPTICD_CLEARED,   /* the fault of an arm has ended; probe */

@@ -24,7 +24,8 @@ enum {                              /* hdv_info.capabilities: what the arm and i
        HDV_C_WATCHDOG = 1u << 4,    /* the hardware switches its motors off when commands stop */
        HDV_C_SIMULATED = 1u << 5,   /* there is no real arm: forces are allowed without real-time rights */
        HDV_C_CALIBRATION = 1u << 6, /* the host sends no force before samples carry HDV_S_CALIBRATED */
-       HDV_C_UNVERIFIED = 1u << 7   /* nobody has tried the module or its device file on real hardware */
+       HDV_C_UNVERIFIED = 1u << 7,  /* nobody has tried the module or its device file on real hardware */
+       HDV_C_FORCE_ASSUMED = 1u << 8 /* nobody stated continuous_force for this arm: no heat is judged by it */
 };
 typedef struct hdv_info { /* module -> host: the host zeroes it, open() fills it in; 0 means unknown */
   uint32_t struct_size, joint_count, capabilities, buttons; /* 1 to HDV_MAX_JOINTS; HDV_C_*; number of buttons */

@@ -25,6 +25,8 @@ struct DeviceInfo {
 ///   void open(hdv_info&);  void start(const hdv_start&);   [main] may allocate, block and throw
 ///   hsp_status read(uint64_t now_ns, hdv_sample&) noexcept HSP_RT;           [rt]
 ///   hsp_status write(uint64_t now_ns, const hdv_command&) noexcept HSP_RT;   [rt]
+/// and may have
+///   void given(const char* id);   [main] called after the host has set a parameter: only those that the file gives
 /// and may hide the functions below. The text of an exception becomes the error that the user reads.
 class Device {
  public:
@@ -70,7 +72,10 @@ struct DeviceClass {
 
   static hsp_status set(hdv_device* device, uint32_t param, const hsp_value* value) {
     if (base(device).state_ != State::kClosed) return HSP_E_STATE;
-    return detail::assign(self(device), kFields, base(device).host_, param, value);
+    const hsp_status assigned = detail::assign(self(device), kFields, base(device).host_, param, value);
+    if constexpr (requires(T& object) { object.given(""); })
+      if (assigned == HSP_OK) self(device).given(kFields[param].param.id);
+    return assigned;
   }
   static hsp_status get(hdv_device* device, uint32_t param, hsp_value* value) {
     return detail::fetch(self(device), kFields, param, value);

@@ -20,51 +20,78 @@ const std::vector<ConformanceTest>& conformanceTests() {
   return kTests;
 }
 
-std::string fuzzOnce(const Recipe& recipe, uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> unit(0, 1);
-  auto made = Subject::make(recipe);
-  if (!made) return made.error();
-  const hsp_class& c = (*made)->description();
+namespace {
+
+/// A source of random numbers from 0 to 1.
+class Dice {
+ public:
+  explicit Dice(uint64_t seed) : random_(seed) {}
+  double operator()() { return unit_(random_); }
+
+ private:
+  std::mt19937_64 random_;
+  std::uniform_real_distribution<double> unit_{0, 1};
+};
+
+/// Gives about half of the parameters that the recipe leaves open a random value of their range.
+/// @return "", or which value was refused
+std::string setAtRandom(Subject& subject, const Recipe& recipe, Dice& unit) {
+  const hsp_class& c = subject.description();
   for (uint32_t i = 0; i < c.param_count; ++i) {
     const hsp_param& p = paramAt(c, i);
-    if (p.kind > HSP_ENUM || recipe.find(p.id) != nullptr || unit(random) < 0.5) continue;
+    if (p.kind > HSP_ENUM || recipe.find(p.id) != nullptr || unit() < 0.5) continue;
     hsp_value value{};
     value.kind = p.kind;
     const double most = p.kind == HSP_ENUM ? p.choice_count - 1.0 : p.max, least = p.kind == HSP_ENUM ? 0 : p.min;
-    value.number = least + unit(random) * (most - least);
+    value.number = least + unit() * (most - least);
     if (p.kind != HSP_REAL) value.number = std::floor(value.number);
     if (!std::isfinite(value.number)) continue;
-    if (c.set((*made)->handle(), i, &value) < 0)
+    if (c.set(subject.handle(), i, &value) < 0)
       return std::string(p.id) + " refused " + text(value.number) + ", which is in its range";
   }
+  return "";
+}
+
+/// Makes one step. @return "", or what is wrong with it
+std::string fuzzedStep(Subject& subject, const Vector3d& q, double dt, uint32_t flags) {
+  if (std::string wrong = wrongStatus(subject.step({q}, dt, flags)); !wrong.empty()) return wrong;
+  if (subject.allocations() > 0) return "it allocates";
+  // [ns] If a step waits for longer than this, it sleeps or blocks, which fails the test. Waits that the system
+  // forced on it (preemption) do not count.
+  constexpr uint64_t kLong = 2'000'000;
+  const StepCost& cost = subject.cost();
+  if (cost.waited && cost.wall_ns > cost.cpu_ns + kLong)
+    return "it waits for " + text(static_cast<double>(cost.wall_ns - cost.cpu_ns) * 1e-6) + " ms";
+  return "";
+}
+
+}  // namespace
+
+std::string fuzzOnce(const Recipe& recipe, uint64_t seed) {
+  Dice unit(seed);
+  auto made = Subject::make(recipe);
+  if (!made) return made.error();
+  if (std::string refused = setAtRandom(**made, recipe, unit); !refused.empty()) return refused;
   if (!(*made)->activate()) return "";  // parameters may contradict each other, so refusing is right
   const auto [low, high] = (*made)->bounds();
-  Vector3d q = onPath(**made, unit(random), unit(random));
+  const auto anywhere = [&unit] { return Vector3d(unit(), unit(), unit()); };
+  Vector3d q = onPath(**made, unit(), unit());
   (*made)->measureCost();
   for (int i = 0; i < 500; ++i) {
-    const double dice = unit(random);
+    const double dice = unit();
     uint32_t flags = 0;
     if (dice < 0.02) {
       (*made)->reset();
     } else if (dice < 0.05) {
       flags = HSP_IN_JUMP;
-      q = low + Vector3d(unit(random), unit(random), unit(random)).cwiseProduct(high - low);
+      q = low + anywhere().cwiseProduct(high - low);
     } else if (dice < 0.07) {
       flags = HSP_IN_INVALID;
     }
-    q += 2e-3 * Vector3d(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5);
+    q += 2e-3 * (anywhere() - Vector3d::Constant(0.5));
     const double dt = dice > 0.98 ? 0.05 : kConformanceDt;
-    if (std::string wrong = wrongStatus((*made)->step({q}, dt, flags)); !wrong.empty())
+    if (const std::string wrong = fuzzedStep(**made, q, dt, flags); !wrong.empty())
       return "at step " + std::to_string(i) + ", " + placed(wrong, q);
-    if ((*made)->allocations() > 0) return "at step " + std::to_string(i) + ", " + placed("it allocates", q);
-    // [ns] If a step waits for longer than this, it sleeps or blocks, which fails the test. Waits that the system
-    // forced on it (preemption) do not count.
-    constexpr uint64_t kLong = 2'000'000;
-    const StepCost& cost = (*made)->cost();
-    if (cost.waited && cost.wall_ns > cost.cpu_ns + kLong)
-      return "at step " + std::to_string(i) + ", " +
-             placed("it waits for " + text(static_cast<double>(cost.wall_ns - cost.cpu_ns) * 1e-6) + " ms", q);
   }
   return "";
 }

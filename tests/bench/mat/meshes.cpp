@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <random>
 
 #include "bench.hpp"
@@ -178,6 +180,29 @@ std::string creaseTable() {
   return text + "\n";
 }
 
+/// What a contact does to the vertices while it slides over the body.
+struct Slide {
+  double jump = 0, peak = 0;  ///< [m] greatest motion of a vertex in a step, greatest displacement
+  std::size_t moved = 0;      ///< most vertices that moved at once
+};
+
+/// @param slide presses the body at step k
+Slide watched(const medial::MeshBody& body, std::size_t vertices, const std::function<void(int)>& slide) {
+  Slide seen;
+  std::vector<Eigen::Vector4d> before(vertices), now(vertices);
+  for (int k = 0; k < 2000; ++k) {
+    slide(k);
+    seen.moved = std::max(seen.moved, body.deformation().awake());
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      now[i] = body.deformation().displacement(i);
+      if (k > 0) seen.jump = std::max(seen.jump, (now[i] - before[i]).norm());
+      seen.peak = std::max(seen.peak, now[i].norm());
+    }
+    std::swap(before, now);
+  }
+  return seen;
+}
+
 /// Measures, for each number of rings, how many vertices a contact moves, and how far they jump while the contact
 /// slides from slab to slab.
 std::string ringsTable() {
@@ -188,8 +213,8 @@ std::string ringsTable() {
   data.mass = {.01};
   std::string text =
       "A press of 2 mm that slides over the torus of 968 slabs in steps of 0.1 mm. *Jump*: the greatest motion of a "
-      "vertex "
-      "in a step; *peak*: its greatest displacement, both over the depth. More rings make the dent wider and flatter; "
+      "vertex in a step; *peak*: its greatest displacement, both over the depth. More rings make the dent wider and "
+      "flatter; "
       "its motion is smooth with any number.\n\n"
       "| rings | vertices moved | time of a press | jump | peak |\n|---|---|---|---|---|\n";
   for (const int rings : {0, 1, 2, 3, 5, 8}) {
@@ -204,22 +229,10 @@ std::string ringsTable() {
       const medial::Press press{foot.u, foot.v, foot.normal, .002, 0, foot.element};
       body.deformation().press({&press, 1});
     };
-    std::vector<Eigen::Vector4d> before(data.mesh.vertices.size()), now(before.size());
-    double jump = 0, peak = 0;
-    std::size_t moved = 0;
-    for (int k = 0; k < 2000; ++k) {
-      slide(k);
-      moved = std::max(moved, body.deformation().awake());
-      for (std::size_t i = 0; i < now.size(); ++i) {
-        now[i] = body.deformation().displacement(i);
-        if (k > 0) jump = std::max(jump, (now[i] - before[i]).norm());
-        peak = std::max(peak, now[i].norm());
-      }
-      std::swap(before, now);
-    }
+    const Slide seen = watched(body, data.mesh.vertices.size(), slide);
     const double time = leastTime(11, 1000, slide);
-    text +=
-        fmt::format("| {} | {} | {:.0f} ns | {:.3f} | {:.2f} |\n", rings, moved, 1e9 * time, jump / .002, peak / .002);
+    text += fmt::format("| {} | {} | {:.0f} ns | {:.3f} | {:.2f} |\n", rings, seen.moved, 1e9 * time, seen.jump / .002,
+                        seen.peak / .002);
   }
   return text + "\n";
 }

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <numeric>
 #include <random>
 
 #include "kernels/brep/search.hpp"
@@ -27,6 +28,7 @@ double since(Clock::time_point begin) {
 
 struct Times {
   std::vector<double> ns;
+  double mean() const { return std::accumulate(ns.begin(), ns.end(), 0.0) / static_cast<double>(ns.size()); }
   double at(double share) {
     std::sort(ns.begin(), ns.end());
     return ns[static_cast<std::size_t>(share * static_cast<double>(ns.size() - 1))];
@@ -56,6 +58,26 @@ std::vector<Vector3d> strokes(const brep::Model& model, double step, int count) 
   return path;
 }
 
+/// What the two engines did on one path.
+struct Comparison {
+  Times tick, beside, one;
+  std::size_t unproved = 0, tracer_farther = 0, search_farther = 0;
+  double elements = 0;
+};
+
+void print(const Comparison& c, std::size_t count, std::size_t traced_bytes, std::size_t searched_bytes) {
+  Times tick = c.tick, beside = c.beside, one = c.one;
+  std::printf(
+      "  tracer    tick p50 %6.0f  p99 %7.0f ns, mean %6.0f, and p50 %7.0f ns for its search beside, each fifth tick; "
+      "farther than the other in %zu of %zu ticks; %zu bytes\n",
+      tick.at(0.5), tick.at(0.99), tick.mean(), beside.at(0.5), c.tracer_farther, count, traced_bytes);
+  std::printf(
+      "  one search tick p50 %6.0f  p99 %7.0f ns, mean %6.0f, %.1f feet; not proved in %zu; farther than the other in "
+      "%zu; %zu bytes\n",
+      one.at(0.5), one.at(0.99), one.mean(), c.elements / static_cast<double>(count), c.unproved, c.search_farther,
+      searched_bytes);
+}
+
 void compare(const char* file, double speed) {
   std::ifstream in(file);
   const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
@@ -66,17 +88,15 @@ void compare(const char* file, double speed) {
   const brep::Model searched(brep::samples::sheetOf(surfaces.surfaces));
   trace::Tracer tracer(traced);
   brep::Search search(searched);
-  Times tick, beside, one;
+  Comparison c;
   trace::Found found;
-  std::size_t unproved = 0, tracer_farther = 0, search_farther = 0;
-  double elements = 0;
   const std::vector<Vector3d> path = strokes(searched, speed * 1e-3, 40000);
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Vector3d& p = path[i];
     if (i % 5 == 0 || i % 2000 == 0) {
       const auto begin = Clock::now();
       traced.search(p, 0.15, found);
-      beside.ns.push_back(since(begin));
+      c.beside.ns.push_back(since(begin));
       if (i % 2000 == 0) tracer.reset();
       for (const auto* records : {&found.nearest, &found.rivals})
         for (const trace::Near& near : *records) tracer.activate(near.surface, near.u, near.v, near.distance);
@@ -85,31 +105,18 @@ void compare(const char* file, double speed) {
     nearest.unite = false;
     auto begin = Clock::now();
     const trace::Foot foot = tracer.step(p, nearest);
-    tick.ns.push_back(since(begin));
+    c.tick.ns.push_back(since(begin));
     begin = Clock::now();
     const brep::Nearest& answer = search.nearest(p);
-    one.ns.push_back(since(begin));
-    unproved += !answer.proved;
-    elements += answer.elements;
+    c.one.ns.push_back(since(begin));
+    c.unproved += !answer.proved;
+    c.elements += answer.elements;
     const double difference = foot.distance - answer.distance();
-    tracer_farther += difference > 1e-8;
-    search_farther += difference < -1e-8;
+    c.tracer_farther += difference > 1e-8;
+    c.search_farther += difference < -1e-8;
   }
-  const double count = static_cast<double>(path.size());
-  double tick_sum = 0, one_sum = 0;
-  for (const double ns : tick.ns) tick_sum += ns;
-  for (const double ns : one.ns) one_sum += ns;
   std::printf("%s, %g m/s\n", file, speed);
-  std::printf(
-      "  tracer    tick p50 %6.0f  p99 %7.0f ns, mean %6.0f, and p50 %7.0f ns for its search beside, each fifth tick; "
-      "farther than the "
-      "other in "
-      "%zu of %.0f ticks; %zu bytes\n",
-      tick.at(0.5), tick.at(0.99), tick_sum / count, beside.at(0.5), tracer_farther, count, traced.bytes());
-  std::printf(
-      "  one search tick p50 %6.0f  p99 %7.0f ns, mean %6.0f, %.1f feet; not proved in %zu; farther than the other in "
-      "%zu; %zu bytes\n",
-      one.at(0.5), one.at(0.99), one_sum / count, elements / count, unproved, search_farther, searched.bytes());
+  print(c, path.size(), traced.bytes(), searched.bytes());
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ void drawHistograms(const Evaluation& e, const std::string& file) {
 /// Returns the force over the travel of the tip along the detent curve, by Eq. 10. The travel of the tip is that of the
 /// button plus the compression of the surface's spring.
 record::Curve closedForm() {
-  record::Curve curve{"two springs, closed form", "#222", {}, {}, 1.2};
+  record::Curve curve{"two springs, closed form", "#c4c4c4", {}, {}, 6};
   const auto add = [&](double x2, double force) {
     curve.x.push_back(1e3 * (x2 + force / kSurface));
     curve.y.push_back(force);
@@ -95,16 +95,31 @@ record::Curve closedForm() {
   return curve;
 }
 
+/// Returns the axis that contains all values that `of` takes from these curves.
+record::Axis axisOfAll(const std::string& label, const std::vector<record::Curve>& curves,
+                       std::vector<double> record::Curve::* of) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const record::Curve& curve : curves)
+    for (const double value : curve.*of) low = std::min(low, value), high = std::max(high, value);
+  return record::axisOver(label, low, high);
+}
+
 void drawButton(const Evaluation& e, const std::string& file) {
   record::Curve sent{"force commanded", "#1f5fa8", {}, {}, 1.2},
       felt{"force from the load cells", "#d1495b", {}, {}, 0.6, true};
-  for (size_t i = 0; i < e.pressed.samples.size(); i += 24) {
-    const Sample& s = e.pressed.samples[i];
-    sent.x.push_back(s.travel * 1e3), sent.y.push_back(s.contact ? s.force : 0);
-    felt.x.push_back(s.travel * 1e3), felt.y.push_back(s.felt);
+  // where the tip is slow, one point stands for many samples
+  const auto add = [](record::Curve& to, double x, double y, double apart) {
+    if (!to.x.empty() && std::hypot(x - to.x.back(), y - to.y.back()) < apart) return;
+    to.x.push_back(x), to.y.push_back(y);
+  };
+  for (const Sample& s : e.pressed.samples) {
+    add(sent, s.travel * 1e3, s.contact ? s.force : 0, 0.1);
+    add(felt, s.travel * 1e3, s.felt, 0.2);
   }
+  const std::vector<record::Curve> curves{closedForm(), sent, felt};  // each is drawn over those before it
   record::Picture picture("Force against travel of the push button, pressed slowly in and out (as Fig. 8)", {760});
-  record::Panel panel("", {"travel of the tip [mm]", -1, 17}, {"force [N]", -2, 20}, {felt, sent, closedForm()});
+  record::Panel panel("", axisOfAll("travel of the tip [mm]", curves, &record::Curve::x),
+                      axisOfAll("force [N]", curves, &record::Curve::y), curves);
   panel.height = 290;
   picture.add(std::move(panel));
   save(picture, file);
@@ -191,16 +206,8 @@ std::string protocolText(const Protocol& p) {
       1e3 * p.visual_delay, p.touch_every, 1e3 * p.lift, p.touch_speed, kMotionOfSolids);
 }
 
-}  // namespace
-
-void writePage(const Evaluation& e, const std::string& folder) {
-  const std::filesystem::path pictures = std::filesystem::path(folder) / "pictures";
-  std::filesystem::create_directories(pictures);
-  drawHistograms(e, pictures / "table1-histograms.svg");
-  drawButton(e, pictures / "table1-button.svg");
-  drawTrace(e, pictures / "table1-trace.svg");
-  std::ofstream out(std::filesystem::path(folder) / "table1.md");
-  out << "# Table 1 of the NURBS paper, in simulation\n\n"
+std::string introduction() {
+  return "# Table 1 of the NURBS paper, in simulation\n\n"
          "Made by `table1 --write` (in the build folder's `bench/`; a quarter of a minute of CPU, virtual time). The "
          "numbers are the same every\n"
          "time and on every x86-64 processor: it runs with `HAPTICD_INSTRUCTIONS=portable` and the daemon's own "
@@ -212,21 +219,27 @@ void writePage(const Evaluation& e, const std::string& folder) {
          "traces them with a\n"
          "Sarcos arm. Here the same daemon core, plugins and limits run against a simulated arm and a simulated "
          "operator. Depth in mm;\n"
-         "buzz is the rms of the depth about its mean in windows of 20 ms, as `--report` gives it.\n\n"
-      << table(e)
-      << "\nGoals, checked by `table1 --check` (a test): average mean within 25 % of 1.63 mm, every mean below 3 mm, "
+         "buzz is the rms of the depth about its mean in windows of 20 ms, as `--report` gives it.\n\n";
+}
+
+std::string resultsText(const Evaluation& e) {
+  return table(e) +
+         "\nGoals, checked by `table1 --check` (a test): average mean within 25 % of 1.63 mm, every mean below 3 mm, "
          "every maximum\n"
-         "below 12 mm, buzz at most 0.12 mm, at least 10,000 samples a row. "
-      << (e.verdict.met ? "**All met.**\n" : "**Missed**:\n\n```\n" + e.verdict.text + "\n```\n")
-      << "\n![histograms of depth](pictures/table1-histograms.svg)\n\n![depth over time](pictures/table1-trace.svg)\n\n"
+         "below 12 mm, buzz at most 0.12 mm, at least 10,000 samples a row. " +
+         (e.verdict.met ? "**All met.**\n" : "**Missed**:\n\n```\n" + e.verdict.text + "\n```\n") +
+         "\n![histograms of depth](pictures/table1-histograms.svg)\n\n![depth over time](pictures/table1-trace.svg)\n\n"
          "![force against travel of the button](pictures/table1-button.svg)\n\n"
          "The load cells sit behind the joints' friction and before the arm's mass: their force is pinv(J^T) of the "
          "torques less the\n"
-         "arm's weight, with the arm's inertia in it while it moves; the snap of the detent shows it.\n\n"
-         "## Rows that miss the paper\n\n"
-         "Means that are off by more than a quarter:\n\n"
-      << missesText(e)
-      << "\nWhy: the push sets the depth (F = 6 N (x / 1 mm)^1/2; of the button 6 N x / 1 mm), and the paper does not "
+         "arm's weight, with the arm's inertia in it while it moves; the snap of the detent shows it.\n\n";
+}
+
+std::string missesSection(const Evaluation& e) {
+  return "## Rows that miss the paper\n\n"
+         "Means that are off by more than a quarter:\n\n" +
+         missesText(e) +
+         "\nWhy: the push sets the depth (F = 6 N (x / 1 mm)^1/2; of the button 6 N x / 1 mm), and the paper does not "
          "say how hard its operators "
          "pushed. Here one hand\n"
          "pushes alike in all rows, but less near edges and on the goblet's stem. The paper's own means differ by a "
@@ -234,20 +247,34 @@ void writePage(const Evaluation& e, const std::string& folder) {
          "wall, and its moving tests by factors from 0.28 to 1.8 from those at rest. The last column is the steady "
          "push "
          "that would press as deep\n"
-         "as the paper says. A push fitted to each row would hide that.\n\n"
-         "## Protocol: one for all rows\n\n"
-      << protocolText(e.protocol)
-      << "\n## What the figures depend on\n\n"
+         "as the paper says. A push fitted to each row would hide that.\n\n";
+}
+
+std::string dependenceText(const Evaluation& e) {
+  return "\n## What the figures depend on\n\n"
          "The mean is set by how hard the hand pushes and by the wall, hardly by the software; buzz tells "
          "implementations apart. A touch is\n"
          "a fast change of depth too, and counts as buzz in the window it falls into: hence its dependence on the "
-         "touch.\n\n"
-      << variationTable(e)
-      << "\nThe paper says that the largest depth was \"on the average less than 7 mm\"; its own rows average 7.07 "
+         "touch.\n\n" +
+         variationTable(e) +
+         "\nThe paper says that the largest depth was \"on the average less than 7 mm\"; its own rows average 7.07 "
          "mm.\n"
          "Three human parameters against three numbers a row: the agreement shows that the system is plausible, not "
          "that it is the\n"
          "same.\n";
+}
+
+}  // namespace
+
+void writePage(const Evaluation& e, const std::string& folder) {
+  const std::filesystem::path pictures = std::filesystem::path(folder) / "pictures";
+  std::filesystem::create_directories(pictures);
+  drawHistograms(e, pictures / "table1-histograms.svg");
+  drawButton(e, pictures / "table1-button.svg");
+  drawTrace(e, pictures / "table1-trace.svg");
+  std::ofstream out(std::filesystem::path(folder) / "table1.md");
+  out << introduction() << resultsText(e) << missesSection(e) << "## Protocol: one for all rows\n\n"
+      << protocolText(e.protocol) << dependenceText(e);
   if (!out.flush()) throw std::runtime_error(folder + "/table1.md: cannot be written");
 }
 

@@ -159,8 +159,9 @@ Recording run(const Subject& subject, bool moving, const Protocol& protocol, con
 }
 
 Recording press(const Subject& button, const Protocol& protocol, const std::string& work) {
-  // the target is 75 mm deep, because the hand's spring is soft (about 20 N)
-  constexpr double kSeconds = 24, kDepth = 0.075, kOutside = 0.005;
+  // the target is 75 mm deep, because the hand's spring is soft (about 20 N); at first the arm sinks, until its weight
+  // is carried, and comes to rest
+  constexpr double kSettle = 4, kSeconds = 24, kDepth = 0.075, kOutside = 0.005;
   const Aim middle = [&] {
     Aim aim = button.route(0);
     aim.point.x() = aim.point.z() = 0;
@@ -170,14 +171,15 @@ Recording press(const Subject& button, const Protocol& protocol, const std::stri
   const scene::Scene scene = makeScene(button, true, protocol, rest + kOutside * middle.normal, work);
   Rig rig(scene);
   Recording recording;
-  while (rig.time() < kSeconds) {
-    const double phase = 2 * M_PI * rig.time() / kSeconds, in = 0.5 * (1 - std::cos(phase));
+  while (rig.time() < kSettle + kSeconds) {
+    const bool settled = rig.time() >= kSettle;
+    const double phase = settled ? 2 * M_PI * (rig.time() - kSettle) / kSeconds : 0, in = 0.5 * (1 - std::cos(phase));
     Wish wish;
     wish.position = rest + (kOutside - (kDepth + kOutside) * in) * middle.normal;
     wish.velocity = -(kDepth + kOutside) * 0.5 * std::sin(phase) * 2 * M_PI / kSeconds * middle.normal;
     Sample sample = rig.tick(wish);
     sample.travel = (rest - rig.tip()).dot(middle.normal);
-    recording.samples.push_back(sample);
+    if (settled) recording.samples.push_back(sample);
   }
   return recording;
 }

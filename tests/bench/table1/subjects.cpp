@@ -85,6 +85,14 @@ std::function<Aim(double)> gobletRoute(const std::string& file, double scale) {
   };
 }
 
+Plugin pushButton() {
+  std::string detent;
+  for (const auto& [travel, force] : kDetent)
+    detent += fmt::format("{}[{}, {}]", detent.empty() ? "" : ", ", travel, force);
+  return {"push_button", "",
+          fmt::format("stiffness: {}, axis: [0, -1, 0], detent: [{}], end_stiffness: {}", kSurface, detent, kEndSlope)};
+}
+
 }  // namespace
 
 std::vector<Subject> subjects() {
@@ -93,12 +101,6 @@ std::vector<Subject> subjects() {
   const Plugin swings{"pendulum", "",
                       "stiffness: 6000, contact_damping: 100, exponent: 0.5, depth_scale: 0.001, pivot: [0, 0.5, 0], "
                       "axis: [0, 0, 1], mass: 40, inertia: 10.16, length: 0.5, damping: 5, angle: 0.15"};
-  std::string detent;
-  for (const auto& [travel, force] : kDetent)
-    detent += fmt::format("{}[{}, {}]", detent.empty() ? "" : ", ", travel, force);
-  const Plugin clicks{
-      "push_button", "",
-      fmt::format("stiffness: {}, axis: [0, -1, 0], detent: [{}], end_stiffness: {}", kSurface, detent, kEndSlope)};
   const std::string models = HAPTICD_SOURCE_DIR "/config/models/";
   return {{"cube",
            "box.yaml",
@@ -127,7 +129,7 @@ std::vector<Subject> subjects() {
           {"button",
            "box.yaml",
            2.5,
-           clicks,
+           pushButton(),
            [](double t) { return capRoute(0.125, t); },
            {{1.30, 0.85, 4.75}, {1.00, 0.53, 3.18}},
            -0.2}};

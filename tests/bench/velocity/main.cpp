@@ -153,11 +153,13 @@ std::string claims() {
          fmt::format("| plain difference | 1 | 0.5 | {:.0f} |\n", bench::windowResponse(1, kRate, 10).noise_gain);
 }
 
-void draw(const std::string& file) {
-  constexpr double kRate = 1500, kStep = 10e-6;
-  Picture picture("Velocity estimators at 1500 Hz, steps of 10 um", {520, 520});
+constexpr double kDrawnRate = 1500, kDrawnStep = 10e-6;  // [Hz], [m]
+
+/// Adds the gain and the delay of each estimator over the frequency.
+void drawResponses(Picture& picture) {
+  constexpr double kRate = kDrawnRate, kStep = kDrawnStep;
   std::vector<Curve> gains, delays;
-  Curve ideal{"ideal differentiator", "#999", {}, {}, 1.0};
+  Curve ideal{"ideal differentiator", "#222", {}, {}, 1.0};
   for (size_t i = 0; i < kKinds.size(); ++i) {
     gains.push_back({kKinds[i].words, colourOf(i), {}, {}});
     delays.push_back({kKinds[i].words, colourOf(i), {}, {}});
@@ -174,6 +176,11 @@ void draw(const std::string& file) {
   picture.add(
       {"Gain against the ideal differentiator, 0.3 m/s", {"frequency [Hz]", 1, 400, true}, {"gain", 0, 1.6}, gains});
   picture.add(hapticd::record::Panel("Delay", {"frequency [Hz]", 1, 100, true}, {"[ms]", -2, 8}, delays));
+}
+
+/// Adds what each estimator makes of a fast and of a slow motion.
+void drawMotions(Picture& picture) {
+  constexpr double kRate = kDrawnRate, kStep = kDrawnStep;
   std::vector<Curve> tap{{"truth", "#222", {}, {}, 2.2}}, slow{{"truth", "#222", {}, {}, 2.2}};
   for (const bool fast : {true, false})
     for (size_t i = 0; i < kKinds.size(); ++i) {
@@ -194,6 +201,12 @@ void draw(const std::string& file) {
   picture.add(hapticd::record::Panel("A tap on a wall of 45 Hz", {"t [ms]", -10, 40}, {"v [mm/s]", -300, 300}, tap));
   picture.add(
       hapticd::record::Panel("Slow motion: the steps are seen", {"t [ms]", -10, 150}, {"v [mm/s]", -15, 20}, slow));
+}
+
+void draw(const std::string& file) {
+  Picture picture("Velocity estimators at 1500 Hz, steps of 10 um", {520, 520});
+  drawResponses(picture);
+  drawMotions(picture);
   if (auto saved = hapticd::writeWhole(file, picture.svg()); !saved) throw std::runtime_error(saved.error());
 }
 

@@ -3,6 +3,7 @@
 
 Usage: record_and_replay.py HAPTICD SCENES     prints one line per case; exit 1 when one is off.
 """
+import csv
 import os
 import subprocess
 import sys
@@ -59,6 +60,26 @@ def aHoldIsAFault(folder, environment):
     check("a hold is an event of a fault, once", len(faults) == 1 and faults["code"][0] == 8, faults)
 
 
+def ticksOf(folder, table):
+    with open(os.path.join(folder, table, "ticks.csv")) as file:
+        return [int(row["tick"]) for row in csv.DictReader(file)]
+
+
+def exportsADaemon(name, folder, environment):
+    """A running daemon is named as ctl, top and view name it, and its last seconds are exported."""
+    ask = program(HAPTICD, environment, together=True)
+    code, told = ask("export", "--name", name, "--csv", os.path.join(folder, "now"))
+    check("export takes the last seconds of a running daemon", code == 0 and "the last seconds of a run" in told, told)
+    ticks = ticksOf(folder, "now")
+    check("it gives its ticks in order, each once", len(ticks) > 100 and ticks == list(range(ticks[0], ticks[0] + len(ticks))), ticks[:5])
+    code, told = ask("export", "--name", "nobody", "--csv", os.path.join(folder, "none"))
+    check("export names the daemons that run, as ctl does", code == 1 and all(words in told for words in ("no daemon named nobody runs", f"these run: {name}", "name one of these with --name")), told)
+    code, told = ask("export", "--mcap", os.path.join(folder, "none.mcap"))
+    check("without a recording it takes the daemon of the default name", code == 1 and "no recording is given (hapticd export RECORDING), and no daemon named hapticd runs" in told, told)
+    code, told = ask("export", os.path.join(folder, "killed.h5"), "--name", name, "--csv", os.path.join(folder, "none"))
+    check("a recording and a daemon together are refused", code == 2 and "--name" in told and "recording" in told, told)
+
+
 def killLeavesAReadableFile(folder, environment):
     file = os.path.join(folder, "killed.h5")
     command = [HAPTICD, "run", os.path.join(SCENES, "teapot.yaml"), "--for", "60", "--name", "killed", "--record", file]
@@ -72,9 +93,12 @@ def killLeavesAReadableFile(folder, environment):
             code, told = hapticd(*command)
             check(f"{command[0]} of what is still being written says by whom", code == 0 and f"still being written by process {run.pid};" in told
                   and "was killed" not in told and "lost" not in told, told)
+        exportsADaemon("killed", folder, environment)
         alive = run.poll() is None
         run.kill()
     check("the run was alive when it was killed", alive)
+    code, told = program(HAPTICD, environment, together=True)("export", "--name", "killed", "--csv", os.path.join(folder, "left"))
+    check("export takes what a killed daemon left", code == 0 and ticksOf(folder, "left"), told)
     code, told = hapticd("replay", file)
     check("what a kill left replays with every bit the same", code == 0, told)
     picture = os.path.join(folder, "killed.svg")

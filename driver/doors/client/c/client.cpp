@@ -164,7 +164,7 @@ void hapticd_close(hapticd_client* client) {
 
 int hapticd_ended(hapticd_client* client) {
   if (!client->ended()) return 0;
-  // A daemon of before does not note its end, but it removes its socket if it ends in order.
+  // An older daemon does not note its end, but it removes its socket if it ends in order.
   if (client->rows.ended() || access((client->base + ".sock").c_str(), F_OK) != 0) return HAPTICD_STOPPED;
   return HAPTICD_CRASHED;
 }

@@ -75,10 +75,19 @@ TEST(CommandLine, ReadsEveryKindOfValueAndRunsTheCommandOnce) {
   EXPECT_EQ(e.calls, 1);
 }
 
-TEST(CommandLine, RefusesWhatBreaksARuleWithTheExitCodeOfBadUsage) {
-  const std::vector<std::pair<std::vector<const char*>, std::string>> wrong = {
-      {{}, "error: no subcommand given, expected one of draw, move; see example --help"},
-      {{"draw"}, "error: file is missing, expected `example draw FILE`; see example draw --help"},
+using WrongLines = std::vector<std::pair<std::vector<const char*>, std::string>>;
+
+void expectRefused(const WrongLines& wrong) {
+  for (const auto& [words, text] : wrong) {
+    Example e;
+    EXPECT_EQ(e.parse(words), kBadUsage) << text;
+    EXPECT_NE(e.said.find(text), std::string::npos) << "expected \"" << text << "\" in: " << e.said;
+    EXPECT_EQ(e.calls, 0) << text;
+  }
+}
+
+TEST(CommandLine, RefusesAValueThatBreaksARule) {
+  expectRefused({
       {{"draw", "a", "--colour", "green"}, "error: --colour: \"green\" is not known, expected one of red, blue"},
       {{"draw", "a", "--scale", "3"}, "error: --scale: 3 is out of range, expected a number from 0.5 to 2"},
       {{"draw", "a", "--scale", "nan"}, "--scale: nan is out of range, expected a number from 0.5 to 2"},
@@ -93,12 +102,19 @@ TEST(CommandLine, RefusesWhatBreaksARuleWithTheExitCodeOfBadUsage) {
       {{"draw", "a", "--layer", "up"}, "error: --layer: \"up\" cannot be read, expected a whole number from 0;"},
       {{"draw", "a", "--layer", "5000000000"}, "5000000000 is out of range, expected a whole number nearer to 0;"},
       {{"draw", "a", "--title", "a/b"}, "error: --title: expected letters, got \"a/b\";"},
-      {{"move", "a"}, "error: --to is missing, expected `example move FILE --to X Y Z`;"},
       {{"move", "a", "--to", "1", "2"}, "error: --to: expected 3 numbers, got 2: 1 2;"},
       {{"move", "a", "--to", "1", "2", "3", "4"}, "error: --to: expected 3 numbers, got 4: 1 2 3 4;"},
       {{"move", "a", "--to", "1,2,3"}, "error: --to: expected 3 numbers, got 1: 1,2,3; separate them by spaces;"},
       {{"move", "a", "--to", "1", "2", "c"}, "error: --to: \"c\" cannot be read, expected a number in m;"},
       {{"move", "a", "--to"}, "error: --to: expected 3 numbers, got none;"},
+  });
+}
+
+TEST(CommandLine, RefusesWordsThatAreMissingOrTooMany) {
+  expectRefused({
+      {{}, "error: no subcommand given, expected one of draw, move; see example --help"},
+      {{"draw"}, "error: file is missing, expected `example draw FILE`; see example draw --help"},
+      {{"move", "a"}, "error: --to is missing, expected `example move FILE --to X Y Z`;"},
       {{"--name", "x", "drwa"}, "error: there is no subcommand \"drwa\", expected one of draw, move"},
       {{"draw", "a", "--angle"}, "error: --angle: 1 more value expected (FLOAT); see example draw --help"},
       {{"draw", "a", "b"}, "error: unexpected word \"b\": `example draw` takes only FILE and options"},
@@ -110,13 +126,7 @@ TEST(CommandLine, RefusesWhatBreaksARuleWithTheExitCodeOfBadUsage) {
       {{"draw", "a", "--other"}, "error: there is no option --other; see example draw --help"},
       {{"move", "--", "-a"}, "error: --to is missing, expected `example move FILE --to X Y Z`;"},
       {{"draw", "--", "-a", "-b"}, "error: unexpected word \"-b\": `example draw` takes only FILE and options"},
-  };
-  for (const auto& [words, text] : wrong) {
-    Example e;
-    EXPECT_EQ(e.parse(words), kBadUsage) << text;
-    EXPECT_NE(e.said.find(text), std::string::npos) << "expected \"" << text << "\" in: " << e.said;
-    EXPECT_EQ(e.calls, 0) << text;
-  }
+  });
 }
 
 TEST(CommandLine, SuggestsNamesIfItIsToldHow) {

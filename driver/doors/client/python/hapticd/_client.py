@@ -140,7 +140,7 @@ class Client:
     def died(self) -> bool:
         """Tells whether the daemon was killed or crashed. It is False while the daemon runs, and after it ended in order
         (`hapticd ctl stop`, Ctrl-C, the end of `--for`)."""
-        # A daemon of before does not note its end, but it removes its socket if it ends in order.
+        # An older daemon does not note its end, but it removes its socket if it ends in order.
         return self.ended() and not self._box.ended() and os.path.exists(self._base + ".sock")
 
     def _ends(self) -> bool:

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 namespace hapticd::control {
 namespace {
 
@@ -26,8 +29,19 @@ TEST(Request, TakesWhatTheManualSays) {
   EXPECT_EQ(*move->seconds, 2);
 }
 
+/// Requests that are refused, each with a part of the answer.
+using Wrong = std::vector<std::pair<const char*, const char*>>;
+
+void expectRefused(const Wrong& wrong) {
+  for (const auto& [line, part] : wrong) {
+    const auto request = parseRequest(line);
+    ASSERT_FALSE(request) << line;
+    EXPECT_NE(request.error().find(part), std::string::npos) << line << ": " << request.error();
+  }
+}
+
 TEST(Request, SaysWhatIsWrongAndWhatWasExpected) {
-  const std::pair<const char*, const char*> wrong[] = {
+  expectRefused({
       {"", "JSON object"},
       {"[]", "the line is an array: expected one JSON object"},
       {"null", "the line is null: expected"},
@@ -62,17 +76,18 @@ TEST(Request, SaysWhatIsWrongAndWhatWasExpected) {
       {R"({"do":"vertices","model":"a","after":-1})", "\"after\": expected a whole number"},
       {R"({"do":"vertices","model":"a","after":0.5})", "\"after\": expected a whole number"},
       {R"({"do": status})", "the line is not valid JSON at byte 8"},
+      {R"({"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":1}}}}}}}}}})", "JSON object"},
+  });
+}
+
+TEST(Request, SuggestsTheWordThatWasMeantAndNamesEveryFault) {
+  expectRefused({
       {R"({"do":"dsable","model":"a"})", "got \"dsable\" (did you mean \"disable\"?)"},
       {R"({"do":"enable","modle":"a"})",
        "\"modle\" is not a key of \"enable\" (did you mean \"model\"?), expected the keys model"},
       {R"({"do":"move","model":"a","position":[1,2,11],"seconds":1000})",
        "got [1,2,11]; \"seconds\": expected a number from 0.05 to 600 s, got 1000"},
-      {R"({"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":1}}}}}}}}}})", "JSON object"}};
-  for (const auto& [line, part] : wrong) {
-    const auto request = parseRequest(line);
-    ASSERT_FALSE(request) << line;
-    EXPECT_NE(request.error().find(part), std::string::npos) << line << ": " << request.error();
-  }
+  });
 }
 
 /// One reader of JSON takes the first of two keys, another the last: what was checked might not be what is done.

@@ -223,6 +223,17 @@ TEST(FlightRing, IsReadWhileItIsWrittenWithoutRowsThatWereNotWrittenYet) {
   (*ring)->removeFile();
 }
 
+/// Starts a process that opens the file again and again, and counts that, until it is killed, wherever it is then.
+pid_t startReader(const std::string& file, std::atomic<uint64_t>& looks) {
+  const pid_t child = fork();
+  if (child == 0)
+    for (;;) {
+      if (!Recording::open(file)) _exit(1);
+      ++looks;
+    }
+  return child;
+}
+
 TEST(FlightRing, KilledReadersChangeNothing) {
   const std::string file = testing::TempDir() + "killed_readers.h5";
   constexpr uint64_t kRows = 64;
@@ -245,12 +256,7 @@ TEST(FlightRing, KilledReadersChangeNothing) {
   auto& looks = *new (shared) std::atomic<uint64_t>(0);
   for (uint64_t reader = 0; reader < 20; ++reader) {
     const uint64_t enough = looks + 1 + reader;
-    const pid_t child = fork();
-    if (child == 0)
-      for (;;) {  // until it is killed, wherever it is then
-        if (!Recording::open(file)) _exit(1);
-        ++looks;
-      }
+    const pid_t child = startReader(file, looks);
     int status = 0;
     while (looks < enough && waitpid(child, &status, WNOHANG) == 0)
       for (int i = 0; i < 1000; ++i) write();

@@ -10,8 +10,10 @@
 #include <cstdlib>
 #include <ctime>
 #include <limits>
+#include <string_view>
 
 #include "hapticd/shape.hpp"
+#include "search_hook.hpp"
 
 namespace {
 
@@ -239,6 +241,32 @@ struct Deadly : hapticd::Shape {
   }
 };
 
+/// Has three surfaces, which are near every point, and lets a test look on while it is searched.
+struct Searched : hapticd::Shape {
+  static constexpr uint32_t kSurfaces = 3;
+  int unused;
+  hapticd::SearchHook hook;
+  hsp_ext_surfaces surfaces{sizeof(hsp_ext_surfaces), kSurfaces, &nearby,
+                            [](hsp_shape*, const hsp_near*) HSP_RT -> hsp_status { return HSP_OK; },
+                            [](hsp_shape*, uint32_t, uint32_t) HSP_RT -> hsp_status { return HSP_OK; }};
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.searched", "searched", "1.0.0", "MIT", "Is searched."};
+  static constexpr auto fields() {
+    return std::array{Fields<Searched>::integer("unused", &Searched::unused, "", 0, 1, 0, "Nothing.")};
+  }
+  void activate(const hsp_activation&, hsp_report&) {}
+  hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept HSP_RT { return HSP_OK; }
+  const void* extension(const char* name) {
+    if (std::string_view(name) == hapticd::kSearchHook) return &hook;
+    return std::string_view(name) == HSP_EXT_SURFACES ? &surfaces : nullptr;
+  }
+  static int64_t nearby(const hsp_shape* shape, const double*, double, hsp_near* out, uint64_t cap) {
+    const hapticd::SearchHook& hook = reinterpret_cast<const Searched*>(shape)->hook;
+    if (hook.call != nullptr) hook.call(hook.with);
+    for (uint32_t i = 0; i < kSurfaces && i < cap; ++i) out[i] = {i, 0, {0, 0}, 0.01};
+    return kSurfaces;
+  }
+};
+
 /// Throws what nobody should throw.
 struct Throwing : hapticd::Shape {
   int unused;
@@ -252,4 +280,5 @@ struct Throwing : hapticd::Shape {
 
 }  // namespace
 
-HAPTICD_SHAPES(Wall, Pulling, Misbehaving, Sliding, Allocating, Throwing, Deadly, Turning, Rude, Aligning, Obliging)
+HAPTICD_SHAPES(Wall, Pulling, Misbehaving, Sliding, Allocating, Throwing, Deadly, Turning, Rude, Aligning, Obliging,
+               Searched)

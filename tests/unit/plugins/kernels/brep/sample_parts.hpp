@@ -112,6 +112,18 @@ inline void endBody(Part& part, BodyKind kind, std::uint32_t flags) {
   linkCoedges(part);
 }
 
+/// Returns a cylinder of radius r [mm] about z, whose parameters are the angle and z in mm.
+inline Surface cylinderWall(double r) {
+  Surface wall;
+  wall.kind = SurfaceKind::kCylinder;
+  wall.x = {1, 0, 0};
+  wall.y = {0, 1, 0};
+  wall.z = {0, 0, kMm};
+  wall.r = {r * kMm, 0};
+  wall.period = {2 * std::numbers::pi, 0};
+  return wall;
+}
+
 /// Returns a solid cylinder of radius r [mm] about z, from z = 0 to z = h [mm], with one seam and two caps.
 inline Part cappedCylinder(double r, double h) {
   constexpr double kTurn = 2 * std::numbers::pi;
@@ -129,14 +141,7 @@ inline Part cappedCylinder(double r, double h) {
   line.x = {0, 0, kMm};
   const std::uint32_t seam = addEdge(part, line, 0, h, bottom, top);
 
-  Surface wall;
-  wall.kind = SurfaceKind::kCylinder;
-  wall.x = {1, 0, 0};
-  wall.y = {0, 1, 0};
-  wall.z = {0, 0, kMm};
-  wall.r = {r * kMm, 0};
-  wall.period = {kTurn, 0};
-  addFace(part, wall, 0, {0, 0}, {kTurn, h});
+  addFace(part, cylinderWall(r), 0, {0, 0}, {kTurn, h});
   addLoop(part);
   addCoedge(part, below, line2({0, 0}, {1, 0}), 0);
   addCoedge(part, seam, line2({kTurn, 0}, {0, 1}), kSeam);

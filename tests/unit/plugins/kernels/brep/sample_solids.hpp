@@ -200,6 +200,33 @@ inline Part torus(double r0, double r1) {
   return part;
 }
 
+/// A round hole through a plate: its circles below and above.
+struct Hole {
+  std::uint32_t below, above;
+  Vector2 centre;
+};
+
+/// Adds the wall of a hole of radius r through a plate of thickness h.
+inline Hole addHole(Part& part, Vector2 c, double r, double h) {
+  const std::uint32_t v0 = addVertex(part, {(c[0] + r) * kMm, c[1] * kMm, 0});
+  const std::uint32_t v1 = addVertex(part, {(c[0] + r) * kMm, c[1] * kMm, h * kMm});
+  const std::uint32_t below = addEdge(part, circleAboutZ(r, 0, c), 0, kTurn, v0, v0);
+  const std::uint32_t above = addEdge(part, circleAboutZ(r, h, c), 0, kTurn, v1, v1);
+  Curve3 line;
+  line.o = {(c[0] + r) * kMm, c[1] * kMm, 0};
+  line.x = {0, 0, kMm};
+  const std::uint32_t seam = addEdge(part, line, 0, h, v0, v1);
+  Surface wall = aboutZ(SurfaceKind::kCylinder, r * kMm, 0, kMm);
+  wall.o = {c[0] * kMm, c[1] * kMm, 0};
+  addFace(part, wall, kReversed, {0, 0}, {kTurn, h});
+  addLoop(part);
+  addCoedge(part, below, line2({0, 0}, {1, 0}), 0);
+  addCoedge(part, seam, line2({kTurn, 0}, {0, 1}), kSeam);
+  addCoedge(part, above, line2({0, h}, {1, 0}), kReversed);
+  addCoedge(part, seam, line2({0, 0}, {0, 1}), kSeam | kReversed);
+  return {below, above, c};
+}
+
 /// Returns a plate of thickness h with columns x rows round holes of radius r. @param pitch distance between the
 /// centres of neighbouring holes
 inline Part plate(int columns, int rows, double r, double pitch, double h) {
@@ -210,32 +237,9 @@ inline Part plate(int columns, int rows, double r, double pitch, double h) {
   for (Vector3d& p : top) p.z() = h;
   for (std::size_t i = 0; i < 4; ++i) made.addPolygon({{bottom[i], bottom[(i + 1) % 4], top[(i + 1) % 4], top[i]}});
   Part& part = made.part;
-  struct Hole {
-    std::uint32_t below, above;
-    Vector2 centre;
-  };
   std::vector<Hole> holes;
   for (int i = 0; i < columns; ++i)
-    for (int j = 0; j < rows; ++j) {
-      const Vector2 c{(i + 0.5) * pitch, (j + 0.5) * pitch};
-      const std::uint32_t v0 = addVertex(part, {(c[0] + r) * kMm, c[1] * kMm, 0});
-      const std::uint32_t v1 = addVertex(part, {(c[0] + r) * kMm, c[1] * kMm, h * kMm});
-      const std::uint32_t below = addEdge(part, circleAboutZ(r, 0, c), 0, kTurn, v0, v0);
-      const std::uint32_t above = addEdge(part, circleAboutZ(r, h, c), 0, kTurn, v1, v1);
-      Curve3 line;
-      line.o = {(c[0] + r) * kMm, c[1] * kMm, 0};
-      line.x = {0, 0, kMm};
-      const std::uint32_t seam = addEdge(part, line, 0, h, v0, v1);
-      Surface wall = aboutZ(SurfaceKind::kCylinder, r * kMm, 0, kMm);
-      wall.o = {c[0] * kMm, c[1] * kMm, 0};
-      addFace(part, wall, kReversed, {0, 0}, {kTurn, h});
-      addLoop(part);
-      addCoedge(part, below, line2({0, 0}, {1, 0}), 0);
-      addCoedge(part, seam, line2({kTurn, 0}, {0, 1}), kSeam);
-      addCoedge(part, above, line2({0, h}, {1, 0}), kReversed);
-      addCoedge(part, seam, line2({0, 0}, {0, 1}), kSeam | kReversed);
-      holes.push_back({below, above, c});
-    }
+    for (int j = 0; j < rows; ++j) holes.push_back(addHole(part, {(i + 0.5) * pitch, (j + 0.5) * pitch}, r, h));
   made.addPolygon({{bottom[0], bottom[3], bottom[2], bottom[1]}});
   for (const Hole& hole : holes) {  // the axis x of this plane is along y of the plate
     addLoop(part);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "search_hook.hpp"
 #include "test_world.hpp"
 
 namespace hapticd::servo {
@@ -274,6 +275,44 @@ TEST(Core, JumpAsksForASearchInTheNextTick) {
   EXPECT_FALSE(world->core().needsSearch());
   tickOnce(*world, 2, probeAt({0.13, 0, 0}));
   EXPECT_TRUE(world->core().needsSearch());
+}
+
+/// Looks on while models are searched, as a tick of the servo could at that moment.
+struct OnLooker {
+  link::Link& link;
+  int looks = 0;
+  size_t seen = 0;  ///< records of the search that were visible before it had ended
+  size_t take() {
+    link::ActivationRecord record;
+    size_t taken = 0;
+    while (link.records.pop(record)) ++taken;
+    return taken;
+  }
+  static void look(void* self) {
+    auto& looker = *static_cast<OnLooker*>(self);
+    ++looker.looks;
+    looker.seen += looker.take();
+  }
+};
+
+/// A tick that took half of a search would take the other half for one that began later, see Tracks::noteSearch().
+TEST(Proximity, ShowsTheServoAllRecordsOfASearchAtOnce) {
+  scene::Scene scene;
+  for (int i = 0; i < 4; ++i) scene.models.push_back(testModel("searched"));
+  auto world = testWorld(scene);
+  OnLooker looker{world->link()};
+  for (const auto& shape : world->shapes()) {
+    const void* hook = shape->description().extension(shape->handle(), kSearchHook);
+    *static_cast<SearchHook*>(const_cast<void*>(hook)) = {&OnLooker::look, &looker};
+  }
+  const Probe probe = probeAt({0, 0, 0});
+  world->core().publish(0, {&probe, 1});
+  for (int search = 1; search <= 2; ++search) {  // the first starts surfaces, the second offers feet on them
+    world->proximity().search();
+    EXPECT_EQ(looker.looks, 4 * search) << "one look at each model";
+    EXPECT_EQ(looker.seen, 0u) << "the search had not ended yet";
+    EXPECT_EQ(looker.take(), 12u) << "three surfaces of each model";
+  }
 }
 
 TEST(World, PluginThatThrowsAnythingIsAnErrorThatNamesTheModel) {
