@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <sstream>
-#include <unordered_set>
+#include <unordered_map>
 
 #include "base/regular_file.hpp"
 #include "document/foreign_file.hpp"
@@ -51,7 +51,7 @@ class Builder final : public YAML::EventHandler {
     for (const Open& open : open_)
       if (open.anchor == anchor)
         throw Refused{mark, "an alias (*name) inside the very node that it stands for, so the file would never end"};
-    const auto found = std::find_if(anchors_.begin(), anchors_.end(), [&](const auto& a) { return a.first == anchor; });
+    const auto found = anchors_.find(anchor);
     if (found == anchors_.end()) throw Refused{mark, "an alias (*name) without its anchor (&name) before it"};
     count(sizeOf(found->second), mark);
     add(found->second, mark, 0);
@@ -75,8 +75,8 @@ class Builder final : public YAML::EventHandler {
   struct Open {
     Node node;
     YAML::anchor_t anchor;
-    std::optional<Node> key;                // in a map: the key whose value has not come yet
-    std::unordered_set<std::string> names;  // in a map: all keys so far, to find duplicates
+    std::optional<Node> key;                     // in a map: the key whose value has not come yet
+    std::unordered_map<std::string, int> names;  // in a map: all keys so far with their lines, to find duplicates
   };
 
   Node make(const YAML::Mark& mark, Node::Kind kind) {
@@ -118,7 +118,7 @@ class Builder final : public YAML::EventHandler {
         report(problems_, file_, other.line, other.column, "<<",
                describe(other) + ", expected a mapping to merge, such as an alias (*name) of one, or a list of them");
       for (const Entry& entry : other.entries)
-        if (map.names.insert(entry.key.scalar).second) entries.push_back(entry);
+        if (map.names.emplace(entry.key.scalar, entry.key.line).second) entries.push_back(entry);
     }
   }
   void closeLast() {
@@ -131,7 +131,7 @@ class Builder final : public YAML::EventHandler {
   void add(Node node, const YAML::Mark& mark, YAML::anchor_t anchor) {
     if (anchor != 0) {
       count(sizeOf(node), mark);
-      anchors_.emplace_back(anchor, node);
+      anchors_.emplace(anchor, node);
     }
     if (open_.empty()) {
       root_ = std::move(node);
@@ -146,14 +146,9 @@ class Builder final : public YAML::EventHandler {
       if (!node.isScalar() && !node.isNull()) {
         report(problems_, file_, node.line, node.column, "", "a key that is " + describe(node) + ", expected a name");
         node.scalar.assign(1, '?');
-      } else if (!map.names.insert(node.scalar).second) {
-        const Entry* first = nullptr;
-        for (const Entry& entry : map.node.entries)
-          if (entry.key.scalar == node.scalar && first == nullptr) first = &entry;
-        problems_.push_back({{file_, node.line, node.column},
-                             node.scalar,
-                             "given twice (first in line " + std::to_string(first ? first->key.line : 0) +
-                                 "), expected each key once"});
+      } else if (const auto [first, is_new] = map.names.emplace(node.scalar, node.line); !is_new) {
+        report(problems_, file_, node.line, node.column, node.scalar,
+               "given twice (first in line " + std::to_string(first->second) + "), expected each key once");
       }
       map.key = std::move(node);
       return;
@@ -165,7 +160,7 @@ class Builder final : public YAML::EventHandler {
   std::string file_;
   Problems& problems_;
   std::vector<Open> open_;
-  std::vector<std::pair<YAML::anchor_t, Node>> anchors_;
+  std::unordered_map<YAML::anchor_t, Node> anchors_;
   std::optional<Node> root_;
   YAML::Mark last_quoted_ = YAML::Mark::null_mark();
   size_t nodes_ = 0, most_nodes_;

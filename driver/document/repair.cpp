@@ -115,16 +115,22 @@ class Corrector {
       add(inserted(colon + 1, " "));
   }
 
-  /// Closes a quote, at the end of the line or before the next comma or bracket.
+  /// Closes a quote, at the end of the line or before one of the next commas or brackets. Each correction is a copy of
+  /// the text, so a line with thousands of commas must not have one for each.
   void quotes() {
+    constexpr size_t kMost = 32;
     size_t open = column_;
     const auto is = [this](size_t at) { return at < line_.size() && (line_[at] == '"' || line_[at] == '\''); };
     if (const auto quote = scanYaml(line_).quote; quote && !is(open)) open = static_cast<size_t>(quote->column) - 1;
     if (!is(open)) return;
     const std::string quote(1, line_[open]);
-    for (size_t at = line_.find_first_of(",]}", open); at < endOf(line_); at = line_.find_first_of(",]}", at + 1))
+    const size_t end = endOf(line_);
+    size_t tried = 0;
+    for (size_t at = line_.find_first_of(",]}", open); at < end && tried < kMost; ++tried) {
       add(inserted(at, quote));
-    if (endOf(line_) > open) add(inserted(endOf(line_), quote));
+      at = line_.find_first_of(",]}", at + 1);
+    }
+    if (end > open) add(inserted(end, quote));
   }
 
   /// Writes \ as \\ in a text in quotes, because it begins no escape sequence.
@@ -146,7 +152,7 @@ class Corrector {
     }
     std::string closing;
     const Scan scan = scanYaml(line_.substr(0, endOf(line_)));
-    for (const Mark& open : scan.open) closing.insert(0, open.what == '[' ? "]" : "}");
+    for (auto open = scan.open.rbegin(); open != scan.open.rend(); ++open) closing += open->what == '[' ? ']' : '}';
     if (!closing.empty()) add(inserted(endOf(line_), closing));
   }
 
@@ -154,14 +160,15 @@ class Corrector {
   void commas() {
     if (line_.find_first_of("[{") == std::string::npos) return;
     std::string line = line_;
-    for (size_t at = line.find(' '); at != std::string::npos && at < endOf(line); at = line.find(' ', at + 1)) {
+    size_t last = endOf(line_);
+    for (size_t at = line.find(' '); at < last; at = line.find(' ', at + 1)) {
+      if (at == 0 || std::string(",[{:- ").find(line[at - 1]) != std::string::npos) continue;
       const size_t next = line.find_first_not_of(' ', at);
-      if (at == 0 || next == std::string::npos || std::string(",[{:- ").find(line[at - 1]) != std::string::npos)
-        continue;
+      if (next == std::string::npos) break;
       const size_t end = line.find_first_not_of(kKeyLetters, next);
       const bool key = end != std::string::npos && end > next && line.compare(end, 2, ": ") == 0;
       const bool list = (line[at - 1] == ']' || line[at - 1] == '}') && (line[next] == '[' || line[next] == '{');
-      if (key || list) line.insert(at, ",");
+      if (key || list) line.insert(at, ","), ++last;
     }
     add(line);
   }

@@ -16,6 +16,7 @@ namespace hapticd::codec {
 namespace {
 
 constexpr size_t kMaxSteps = 64;
+constexpr size_t kMaxFields = 1024;  ///< of a report: each field is compared with all others
 
 constexpr Name<Exchange> kExchanges[] = {{"stream", Exchange::kStream}, {"poll", Exchange::kPoll}};
 constexpr const char* kWireKeys[] = {"exchange", "rate",  "keep_alive", "watchdog", "framing",
@@ -102,6 +103,10 @@ size_t jointsNamed(const Report& report, Role role) {
 void readFields(const Tree& fields, size_t joints, bool input, ReadReport& read) {
   Report& report = read.report;
   for (size_t i = 0; i < fields.count(); ++i) {
+    if (i == kMaxFields) {
+      fields.fail("has more than " + std::to_string(kMaxFields) + " fields");
+      break;
+    }
     const ReadField one = readField(fields.item(i), report, joints, input);
     report.fields.push_back(one.field);
     report.fields.back().sound = one.known.all;

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <cstring>
 #include <iterator>
 
 #include "base/call_name.hpp"

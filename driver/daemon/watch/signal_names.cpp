@@ -2,6 +2,7 @@
 #include "watch/signal_names.hpp"
 
 #include <csignal>
+#include <cstring>
 
 namespace hapticd::watch {
 

@@ -2,6 +2,7 @@
 #include "capture/stream_hint.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdio>
 #include <optional>
@@ -20,22 +21,24 @@ struct Header {
   size_t at = 0;  ///< byte of the capture at which it occurs first
 };
 
+/// How often each byte occurs in a capture.
+using Counts = std::array<size_t, 256>;
+
 /// Returns the byte at `at` if it occurs there in every report. 0 and 0xff do not count, because they are the upper
 /// bytes of small numbers; nor does a byte that occurs in many other places.
-std::optional<Header> headerAt(const Bytes& bytes, size_t size, size_t at) {
+std::optional<Header> headerAt(const Bytes& bytes, const Counts& counts, size_t size, size_t at) {
   const uint8_t byte = bytes[at];
-  if (byte == 0 || byte == 0xff) return std::nullopt;
+  const size_t reports = bytes.size() / size;
+  if (byte == 0 || byte == 0xff || 2 * counts[byte] > 3 * (reports + 1)) return std::nullopt;
   for (size_t next = at; next < bytes.size(); next += size)
     if (bytes[next] != byte) return std::nullopt;
-  const auto all = static_cast<size_t>(std::count(bytes.begin(), bytes.end(), byte));
-  const size_t reports = bytes.size() / size;
-  return 2 * all <= 3 * (reports + 1) ? std::optional(Header{byte, at}) : std::nullopt;
+  return Header{byte, at};
 }
 
-std::optional<Header> headerOf(const Bytes& bytes, size_t size) {
+std::optional<Header> headerOf(const Bytes& bytes, const Counts& counts, size_t size) {
   if (bytes.size() / size < kFewestAlike) return std::nullopt;
   for (size_t at = 0; at < size; ++at)
-    if (const auto header = headerAt(bytes, size, at)) return header;
+    if (const auto header = headerAt(bytes, counts, size, at)) return header;
   return std::nullopt;
 }
 
@@ -143,7 +146,9 @@ std::string beginHint(const codec::Wire& wire, const Bytes& bytes, const Decoded
 std::string headerHint(const codec::Wire& wire, const Bytes& bytes, const Decoded& decoded) {
   const size_t size = wire.input.size;
   char begins[64];
-  if (const auto header = headerOf(bytes, size)) {
+  Counts counts{};
+  for (const uint8_t byte : bytes) ++counts[byte];
+  if (const auto header = headerOf(bytes, counts, size)) {
     if (header->at == 0 || !beginsLater(wire.input, *header)) return "";
     std::snprintf(begins, sizeof begins, "0x%02x", static_cast<unsigned>(header->byte));
     return std::string(begins) + " occurs at byte " + std::to_string(header->at) + " of the capture and every " +
@@ -153,7 +158,7 @@ std::string headerHint(const codec::Wire& wire, const Bytes& bytes, const Decode
   }
   if (2 * decoded.good() > decoded.reports.size() && bytes.size() % size == 0) return "";
   for (size_t other = size + 1; other <= std::min(2 * size, codec::kMaxReportBytes); ++other)
-    if (const auto header = headerOf(bytes, other)) {
+    if (const auto header = headerOf(bytes, counts, other)) {
       std::snprintf(begins, sizeof begins, "0x%02x", static_cast<unsigned>(header->byte));
       return std::string(begins) + " occurs every " + std::to_string(other) + " bytes, first at byte " +
              std::to_string(header->at) + ": if it begins each report, give " + framingOf(*header) +

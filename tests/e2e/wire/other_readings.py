@@ -7,6 +7,8 @@ import csv
 import io
 import math
 import os
+import random
+import resource
 import subprocess
 import sys
 import tempfile
@@ -164,6 +166,17 @@ with tempfile.TemporaryDirectory() as folder:
     code, out, err = streamed(stream(4), {**wider, "    input:\n": "    framing: {start: 0xa5}\n    input:\n"})
     told_rows = list(csv.DictReader(io.StringIO(out)))
     check("and with the mark its reports are found", "899 reports, 899 good" in err and abs(float(told_rows[0]["position1"]) - swing()[1][0]) < SCALE, (err, told_rows[:1]))
+
+    # A line that stands at one level has one byte everywhere, at which every report could begin.
+    sarcos = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "config", "devices", "sarcos.yaml")
+
+    def cost(capture):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        run("device", "decode", sarcos, "--raw", given=capture)
+        return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+
+    level, noise = cost(b"U" * 1_000_000), cost(random.Random(1).randbytes(1_000_000))
+    check("it costs no more than noise", level < 8 * noise, (level, noise))
 
     # What `device kinematics` writes is what `device encode` reads.
     write()

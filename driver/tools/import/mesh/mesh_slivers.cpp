@@ -119,6 +119,7 @@ std::size_t takeInSlivers(const std::vector<Vector3d>& points, TriangleCorners& 
 std::size_t joinFreePoints(const std::vector<Vector3d>& points, TriangleCorners& corners) {
   constexpr double kRounding = 5e-7;  // 4 steps of single precision
   constexpr double kShare = 0.01;     // of the free edges: a part far from the origin has more digits than these
+  constexpr double kLeast = 1e-16;    // of the largest coordinate: the numbers of smaller cells are no whole numbers
   const std::vector<MeshEdge> edges = meshEdges(corners);
   std::vector<char> free(points.size(), 0);
   std::size_t count = 0;
@@ -132,7 +133,9 @@ std::size_t joinFreePoints(const std::vector<Vector3d>& points, TriangleCorners&
   for (const Corners& c : corners)
     for (const std::uint32_t i : c) largest = std::max(largest, points[i].lpNorm<Eigen::Infinity>());
   if (count == 0 || !(largest > 0)) return 0;
-  Near near(points, std::min(kRounding * largest, kShare * medianFree(points, edges)));
+  const double distance = std::min(kRounding * largest, kShare * medianFree(points, edges));
+  if (!(distance > kLeast * largest)) return 0;
+  Near near(points, distance);
   std::vector<std::uint32_t> number(points.size());
   std::size_t joined = 0;
   for (std::uint32_t i = 0; i < points.size(); ++i) {

@@ -2,11 +2,14 @@
 /// After a syntax error the rest of a file is read all the same, so that one check tells all of its problems.
 #include <gtest/gtest.h>
 
+#include <ctime>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "document/node.hpp"
+#include "document/repair.hpp"
 
 namespace hapticd::document {
 namespace {
@@ -114,6 +117,52 @@ TEST(Recovery, DropsWhatFollowsFromTextThatWasLeftOut) {
 }
 
 /// A text that cannot be read as it is never becomes one without a problem, whatever is broken in it.
+/// Returns how many times longer a text takes that has eight times as many parts. A time is the shortest of three.
+double growth(std::string (*textOf)(int parts), int parts) {
+  const auto shortest = [textOf](int count) {
+    const std::string text = textOf(count);
+    std::clock_t best = std::numeric_limits<std::clock_t>::max();
+    for (int i = 0; i < 3; ++i) {
+      const std::clock_t begun = std::clock();
+      readAll(text);
+      best = std::min(best, std::clock() - begun);
+    }
+    return static_cast<double>(best);
+  };
+  return shortest(8 * parts) / shortest(parts);
+}
+
+TEST(Recovery, TakesTimeInProportionToTheText) {
+  constexpr double kMost = 24;  // between 8 for a time in proportion, and 64 for one that grows with the square
+  EXPECT_LT(growth(
+                [](int keys) {
+                  std::string text;
+                  for (int i = 0; i < keys; ++i) text += "same: 1\n";
+                  return text;
+                },
+                2000),
+            kMost);
+  EXPECT_LT(growth(
+                [](int anchors) {
+                  std::string text = "a:\n", aliases;
+                  for (int i = 0; i < anchors; ++i) {
+                    text += "- &a" + std::to_string(i) + " x\n";
+                    aliases += "- *a" + std::to_string(i) + "\n";
+                  }
+                  return text + "b:\n" + aliases;
+                },
+                2000),
+            kMost);
+}
+
+TEST(Recovery, TriesFewCorrectionsOfALongLine) {
+  std::string commas = "a: \"", words = "a: [";
+  for (int i = 0; i < 10'000; ++i) commas += "b, ", words += "b c ";
+  constexpr size_t kMost = 50;  // each is a copy of the text
+  EXPECT_LT(corrections({commas}, {"", 1, 4}).size(), kMost);
+  EXPECT_LT(corrections({words}, {"", 1, 4}).size(), kMost);
+}
+
 TEST(Recovery, NeverAcceptsABrokenText) {
   const std::string good =
       "hapticd: 1\nservo: {rate: 1000, gravity: [0, 0, 0]}\nmodels:\n  - name: \"ball\"\n    plugin: torus\n"

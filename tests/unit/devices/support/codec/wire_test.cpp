@@ -40,6 +40,13 @@ TEST(Wire, AGoodDescriptionIsTaken) {
   EXPECT_EQ(complaint(changed(R"("at":0)", R"("at":"0x0")")), "");  // YAML scalars come as text
 }
 
+TEST(Wire, RefusesMoreFieldsThanAReportCanUse) {
+  std::string buttons;
+  for (int i = 0; i < 1024; ++i) buttons += R"(,{"is":"button","button":1,"at":1,"type":"u1"})";
+  EXPECT_NE(complaint(changed("}]},", "}" + buttons + "]},")).find("wire.input.fields: has more than 1024 fields"),
+            std::string::npos);
+}
+
 TEST(Wire, InvertedTurnsAFlagRoundWithAndWithoutABit) {
   const auto flags = [](const std::string& more) {
     return R"({"rate":1000,"input":{"size":4,"fields":[{"is":"position","joint":1,"at":0,"type":"i16","scale":0.1},)"

@@ -318,6 +318,15 @@ TEST(MeshImport, KeepsTheBorderOfATerrainFarFromTheOrigin) {
   EXPECT_EQ(report.joined, 0u);
 }
 
+TEST(MeshImport, JoinsNothingWhereEdgesAreTooShortToMeasure) {
+  const std::string speck =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1e-300 0 0\nv 0 1e-300 0\nv 1e-300 1e-300 0\nv 2e-300 0 0\nv 0 3e-300 0\n"
+      "f 1 2 3\nf 4 5 6\nf 4 7 8\nf 5 8 7\n";
+  MeshReport report;
+  partOf(speck, report);
+  EXPECT_EQ(report.joined, 0u);
+}
+
 TEST(MeshImport, IgnoresFarPointsThatNoTriangleUses) {
   MeshReport report;
   EXPECT_EQ(partOf("v 1e9 0 0\n" + std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n"), report).triangles.size(), 1u);

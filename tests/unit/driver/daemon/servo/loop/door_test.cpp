@@ -15,7 +15,7 @@ namespace hapticd::servo {
 namespace {
 
 struct alignas(64) Memory {
-  std::byte bytes[1024]{};
+  std::byte bytes[Door::stateBytes(1)]{};
 };
 
 hapticd_state stateIn(Memory& memory) {
