@@ -59,8 +59,8 @@ std::string socketOf(const CtlArguments& options) {
 /// it.
 void awaitDaemon(const CtlArguments& options) {
   if (options.wait <= 0 || control::connectTo(socketOf(options))) return;
-  std::fprintf(stderr, "waiting at most %g s for the daemon %s; %s\n", options.wait, options.name.c_str(),
-               control::othersText(socketOf(options)).c_str());
+  std::fprintf(stderr, "the daemon %s does not run yet; waiting for it, at most %g s (%s)\n", options.name.c_str(),
+               options.wait, control::othersText(socketOf(options)).c_str());
   control::waitForStart([&options] { return socketOf(options); }, options.wait);
 }
 

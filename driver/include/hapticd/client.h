@@ -134,8 +134,8 @@ typedef struct hapticd_event {
 #endif
 
 /* Why a call failed. `code` is one word for programs: a code that control.md lists, or `gone` (no daemon runs under the
- * name, or the daemon has ended), or `damaged` (the daemon's memory cannot be understood). `text` is for people. The
- * caller owns the struct. */
+ * name, or the daemon has ended), or `damaged` (the daemon's memory cannot be understood). `text` is for people. Both
+ * are empty after a call that succeeded. The caller owns the struct. */
 typedef struct hapticd_error {
   char code[32], text[992];
 } hapticd_error;

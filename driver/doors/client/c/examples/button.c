@@ -6,6 +6,7 @@
  *     ./button [NAME]
  */
 #include <hapticd/client.h>
+#include <sched.h>
 #include <stdio.h>
 
 static const double kForce = 0.5, kSeconds = 0.1; /* N, s: the push */
@@ -34,6 +35,9 @@ int main(int argc, char** argv) {
     hapticd_close(client);
     return 1;
   }
+  const struct sched_param priority = {.sched_priority = 70};
+  if (sched_setscheduler(0, SCHED_FIFO, &priority) != 0)
+    fprintf(stderr, "warning: no real-time priority: pushes may come late, and a late push is weaker\n");
   const int events = hapticd_stream(client, "events");
   uint64_t row = hapticd_written(client, events), after = UINT64_MAX; /* only events from now on; any tick first */
   double last = -1;                                                   /* s: time of the last press */
