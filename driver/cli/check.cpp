@@ -26,6 +26,7 @@
 #include "diagnostics/pass_through.hpp"
 #include "diagnostics/setting_plausibility.hpp"
 #include "diagnostics/slow_arm.hpp"
+#include "diagnostics/slow_paths.hpp"
 #include "diagnostics/two_hands.hpp"
 #include "diagnostics/unit_warnings.hpp"
 #include "diagnostics/value_plausibility.hpp"
@@ -73,16 +74,25 @@ bool tells(const document::Problems& told, const document::Problem& one) {
   });
 }
 
-/// Judges the hands of a scene. Models that their plugins refuse are left out.
-document::Problems warningsOfHands(const scene::Scene& full, const ModelTrial& trial, CheckResult& result) {
-  std::vector<bool> refused(full.models.size());
+/// Judges the hands of a scene. Models that their plugins refuse are left out, and those whose surfaces are doubtful.
+document::Problems warningsOfHands(scene::Scene full, const ModelTrial& trial, CheckResult& result) {
+  std::vector<bool> refused(full.models.size()), has_problem(full.models.size());
   for (const document::Problem& one : result.problems)
     if (const auto model = modelOf(one.key); model && *model < refused.size())
-      refused[*model] = true;
+      has_problem[*model] = true;
     else  // `run` refuses the hand, or an arm
       return fastHands(full);
+  for (size_t i = 0; i < refused.size(); ++i)
+    refused[i] = has_problem[i] && !leaveOutCurves(full.models[i], i, result.problems);
+  for (const document::Problem& one : trial.warnings)
+    if (const auto model = modelOf(one.key); model && *model < refused.size() && isOfSurfaces(one))
+      refused[*model] = true;
   result.hands_moved = true;
-  return warnOfHandsOfRest(full, trial.boxes, refused, std::vector<bool>(full.models.size(), true), catalog());
+  document::Problems warnings =
+      warnOfHandsOfRest(full, trial.boxes, refused, std::vector<bool>(full.models.size(), true), catalog());
+  for (size_t i = 0; i < refused.size(); ++i)
+    if (has_problem[i] && !refused[i]) dropOfCurves(i, warnings);
+  return warnings;
 }
 
 /// Adds warnings about settings that are allowed, but cannot be stable or are probably a mistake.
@@ -91,7 +101,7 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
   document::Problems more = unstableContacts(full, trial.stiffness);
   for (const document::Problem& one : lateVelocity(full, trial.needs_velocity)) more.push_back(one);
   for (const auto& found_by :
-       {&farModels, &farPaths, &softModels, &idleBounds, &quarantinedModels, &slowArms, &wideScales})
+       {&farModels, &farPaths, &slowPaths, &softModels, &idleBounds, &quarantinedModels, &slowArms, &wideScales})
     for (const document::Problem& one : found_by(full)) more.push_back(one);
   document::Problems unread;
   if (const auto root = document::readFileOn(result.file, unread)) {
@@ -223,6 +233,17 @@ void checkTheRest(const std::string& file, const CheckArguments& options, CheckR
   document::sortByPlace(found);
 }
 
+/// Removes warnings that may only follow from text that a syntax error left out, or put into another place.
+void dropWarningsThatFollow(CheckResult& result) {
+  document::Problems all;
+  for (const document::Problem& one : result.problems)
+    if (!one.left_out.empty()) all.push_back(one);  // these are never removed
+  const auto errors = static_cast<std::ptrdiff_t>(all.size());
+  all.insert(all.end(), result.warnings.begin(), result.warnings.end());
+  document::dropFollowUps(all);
+  result.warnings.assign(all.begin() + errors, all.end());
+}
+
 CheckResult checkOne(const std::string& file, const CheckArguments& options) {
   std::optional<scene::Scene> scene;
   CheckResult result{file, scene::checkFile(file, catalog(), &scene), {}};
@@ -257,6 +278,7 @@ CheckResult checkOne(const std::string& file, const CheckArguments& options) {
   placeInModelFiles(result.warnings);
   separateModelFiles(result.problems);
   document::dropFollowUps(result.problems);
+  dropWarningsThatFollow(result);
   return result;
 }
 

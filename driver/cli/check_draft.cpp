@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,8 @@
 #include "diagnostics/model_trial.hpp"
 #include "diagnostics/pass_through.hpp"
 #include "diagnostics/slow_arm.hpp"
+#include "diagnostics/slow_paths.hpp"
+#include "diagnostics/two_hands.hpp"
 #include "diagnostics/unit_warnings.hpp"
 #include "diagnostics/velocity_warnings.hpp"
 #include "document/node.hpp"
@@ -36,11 +39,31 @@ bool armsAreRead(const scene::Scene& draft, const document::Problems& problems) 
   const std::string next = "devices[" + std::to_string(draft.devices.size()) + "]";
   if (placeOfKey(draft.file, next) || (draft.devices.empty() && placeOfKey(draft.file, "device"))) return false;
   return std::none_of(problems.begin(), problems.end(), [&draft](const document::Problem& one) {
+    // in another place than the writer meant, after a syntax error
+    for (const char* key : {"device", "devices", "mount", "file"})
+      if (one.left_out.find(key) != std::string::npos) return true;
     const bool of_arm = one.key.starts_with("device") && one.key.find('.') != std::string::npos;
     return of_arm || std::any_of(draft.devices.begin(), draft.devices.end(), [&one](const scene::Device& device) {
              return device.file.string() == one.place.file;
            });
   });
+}
+
+/// What is known of the hands: how they move, or only where they start.
+enum class Known { kNothing, kStart, kMotion };
+
+/// Returns what is known of the hands of arms that could be read.
+Known knownOfHands(const UnreadKeys& unread, const document::Problems& problems) {
+  constexpr std::string_view kOfMotion[] = {"hand.rise",      "hand.rate",    "hand.sweep",  "hand.mass",
+                                            "hand.stiffness", "hand.damping", "hand.tremor", "hand.wander"};
+  Known known = unread.has("servo") ? Known::kStart : Known::kMotion;
+  for (const document::Problem& one : problems) {
+    if (one.key == "t") return Known::kNothing;
+    if (!one.key.starts_with("hand")) continue;  // `run` would refuse the hand
+    if (std::find(std::begin(kOfMotion), std::end(kOfMotion), one.key) == std::end(kOfMotion)) return Known::kNothing;
+    known = Known::kStart;
+  }
+  return known;
 }
 
 /// Judges the models of a draft, which is as much of a scene with problems as could be read.
@@ -69,23 +92,37 @@ class Models {
     return trial;
   }
 
-  /// Returns the warnings about hands, with the models that have no problem.
+  /// Returns the warnings about hands, and about how the models lie beside each other, with the models that have no
+  /// problem.
   /// @param moved becomes true if there is such a model, so that the hands were moved
-  document::Problems hands(const ModelTrial& trial, const document::Problems& problems, bool& moved) const {
-    std::vector<bool> unsound(draft_.models.size()), placed(draft_.models.size(), true);
+  document::Problems hands(const ModelTrial& trial, const document::Problems& problems, Known known,
+                           bool& moved) const {
+    std::vector<bool> unsound(draft_.models.size()), placed(draft_.models.size(), true), curved(draft_.models.size());
+    scene::Scene draft = draft_;
+    if (known == Known::kNothing) draft.devices.clear();
     for (size_t i = 0; i < unsound.size(); ++i) {
       const scene::Model& model = draft_.models[i];
-      unsound[i] = plugins_[i] == nullptr || lacks_[i] || !unread_[i].sound();
+      const bool has_problem = std::any_of(problems.begin(), problems.end(),
+                                           [i](const document::Problem& one) { return modelOf(one.key) == i; });
+      curved[i] = has_problem && leaveOutCurves(draft.models[i], i, problems);
+      unsound[i] = plugins_[i] == nullptr || lacks_[i] || !(unread_[i].sound() || curved[i]);
       for (const document::Problem& one : problems) {
-        const bool own = modelOf(one.key) == i;
+        const bool own = modelOf(one.key) == i && !(plugins_[i] && UnreadKeys::isMisplaced(one.key, *plugins_[i]));
         const bool of_path = model.kinematic && one.place.file.ends_with(".csv");  // which of the files is not known
-        unsound[i] = unsound[i] || own || of_path;
+        unsound[i] = unsound[i] || (own && !curved[i]) || of_path;
         const bool turned = one.key.find("].pose.orientation") != std::string::npos;
         placed[i] = placed[i] && !(own && one.key.find("].pose") != std::string::npos && !turned);
       }
     }
+    for (const document::Problem& one : trial.warnings)
+      if (const auto model = modelOf(one.key); model && *model < unsound.size() && isOfSurfaces(one))
+        unsound[*model] = true;
     moved = std::find(unsound.begin(), unsound.end(), false) != unsound.end();
-    return warnOfHandsOfRest(draft_, trial.boxes, unsound, placed, catalog());
+    document::Problems warnings =
+        warnOfHandsOfRest(draft, trial.boxes, unsound, placed, catalog(), known == Known::kMotion);
+    for (size_t i = 0; i < curved.size(); ++i)
+      if (curved[i]) dropOfCurves(i, warnings);
+    return warnings;
   }
 
   /// Returns true if a warning about one value of a model can be trusted.
@@ -205,16 +242,14 @@ void checkDraftArms(const scene::Scene& draft, const UnreadKeys& unread, const M
 /// Judges the hands of the arms, with the models that have no problem. Returns true if the hands were moved.
 bool checkDraftHands(const scene::Scene& draft, const UnreadKeys& unread, const Models& models, const ModelTrial& trial,
                      const document::Problems& problems, document::Problems& warnings) {
-  if (unread.has("hand")) return false;
-  for (const document::Problems& found : {unreachableRows(draft), pressesThrough(draft, trial.boxes)})
-    warnings.insert(warnings.end(), found.begin(), found.end());
-  const bool path = std::any_of(problems.begin(), problems.end(), [](const document::Problem& one) {
-    return one.key == "t" || one.key.starts_with("hand");  // `run` would refuse the hand
-  });
-  if (unread.has("servo") || path) return false;
+  const bool arms = !draft.devices.empty();
+  if (arms && !unread.has("hand"))
+    for (const document::Problems& found : {unreachableRows(draft), pressesThrough(draft, trial.boxes)})
+      warnings.insert(warnings.end(), found.begin(), found.end());
+  const Known known = arms ? knownOfHands(unread, problems) : Known::kNothing;
   bool moved = false;
-  for (document::Problem& one : models.hands(trial, problems, moved)) warnings.push_back(std::move(one));
-  return moved;
+  for (document::Problem& one : models.hands(trial, problems, known, moved)) warnings.push_back(std::move(one));
+  return moved && known == Known::kMotion;
 }
 
 }  // namespace
@@ -230,7 +265,8 @@ bool checkDraft(scene::Scene draft, document::Problems& problems, document::Prob
   const ModelTrial trial = models.attempt(arms ? servo::maxForceOf(draft) : 0);
   problems.insert(problems.end(), trial.problems.begin(), trial.problems.end());
   warnings.insert(warnings.end(), trial.warnings.begin(), trial.warnings.end());
-  for (const auto& found_by : {&farModels, &farPaths, &softModels, &wideScales, &quarantinedModels, &tune::fastPaths})
+  for (const auto& found_by :
+       {&farModels, &farPaths, &slowPaths, &softModels, &wideScales, &quarantinedModels, &tune::fastPaths})
     for (const document::Problem& one : found_by(draft))
       if (models.isRead(one) && !unread.has(one.key)) warnings.push_back(one);
   document::Problems unparsed;
@@ -238,12 +274,10 @@ bool checkDraft(scene::Scene draft, document::Problems& problems, document::Prob
     warnOfZeros(*root, draft.file.string(), warnings);
     warnOfTurns(*root, draft.file.string(), warnings);
     warnOfMounts(*root, draft.file.string(), warnings);
+    warnOfTwoHands(*root, draft.file.string(), warnings);
   }
-  bool hands_moved = false;
-  if (arms) {
-    checkDraftArms(draft, unread, trial, problems, warnings);
-    hands_moved = checkDraftHands(draft, unread, models, trial, problems, warnings);
-  }
+  if (arms) checkDraftArms(draft, unread, trial, problems, warnings);
+  const bool hands_moved = checkDraftHands(draft, unread, models, trial, problems, warnings);
   addImplausible(draft, trial.boxes, unread, warnings);
   if (!arms) std::erase_if(warnings, [](const document::Problem& one) { return one.key == "clients.origin"; });
   return hands_moved;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cli/command.hpp"
+#include "diagnostics/far_limits.hpp"
 #include "diagnostics/setting_plausibility.hpp"
 #include "diagnostics/value_plausibility.hpp"
 #include "document/reader.hpp"
@@ -47,13 +48,12 @@ scene::Scene withArm(scene::Scene scene) {
 }
 
 document::Problems farModels(const scene::Scene& scene) {
-  constexpr double kFar = 10;  // [m]
   document::Problems warnings;
   for (size_t i = 0; i < scene.models.size(); ++i) {
     const Eigen::Vector3d& position = scene.models[i].pose.position;
     double away = position.norm();
     for (const scene::Device& device : scene.devices) away = std::min(away, (position - device.mount.position).norm());
-    if (away > kFar)
+    if (away > kFarModel)
       document::report(
           warnings, scene.models[i].place, "models[" + std::to_string(i) + "].pose.position",
           fmt::format("the model is {:.4g} m from the world's origin, where no arm reaches; the position must be in m",
@@ -134,7 +134,8 @@ void addImplausible(const scene::Scene& scene, const ModelBoxes& boxes, const Un
   for (const document::Problem& one : implausibleSettings(scene, boxes))
     // Warnings about arms can be trusted, because checkDraft() leaves out arms with problems.
     if ((one.key.starts_with("devices[") || !unread.has(one.key)) &&
-        !(one.key == "clients.answer_time" && unread.has("servo.rate")))
+        !(one.key == "clients.answer_time" && unread.has("servo.rate")) &&
+        !(one.what.find("no program may push") != std::string::npos && unread.has("clients.mode")))
       more.push_back(one);
   const size_t before = warnings.size();
   for (const document::Problem& one : more)

@@ -2,6 +2,8 @@
 #include "document/csv.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <numeric>
 
 #include "document/correction.hpp"
 #include "document/node.hpp"
@@ -49,14 +51,53 @@ struct Field {
   std::string_view text;
   size_t offset;
 };
-std::vector<Field> fieldsOf(std::string_view line) {
+std::vector<Field> fieldsOf(std::string_view line, char separator = ',') {
   std::vector<Field> fields;
   for (size_t start = 0; start <= line.size();) {
-    const size_t comma = std::min(line.find(',', start), line.size());
-    fields.push_back({trimmed(line.substr(start, comma - start)), start});
-    start = comma + 1;
+    const size_t end = std::min(line.find(separator, start), line.size());
+    fields.push_back({trimmed(line.substr(start, end - start)), start});
+    start = end + 1;
   }
   return fields;
+}
+
+/// Returns the name of a column that a name with a unit, capitals or underscores stands for: "x" for "X [mm]", "t" for
+/// "time_ms", "qw" for "q_w".
+std::string plainName(std::string_view given) {
+  std::string name;
+  for (const char c : given.substr(0, given.find_first_of("[(/")))
+    if (c != ' ') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const std::string_view unit : {"_ms", "_us", "_s", "_mm", "_cm", "_m"})
+    if (name.size() > unit.size() && name.ends_with(unit)) name.resize(name.size() - unit.size());
+  std::erase(name, '_');
+  return name == "time" ? "t" : name;
+}
+
+/// Returns the only column that grows from row to row in a table without a header; the first one if it grows, too, or
+/// if there are less than three rows.
+size_t growingColumn(std::string_view text) {
+  constexpr size_t kEnough = 3;
+  std::vector<double> last;
+  std::vector<bool> grows;
+  size_t rows = 0;
+  for (size_t start = 0; start < text.size();) {
+    const size_t end = std::min(text.find('\n', start), text.size());
+    const std::string_view line = text.substr(start, end - start);
+    start = end + 1;
+    if (trimmed(line).empty() || trimmed(line).front() == '#') continue;
+    const std::vector<Field> fields = fieldsOf(line);
+    if (rows == 0 && !numberIn(fields.front().text)) return 0;  // a header
+    if (rows == 0) grows.assign(fields.size(), true), last.assign(fields.size(), -HUGE_VAL);
+    if (++rows > 0 && fields.size() != grows.size()) continue;
+    for (size_t i = 0; i < fields.size(); ++i) {
+      const double value = numberIn(fields[i].text).value_or(-HUGE_VAL);
+      grows[i] = grows[i] && value > last[i];
+      last[i] = value;
+    }
+    if (grows[0] && rows >= kEnough) return 0;
+  }
+  const bool one = rows >= kEnough && std::count(grows.begin(), grows.end(), true) == 1;
+  return one ? static_cast<size_t>(std::find(grows.begin(), grows.end(), true) - grows.begin()) : 0;
 }
 
 class Parser {
@@ -68,10 +109,13 @@ class Parser {
     ++line_;
     const std::string_view content = trimmed(text);
     if (content.empty() || content.front() == '#') return;
-    const std::vector<Field> fields = fieldsOf(text);
-    if (table_.columns == 0 && header(fields)) return;
+    if (table_.columns == 0 && header(fieldsOf(text), text)) return;
+    const std::vector<Field> fields = fieldsOf(text, separator_);
     if (wrong_ == 0 || table_.columns > 0) row(fields);
   }
+  /// Tells the number of the column that has the times, if the table has no header and its columns are in another
+  /// order.
+  void putFirst(size_t column) { first_ = column; }
   bool tooWrong() const { return wrong_ >= kShownProblems; }
   CsvTable takeSound() { return std::move(table_); }
 
@@ -102,37 +146,82 @@ class Parser {
   }
 
   /// Chooses the columns by the first line. Returns true if this line was a header.
-  bool header(const std::vector<Field>& fields) {
+  bool header(const std::vector<Field>& fields, std::string_view line) {
     std::string names;  // without quotes, which some programs write around each name
     for (const Field& field : fields) names.append(names.empty() ? "" : ",").append(unquoted(field.text));
     const bool numbers = numberIn(fields.front().text).has_value();
-    for (const std::string& header : rules_.headers) {
-      const auto columns = static_cast<size_t>(std::count(header.begin(), header.end(), ',')) + 1;
-      if (numbers ? columns != fields.size() : header != names) continue;
-      names_ = header;
-      table_.columns = columns;
-      return !numbers;
-    }
+    for (const std::string& header : rules_.headers)
+      if (numbers ? fieldsOf(header).size() == fields.size() : header == names) {
+        use(header, fields);
+        if (numbers) reorder();
+        return !numbers;
+      }
     const std::string meant = separators(fields, static_cast<size_t>(-1));
     problem(0, "",
             (numbers ? countText(fields.size()) + ", expected " + expected()
                      : "the header is \"" + printable(names.substr(0, 60)) + "\", expected " + expected()) +
                 meant);
+    if (understood(fields)) return !numbers;
+    for (const char other : {';', '\t'}) {
+      separator_ = other;
+      if (const std::vector<Field> parts = fieldsOf(line, other); parts.size() > 1 && understood(parts))
+        return !numberIn(parts.front().text);
+    }
     wrong_ = kShownProblems;  // if the columns are unknown, no row can be checked
     return true;
+  }
+
+  void use(const std::string& header, const std::vector<Field>& fields) {
+    names_ = header;
+    table_.columns = fieldsOf(header).size();
+    order_.resize(table_.columns);
+    std::iota(order_.begin(), order_.end(), size_t{0});
+    width_ = fields.size();
+  }
+
+  /// Reads the growing column of a table without a header as the first one.
+  void reorder() {
+    if (first_ == 0 || first_ >= order_.size() || !rules_.growing) return;
+    problem(0, "",
+            "column " + std::to_string(first_ + 1) + " is the only one that grows from row to row, as " + nameOf(0) +
+                " must; expected the order " + names_);
+    std::rotate(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(first_),
+                order_.begin() + static_cast<std::ptrdiff_t>(first_) + 1);
+  }
+
+  /// Finds the columns of a wrong first line by their names, or, if their number is right, by their order, so that the
+  /// rows are judged all the same. Returns false if it cannot.
+  bool understood(const std::vector<Field>& fields) {
+    std::vector<std::string> given;
+    for (const Field& field : fields) given.push_back(plainName(unquoted(field.text)));
+    std::vector<std::string> widest_first = rules_.headers;
+    std::stable_sort(widest_first.begin(), widest_first.end(),
+                     [](const std::string& a, const std::string& b) { return a.size() > b.size(); });
+    for (const std::string& header : widest_first) {
+      std::vector<size_t> order;
+      for (const Field& name : fieldsOf(header))
+        order.push_back(static_cast<size_t>(std::find(given.begin(), given.end(), name.text) - given.begin()));
+      if (*std::max_element(order.begin(), order.end()) == given.size()) continue;  // a name is missing
+      use(header, fields);
+      order_ = order;
+      return true;
+    }
+    const bool begins = given.front().starts_with(rules_.headers.front().front()) || numberIn(fields[0].text);
+    for (const std::string& header : widest_first)
+      if (begins && fieldsOf(header).size() == fields.size()) return use(header, fields), true;
+    return false;
   }
 
   std::string nameOf(size_t column) const { return std::string(fieldsOf(names_)[column].text); }
 
   void row(const std::vector<Field>& fields) {
-    if (fields.size() != table_.columns)
+    if (fields.size() != width_)
       return problem(0, "",
-                     countText(fields.size()) + ", expected " + std::to_string(table_.columns) +
-                         separators(fields, table_.columns) +
-                         (fields.size() > table_.columns ? "; write decimals with a point: 0.5, not 0,5" : ""));
+                     countText(fields.size()) + ", expected " + std::to_string(width_) + separators(fields, width_) +
+                         (fields.size() > width_ ? "; write decimals with a point: 0.5, not 0,5" : ""));
     const size_t wrong_before = wrong_;
-    const bool begun = take(fields[0], 0);
-    for (size_t i = 1; i < fields.size() && !tooWrong(); ++i) take(fields[i], i);
+    const bool begun = take(fields[order_[0]], 0);
+    for (size_t i = 1; i < table_.columns && !tooWrong(); ++i) take(fields[order_[i]], i);
     if (!begun || tooWrong()) return rejectRow();
     const bool readable = wrong_ == wrong_before;
     const double* now = table_.values.data() + table_.lines.size() * table_.columns;
@@ -152,7 +241,9 @@ class Parser {
 
   /// Adds the number to the table, or notes why it is none.
   bool take(const Field& field, size_t column) {
-    const std::optional<double> value = numberIn(field.text);
+    std::string text(field.text);
+    if (separator_ != ',') std::replace(text.begin(), text.end(), ',', '.');  // told with the header
+    const std::optional<double> value = numberIn(text);
     const bool finite = rules_.finite || (rules_.growing && column == 0);
     const bool good = value && (finite ? std::isfinite(*value) && std::abs(*value) <= rules_.largest : true);
     if (!good)
@@ -170,7 +261,11 @@ class Parser {
   const CsvRules& rules_;
   Problems& problems_;
   CsvTable table_;
-  std::string names_;
+  std::string names_;          ///< of the table's columns, separated by commas
+  std::vector<size_t> order_;  ///< of each column of the table: its index in the file
+  size_t width_ = 0;           ///< columns of the file
+  char separator_ = ',';
+  size_t first_ = 0;            ///< index in the file of the column that grows
   std::optional<double> last_;  ///< first number of the last row in which it grew
   size_t wrong_ = 0;
   int line_ = 0;
@@ -182,6 +277,7 @@ class Parser {
 static void readLines(std::string_view text, Parser& parser) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // spreadsheets write it before UTF-8
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  parser.putFirst(growingColumn(text));
   for (size_t start = 0; start < text.size() && !parser.tooWrong();) {
     const size_t end = std::min(text.find('\n', start), text.size());
     parser.line(text.substr(start, end - start));

@@ -36,7 +36,7 @@ struct CsvTable {
 };
 
 /// [main] Parses a text. If something breaks the rules, it reports at most twenty problems with line and column, and
-/// returns nothing.
+/// returns nothing. Below a wrong header, the rows are judged by what its columns are probably meant to be.
 std::optional<CsvTable> parseCsv(std::string_view text, const std::string& file, const CsvRules& rules,
                                  Problems& problems);
 

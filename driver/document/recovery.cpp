@@ -153,7 +153,8 @@ std::optional<Repair> Recovery::farthest(const std::vector<Repair>& repairs, con
 /// comes farther.
 std::optional<Repair> Recovery::corrected(const Place& place, const SyntaxError& error) {
   if (place.line < 1 || place.line > static_cast<int>(lines_.size())) return std::nullopt;
-  std::vector<Repair> repairs = corrections(lines_, place);
+  std::vector<Repair> repairs = withDash(lines_, place.line);
+  for (Repair& one : corrections(lines_, place)) repairs.push_back(std::move(one));
   if (const std::string meant = withCorrectedAlias(text_, error.place, error.words); !meant.empty())
     repairs.push_back({linesOf(meant), error.place.line, "", "", ""});
   for (const auto& more : {withoutTabs(lines_), otherIndents(lines_, place.line)})
@@ -175,6 +176,9 @@ bool Recovery::mend(const SyntaxError& error) {
       error.problem ? std::vector{*error.problem} : likelySyntaxErrors(text_, error.place, error.words);
   const bool may_mend = text_.size() <= kMostBytes && mended_.size() < kMostErrors;
   const int before = error.place.line - 1;  // a line without a colon is noticed only at the next one
+  if (may_mend && error.place.line >= 1 && error.place.line <= static_cast<int>(lines_.size()))
+    if (const auto dash = farthest(withDash(lines_, error.place.line), error, error.place.line))
+      return use(likely.front(), *dash), true;
   for (const Problem& one : likely) {
     if (!may_mend) break;
     if (&one == &likely.back() && before >= 1)

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "document/problem.hpp"
+#include "document/text_lines.hpp"
 
 namespace hapticd::document {
-
-using Lines = std::vector<std::string>;
 
 /// One way to read on after a syntax error.
 struct Repair {
@@ -21,11 +20,11 @@ struct Repair {
   int column = 1;       ///< column of the mistake, if `what` is given
 };
 
-Lines linesOf(const std::string& text);
-std::string textOf(const Lines& lines);
-
 /// [any] Returns corrections of a line, the most probable one first. @param place where the mistake was noticed
 std::vector<Repair> corrections(const Lines& lines, const Place& place);
+
+/// [any] Returns the text with a dash before the line, or before the one above it, if it begins an element of a list.
+std::vector<Repair> withDash(const Lines& lines, int number);
 
 /// [any] Returns the line with other indentations, together with the deeper lines below it.
 std::vector<Repair> otherIndents(const Lines& lines, int number);

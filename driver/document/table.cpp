@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "document/table.hpp"
 
+#include <algorithm>
+
 #include "document/suggestion.hpp"
 
 namespace hapticd::document {
@@ -45,6 +47,17 @@ std::string Key::expected() const {
       return shape;
   }
   return "";
+}
+
+std::vector<const Node*> elementsOf(const Node& list) {
+  std::vector<const Node*> elements;
+  for (const Node& item : list.items) elements.push_back(&item);
+  const auto isMap = [](const Entry& entry) { return entry.value.isMap(); };
+  if (std::all_of(list.entries.begin(), list.entries.end(), isMap))
+    for (const Entry& entry : list.entries) elements.push_back(&entry.value);
+  else
+    elements.push_back(&list);
+  return elements;
 }
 
 std::vector<std::string> detail::texts(std::span<const std::string_view> words) {

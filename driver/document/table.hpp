@@ -62,6 +62,10 @@ constexpr Key required(Key key) {
   return key;
 }
 
+/// [any] Returns the elements of a list. Of a mapping in its place, these are its values if all of them are mappings;
+/// otherwise the mapping is the only element. So they are judged although the dashes are missing.
+std::vector<const Node*> elementsOf(const Node& list);
+
 namespace detail {
 template <class T, class C>
 C classOf(T C::*);
@@ -247,17 +251,26 @@ constexpr Key list(const char* name, const Table& table, Range count, const char
           [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
             auto& target = detail::member<M>(object);
             const auto most = static_cast<size_t>(key.range.max);
-            if (!node.isSequence() || node.items.size() > most)
-              return in.problem(
-                  node, path,
-                  (node.isSequence() ? "a list of " + std::to_string(node.items.size()) : describe(node)) +
-                      ", expected " + key.expected() +
-                      (node.isMap() ? "; begin each of them with \"- \", as an element of a list" : ""));
-            target.reserve(node.items.size());
-            for (size_t i = 0; i < node.items.size(); ++i) {
+            const bool is_right = node.isSequence() && node.items.size() <= most;
+            if (!is_right)
+              in.problem(node, path,
+                         (node.isSequence() ? "a list of " + std::to_string(node.items.size()) : describe(node)) +
+                             ", expected " + key.expected() +
+                             (node.isMap() ? "; begin each of them with \"- \", as an element of a list" : ""));
+            const std::vector<const Node*> elements = elementsOf(node);
+            if (elements.size() > most) return;
+            target.reserve(elements.size());
+            for (size_t i = 0; i < elements.size(); ++i) {
               auto& item = target.emplace_back();
-              if constexpr (requires { item.node = &node; }) item.node = &node.items[i];
-              in.object(node.items[i], path + "[" + std::to_string(i) + "]", *key.table, &item);
+              if constexpr (requires { item.node = &node; }) item.node = elements[i];
+              in.object(*elements[i], path + "[" + std::to_string(i) + "]", *key.table, &item);
+              if constexpr (requires { item.name; })  // of a mapping of names to elements
+                if (node.isMap() && elements[i] != &node && item.name.empty()) {
+                  item.name = node.entries[i].key.scalar;
+                  std::erase_if(in.problems(), [&](const Problem& one) {
+                    return one.key == path + "[" + std::to_string(i) + "].name" && one.what.starts_with("missing");
+                  });
+                }
             }
           }};
 }

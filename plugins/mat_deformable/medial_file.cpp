@@ -173,7 +173,8 @@ class Reader {
     const Path at = below(parent, key);
     const auto json = medial.find(key);
     if (json == medial.end() || json->is_null()) {
-      if (required) problems_.add(at, "this key is missing; give a number, or one for each vertex");
+      if (required && !isMisspelt(medial, key))
+        problems_.add(at, "this key is missing; give a number, or one for each vertex");
       return {};
     }
     if (json->is_number()) return {value(*json, at, key)};
@@ -202,6 +203,14 @@ class Reader {
       problems_.add(at, "expected rows of [x, y, z] in m: [[[0, 0, 0], [0.1, 0, 0]], ...]");
       return false;
     }
+    if (std::all_of(rows->begin(), rows->end(), isPoint)) {  // read on as if it were one row
+      problems_.add(at,
+                    "a list of points, expected rows of points, with one more bracket: [[[0, 0, 0], [0.1, 0, 0]], "
+                    "...]");
+      grid.count = {1, static_cast<int>(rows->size())};
+      for (std::size_t j = 0; j < rows->size(); ++j) grid.points.push_back(point((*rows)[j], below(at, j)));
+      return true;
+    }
     grid.count = {static_cast<int>(rows->size()), static_cast<int>((*rows)[0].size())};
     for (std::size_t i = 0; i < rows->size() && !problems_.full(); ++i) {
       if (!isRow((*rows)[i], below(at, i), grid)) continue;
@@ -209,6 +218,11 @@ class Reader {
         grid.points.push_back(point((*rows)[i][j], below(below(at, i), j)));
     }
     return true;
+  }
+
+  static bool isPoint(const Json& json) {
+    return json.is_array() && json.size() == 3 &&
+           std::all_of(json.begin(), json.end(), [](const Json& axis) { return axis.is_number(); });
   }
 
   Eigen::Vector3d point(const Json& json, const Path& at) {
@@ -229,13 +243,20 @@ class Reader {
     return false;
   }
 
+  /// Returns true if the file has a key that resembles this one. It was told as unknown.
+  static bool isMisspelt(const Json& medial, const std::string& key) {
+    for (const auto& [name, value] : medial.items())
+      if (name != key && !document::suggestion(name, {key}).empty()) return true;
+    return false;
+  }
+
   std::vector<double> grid(const Json& medial, const Path& parent, const char* key, const medial::SkeletonGrid& grid,
                            bool required) {
     const Path at = below(parent, key);
     const auto json = medial.find(key);
     const std::size_t total = grid.points.size(), rows = static_cast<std::size_t>(grid.count[0]);
     if (json == medial.end() || json->is_null()) {
-      if (required)
+      if (required && !isMisspelt(medial, key))
         problems_.add(at,
                       "this key is missing; give a number, or rows like those of points with a number for each point");
       return {};

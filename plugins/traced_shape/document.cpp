@@ -147,6 +147,7 @@ document::Problems Problems::placed() const {
     }
     all.push_back({place, nameOf(problem.path), what});
   }
+  document::dropFollowUps(all);
   document::sortByPlace(all);
   return all;
 }
@@ -190,7 +191,7 @@ Json parseDocument(const std::string& text, const std::string& file, Problems& p
             kPartWay);
   document::Problems of_text;
   const auto root = document::readOn(text, file, of_text);
-  if (!root || document::leavesOut(of_text, file)) throwAll(of_text);
+  if (!root) throwAll(of_text);
   problems.add(of_text);
   return treeOf(*root);
 }

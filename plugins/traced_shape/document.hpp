@@ -50,7 +50,7 @@ class Problems {
 std::string readModelText(const std::string& path);
 
 /// [main] Returns the text as a tree. Numbers become numbers, including `.nan` and `.inf`; other scalars of YAML stay
-/// texts, except true and false. After a syntax error it reads on, if nothing must be left out.
+/// texts, except true and false. After a syntax error it reads on.
 /// @param problems receives what is wrong with the text
 /// @throws ModelFileError if it is neither YAML nor JSON.
 nlohmann::json parseDocument(const std::string& text, const std::string& file, Problems& problems);

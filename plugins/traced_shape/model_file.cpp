@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <initializer_list>
 #include <optional>
+#include <set>
 
 #include "document.hpp"
 #include "document/suggestion.hpp"
@@ -71,21 +72,36 @@ class Reader {
     }
     checkKeys(json, at, {"name", "degree", "knots", "points", "weights", "outward"});
     if (const Json* name = member(json, "name")) data.name = nameOf(*name, at / "name");
-    const std::size_t before = problems_.count();
-    readDegree(json, at / "degree", data);
-    readKnots(json, at / "knots", data);
-    readPoints(json, at / "points", data);
-    const std::size_t after = problems_.count();
+    spline::SoundParts parts;
+    parts.degree = isRead([&] { readDegree(json, at / "degree", data); });
+    readKnots(json, at / "knots", data, parts);
+    parts.points = isRead([&] { readPoints(json, at / "points", data); });
     const Json* weights = member(json, "weights");
-    if (weights != nullptr && !weights->is_null()) data.weights = numbers(*weights, at / "weights");
-    if (problems_.count() != after) data.weights.clear();  // wrong weights hide nothing else
+    if (weights != nullptr && !weights->is_null())
+      parts.weights = isRead([&] { data.weights = numbers(*weights, at / "weights"); });
     if (const Json* outward = member(json, "outward")) {
       if (*outward != "reversed" && *outward != "forward")
         problems_.add(at / "outward", "expected reversed or forward");
       data.reversed = *outward == "reversed";
     }
-    sound_.back() = after == before && !problems_.full() && isWhole(data, at);
+    bool net = parts.degree && parts.points && parts.knots[0] && parts.knots[1], weighted = parts.weights;
+    spline::checkParts(data, parts, [&](const std::string& where, const std::string& why) {
+      const Path place = placeIn(data, at, where + ": ");
+      const bool of_weights = place.size() > at.size() && place[at.size()].key == "weights";
+      problems_.add(place, where + ": " + why + (of_weights ? "" : otherKnots(data)));
+      (of_weights ? weighted : net) = false;
+    });
+    if (!weighted) data.weights.clear();  // wrong weights hide nothing else
+    sound_.back() = net && !problems_.full();
     return data;
+  }
+
+  /// Returns true if a part of the file was read without a problem.
+  template <class Read>
+  bool isRead(const Read& read) {
+    const std::size_t before = problems_.count();
+    read();
+    return problems_.count() == before;
   }
 
   std::string nameOf(const Json& json, const Path& at) {
@@ -94,21 +110,6 @@ class Reader {
     if (json.is_null()) return {};
     problems_.add(at, "expected a text");
     return {};
-  }
-
-  /// Reports what is wrong with a surface as a whole, with both directions of its knots. @return true if nothing is
-  bool isWhole(const spline::SurfaceData& data, const Path& at) {
-    const std::size_t before = problems_.count();
-    const auto attempt = [&](const auto& check) {
-      try {
-        check();
-      } catch (const std::exception& e) {
-        problems_.add(placeIn(data, at, e.what()), e.what() + otherKnots(data));
-      }
-    };
-    for (const int axis : {0, 1}) attempt([&] { spline::validateKnots(data, axis); });
-    if (problems_.count() == before) attempt([&] { spline::validate(data); });
-    return problems_.count() == before;
   }
 
   /// Returns the value of a surface that a message such as "surface 'lid': knots[u][2]: ..." is about.
@@ -156,11 +157,13 @@ class Reader {
     }
   }
 
-  void readKnots(const Json& json, const Path& at, spline::SurfaceData& data) {
+  void readKnots(const Json& json, const Path& at, spline::SurfaceData& data, spline::SoundParts& parts) {
     const Json* knots = member(json, "knots");
+    parts.knots = {false, false};
     if (knots == nullptr || !knots->is_array() || knots->size() != 2)
       return problems_.add(at, "expected two lists of numbers: the knots along u and v");
-    for (std::size_t axis = 0; axis < 2; ++axis) data.knots[axis] = numbers((*knots)[axis], at / axis);
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      parts.knots[axis] = isRead([&] { data.knots[axis] = numbers((*knots)[axis], at / axis); });
   }
 
   void readPoints(const Json& json, const Path& at, spline::SurfaceData& data) {
@@ -227,9 +230,14 @@ class Reader {
     return std::nullopt;
   }
 
+  /// Returns the value of a key, or of a misspelt one, which was told as unknown; nullptr if there is none.
   static const Json* member(const Json& json, const char* key) {
-    const auto found = json.find(key);
-    return found == json.end() ? nullptr : &*found;
+    static const std::set<std::string> kKeys{"name",    "degree",  "knots", "points",
+                                             "weights", "outward", "sides", "flipped"};
+    if (const auto found = json.find(key); found != json.end()) return &*found;
+    for (const auto& [name, value] : json.items())
+      if (!kKeys.contains(name) && !document::suggestion(name, {key}).empty()) return &value;
+    return nullptr;
   }
 
   double number(const Json& json, const Path& at) {
@@ -279,12 +287,30 @@ ModelFile readModelFile(const std::string& path) {
   return parseModelFile(readModelText(path), path);
 }
 
+/// Returns what is doubtful in a file with problems. If all surfaces were read, this includes how they lie beside each
+/// other; with wrong edges, it is unknown which sides shall join although they miss each other.
+static std::vector<std::string> oddOf(const ModelFile& file, const std::vector<bool>& sound, const Problems& problems,
+                                      const std::string& text, const std::string& name) {
+  std::vector<std::string> odd = warnOfSurfaces(file, sound, text, name);
+  const bool all = std::find(sound.begin(), sound.end(), false) == sound.end();
+  if (sound.empty() || !all || problems.about("weights")) return odd;
+  try {
+    const trace::Model model(file.surfaces, {.edges = file.edges});
+    if (!problems.about("edges")) odd = warnOfModel(file, model, text, name);
+    const std::vector<std::string> turned = warnOfJoints(file, model, text, name);
+    odd.insert(odd.end(), turned.begin(), turned.end());
+  } catch (const std::exception&) {
+    return odd;  // what cannot be joined is told once the other problems are corrected
+  }
+  return odd;
+}
+
 ModelFile parseModelFile(const std::string& text, const std::string& name) {
   Problems problems(name, text);
   const Json root = parseDocument(text, name, problems);
   Reader reader(problems);
   ModelFile file = reader.read(root);
-  if (problems.any()) problems.throwIfAny(warnOfSurfaces(file, reader.sound(), text, name));
+  if (problems.any()) problems.throwIfAny(oddOf(file, reader.sound(), problems, text, name));
   return file;
 }
 

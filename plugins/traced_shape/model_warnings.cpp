@@ -327,4 +327,20 @@ std::vector<std::string> warnOfModel(const ModelFile& file, const trace::Model& 
   return odd.texts();
 }
 
+std::vector<std::string> warnOfJoints(const ModelFile& file, const trace::Model& model, const std::string& text,
+                                      const std::string& name) {
+  Problems odd(name, text);
+  for (const std::string& warning : model.warnings()) {
+    std::size_t last = 0, at = 0;  // the surface that is named last, and where
+    for (std::size_t i = 0; i < file.surfaces.size(); ++i) {
+      const std::string& own = file.surfaces[i].name;
+      const std::string named = own.empty() ? "surface " + std::to_string(i) + " " : "surface '" + own + "'";
+      if (const std::size_t found = warning.rfind(named); found != std::string::npos && found >= at)
+        last = i, at = found;
+    }
+    odd.add(surfaceAt(last), warning);
+  }
+  return odd.texts();
+}
+
 }  // namespace hapticd

@@ -16,7 +16,12 @@ namespace hapticd {
 std::vector<std::string> warnOfModel(const ModelFile& file, const trace::Model& model, const std::string& text,
                                      const std::string& name);
 
-/// [main] Does the same for the surfaces that could be read, if the file has problems.
+/// [main] Returns the warnings of the model about surfaces that join others, each at the place of the last surface that
+/// it names.
+std::vector<std::string> warnOfJoints(const ModelFile& file, const trace::Model& model, const std::string& text,
+                                      const std::string& name);
+
+/// [main] Does the same as warnOfModel() for the surfaces that could be read, if the file has problems.
 /// @param sound for each surface of the file: true if it could be read. A surface that was read may have neighbours
 /// that were not
 std::vector<std::string> warnOfSurfaces(const ModelFile& file, const std::vector<bool>& sound, const std::string& text,

@@ -45,11 +45,9 @@ void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
   options.form = evaluation_ == 0 ? spline::Form::kTable : spline::Form::kNet;
   model_ = std::make_unique<trace::Model>(file.surfaces, options);
   if (host() != nullptr && host()->log != nullptr)
-    for (const std::string& warning : model_->warnings())
-      host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + warning).c_str());
-  if (host() != nullptr && host()->log != nullptr)
-    for (const std::string& odd : warnOfModel(file, *model_, text, geometry_))
-      host()->log(host(), HSP_LOG_WARNING, ("geometry: " + odd).c_str());
+    for (const auto& warnings : {&warnOfJoints, &warnOfModel})
+      for (const std::string& odd : warnings(file, *model_, text, geometry_))
+        host()->log(host(), HSP_LOG_WARNING, ("geometry: " + odd).c_str());
   const uint32_t probes = std::max(activation.max_probes, 1u);
   tracers_.clear();
   tracers_.reserve(probes);

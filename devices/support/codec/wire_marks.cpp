@@ -70,6 +70,21 @@ void placeMark(const Tree& tree, const Mark& mark, bool framed, const std::vecto
   if (given == 0 || framed) report.fields.push_back(constantAt(mark));
 }
 
+/// Notes a constant in the first byte after a report id that must go: without the id, the mark is in its byte, and they
+/// differ.
+void otherConstant(const Tree& tree, int mark, const std::vector<FieldFacts>& known, const Report& report) {
+  for (size_t i = 0; i < known.size(); ++i) {
+    const Field& field = report.fields[i];
+    if (!known[i].role || !known[i].all || field.role != Role::kConstant || field.at != 0) continue;
+    const uint8_t given = writtenAt(report, field, 0);
+    if (given == mark) return;
+    return tree.at("fields").item(i).at("value").fail(
+        "is " + hexOf(given) + " in the first byte after the id, but framing.start puts its mark " + hexOf(mark) +
+        " there, if the id is removed; expected the same value, or no constant field here (framing writes the mark by "
+        "itself)");
+  }
+}
+
 }  // namespace
 
 void placeMarks(const Tree& tree, const Framing& framing, bool framed, const std::vector<FieldFacts>& known, bool sized,
@@ -77,6 +92,7 @@ void placeMarks(const Tree& tree, const Framing& framing, bool framed, const std
   if (sized && framing.start >= 0 && framing.end >= 0 && report.bytes() < 2)
     return tree.at("size").fail("1, expected 2 or more: framing.start and framing.end are bytes of the report");
   if (framing.start >= 0 && report.id >= 0 && report.id != framing.start) {
+    if (framed) otherConstant(tree, framing.start, known, report);
     if (framed)
       tree.at("id").fail(std::to_string(report.id) + " is the report id, and framing.start puts its mark " +
                          hexOf(framing.start) +

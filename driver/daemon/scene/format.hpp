@@ -26,11 +26,13 @@ struct ModelText {
 
 /// An arm in a scene file: the path of its device file, and the settings that the scene replaces.
 struct DeviceReference {
-  std::filesystem::path file;
-  std::string name;
-  std::optional<Pose> mount;
+  std::filesystem::path file{};
+  std::string name{};
+  std::optional<Pose> mount = std::nullopt;
   const Node* hand = nullptr;
   std::optional<Admittance> admittance = std::nullopt;
+  const Node* named_at = nullptr;  ///< where the scene names the file; nullptr if no scene names it
+  std::string key{};               ///< key of that place
 };
 
 struct SceneText {

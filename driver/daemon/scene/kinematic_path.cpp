@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/kinematic_path.hpp"
 
-#include "document/csv.hpp"
 #include "document/reader.hpp"
 
 namespace hapticd::scene {
@@ -9,8 +8,7 @@ namespace hapticd::scene {
 using namespace document;
 namespace {
 
-constexpr size_t kMaxPathBytes = 256u << 20;  ///< enough for an hour of rows at 1 kHz
-constexpr double kFarthest = 1e6;             ///< [m] largest coordinate
+constexpr double kFarthest = 1e6;  ///< [m] largest coordinate
 constexpr size_t kPoseColumns = 8;
 
 std::string wrongQuaternion(const double* row, size_t columns) {
@@ -36,6 +34,10 @@ std::vector<PathPoint> pointsOf(const CsvTable& table) {
 }
 
 }  // namespace
+
+const CsvRules& kinematicPathRules() {
+  return kRules;
+}
 
 std::vector<PathPoint> parseKinematicPath(const std::string& text, const std::string& file, Problems& problems) {
   const auto table = parseCsv(text, file, kRules, problems);

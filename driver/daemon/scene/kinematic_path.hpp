@@ -5,11 +5,17 @@
 #include <vector>
 
 #include "description/scene.hpp"
+#include "document/csv.hpp"
 #include "document/problem.hpp"
 
 namespace hapticd::scene {
 
 using document::Problems;
+
+constexpr size_t kMaxPathBytes = 256u << 20;  ///< enough for an hour of rows at 1 kHz
+
+/// [main] Returns the rules that the file of a path must keep.
+const document::CsvRules& kinematicPathRules();
 
 /// [main] Reads a path and checks it: numbers must be finite, times must grow, and quaternions must have length 1
 /// within 1e-3; they are normalised.

@@ -15,7 +15,7 @@ void checkRoot(const Node& root, Reader& in, host::Catalog& catalog, std::option
   const Format* format = detail::formatOf(root);
   if (detail::isMeantAsDevice(root)) {
     detail::hasFormat(root, "hapticd-device", in);
-    detail::loadMeantDevice(root, in, {in.file(), "", {}, nullptr}, catalog);
+    detail::loadMeantDevice(root, in, {.file = in.file()}, catalog);
   } else if (format == nullptr) {
     detail::hasFormat(root, nullptr, in);
     const Node* models = root.isMap() ? root.find("models") : nullptr;
@@ -31,7 +31,7 @@ void checkRoot(const Node& root, Reader& in, host::Catalog& catalog, std::option
     auto loaded = detail::loadScene(root, in, catalog, {.default_device = default_arm, .device_file = {}});
     if (scene != nullptr) *scene = std::move(loaded);
   } else if (format->table == &kDeviceTable) {
-    detail::loadDevice(root, in, {in.file(), "", {}, nullptr}, catalog, nullptr, nullptr, nullptr);
+    detail::loadDevice(root, in, {.file = in.file()}, catalog, nullptr, nullptr, nullptr);
   } else {
     detail::loadDaemon(root, in);
   }
@@ -117,7 +117,7 @@ Loaded load(const std::filesystem::path& file, host::Catalog& catalog, const Loa
 
 LoadedDevice loadDevice(const std::filesystem::path& file, host::Catalog& catalog) {
   LoadedDevice loaded;
-  loaded.device = detail::loadDeviceFile({file, "", {}, nullptr}, catalog, loaded.problems, nullptr, nullptr, nullptr);
+  loaded.device = detail::loadDeviceFile({.file = file}, catalog, loaded.problems, nullptr, nullptr, nullptr);
   if (!loaded.problems.empty()) loaded.device.reset();
   dropFollowUps(loaded.problems);
   sortByPlace(loaded.problems);
@@ -126,7 +126,7 @@ LoadedDevice loadDevice(const std::filesystem::path& file, host::Catalog& catalo
 
 std::optional<Device> deviceDraft(const std::filesystem::path& file, host::Catalog& catalog) {
   Problems known;
-  return detail::loadDeviceFile({file, "", {}, nullptr}, catalog, known, nullptr, nullptr, nullptr);
+  return detail::loadDeviceFile({.file = file}, catalog, known, nullptr, nullptr, nullptr);
 }
 
 std::optional<Scene> sceneDraft(const std::filesystem::path& file, host::Catalog& catalog) {

@@ -231,11 +231,25 @@ std::optional<Device> loadMeantDevice(const Node& root, Reader& in, const Device
   return device;
 }
 
+/// Tells a scene that it names a file of another kind as its device. The mistake is in the scene, not in that file.
+static bool refuseOtherKind(const Node& root, const DeviceReference& reference, Reader& scene_in) {
+  const Format* format = formatOf(root);
+  const bool model = root.isMap() && format == nullptr && root.find("format") != nullptr;
+  if (!model && (format == nullptr || format->table == &kDeviceTable || isMeantAsDevice(root))) return false;
+  scene_in.problem(*reference.named_at, reference.key,
+                   reference.file.filename().string() + " is a " + (model ? "model" : format->name) +
+                       " file, expected a device file" +
+                       (model ? "; a plugin reads a model file: parameters: {geometry: FILE} of a model" : ""));
+  return true;
+}
+
 std::optional<Device> loadDeviceFile(const DeviceReference& reference, host::Catalog& catalog, Problems& problems,
                                      Reader* scene_in, const Node* hand, bool* has_hand) {
   Reader in(reference.file, problems);
   const auto root = readFileOn(reference.file, problems);
   if (!root) return std::nullopt;
+  if (scene_in != nullptr && reference.named_at != nullptr && refuseOtherKind(*root, reference, *scene_in))
+    return std::nullopt;
   if (!hasFormat(*root, "hapticd-device", in))
     return isMeantAsDevice(*root) ? loadMeantDevice(*root, in, reference, catalog) : std::nullopt;
   return loadDevice(*root, in, reference, catalog, scene_in, hand, has_hand);

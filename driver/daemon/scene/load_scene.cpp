@@ -104,8 +104,10 @@ class SceneLoader {
     const bool takes_path = motion_index >= 0 && info.indexOf("path") < 0;
     ParameterReader reader(in_, info);
     if (text.parameters != nullptr) reader.read(*text.parameters, params_key, "", takes_path ? "path" : "");
+    readMisplaced(*text.node, key, info, reader);
     if (text.motion != nullptr) readMotion(*text.motion, key + ".motion", info, reader);
-    reader.requireAll(text.parameters != nullptr ? *text.parameters : *text.node, params_key);
+    if (text.parameters == nullptr || text.parameters->isMap())  // otherwise it is unknown what is missing
+      reader.requireAll(text.parameters != nullptr ? *text.parameters : *text.node, params_key);
     model.parameters = reader.take();
 
     const Node* motion = text.motion;
@@ -116,6 +118,17 @@ class SceneLoader {
                       (motion->scalar == "kinematic" ||
                        nearestWord(motion->scalar, {"dynamic", "kinematic", "static"}) == "kinematic");
     addPath(key, path, motion, model);
+  }
+
+  /// Reads the parameters of the plugin that stand beside `parameters`, as if they stood below it. Their keys were
+  /// reported before; so their values are judged, too, and none of them is said to be missing.
+  void readMisplaced(const Node& model, const std::string& key, const host::ClassInfo& info, ParameterReader& reader) {
+    for (const Entry& entry : model.entries) {
+      const int index = info.indexOf(entry.key.scalar);
+      if (index < 0 || entry.value.isNull() || kModelTable.find(entry.key.scalar) != nullptr) continue;
+      if (model.find(entry.key.scalar) == &entry.value)
+        reader.readOne(entry.value, key + "." + entry.key.scalar, static_cast<uint32_t>(index));
+    }
   }
 
   /// Reads the model's key `motion`. It is meant for the host, and also for the plugin if it has such a parameter.
@@ -136,6 +149,7 @@ class SceneLoader {
   /// Reads the file of a path, also for a model that does not follow it yet: the mistakes of both are told.
   void addPath(const std::string& key, const Node* path, const Node* motion, Model& model) {
     if (path == nullptr) return;  // without a path, a kinematic model rests until a program leads it
+    const bool dynamic = motion != nullptr && motion->scalar == "dynamic";
     if (!model.kinematic)
       in_.problem(*path, key + ".path",
                   "the model does not follow its path, because it is not kinematic; " +
@@ -144,7 +158,9 @@ class SceneLoader {
     const auto file = in_.existingFile(*path, key + ".path");
     if (!file) return;
     std::vector<PathPoint> points = readKinematicPath(*file, in_.problems());
-    if (model.kinematic) model.path = std::move(points);
+    if (dynamic) return;
+    model.kinematic = true;  // as its path says; the scene is not used with this mistake
+    model.path = std::move(points);
   }
 
   /// Reads `clients`: a mode alone, or a mapping that contains the mode.
@@ -156,7 +172,7 @@ class SceneLoader {
 
   void addDevices(const Node& root) {
     if (!options_.device_file.empty()) {
-      addDevice({options_.device_file, "", {}, nullptr});
+      addDevice({.file = options_.device_file});
       return;
     }
     if (text_.device != nullptr && text_.devices == nullptr) addNamed(*text_.device, "device");
@@ -173,8 +189,8 @@ class SceneLoader {
   /// Refuses a device beside a list of devices, and reports the problems of its file, unless the list names it too.
   void refuseBoth(const Node& node) {
     in_.problem(node, "device", "both device and devices are given, expected one of them");
-    DeviceReference reference;
-    if (!readReference(node, "device", reference) || device_files_.contains(reference.file)) return;
+    const DeviceReference reference = readReference(node, "device");
+    if (reference.file.empty() || device_files_.contains(reference.file)) return;
     const size_t count = scene_.devices.size();
     addDevice(reference);
     scene_.devices.erase(scene_.devices.begin() + static_cast<std::ptrdiff_t>(count), scene_.devices.end());
@@ -189,29 +205,39 @@ class SceneLoader {
   }
 
   void addList(const Node& list) {
-    if (!list.isSequence() || list.items.empty() || list.items.size() > kMaxDevices)
-      return in_.problem(list, "devices",
-                         (list.isSequence() ? "a list of " + std::to_string(list.items.size()) : describe(list)) +
-                             ", expected a list of 1 to " + numberText(kMaxDevices) + " device files");
-    for (size_t i = 0; i < list.items.size(); ++i) addNamed(list.items[i], "devices[" + std::to_string(i) + "]");
+    const std::vector<const Node*> elements = elementsOf(list);
+    if (!list.isSequence() || elements.empty() || elements.size() > kMaxDevices)
+      in_.problem(list, "devices",
+                  (list.isSequence() ? "a list of " + std::to_string(elements.size()) : describe(list)) +
+                      ", expected a list of 1 to " + numberText(kMaxDevices) + " device files" +
+                      (list.isMap() ? "; begin each of them with \"- \", as an element of a list" : ""));
+    for (size_t i = 0; i < std::min(elements.size(), static_cast<size_t>(kMaxDevices)); ++i)
+      addNamed(*elements[i], "devices[" + std::to_string(i) + "]");
   }
 
   /// Adds a device: the node is a path, or a mapping with a path and the settings that this scene replaces.
   void addNamed(const Node& node, const std::string& key) {
-    DeviceReference reference;
-    const bool is_right = readReference(node, key, reference);
-    const std::string name = is_right ? addDevice(reference) : reference.name;
+    const DeviceReference reference = readReference(node, key);
+    std::string name = reference.name;
+    // A wrong key of the reference, such as its mount, hides nothing about the file.
+    if (!reference.file.empty()) name = addDevice(reference);
+    if (name.empty()) name = reference.name;
     if (!name.empty()) checkDeviceName(name, node, key);
   }
 
-  /// Returns false if the reference has problems.
-  bool readReference(const Node& node, const std::string& key, DeviceReference& reference) {
-    const size_t before = in_.problems().size();
-    if (node.isMap())
+  /// Reads the path of a device file, or a mapping with it; the reference has no file if there is none.
+  DeviceReference readReference(const Node& node, const std::string& key) {
+    DeviceReference reference;
+    if (node.isMap()) {
       in_.object(node, key, kDeviceReferenceTable, &reference);
-    else if (const auto file = in_.existingFile(node, key))
+      reference.named_at = node.find("file");
+      reference.key = key + ".file";
+    } else if (const auto file = in_.existingFile(node, key)) {
       reference.file = *file;
-    return in_.problems().size() == before;
+      reference.named_at = &node;
+      reference.key = key;
+    }
+    return reference;
   }
 
   void checkDeviceName(const std::string& name, const Node& node, const std::string& key) {
@@ -227,7 +253,7 @@ class SceneLoader {
       return in_.problem(root, "device",
                          std::string("the scene names no device, and the default device file (") + kDefaultDevice +
                              ") is not installed; add device: FILE");
-    addDevice({*file, "", {}, nullptr});
+    addDevice({.file = *file});
     if (!scene_.devices.empty()) scene_.devices.back().chosen_by_default = true;
   }
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/limit_warnings.hpp"
-#include "diagnostics/node_path.hpp"
 #include "servo/arm/weight.hpp"
 
 namespace hapticd::diagnostics {
@@ -179,21 +179,17 @@ void checkLengths(const ArmUnderCheck& arm_file) {
           less, more, more - less));
 }
 
-const std::vector<double>* numbersOf(const scene::Device& device, const char* id) {
-  for (const scene::Value& value : device.parameters)
-    if (value.id == id) return &value.numbers;
-  return nullptr;
-}
-
 /// Warns of centres of mass beyond the ends of their links. A centre beyond the far end mostly has the wrong sign, and
 /// then the motors carry about three times the weight: they push the arm up.
 void checkCenters(const ArmUnderCheck& arm_file) {
   // Shares of a link's length: a tool may stand out a little, and a counterweight lies behind the near end.
   constexpr double kBeyondFar = -0.1, kBehindNear = 1.5;
   const Node* list = find(arm_file.root, {"parameters", "arm", "centers"});
-  const auto *rows = numbersOf(arm_file.device, "arm.dh"), *centers = numbersOf(arm_file.device, "arm.centers");
-  const auto* tool = numbersOf(arm_file.device, "arm.tool_position");
-  if (list == nullptr || rows == nullptr || centers == nullptr) return;
+  const auto& given = arm_file.device.parameters;
+  const scene::Value *dh = givenIn(given, "arm.dh"), *of_links = givenIn(given, "arm.centers");
+  const scene::Value* tip = givenIn(given, "arm.tool_position");
+  if (list == nullptr || dh == nullptr || of_links == nullptr) return;
+  const std::vector<double>*rows = &dh->numbers, *centers = &of_links->numbers, *tool = tip ? &tip->numbers : nullptr;
   for (size_t i = 0; 4 * i + 3 < rows->size() && 3 * i + 2 < centers->size() && i < list->items.size(); ++i) {
     const double a = (*rows)[4 * i], alpha = (*rows)[4 * i + 1], d = (*rows)[4 * i + 2];
     const Eigen::Vector3d back(-a, -d * std::sin(alpha), -d * std::cos(alpha));  // from the far to the near end

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "diagnostics/node_path.hpp"
+#include "diagnostics/given_values.hpp"
 
 namespace hapticd::diagnostics {
 namespace {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/rest_pose.hpp"
 
 namespace hapticd::diagnostics {
@@ -49,12 +50,6 @@ template <size_t N>
 std::string flowWithout(Node map, const std::array<std::string_view, N>& keys) {
   std::erase_if(map.entries, [&](const document::Entry& entry) { return listed(keys, entry.key.scalar); });
   return flowText(map);
-}
-
-std::vector<double> numbersOf(const Node& list, size_t count) {
-  std::vector<double> numbers;
-  for (const Node& item : list.items) numbers.push_back(document::toNumber(item.scalar).value_or(NAN));
-  return numbers.size() == count ? numbers : std::vector<double>();
 }
 
 /// Returns the block `arm`. Keys that the simulated arm lacks are left out, and `origin` of a chain becomes
@@ -98,7 +93,7 @@ std::string deviceOf(const Node& device, double rate) {
 
 /// Returns the world's origin in the device frame, because the scenes have their shapes there.
 Eigen::Vector3d originOf(const Node& mount) {
-  const std::vector<double> p = numbersOf(below(mount, "position"), 3), q = numbersOf(below(mount, "orientation"), 4);
+  const std::vector<double> p = numbersOf(mount.find("position"), 3), q = numbersOf(mount.find("orientation"), 4);
   if (p.empty()) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d position(p[0], p[1], p[2]);
   if (q.empty()) return -position;

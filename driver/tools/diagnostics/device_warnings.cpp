@@ -17,11 +17,11 @@
 #include "diagnostics/arm_plausibility.hpp"
 #include "diagnostics/arm_table.hpp"
 #include "diagnostics/device_trial.hpp"
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/limit_warnings.hpp"
 #include "diagnostics/meant_tree.hpp"
 #include "diagnostics/motor_warnings.hpp"
 #include "diagnostics/mount_warnings.hpp"
-#include "diagnostics/node_path.hpp"
 #include "diagnostics/safety_warnings.hpp"
 #include "diagnostics/travel_warnings.hpp"
 #include "diagnostics/unit_warnings.hpp"
@@ -85,11 +85,14 @@ void poseBeyondStops(const Node& root, const scene::Device& device, document::Pr
   const scene::Value* limits = nullptr;
   for (const scene::Value& value : device.parameters)
     if (value.id == "arm.limits") limits = &value;
+  // Limits in degrees say nothing about a pose; they are told themselves.
+  if (largest(numbersIn(find(root, {"parameters", "arm", "limits"}))) > 2 * M_PI) return;
   if (pose == nullptr || limits == nullptr || 2 * pose->items.size() != limits->numbers.size()) return;
   for (size_t i = 0; i < pose->items.size(); ++i) {
     const double angle = document::toNumber(pose->items[i].scalar).value_or(0);
     const double low = limits->numbers[2 * i], high = limits->numbers[2 * i + 1], room = 0.05 * (high - low);
-    if (high < low || (angle >= low - room && angle <= high + room)) continue;
+    const bool degrees = std::abs(angle) > 2 * M_PI;  // this is told itself
+    if (degrees || high < low || (angle >= low - room && angle <= high + room)) continue;
     document::report(warnings, device.file.string(), pose->items[i].line, pose->items[i].column,
                      fmt::format("parameters.calibration.pose[{}]", i),
                      fmt::format("{:g} rad is beyond arm.limits of joint {}, {:g} to {:g} rad: the arm cannot be held "

@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "diagnostics/node_path.hpp"
+#include "diagnostics/given_values.hpp"
 
 namespace hapticd::diagnostics {
 namespace {

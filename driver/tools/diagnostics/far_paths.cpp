@@ -5,12 +5,12 @@
 
 #include <algorithm>
 
-#include "tune/path_rows.hpp"
+#include "diagnostics/far_limits.hpp"
+#include "scene/path_rows.hpp"
 
 namespace hapticd::diagnostics {
 
 document::Problems farPaths(const scene::Scene& scene) {
-  constexpr double kFar = 5;  // [m] a model that passes by an arm comes from nearer places
   document::Problems warnings;
   const auto isFar = [&scene](const scene::PathPoint& point) {
     return point.pose.position.norm() > kFar &&
@@ -25,8 +25,8 @@ document::Problems farPaths(const scene::Scene& scene) {
     const Eigen::Vector3d& p = far->pose.position;
     Eigen::Index axis = 0;
     const double most = p.cwiseAbs().maxCoeff(&axis);
-    const tune::PathKey at = tune::keyOfPath(scene.models[i]);
-    const auto line = tune::lineOfRow(at.csv, static_cast<size_t>(far - path.begin()), far->t);
+    const scene::PathKey at = scene::keyOfPath(scene.models[i]);
+    const auto line = scene::lineOfRow(at.csv, static_cast<size_t>(far - path.begin()), far->t);
     const std::string what = fmt::format(
         "{} is {:.4g} m from the world's origin at t = {:g} s, where no arm reaches; positions must be in "
         "m: {:g} mm is {:g} m",

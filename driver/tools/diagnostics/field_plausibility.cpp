@@ -11,8 +11,8 @@
 
 #include "codec/wire_overlap.hpp"
 #include "diagnostics/arm_plausibility.hpp"
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/limit_warnings.hpp"
-#include "diagnostics/node_path.hpp"
 #include "diagnostics/wire_of.hpp"
 
 namespace hapticd::diagnostics {

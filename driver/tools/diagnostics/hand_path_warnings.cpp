@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "diagnostics/given_values.hpp"
 #include "document/csv.hpp"
 #include "host/child.hpp"
 #include "host/device_instance.hpp"
@@ -18,16 +19,11 @@ namespace {
 constexpr int kPathLimitMs = 60'000;
 constexpr size_t kMaxBytes = size_t{1} << 30;
 
-const scene::Value* given(const scene::Device& device, const char* id) {
-  for (const scene::Value& value : device.parameters)
-    if (value.id == id) return &value;
-  return nullptr;
-}
-
 /// Returns the file that the hand follows; "" if it follows none.
 std::string pathOf(const scene::Device& device) {
   constexpr double kFollows = 5;  // number of the script `path` among the choices
-  const scene::Value *script = given(device, "hand.script"), *path = given(device, "hand.path");
+  const scene::Value *script = givenIn(device.parameters, "hand.script"),
+                     *path = givenIn(device.parameters, "hand.path");
   const bool follows = device.module == "simulated" && script != nullptr && script->number == kFollows;
   return follows && path != nullptr ? path->text : "";
 }
@@ -35,7 +31,8 @@ std::string pathOf(const scene::Device& device) {
 /// Warns of a path that the script of the hand does not follow. A scene may replace the script of its device file, so
 /// the two must stand in one file.
 void reportIdlePath(const scene::Device& device, document::Problems& warnings) {
-  const scene::Value *script = given(device, "hand.script"), *path = given(device, "hand.path");
+  const scene::Value *script = givenIn(device.parameters, "hand.script"),
+                     *path = givenIn(device.parameters, "hand.path");
   if (device.module != "simulated" || path == nullptr || path->text.empty() || !pathOf(device).empty()) return;
   if (script == nullptr || script->place.file == path->place.file)
     document::report(

@@ -113,12 +113,6 @@ bool checkSweep(const scene::Device& device, const HandScript& hand, const Unrea
 
 }  // namespace
 
-const scene::Value* givenIn(const std::vector<scene::Value>& values, const char* id) {
-  const auto found =
-      std::find_if(values.begin(), values.end(), [id](const scene::Value& value) { return value.id == id; });
-  return found != values.end() ? &*found : nullptr;
-}
-
 HandKey keyOfHand(const scene::Scene& scene, const scene::Device& device, std::initializer_list<const char*> ids) {
   const bool named = !device.chosen_by_default;
   for (const bool in_scene : {true, false})

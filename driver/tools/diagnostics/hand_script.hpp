@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "description/scene.hpp"
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/unread_keys.hpp"
 #include "document/problem.hpp"
 
@@ -33,9 +34,6 @@ struct HandScript {
 };
 
 inline constexpr double kFastestHand = 2;  ///< [m/s] greatest speed of a human hand that strokes, presses or taps
-
-/// [main] Returns the value that the files give for a parameter, or nullptr if they give none.
-const scene::Value* givenIn(const std::vector<scene::Value>& values, const char* id);
 
 /// A key of the files that determines the motion of a hand, and its place (file, line and column).
 struct HandKey {

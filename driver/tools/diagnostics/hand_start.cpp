@@ -192,33 +192,35 @@ std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<
   for (uint32_t device = 0; device < scene.devices.size(); ++device)
     if (const auto hand = handOf(scene, device)) hands.push_back(*hand), tips.push_back(hand->probe);
   host::Packer found;
-  if (tips.empty()) return found.take();
   const servo::WorldOptions options{.rate = scene.servo.rate,
-                                    .probe_count = static_cast<uint32_t>(tips.size()),
+                                    .probe_count = std::max<uint32_t>(static_cast<uint32_t>(tips.size()), 1),
                                     .max_force = servo::maxForceOf(scene)};
   auto world = servo::World::build(scene, options, [](int, const std::string&, const std::string&) {});
   if (!world) return found.take();
+  const bool placed = !tips.empty() && tips.size() == scene.devices.size();
   servo::Core& core = (*world)->core();
   servo::Lockstep lockstep = (*world)->lockstep();
-  core.publish(0, tips);
-  lockstep.before(0);
-  core.tick(0, 0, tips);
+  if (!tips.empty()) {
+    core.publish(0, tips);
+    lockstep.before(0);
+    core.tick(0, 0, tips);
+  }
   document::Problems warnings;
-  const std::vector<InsideTip> inside = tipsInside(scene, **world, core, hands);
+  const std::vector<InsideTip> inside =
+      tips.empty() ? std::vector<InsideTip>{} : tipsInside(scene, **world, core, hands);
   for (const InsideTip& one : inside) reportInside(scene, one, warnings);
   const uint32_t far = packFar(scene, **world, core, hands, found);
   std::vector<TipReach> reaches;
   for (const Hand& hand : hands) reaches.push_back({hand.probe.position, hand.reach});
   if (far == 0) reportFarRest(scene, **world, core, hands, warnings);
   packProblems(warnings, found);
-  if (far == 0 && tips.size() == scene.devices.size())
-    packProblems(unreachableModels(scene, **world, core, reaches), found);
+  if (far == 0 && placed) packProblems(unreachableModels(scene, **world, core, reaches), found);
   const document::Problems enclosed = enclosedModels(scene, **world);
   packProblems(enclosed, found);
   if (enclosed.empty()) packProblems(overlappingModels(scene, **world), found);
   // The hands run their scripts only if they start in the right place, because other warnings would follow from a wrong
   // start.
-  if (inside.empty() && far == 0 && may_walk && tips.size() == scene.devices.size())
+  if (inside.empty() && far == 0 && may_walk && placed)
     packProblems(warnOfWalk(scene, **world, strays, all_models), found);
   return found.take();
 }
@@ -329,11 +331,12 @@ bool moveAsMeant(const scene::Scene& scene, const document::Problems& warnings) 
 
 }  // namespace
 
-document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool>& strays, bool all_models) {
+document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool>& strays, bool all_models,
+                               bool known) {
   document::Problems warnings;
-  if (scene.models.empty() || scene.models.size() > kMostModels || scene.devices.empty()) return warnings;
-  warnings = fastHands(scene);
-  const bool may_walk = moveAsMeant(scene, warnings);
+  if (scene.models.empty() || scene.models.size() > kMostModels) return warnings;
+  if (known) warnings = fastHands(scene);
+  const bool may_walk = known && moveAsMeant(scene, warnings);
   const auto told = host::runInChild([&] { return tryTips(scene, may_walk, strays, all_models); }, kHandLimitMs);
   if (!told) return warnings;  // the trial of the models reports a model that crashes
   host::Unpacker in(*told);

@@ -19,7 +19,10 @@ namespace hapticd::diagnostics {
 /// @param strays as for warnOfWalk()
 /// @param all_models false if the hands may be meant for a model that is not in the scene; then no hand is said to feel
 /// nothing
-document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool>& strays = {}, bool all_models = true);
+/// @param known false if it is known only where the hands start, and not how they move; then they do not run. A scene
+/// without devices has no hands: only its models are judged
+document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool>& strays = {}, bool all_models = true,
+                               bool known = true);
 
 /// [main] Returns a problem for each simulated arm that `run` would refuse, with the text of `run`: an arm that cannot
 /// reach the start of its hand's motion, or that lacks the enable button. The arms are started in a child process.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -44,9 +45,35 @@ std::optional<size_t> modelOf(const std::string& key) {
   return std::strtoul(key.c_str() + kModels.size(), nullptr, 10);
 }
 
+bool leaveOutCurves(scene::Model& model, size_t index, const document::Problems& problems) {
+  constexpr std::string_view kCurves[] = {"detent",           "end_stiffness",    "damping", "friction_static",
+                                          "friction_dynamic", "friction_viscous", "texture"};
+  const std::string before = std::string(kModels) + std::to_string(index) + "].parameters.";
+  for (const document::Problem& one : problems) {
+    if (modelOf(one.key) != index) continue;
+    const std::string id = one.key.starts_with(before) ? one.key.substr(before.size()) : "";
+    const std::string group = id.substr(0, id.find_first_of(".["));
+    if (std::find(std::begin(kCurves), std::end(kCurves), group) == std::end(kCurves)) return false;
+    std::erase_if(model.parameters, [&group](const scene::Value& value) { return value.id.starts_with(group); });
+  }
+  return true;
+}
+
+void dropOfCurves(size_t model, document::Problems& warnings) {
+  std::erase_if(warnings, [model](const document::Problem& one) {
+    const bool of_place = one.key.ends_with(".axis") || one.key.find("].pose") != std::string::npos;
+    return (modelOf(one.key) == model && !of_place) || one.what.find("cuts the force") != std::string::npos;
+  });
+}
+
+bool isOfSurfaces(const document::Problem& warning) {
+  const auto has = [&warning](const char* words) { return warning.what.find(words) != std::string::npos; };
+  return has(".yaml:") && (has("].points") || has("there is a gap") || has("the outward normals of the two"));
+}
+
 document::Problems warnOfHandsOfRest(const scene::Scene& scene, const ModelBoxes& boxes,
                                      const std::vector<bool>& left_out, const std::vector<bool>& placed,
-                                     host::Catalog& catalog) {
+                                     host::Catalog& catalog, bool known) {
   scene::Scene rest = scene;
   rest.models.clear();
   ModelBoxes boxes_of_rest;
@@ -61,7 +88,7 @@ document::Problems warnOfHandsOfRest(const scene::Scene& scene, const ModelBoxes
     rest.models.push_back(scene.models[i]);
     boxes_of_rest.push_back(i < boxes.size() ? boxes[i] : std::nullopt);
   }
-  document::Problems warnings = warnOfHands(rest, strayModels(rest, boxes_of_rest, catalog), all);
+  document::Problems warnings = warnOfHands(rest, strayModels(rest, boxes_of_rest, catalog), all, known);
   for (document::Problem& one : warnings) renumber(scene, indices, one);
   return warnings;
 }

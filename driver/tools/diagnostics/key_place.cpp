@@ -2,8 +2,10 @@
 #include "diagnostics/key_place.hpp"
 
 #include <cstdlib>
+#include <vector>
 
 #include "document/node.hpp"
+#include "document/table.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -14,7 +16,9 @@ const document::Node* step(const document::Node& from, const std::string& part) 
   const document::Node* at = from.isMap() ? from.find(part.substr(0, bracket)) : nullptr;
   for (size_t open = bracket; at != nullptr && open != std::string::npos; open = part.find('[', open + 1)) {
     const size_t index = std::strtoul(part.c_str() + open + 1, nullptr, 10);
-    at = at->isSequence() && index < at->items.size() ? &at->items[index] : nullptr;
+    // also if it is a mapping, because the dashes of the list are missing
+    const std::vector<const document::Node*> elements = document::elementsOf(*at);
+    at = index < elements.size() ? elements[index] : nullptr;
   }
   return at;
 }

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "diagnostics/arm_plausibility.hpp"
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/limit_warnings.hpp"
-#include "diagnostics/node_path.hpp"
 #include "diagnostics/wire_of.hpp"
 
 namespace hapticd::diagnostics {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "base/short_number.hpp"
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/motor_reach.hpp"
-#include "diagnostics/node_path.hpp"
 #include "document/reader.hpp"
 
 namespace hapticd::diagnostics {
@@ -20,16 +20,10 @@ namespace {
 
 using document::Node;
 
-const scene::Value* valueOf(const scene::Device& device, std::initializer_list<const char*> ids) {
-  for (const scene::Value& value : device.parameters)
-    for (const char* id : ids)
-      if (value.id == id) return &value;
-  return nullptr;
-}
-
 /// Warns if limits.force is larger than the force of the arm. A force of 0 means that it is unknown.
 void forceBeyondArm(const Node& root, const scene::Device& device, document::Problems& warnings) {
-  const scene::Value* most = valueOf(device, {"device.max_force", "max_force"});
+  const scene::Value* most = givenIn(device.parameters, "device.max_force");
+  if (most == nullptr) most = givenIn(device.parameters, "max_force");
   if (most == nullptr || most->number <= 0 || device.limits.force <= most->number) return;
   const Node* limit = find(root, {"limits", "force"});
   const document::Place place =
@@ -66,7 +60,7 @@ void motorsBeyondAll(const Node& root, const scene::Device& device, double reach
   constexpr double kMost = 1000, kTimes = 100;  // [N]; factor of limits.force
   const Node* at = find(root, {"parameters", "arm", "max_torque"});
   if (at == nullptr || reach < kMost || reach < kTimes * device.limits.force) return;
-  const scene::Value* torques = valueOf(device, {"arm.max_torque"});
+  const scene::Value* torques = givenIn(device.parameters, "arm.max_torque");
   double most = 600;  // [N mm] as an example
   if (torques != nullptr && !torques->numbers.empty())
     most = *std::max_element(torques->numbers.begin(), torques->numbers.end());
@@ -107,7 +101,7 @@ std::array<double, HDV_MAX_JOINTS> restJoints(const Node& root, uint32_t joints)
 }
 
 std::vector<double> motorsOf(const scene::Device& device, size_t joints) {
-  const scene::Value* value = valueOf(device, {"arm.max_torque"});
+  const scene::Value* value = givenIn(device.parameters, "arm.max_torque");
   std::vector<double> torque = value == nullptr ? std::vector<double>() : value->numbers;
   if (torque.size() == 1) torque.assign(joints, torque[0]);
   const bool all = torque.size() == joints && std::all_of(torque.begin(), torque.end(), [](double t) { return t > 0; });
@@ -160,7 +154,7 @@ void warnOfLimits(const Node& root, const scene::Device& device, const host::Dev
     beyondMotors(find(root, {"limits", "force"}), "limits.force", device.limits.force, reach->most, "N", reach->where,
                  file, warnings);
     motorsBeyondAll(root, device, reach->most, warnings);
-    const scene::Value* claimed = valueOf(device, {"device.max_force"});
+    const scene::Value* claimed = givenIn(device.parameters, "device.max_force");
     beyondMotors(find(root, {"parameters", "device", "max_force"}), "parameters.device.max_force",
                  claimed == nullptr ? 0 : claimed->number, reach->most, "N", reach->where, file, warnings);
   }

@@ -4,7 +4,13 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <functional>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <string_view>
 
+#include "diagnostics/key_place.hpp"
+#include "host/catalog.hpp"
 #include "host/child.hpp"
 #include "host/shape_instance.hpp"
 #include "host/wire.hpp"
@@ -29,18 +35,44 @@ hsp_activation activationOf(const scene::Scene& scene, const scene::Model& model
   return activation;
 }
 
-/// Returns the value that a plugin's message names at its beginning, as in "stiffness: has no effect", and removes the
-/// name from `text`; nullptr if there is none.
-const scene::Value* valueNamed(const scene::Model& model, std::string& text) {
-  const std::string before = "model '" + model.name + "': cannot be set up: ";
-  const size_t begin = text.rfind(before, 0) == 0 ? before.size() : 0, colon = text.find(": ", begin);
-  if (colon == std::string::npos) return nullptr;
+/// A part of a plugin's message that is about one parameter, or about a row of it.
+struct Objection {
+  const scene::Value* value = nullptr;  ///< nullptr if the message names none
+  std::string row;                      ///< such as "[2]"; "" for the whole parameter
+  std::string what;
+};
+
+std::string beginningOf(const scene::Model& model) {
+  return "model '" + model.name + "': cannot be set up: ";
+}
+
+/// Reads a line that begins with the name of a parameter, as in "stiffness: has no effect" or "detent[2]: too short".
+std::optional<Objection> objectionIn(const scene::Model& model, std::string_view line) {
+  const size_t colon = line.find(": ");
+  if (colon == std::string_view::npos) return std::nullopt;
+  const size_t bracket = std::min(line.find('['), colon);
   for (const scene::Value& value : model.parameters)
-    if (text.compare(begin, colon - begin, value.id) == 0 && value.place.line > 0) {
-      text.erase(begin, colon + 2 - begin);
-      return &value;
-    }
-  return nullptr;
+    if (line.substr(0, bracket) == value.id && value.place.line > 0)
+      return Objection{&value, std::string(line.substr(bracket, colon - bracket)), std::string(line.substr(colon + 2))};
+  return std::nullopt;
+}
+
+/// Returns the objections of a plugin's message. If its first line names a parameter, each line that names one is an
+/// objection of its own.
+std::vector<Objection> objectionsIn(const scene::Model& model, const std::string& text) {
+  const std::string before = text.starts_with(beginningOf(model)) ? beginningOf(model) : "";
+  std::vector<Objection> all;
+  std::istringstream lines(text.substr(before.size()));
+  for (std::string line; std::getline(lines, line);) {
+    auto one = objectionIn(model, line);
+    if (!one && all.empty()) return {{nullptr, "", text}};
+    if (one)
+      all.push_back({one->value, one->row, before + one->what});
+    else
+      all.back().what += "\n" + line;
+  }
+  if (all.empty()) all.push_back({nullptr, "", text});
+  return all;
 }
 
 /// Texts about models, each with the number of its model, packed so that they can come from the child.
@@ -60,13 +92,19 @@ class PackedTexts {
     document::Problems problems;
     for (uint32_t left = in.count(); left > 0 && in.good(); --left) {
       const uint32_t index = in.count();
-      std::string text = in.text();
+      const std::string text = in.text();
       if (index >= scene.models.size()) break;
       const scene::Model& model = scene.models[index];
-      const scene::Value* value = valueNamed(model, text);
       const std::string key = "models[" + std::to_string(index) + "]";
-      document::report(problems, value != nullptr ? value->place : model.place,
-                       value != nullptr ? key + ".parameters." + value->id : key, text);
+      for (const Objection& one : objectionsIn(model, text)) {
+        if (one.value == nullptr) {
+          document::report(problems, model.place, key, one.what);
+          continue;
+        }
+        const std::string of_row = key + ".parameters." + one.value->id + one.row;
+        const auto row = one.row.empty() ? std::nullopt : placeOfKey(one.value->place.file, of_row);
+        document::report(problems, row.value_or(one.value->place), of_row, one.what);
+      }
     }
     return problems;
   }
@@ -149,7 +187,7 @@ TrialResult tryOne(const scene::Scene& scene, const scene::Model& model, uint32_
   return tried;
 }
 
-/// Sets up a refused model again without the parameter that the plugin objects to, a few times, so that further
+/// Sets up a refused model again without the parameters that the plugin objects to, a few times, so that further
 /// objections and the size of the model are known. An objection that follows only from a left-out parameter is dropped.
 TrialResult tryWithout(const scene::Scene& scene, uint32_t index, double max_force, std::string error, const Log& log,
                        host::ChildProgress& trail, PackedTexts& problems) {
@@ -158,10 +196,12 @@ TrialResult tryWithout(const scene::Scene& scene, uint32_t index, double max_for
   std::vector<std::string> left_out;
   TrialResult tried;
   for (int round = 0; round < kMost; ++round) {
-    const scene::Value* named = valueNamed(rest, error);
-    if (named == nullptr) break;
-    left_out.push_back(named->id);
-    rest.parameters.erase(rest.parameters.begin() + (named - rest.parameters.data()));
+    std::set<std::string> named;
+    for (const Objection& one : objectionsIn(rest, error))
+      if (one.value != nullptr) named.insert(one.value->id);
+    if (named.empty()) break;
+    left_out.insert(left_out.end(), named.begin(), named.end());
+    std::erase_if(rest.parameters, [&named](const scene::Value& value) { return named.contains(value.id); });
     tried = tryOne(scene, rest, index, max_force, log, trail);
     const bool follows = std::any_of(left_out.begin(), left_out.end(), [&tried](const std::string& id) {
       return tried.error.find(id) != std::string::npos;
@@ -172,6 +212,38 @@ TrialResult tryWithout(const scene::Scene& scene, uint32_t index, double max_for
   }
   tried.stiffness = 0;  // it may depend on the parameters that were left out
   return tried;
+}
+
+/// Returns true for a parameter that a plugin can judge without knowing the surfaces.
+bool isOfItself(const std::string& id) {
+  constexpr std::string_view kOwn[] = {"detent",           "end_stiffness", "friction_static",
+                                       "friction_dynamic", "axis",          "inertia"};
+  return std::find(std::begin(kOwn), std::end(kOwn), id) != std::end(kOwn);
+}
+
+/// Sets up a model whose geometry was refused with a shipped file instead, so that objections to parameters that do not
+/// depend on the surfaces, and warnings about them, are known, too.
+void tryOtherGeometry(const scene::Scene& scene, uint32_t index, double max_force, host::ChildProgress& trail,
+                      PackedTexts& problems, PackedTexts& warnings) {
+  for (const char* name : {"models/box.yaml", "models/loaf.yaml"}) {  // rigid, soft
+    scene::Model other = scene.models[index];
+    const auto file = host::shippedFile(name);
+    const auto geometry = std::find_if(other.parameters.begin(), other.parameters.end(),
+                                       [](const scene::Value& value) { return value.id == "geometry"; });
+    if (!file || geometry == other.parameters.end()) return;
+    geometry->text = file->string();
+    std::erase_if(other.parameters, [](const scene::Value& value) { return value.id == "instance"; });
+    const Log log = [&](int level, const std::string&, const std::string& text) {
+      const Objection one = objectionsIn(other, text).front();
+      if (level == HSP_LOG_WARNING && one.value != nullptr && isOfItself(one.value->id)) warnings.add(index, text);
+    };
+    const TrialResult tried = tryOne(scene, other, index, max_force, log, trail);
+    if (tried.error.empty()) return;
+    for (const Objection& one : objectionsIn(other, tried.error))
+      if (one.value != nullptr && isOfItself(one.value->id))
+        problems.add(index, beginningOf(other) + one.value->id + one.row + ": " +
+                                one.what.substr(std::min(one.what.size(), beginningOf(other).size())));
+  }
 }
 
 std::string tryAll(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound,
@@ -186,7 +258,9 @@ std::string tryAll(const scene::Scene& scene, double max_force, const std::vecto
     TrialResult tried = left_out ? TrialResult{} : tryOne(scene, scene.models[i], i, max_force, log, trail);
     if (!tried.error.empty()) {
       problems.add(i, tried.error);
+      const bool of_file = objectionsIn(scene.models[i], tried.error).front().value == nullptr;
       tried = tryWithout(scene, i, max_force, tried.error, log, trail, problems);
+      if (of_file) tryOtherGeometry(scene, i, max_force, trail, problems, warnings);
     }
     claims.number(tried.stiffness);
     claims.number(uint32_t{tried.idle ? 1u : 0u});

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/limit_warnings.hpp"
-#include "diagnostics/node_path.hpp"
+#include "document/table.hpp"
 
 namespace hapticd::diagnostics {
 
@@ -31,13 +32,13 @@ static void noTorque(const Node& root, const scene::Device& device, document::Pr
 
 /// The motors of a file, and what warnings about them need.
 struct Motors {
-  const Node& list;
+  std::vector<const Node*> list;
   const scene::Device& device;
   document::Problems& warnings;
 
-  size_t count() const { return std::min(device.limits.motors.size(), list.items.size()); }
+  size_t count() const { return std::min(device.limits.motors.size(), list.size()); }
   void warn(size_t i, const char* key, const std::string& what) const {
-    const Node *given = list.items[i].find(key), *at = given != nullptr ? given : &list.items[i];
+    const Node *given = list[i]->find(key), *at = given != nullptr ? given : list[i];
     document::report(warnings, device.file.string(), at->line, at->column, fmt::format("limits.motors[{}].{}", i, key),
                      what);
   }
@@ -90,14 +91,14 @@ static void oddHeat(const Motors& motors, size_t i, double torque) {
 void warnOfMotors(const Node& root, const scene::Device& device, size_t joints, document::Problems& warnings) {
   noTorque(root, device, warnings);
   const Node* list = find(root, {"limits", "motors"});
-  if (list == nullptr || !list->isSequence()) return;
-  if (const size_t given = device.limits.motors.size(); given < joints && given > 0)
+  if (list == nullptr) return;
+  if (const size_t given = device.limits.motors.size(); list->isSequence() && given < joints && given > 0)
     document::report(warnings, device.file.string(), list->line, list->column, "limits.motors",
                      fmt::format("{} of {} joints: the heat of the other motors is not computed; expected an entry for "
                                  "each joint, in their order",
                                  given, joints));
   const std::vector<double> torque = motorsOf(device, joints);
-  const Motors motors{*list, device, warnings};
+  const Motors motors{document::elementsOf(*list), device, warnings};
   for (size_t i = 0; i < motors.count(); ++i)
     if (!oddMotor(motors, i) && i < torque.size()) oddHeat(motors, i, torque[i]);
 }

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <optional>
 
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/limit_warnings.hpp"
-#include "diagnostics/node_path.hpp"
 
 namespace hapticd::diagnostics {
 

@@ -70,6 +70,27 @@ void checkPlace(const GivenModel& given, const scene::Value& value) {
                                      seen_from, most, most * kMilli));
 }
 
+/// Returns true if a list of [travel, force] has its columns swapped: the second one, and not the first, can be
+/// travels.
+bool hasSwappedColumns(const scene::Value& value, const host::ParamInfo& param) {
+  constexpr double kHand = 0.1;  // [m] longer than a button moves
+  if (param.columns != 2 || param.unit != "m, N" || value.numbers.size() < 4) return false;
+  const auto& all = value.numbers;
+  double first = 0;
+  for (size_t i = 0; i + 1 < all.size(); i += 2) {
+    if (i > 0 && !(all[i + 1] > all[i - 1])) return false;
+    first = std::max(first, all[i]);
+  }
+  return first > kHand && all.back() < kHand;
+}
+
+/// Warns of swapped columns. If the first one does not grow, the plugin refuses them.
+void checkColumns(const GivenModel& given, const scene::Value& value) {
+  for (size_t i = 2; i < value.numbers.size(); i += 2)
+    if (!(value.numbers[i] > value.numbers[i - 2])) return;
+  given.warn({value.id}, "the columns seem to be swapped; expected [travel in m, force in N] in each row");
+}
+
 void checkLength(const GivenModel& given, const scene::Value& value, const host::ParamInfo& param) {
   // A contact hysteresis of a metre is allowed: it means that the contact never changes its face. A pendulum may be
   // longer than its bob.
@@ -211,6 +232,7 @@ void checkFriction(const GivenModel& given, const scene::Value& value) {
 void checkQuantity(const GivenModel& given, const scene::Value& value, const host::ParamInfo& param) {
   const bool real = value.kind == HSP_REAL, list = value.kind == HSP_ARRAY;
   if (!real && !list) return;
+  if (hasSwappedColumns(value, param)) return checkColumns(given, value);
   checkAngle(given, value, param);
   if (param.unit == "m" && param.columns == 3 && value.numbers.size() == 3)
     checkPlace(given, value);

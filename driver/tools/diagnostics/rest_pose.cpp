@@ -6,20 +6,14 @@
 #include <cmath>
 #include <random>
 
+#include "diagnostics/given_values.hpp"
+
 namespace hapticd::diagnostics {
 namespace {
 
 using document::Node;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-/// Returns the numbers of a list of this length; empty for any other list.
-std::vector<double> numbersOf(const Node* list, size_t count) {
-  std::vector<double> numbers;
-  if (list == nullptr || list->items.size() != count) return numbers;
-  for (const Node& item : list->items) numbers.push_back(document::toNumber(item.scalar).value_or(0));
-  return numbers;
-}
 
 struct Link {
   double a, alpha, d, theta;

@@ -9,8 +9,8 @@
 #include <set>
 #include <string>
 
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/limit_warnings.hpp"
-#include "diagnostics/node_path.hpp"
 #include "diagnostics/slow_arm.hpp"
 #include "diagnostics/wire_of.hpp"
 

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "diagnostics/node_path.hpp"
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/wire_of.hpp"
 
 namespace hapticd::diagnostics {

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <vector>
+
+#include "document/table.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -19,6 +22,14 @@ void judge(const document::Node& device, const std::string& key, const document:
       warnings, file, own->line, own->column, key + ".hand",
       fmt::format("the scene gives hand in line {}, too; {}, and the rest of both is joined; write one hand", top.line,
                   both.empty() ? "no key is in both" : "of the keys in both, these here hold: " + both));
+  const document::Node* script = top.find("script");
+  if (script == nullptr || script->scalar != "path" || own->find("script") == nullptr || top.find("path") != nullptr ||
+      own->find("path") != nullptr)
+    return;
+  document::report(warnings, file, script->line, script->column, "hand.script",
+                   fmt::format("is path, but no path names a file; and it has no effect, because the hand in line {} "
+                               "gives a script, too",
+                               own->line));
 }
 
 }  // namespace
@@ -27,9 +38,11 @@ void warnOfTwoHands(const document::Node& root, const std::string& file, documen
   const document::Node* top = root.isMap() ? root.find("hand") : nullptr;
   if (top == nullptr || !top->isMap()) return;
   if (const document::Node* device = root.find("device")) judge(*device, "device", *top, file, warnings);
-  if (const document::Node* devices = root.find("devices"); devices != nullptr && devices->isSequence())
-    for (size_t i = 0; i < devices->items.size(); ++i)
-      judge(devices->items[i], fmt::format("devices[{}]", i), *top, file, warnings);
+  if (const document::Node* devices = root.find("devices")) {
+    const std::vector<const document::Node*> elements = document::elementsOf(*devices);
+    for (size_t i = 0; i < elements.size(); ++i)
+      judge(*elements[i], fmt::format("devices[{}]", i), *top, file, warnings);
+  }
 }
 
 }  // namespace hapticd::diagnostics

@@ -9,29 +9,15 @@
 #include <utility>
 #include <vector>
 
-#include "diagnostics/node_path.hpp"
+#include "diagnostics/far_limits.hpp"
+#include "diagnostics/given_values.hpp"
 #include "document/correction.hpp"
+#include "document/table.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
 
 using document::Node;
-
-/// Returns all numbers of a list, or of a list of lists.
-std::vector<double> numbersIn(const Node* list) {
-  std::vector<double> numbers;
-  if (list == nullptr) return numbers;
-  if (list->isScalar()) numbers.push_back(document::toNumber(list->scalar).value_or(0));
-  for (const Node& item : list->items)
-    for (const double number : numbersIn(&item)) numbers.push_back(number);
-  return numbers;
-}
-
-double largest(const std::vector<double>& numbers) {
-  double most = 0;
-  for (const double number : numbers) most = std::max(most, std::abs(number));
-  return most;
-}
 
 /// Returns the angles of more than a whole turn, each once, the largest first. Those beyond the parameters' range have
 /// an error.
@@ -159,7 +145,6 @@ void offsetBeyondATurn(const Node* fields, const std::string& file, document::Pr
 
 void mountFarAway(const Node* position, const std::string& file, document::Problems& warnings,
                   const std::string& key = "mount.position") {
-  constexpr double kFar = 5;  // [m] farther than anybody reaches
   const double most = largest(numbersIn(position));
   if (most <= kFar) return;
   document::report(
@@ -217,8 +202,7 @@ void warnOfZeros(const Node& root, const std::string& file, document::Problems& 
 }
 
 /// Returns true if a model of the scene stands far from the world's origin, too: it may be there for an arm.
-bool isWide(const Node& root) {
-  constexpr double kFar = 5;  // [m] as for arms
+bool hasFarModel(const Node& root) {
   const Node* models = root.find("models");
   return models != nullptr && std::any_of(models->items.begin(), models->items.end(), [](const Node& model) {
            return largest(numbersIn(find(model, {"pose", "position"}))) > kFar;
@@ -226,13 +210,14 @@ bool isWide(const Node& root) {
 }
 
 void warnOfMounts(const Node& root, const std::string& file, document::Problems& warnings) {
-  if (isWide(root)) return;
+  if (hasFarModel(root)) return;
   if (const Node* device = root.find("device"))
     mountFarAway(find(*device, {"mount", "position"}), file, warnings, "device.mount.position");
   const Node* devices = root.find("devices");
-  for (size_t i = 0; devices != nullptr && i < devices->items.size(); ++i)
-    mountFarAway(find(devices->items[i], {"mount", "position"}), file, warnings,
-                 fmt::format("devices[{}].mount.position", i));
+  const std::vector<const Node*> arms =
+      devices != nullptr ? document::elementsOf(*devices) : std::vector<const Node*>{};
+  for (size_t i = 0; i < arms.size(); ++i)
+    mountFarAway(find(*arms[i], {"mount", "position"}), file, warnings, fmt::format("devices[{}].mount.position", i));
 }
 
 void warnOfTurns(const Node& root, const std::string& file, document::Problems& warnings, const std::string& key) {

@@ -92,7 +92,6 @@ document::Problems unreachableModels(const scene::Scene& scene, const servo::Wor
                                      const std::vector<TipReach>& tips) {
   constexpr double kRoom = 1.1;     // not all poses of the arm were tried
   constexpr double kLittle = 0.05;  // [m] a model that is missed by less is not reported
-  constexpr double kFar = 10;       // [m] farther positions have their own warning
   document::Problems warnings;
   for (uint32_t i = 0; i < scene.models.size(); ++i) {
     if (const double missed = missedByPath(scene.models[i], *world.shapes()[i], tips, kRoom) - kLittle; missed > 0)
@@ -101,7 +100,8 @@ document::Problems unreachableModels(const scene::Scene& scene, const servo::Wor
                                    "it; the path gives places in the world, in m",
                                    scene.models[i].name, missed));
     const auto isFar = [&](const scene::Device& device) {
-      return (scene.models[i].pose.position - device.mount.position).norm() > kFar;
+      return (scene.models[i].pose.position - device.mount.position).norm() >
+             kFarModel;  // these have their own warning
     };
     if (!rests(scene.models[i], *world.shapes()[i]) || std::all_of(scene.devices.begin(), scene.devices.end(), isFar))
       continue;

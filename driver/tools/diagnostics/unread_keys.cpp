@@ -20,12 +20,14 @@ bool isPartOf(std::string_view key, std::string_view whole) {
 
 UnreadKeys::UnreadKeys(const document::Problems& problems) {
   for (const document::Problem& one : problems) {
+    if (one.key == "models") continue;  // no list: its elements were read all the same
     if (!one.key.starts_with(kModels)) {
       keys_.push_back(one.key);
       // An unknown key of the servo may stand for gravity; a wrong value of another key does not.
       if (one.key.starts_with("servo.") && one.what.starts_with("unknown key")) keys_.emplace_back("servo.gravity");
       continue;
     }
+    if (one.what.starts_with("the model does not follow its path")) continue;  // the path was read
     char* end = nullptr;
     const size_t index = std::strtoul(one.key.c_str() + kModels.size(), &end, 10);
     const std::string_view rest = *end == ']' ? end + 1 : end;
@@ -38,7 +40,14 @@ bool UnreadKeys::has(std::string_view key) const {
                      [key](const std::string& one) { return isPartOf(one, key) || isPartOf(key, one); });
 }
 
-void UnreadKeys::addOwn(const std::string& key, UnreadModel& model) const {
+bool UnreadKeys::isMisplaced(const std::string& key, const host::ClassInfo& info) {
+  const size_t dot = key.starts_with(kModels) ? key.find("].") : std::string::npos;
+  const std::string own = key.substr(dot == std::string::npos ? 0 : dot + 2);
+  return own != "motion" && own != "path" && info.indexOf(own) >= 0;
+}
+
+void UnreadKeys::addOwn(const std::string& key, const host::ClassInfo& info, UnreadModel& model) const {
+  if (isMisplaced(key, info)) return;  // it was read
   for (const char* own : {"name", "plugin", "pose", "parameters", "motion", "path"})
     if (isPartOf(key, own)) {
       model.own.insert(own);
@@ -72,7 +81,7 @@ UnreadModel UnreadKeys::ofModel(size_t index, const host::ClassInfo& info) const
     if (key.starts_with("parameters."))
       addParameter(key.substr(kParameters.size() + 1), info, model);
     else
-      addOwn(key, model);
+      addOwn(key, info, model);
   for (const char* both : {"motion", "path"})  // these are keys of the model and may also be parameters of its plugin
     if (model.own.contains(both)) model.ids.insert(both);
   return model;

@@ -34,9 +34,12 @@ class UnreadKeys {
   bool has(std::string_view key) const;
   /// Returns the keys of a model that could not be read. @param info description of its plugin
   UnreadModel ofModel(size_t index, const host::ClassInfo& info) const;
+  /// Returns true if the key of a problem, such as "models[2].stiffness", is that of a parameter that stands beside
+  /// `parameters`. Its value was read all the same.
+  static bool isMisplaced(const std::string& key, const host::ClassInfo& info);
 
  private:
-  void addOwn(const std::string& key, UnreadModel& model) const;
+  void addOwn(const std::string& key, const host::ClassInfo& info, UnreadModel& model) const;
   void addParameter(const std::string& key, const host::ClassInfo& info, UnreadModel& model) const;
 
   std::vector<std::string> keys_;                         ///< all keys outside of models

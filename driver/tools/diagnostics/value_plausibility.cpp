@@ -8,16 +8,11 @@
 #include <map>
 
 #include "diagnostics/given_model.hpp"
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/key_place.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
-
-const scene::Value* valueOf(const scene::Model& model, const char* id) {
-  for (const scene::Value& value : model.parameters)
-    if (value.id == id) return &value;
-  return nullptr;
-}
 
 /// Returns a pose as text, to the micrometre. Equal poses have equal texts.
 std::string poseText(const scene::Pose& pose) {
@@ -34,11 +29,11 @@ std::string poseText(const scene::Pose& pose) {
 /// Returns a text that is equal for two models in the same place: it has their file, its part that is shown, the side
 /// that is felt, and the pose, or each pose on their path.
 std::string placeText(const scene::Model& model) {
-  const scene::Value* geometry = valueOf(model, "geometry");
+  const scene::Value* geometry = givenIn(model.parameters, "geometry");
   if (geometry == nullptr || (model.kinematic && model.path.empty())) return "";
   std::string text = model.plugin + "\n" + geometry->text;
-  if (const scene::Value* instance = valueOf(model, "instance")) text += "\n" + instance->text;
-  if (const scene::Value* sides = valueOf(model, "sides")) text += fmt::format("\nsides {}", sides->number);
+  if (const scene::Value* instance = givenIn(model.parameters, "instance")) text += "\n" + instance->text;
+  if (const scene::Value* sides = givenIn(model.parameters, "sides")) text += fmt::format("\nsides {}", sides->number);
   if (!model.kinematic) return text + poseText(model.pose);
   for (const scene::PathPoint& point : model.path) text += fmt::format("\nt {}", point.t) + poseText(point.pose);
   return text;

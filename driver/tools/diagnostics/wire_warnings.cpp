@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnostics/node_path.hpp"
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/wire_of.hpp"
 
 namespace hapticd::diagnostics {
@@ -18,15 +18,9 @@ using codec::Field;
 using codec::Role;
 using document::Node;
 
-const scene::Value* valueOf(const scene::Device& device, const char* id) {
-  const auto found = std::find_if(device.parameters.begin(), device.parameters.end(),
-                                  [id](const scene::Value& value) { return value.id == id; });
-  return found == device.parameters.end() ? nullptr : &*found;
-}
-
 /// [N m] Returns arm.max_torque of a joint; 0 if unknown.
 double maxTorque(const scene::Device& device, size_t joint) {
-  const scene::Value* value = valueOf(device, "arm.max_torque");
+  const scene::Value* value = givenIn(device.parameters, "arm.max_torque");
   if (value == nullptr || value->numbers.empty()) return 0;
   return value->numbers.size() == 1 ? value->numbers[0] : joint < value->numbers.size() ? value->numbers[joint] : 0;
 }
@@ -147,7 +141,7 @@ std::vector<size_t> uncovered(const codec::Report& report, bool counts_too) {
 void warnOfChecksum(const Node& fields, const codec::Report& report, const char* side, const scene::Device& device,
                     document::Problems& warnings) {
   std::string outside;
-  const scene::Value* verified = valueOf(device, "device.verified");
+  const scene::Value* verified = givenIn(device.parameters, "device.verified");
   for (const size_t i : uncovered(report, verified == nullptr || verified->number <= 0)) {
     const Node* is = i < fields.items.size() ? fields.items[i].find("is") : nullptr;
     if (is == nullptr) continue;

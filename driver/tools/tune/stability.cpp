@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "scene/path_rows.hpp"
 #include "servo/core/minimum_jerk.hpp"
 #include "servo/safety/passivity/isolated.hpp"
-#include "tune/path_rows.hpp"
 
 namespace hapticd::tune {
 namespace {
@@ -101,7 +101,7 @@ void checkLoopRate(const scene::Scene& scene, const scene::Device& device, const
 /// Returns " (ball.csv:3)" for a row of the file of a path, or "" if the file does not have this row any more.
 /// @param t [s] time in this row
 std::string lineOf(const std::filesystem::path& csv, size_t row, double t) {
-  const auto line = lineOfRow(csv, row, t);
+  const auto line = scene::lineOfRow(csv, row, t);
   return line ? " (" + csv.filename().string() + ":" + std::to_string(*line) + ")" : "";
 }
 
@@ -161,7 +161,7 @@ document::Problems fastPaths(const scene::Scene& scene) {
     const auto judge = [&](const char* does, const Fastest& fastest, double most, const char* unit,
                            const std::string& advice) {
       if (fastest.rate <= most * 1.001) return;
-      const PathKey at = keyOfPath(scene.models[i]);
+      const scene::PathKey at = scene::keyOfPath(scene.models[i]);
       document::report(problems, at.place, key,
                        scene.models[i].name + " " + does + " at up to " + text(fastest.rate) + unit + ", from t = " +
                            text(path[fastest.point].t) + " s" + lineOf(at.csv, fastest.point, path[fastest.point].t) +

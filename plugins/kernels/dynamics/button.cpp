@@ -34,6 +34,42 @@ bool seemSwapped(const std::vector<DetentCurve::Knot>& knots) {
   return knots.size() > 1 && knots.back().force < kHand && most > kHand;
 }
 
+/// Returns what is wrong with one knot, or "". @param first index of the file's first row among the knots
+std::string wrongKnot(const std::vector<DetentCurve::Knot>& knots, size_t i, size_t first) {
+  const DetentCurve::Knot& knot = knots[i];
+  if (!std::isfinite(knot.travel) || !std::isfinite(knot.force)) return "not a finite number";
+  const bool starts = i == first && knot.force == 0;  // without force, it can only be the beginning
+  if ((i == 0 || starts) && (knot.travel != 0 || knot.force != 0))
+    return "[" + number(knot.travel) + ", " + number(knot.force) +
+           "], expected [0, 0], because a button that is not pressed gives no force (the row may be left out)";
+  if (i > 0 && !(knot.travel > knots[i - 1].travel))
+    return "a travel of " + number(knot.travel) + " m is not more than that of the row before, " +
+           number(knots[i - 1].travel) + " m";
+  if (i > 0 && !(knot.force > 0)) return "the force must be above 0 N, so that the button comes back";
+  return "";
+}
+
+/// Returns what is wrong with a detent, a line for each row, or "". A line about a row begins with its key in the file.
+std::string whatIsWrong(const std::vector<DetentCurve::Knot>& knots, size_t first, double end_stiffness) {
+  std::string all;
+  const auto tell = [&all](const std::string& what) { all += (all.empty() ? "" : "\n") + what; };
+  if (!(end_stiffness > 0) || !std::isfinite(end_stiffness)) tell("end_stiffness: must be above 0 N/m");
+  if (knots.size() > DetentCurve::kMaxKnots)
+    tell("detent: there are more than 64 rows, the most that a detent can have");
+  const bool swapped = seemSwapped(knots);
+  for (size_t i = 0; i < knots.size() && i < DetentCurve::kMaxKnots; ++i) {
+    const std::string what = wrongKnot(knots, i, first);
+    if (what.empty()) continue;
+    const std::string row = "detent[" + std::to_string(i - first) + "]: row " + std::to_string(i - first + 1) + ": ";
+    if (swapped) {
+      tell(row + what + "; the columns seem to be swapped: expected [travel in m, force in N] in each row");
+      break;  // the other rows are right in the other order
+    }
+    tell(row + what + "; each row is [travel in m, force in N]");
+  }
+  return all;
+}
+
 int footOf(const DetentCurve& detent, int top) noexcept {
   int foot = top + 1;
   while (foot + 1 < detent.pieces() && detent.slope(foot) < 0) ++foot;
@@ -48,26 +84,8 @@ DetentCurve::DetentCurve(std::span<const Knot> knots, double end_stiffness) {
   const bool begun = knots.empty() || knots.front().travel > 0;
   if (begun) knots_.push_back({0, 0});
   for (const Knot& knot : knots) knots_.push_back(knot);
-  const auto wrong = [&](size_t i, const std::string& what) {
-    throw std::invalid_argument("detent: row " + std::to_string(i + (begun ? 0 : 1)) + ": " + what +
-                                (seemSwapped(knots_) ? "; the columns seem to be swapped: expected [travel in m, force "
-                                                       "in N] in each row"
-                                                     : "; each row is [travel in m, force in N]"));
-  };
-  if (knots_.size() > kMaxKnots) wrong(kMaxKnots, "there are more than 64 rows, the most that a detent can have");
-  if (!(end_stiffness > 0) || !std::isfinite(end_stiffness))
-    throw std::invalid_argument("detent: end_stiffness must be above 0 N/m");
-  for (size_t i = 0; i < knots_.size(); ++i) {
-    if (!std::isfinite(knots_[i].travel) || !std::isfinite(knots_[i].force)) wrong(i, "not a finite number");
-    const bool starts = i == (begun ? 1U : 0U) && knots_[i].force == 0;  // without force, it can only be the beginning
-    if ((i == 0 || starts) && (knots_[i].travel != 0 || knots_[i].force != 0))
-      wrong(i, "[" + number(knots_[i].travel) + ", " + number(knots_[i].force) +
-                   "], expected [0, 0], because a button that is not pressed gives no force (the row may be left out)");
-    if (i > 0 && !(knots_[i].travel > knots_[i - 1].travel))
-      wrong(i, "a travel of " + number(knots_[i].travel) + " m is not more than that of the row before, " +
-                   number(knots_[i - 1].travel) + " m");
-    if (i > 0 && !(knots_[i].force > 0)) wrong(i, "the force must be above 0 N, so that the button comes back");
-  }
+  const std::string wrong = whatIsWrong(knots_, begun ? 1 : 0, end_stiffness);
+  if (!wrong.empty()) throw std::invalid_argument(wrong);
   for (size_t i = 0; i + 1 < knots_.size(); ++i)
     slopes_.push_back((knots_[i + 1].force - knots_[i].force) / (knots_[i + 1].travel - knots_[i].travel));
   slopes_.push_back(end_stiffness);

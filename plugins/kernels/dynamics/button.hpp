@@ -19,7 +19,7 @@ class DetentCurve {
 
   /// [main] Takes points in the order of growing travel, and adds the point (0, 0) if `knots` does not begin there.
   /// @param end_stiffness [N/m] slope beyond the last point
-  /// @throws std::invalid_argument that names the wrong point.
+  /// @throws std::invalid_argument that names each wrong point in a line of its own, as `detent[INDEX]: what`
   DetentCurve(std::span<const Knot> knots, double end_stiffness);
 
   double force(double travel) const noexcept;   ///< [rt] [N]; for travel < 0 [m] the first line continues

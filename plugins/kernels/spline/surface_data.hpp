@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,14 +41,13 @@ struct SurfaceData {
   }
 };
 
+/// Receives what is wrong. @param where beginning of the message, such as "surface 'lid': knots[u][3]"
+using Tell = std::function<void(const std::string& where, const std::string& why)>;
+
 /// [main] Checks degrees, knots, counts, coordinates and weights.
 /// @throws std::invalid_argument with a message for the user that names the surface, the knot or point, and what was
 /// expected.
 void validate(const SurfaceData& data);
-
-/// [main] Checks degree, number and order of the knots along one axis.
-/// @throws std::invalid_argument
-void validateKnots(const SurfaceData& data, int axis);
 
 /// [main] Checks one knot vector for `count` control points. @param what beginning of the message, such as "surface
 /// 'lid': knots[u]"
@@ -59,5 +59,14 @@ void validateKnots(const std::vector<double>& knots, int degree, std::size_t cou
 /// @throws std::invalid_argument
 void validatePoints(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& weights,
                     const std::string& what);
+
+/// The parts of a surface, each of which can be checked although another one could not be read.
+struct SoundParts {
+  bool degree = true, points = true, weights = true;
+  std::array<bool, 2> knots{true, true};
+};
+
+/// [main] Makes the same checks of the parts that could be read, and tells everything that is wrong.
+void checkParts(const SurfaceData& data, const SoundParts& read, const Tell& tell);
 
 }  // namespace hapticd::spline

@@ -67,8 +67,8 @@ TOLD = [
     (scene(model("door", "box", below="    motion: static\n    path: rise.csv\n")), {}, "models[0].path", "write motion: kinematic in line 7"),
     (scene(model("door", "box", below="    path: turns.csv\n")), {}, "t", "does not grow"),
     (scene(model("door", "box", below="    path: turns.csv\n")), {}, "qw", "the quaternion has length 2"),
-    (BUTTON, {"[]": "[[0, 0], [4, 0.003], [2, 0.004], [3, 0.005]]"}, "models[0].parameters.detent", "the columns seem to be swapped"),
-    (BUTTON, {"[]": "[[0, 1], [0.003, 4], [0.004, 2]]"}, "models[0].parameters.detent", "[0, 1], expected [0, 0]"),
+    (BUTTON, {"[]": "[[0, 0], [4, 0.003], [2, 0.004], [3, 0.005]]"}, "models[0].parameters.detent[2]", "the columns seem to be swapped"),
+    (BUTTON, {"[]": "[[0, 1], [0.003, 4], [0.004, 2]]"}, "models[0].parameters.detent[0]", "[0, 1], expected [0, 0]"),
     (scene(model(), top=ARM + "hand: {script: press, path: rise.csv, radius: 0.053}\n"), {}, "hand.path", "replace the script in line 3 by script: path"),
 ]
 # What must not be told of a file, whatever else is.

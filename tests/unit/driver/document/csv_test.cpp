@@ -77,6 +77,22 @@ TEST(Csv, SaysHowToWriteWhatASpreadsheetWrites) {
             "commas, and write decimals with a point");
 }
 
+TEST(Csv, JudgesTheRowsBelowAWrongHeader) {
+  const auto second = [](const std::string& text) {
+    Problems problems;
+    EXPECT_FALSE(parseCsv(text, "p.csv", kPath, problems));
+    return problems.size() < 2 ? "" : problems[1].text();
+  };
+  EXPECT_EQ(second("x,y,z,t\n0,0,0,1\n0,0,two,2\n"), "p.csv:3:5: z: \"two\" is not valid, expected a finite number");
+  EXPECT_EQ(second("x,y,z,t\n3,0,0,1\n2,0,0,2\n1,0,0,1\n"),
+            "p.csv:4:1: t: 1 does not grow from row to row, expected more than 2");
+  EXPECT_EQ(second("Time [s],X [mm],Y [mm],Z [mm]\n0,a,0,0\n").substr(0, 12), "p.csv:2:3: x");
+  EXPECT_EQ(second("t,x,y,z,comment\n0,0,b,0,1\n").substr(0, 12), "p.csv:2:5: y");
+  EXPECT_EQ(second("t;x;y;z\n0;0,5;c;0\n").substr(0, 12), "p.csv:2:7: y");
+  EXPECT_EQ(second("0;0,5;c;0\n").substr(0, 12), "p.csv:1:7: y");
+  EXPECT_EQ(second("a,b,c,d\n0,0,d,0\n"), "") << "columns that nothing names";
+}
+
 TEST(Csv, LetsNumbersBeNotFiniteWhereTheRulesSaySo) {
   const CsvRules probe{{"t,x,y,z"}, false, true};
   Problems problems;

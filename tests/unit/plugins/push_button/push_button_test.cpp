@@ -194,7 +194,9 @@ TEST(PushButton, EnergyOverAPressIsNeverGained) {
 TEST(PushButton, SaysWhatIsWrongWithACurve) {
   for (const auto& [detent, what] : {std::pair{std::vector<double>{0, 0, 0.003, 4, 0.002, 3}, "row 3"},
                                      {std::vector<double>{0, 0, 0.003, 0}, "above 0 N"},
-                                     {std::vector<double>{0, 1}, "row 1"}}) {
+                                     {std::vector<double>{0, 1}, "row 1"},
+                                     {std::vector<double>{0.001, 0, 0.003, 4, 0.002, 3}, "row 1"},
+                                     {std::vector<double>{0.001, 0, 0.003, 4, 0.002, 3}, "\ndetent[2]: row 3"}}) {
     PluginUnderTest plugin;
     plugin.set("geometry", kModels + "box.yaml");
     ASSERT_EQ(plugin.set("detent", detent), HSP_OK);

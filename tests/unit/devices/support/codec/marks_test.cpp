@@ -90,6 +90,9 @@ TEST(Marks, AFieldThatContradictsThemIsRefused) {
             std::string::npos);
   EXPECT_NE(complaint(format(kEscaped, "", "", R"("id":5,)")).find("wire.input.id: 5 is the report id"),
             std::string::npos);
+  EXPECT_NE(complaint(format(kEscaped, other, "", R"("id":5,)"))
+                .find("wire.input.fields[1].value: is 0xa5 in the first byte after the id"),
+            std::string::npos);
 }
 
 /// Without escapes nothing reads the head of a command: an arm may want another one than it sends.

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: MIT
-#include "tune/path_rows.hpp"
+#include "scene/path_rows.hpp"
 
 #include "document/csv.hpp"
 #include "document/node.hpp"
+#include "document/table.hpp"
+#include "scene/kinematic_path.hpp"
 
-namespace hapticd::tune {
+namespace hapticd::scene {
 
-PathKey keyOfPath(const scene::Model& model) {
+PathKey keyOfPath(const Model& model) {
   document::Problems unread;
   const auto root = document::readFileOn(model.place.file, unread);
   const document::Node* models = root ? root->find("models") : nullptr;
   if (models == nullptr) return {model.place, {}};
-  for (const document::Node& node : models->items) {
-    if (node.line != model.place.line || node.column != model.place.column) continue;
-    const document::Node *path = node.find("path"), *parameters = node.find("parameters");
+  for (const document::Node* node : document::elementsOf(*models)) {
+    if (node->line != model.place.line || node->column != model.place.column) continue;
+    const document::Node *path = node->find("path"), *parameters = node->find("parameters");
     if (path == nullptr && parameters != nullptr) path = parameters->find("path");
     if (path != nullptr)
       return {{model.place.file, path->line, path->column},
@@ -23,11 +25,9 @@ PathKey keyOfPath(const scene::Model& model) {
 }
 
 std::optional<int> lineOfRow(const std::filesystem::path& csv, size_t row, double t) {
-  constexpr size_t kMostBytes = 256u << 20;
-  const document::CsvRules rules{{"t,x,y,z,qw,qx,qy,qz", "t,x,y,z"}, true, true};
-  const auto table = csv.empty() ? std::nullopt : document::readSoundRows(csv, kMostBytes, rules);
+  const auto table = csv.empty() ? std::nullopt : document::readSoundRows(csv, kMaxPathBytes, kinematicPathRules());
   if (!table || row >= table->rows() || table->row(row)[0] != t) return std::nullopt;
   return table->lines[row];
 }
 
-}  // namespace hapticd::tune
+}  // namespace hapticd::scene

@@ -6,7 +6,7 @@
 
 #include "description/scene.hpp"
 
-namespace hapticd::tune {
+namespace hapticd::scene {
 
 /// Where a scene gives the path of a model, and the file of this path.
 struct PathKey {
@@ -15,11 +15,11 @@ struct PathKey {
 };
 
 /// [main] Reads the scene of the model again, and returns where it gives the path.
-PathKey keyOfPath(const scene::Model& model);
+PathKey keyOfPath(const Model& model);
 
 /// [main] Returns the line of a row in the file of a path; nothing if the file does not have this row any more.
 /// @param row index of the row, counted from 0
 /// @param t [s] time in this row
 std::optional<int> lineOfRow(const std::filesystem::path& csv, size_t row, double t);
 
-}  // namespace hapticd::tune
+}  // namespace hapticd::scene
