@@ -227,7 +227,8 @@ class Parser {
     const double* now = table_.values.data() + table_.lines.size() * table_.columns;
     if (rules_.growing && last_ && *now <= *last_)
       problem(0, nameOf(0),
-              numberText(*now) + " does not grow from row to row, expected more than " + numberText(*last_));
+              numberText(*now) + " does not grow from row to row, expected more than the " + numberText(*last_) +
+                  " of the row before");
     else
       last_ = *now;
     if (rules_.wrongIn != nullptr && readable)

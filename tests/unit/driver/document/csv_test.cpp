@@ -57,7 +57,7 @@ TEST(Csv, NamesLineColumnAndWhatWasExpected) {
   EXPECT_EQ(firstProblem("t,x,y,z\n0,1,two,3\n"), "p.csv:2:5: y: \"two\" is not valid, expected a finite number");
   EXPECT_EQ(firstProblem("t,x,y,z\n0,1,2\n"), "p.csv:2:1: 3 columns, expected 4");
   EXPECT_EQ(firstProblem("t,x,y,z\n1,0,0,0\n1,0,0,0\n"),
-            "p.csv:3:1: t: 1 does not grow from row to row, expected more than 1");
+            "p.csv:3:1: t: 1 does not grow from row to row, expected more than the 1 of the row before");
   EXPECT_EQ(firstProblem("t,x,y,z\n0,nan,0,0\n"), "p.csv:2:3: x: \"nan\" is not valid, expected a finite number");
   EXPECT_EQ(firstProblem("# only a comment\n"),
             "p.csv:1:1: there are no rows, expected a header t,x,y,z or t,x,y,z,qw,qx,qy,qz and at least one row");
@@ -85,7 +85,7 @@ TEST(Csv, JudgesTheRowsBelowAWrongHeader) {
   };
   EXPECT_EQ(second("x,y,z,t\n0,0,0,1\n0,0,two,2\n"), "p.csv:3:5: z: \"two\" is not valid, expected a finite number");
   EXPECT_EQ(second("x,y,z,t\n3,0,0,1\n2,0,0,2\n1,0,0,1\n"),
-            "p.csv:4:1: t: 1 does not grow from row to row, expected more than 2");
+            "p.csv:4:1: t: 1 does not grow from row to row, expected more than the 2 of the row before");
   EXPECT_EQ(second("Time [s],X [mm],Y [mm],Z [mm]\n0,a,0,0\n").substr(0, 12), "p.csv:2:3: x");
   EXPECT_EQ(second("t,x,y,z,comment\n0,0,b,0,1\n").substr(0, 12), "p.csv:2:5: y");
   EXPECT_EQ(second("t;x;y;z\n0;0,5;c;0\n").substr(0, 12), "p.csv:2:7: y");

@@ -37,7 +37,7 @@ TEST(KinematicPath, TakesPositionsAlone) {
 
 TEST(KinematicPath, NamesLineColumnAndReason) {
   EXPECT_EQ(firstProblem("t,x,y,z\n0,0,0,0\n0,0,0,0\n"),
-            "p.csv:3:1: t: 0 does not grow from row to row, expected more than 0");
+            "p.csv:3:1: t: 0 does not grow from row to row, expected more than the 0 of the row before");
   EXPECT_EQ(firstProblem("t,x,y,z\n0,0,inf,0\n"), "p.csv:2:5: y: \"inf\" is not valid, expected a finite number");
   EXPECT_EQ(firstProblem("t,x,y,z\n0,0,0,0,9\n"),
             "p.csv:2:1: 5 columns, expected 4; write decimals with a point: 0.5, not 0,5");
@@ -54,9 +54,10 @@ TEST(KinematicPath, ReportsEveryProblemOfAFile) {
       "p.csv", problems);
   std::string all;
   for (const document::Problem& problem : problems) all += problem.text() + "\n";
-  for (const char* one : {"p.csv:2:3: x: \"a\"", "p.csv:2:7: z: \"b\"", "p.csv:3:1: qw: the quaternion has length 2",
-                          "p.csv:4:1: t: 1 does not grow", "p.csv:5:1: qw:", "p.csv:6:7: y: \"c\"",
-                          "p.csv:6:1: t: 0.5 does not grow from row to row, expected more than 2"})
+  for (const char* one :
+       {"p.csv:2:3: x: \"a\"", "p.csv:2:7: z: \"b\"", "p.csv:3:1: qw: the quaternion has length 2",
+        "p.csv:4:1: t: 1 does not grow", "p.csv:5:1: qw:", "p.csv:6:7: y: \"c\"",
+        "p.csv:6:1: t: 0.5 does not grow from row to row, expected more than the 2 of the row before"})
     EXPECT_NE(all.find(one), std::string::npos) << one << "\n" << all;
   EXPECT_EQ(problems.size(), 7u) << all;
 }
