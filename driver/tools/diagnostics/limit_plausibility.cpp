@@ -39,12 +39,26 @@ struct Bounds {
 };
 
 /// Warns of limits that leave almost no force, or that no arm ever reaches.
+void checkVelocity(const Bounds& of) {
+  constexpr double kStill = 0.2;  // [m/s] a slow move of a hand
+  constexpr double kFast = 20;    // [m/s] faster than any arm
+  const double velocity = of.device.limits.velocity.value_or(0);
+  if (velocity > 0 && velocity < kStill)
+    of.warn({"limits", "velocity"},
+            fmt::format("a hand moves at 0.1 to 1 m/s, so with {:g} m/s its first stroke would be a "
+                        "fault; the value must be in m/s, such as 2",
+                        velocity));
+  if (velocity > kFast)
+    of.warn({"limits", "velocity"},
+            fmt::format("{0:g} m/s is faster than any hand or arm, so faulty encoders are never "
+                        "noticed; the value must be in m/s: {0:g} mm/s is {1:g} m/s",
+                        velocity, velocity / 1000));
+}
+
 void checkDynamics(const Bounds& of) {
   constexpr double kSlow = 0.2;     // [s] a force that rises more slowly does not feel hard
   constexpr double kHand = 0.1;     // [m/s] a calm hand
   constexpr double kLittle = 0.05;  // share of the force that cannot be felt
-  constexpr double kStill = 0.2;    // [m/s] a slow move of a hand
-  constexpr double kFast = 20;      // [m/s] faster than any arm
   constexpr double kSmall = 0.02;   // [m] less than a finger moves
   const scene::Limits& limits = of.device.limits;
   if (limits.slew > 0 && of.force / limits.slew > kSlow)
@@ -70,17 +84,6 @@ void checkDynamics(const Bounds& of) {
         fmt::format("forces end {0:g} m from the origin of the arm's frame, and a hand is farther away at once; the "
                     "value must be the radius of the workspace in m, such as 0.15",
                     limits.workspace));
-  const double velocity = limits.velocity.value_or(0);
-  if (velocity > 0 && velocity < kStill)
-    of.warn({"limits", "velocity"},
-            fmt::format("a hand moves at 0.1 to 1 m/s, so with {:g} m/s its first stroke would be a "
-                        "fault; the value must be in m/s, such as 2",
-                        velocity));
-  if (velocity > kFast)
-    of.warn({"limits", "velocity"},
-            fmt::format("{0:g} m/s is faster than any hand or arm, so faulty encoders are never "
-                        "noticed; the value must be in m/s: {0:g} mm/s is {1:g} m/s",
-                        velocity, velocity / 1000));
 }
 
 void checkCarried(const Bounds& of) {
@@ -237,6 +240,7 @@ void warnOfImplausibleLimits(const Node& root, const scene::Device& device, cons
   if (!(force > 0)) force = 5;  // [N] a usual force of such arms, if no key gives one
   const Bounds bounds{root, device, force, warnings};
   checkDynamics(bounds);
+  checkVelocity(bounds);
   checkCarried(bounds);
   if (device.module == "simulated") checkRates(bounds);
   if (const auto draft = wireDraftOf(device, 0)) checkDeviceClock(bounds, *draft);
