@@ -107,7 +107,7 @@ class Models {
       curved[i] = has_problem && leaveOutCurves(draft.models[i], i, problems);
       unsound[i] = plugins_[i] == nullptr || lacks_[i] || !(unread_[i].sound() || curved[i]);
       for (const document::Problem& one : problems) {
-        const bool own = modelOf(one.key) == i && !(plugins_[i] && UnreadKeys::isMisplaced(one.key, *plugins_[i]));
+        const bool own = modelOf(one.key) == i && !(plugins_[i] && UnreadKeys::isReadAsMeant(one, *plugins_[i]));
         const bool of_path = model.kinematic && one.place.file.ends_with(".csv");  // which of the files is not known
         unsound[i] = unsound[i] || (own && !curved[i]) || of_path;
         const bool turned = one.key.find("].pose.orientation") != std::string::npos;
@@ -178,16 +178,22 @@ class Models {
   /// Returns true if a plugin objects to the number that was taken instead of one out of range. Of lists, the other
   /// numbers are as given.
   bool objectsToStandIn(const document::Problem& one, size_t model) const {
-    constexpr std::string_view kParameters = ".parameters.";
-    const size_t at = one.key.find(kParameters);
-    const std::string id = at == std::string::npos ? "" : one.key.substr(at + kParameters.size());
+    const std::string id = idIn(one.key);
     const scene::Value* value = givenIn(draft_.models[model].parameters, id.c_str());
     return value != nullptr && value->kind == HSP_REAL && unread_[model].ids.contains(id);
   }
 
+  /// Returns the id of the parameter that a key names, such as "detent" of "models[0].parameters.detent[2]".
+  static std::string idIn(const std::string& key) {
+    constexpr std::string_view kParameters = ".parameters.";
+    const size_t at = key.find(kParameters);
+    const std::string id = at == std::string::npos ? "" : key.substr(at + kParameters.size());
+    return id.substr(0, id.find('['));
+  }
+
   /// Returns true if a message about a model that lacks a needed parameter is about those that it has.
   bool concernsGiven(const document::Problem& one, size_t model) const {
-    bool concerns = false;
+    bool concerns = givenIn(draft_.models[model].parameters, idIn(one.key).c_str()) != nullptr;
     for (const host::ParamInfo& param : plugins_[model]->params) {
       if (!hasWord(one.what, param.id)) continue;
       const bool given = givenIn(draft_.models[model].parameters, param.id.c_str()) != nullptr;

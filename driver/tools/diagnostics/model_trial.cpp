@@ -221,15 +221,35 @@ bool isOfItself(const std::string& id) {
   return std::find(std::begin(kOwn), std::end(kOwn), id) != std::end(kOwn);
 }
 
-/// Sets up a model whose geometry was refused with a shipped file instead, so that objections to parameters that do not
-/// depend on the surfaces, and warnings about them, are known, too.
+/// Returns the parameter `geometry` of a model whose file does not give it; nothing if its plugin has none.
+std::optional<scene::Value> geometryOf(const scene::Model& model, const Log& log) {
+  const auto shape = host::ShapeInstance::create(model, log);
+  if (!shape) return std::nullopt;
+  const hsp_class& info = (*shape)->description();
+  for (uint32_t i = 0; i < info.param_count; ++i) {
+    const hsp_param& param = *HSP_AT(const hsp_param, info.params, info.params[0].struct_size, i);
+    if (std::string_view(param.id) != "geometry" || param.kind != HSP_PATH) continue;
+    scene::Value value;
+    value.id = param.id;
+    value.index = i;
+    value.kind = HSP_PATH;
+    return value;
+  }
+  return std::nullopt;
+}
+
+/// Sets up a model whose geometry was refused, or is missing, with a shipped file instead, so that objections to
+/// parameters that do not depend on the surfaces, and warnings about them, are known, too.
 void tryOtherGeometry(const scene::Scene& scene, uint32_t index, double max_force, host::ChildProgress& trail,
                       PackedTexts& problems, PackedTexts& warnings) {
   for (const char* name : {"models/box.yaml", "models/loaf.yaml"}) {  // rigid, soft
     scene::Model other = scene.models[index];
     const auto file = host::shippedFile(name);
-    const auto geometry = std::find_if(other.parameters.begin(), other.parameters.end(),
-                                       [](const scene::Value& value) { return value.id == "geometry"; });
+    auto geometry = std::find_if(other.parameters.begin(), other.parameters.end(),
+                                 [](const scene::Value& value) { return value.id == "geometry"; });
+    if (geometry == other.parameters.end())
+      if (const auto missing = geometryOf(other, [](int, const std::string&, const std::string&) {}))
+        geometry = other.parameters.insert(geometry, *missing);
     if (!file || geometry == other.parameters.end()) return;
     geometry->text = file->string();
     std::erase_if(other.parameters, [](const scene::Value& value) { return value.id == "instance"; });

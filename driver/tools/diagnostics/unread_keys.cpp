@@ -16,6 +16,13 @@ bool isPartOf(std::string_view key, std::string_view whole) {
   return key.starts_with(whole) && (key.size() == whole.size() || key[whole.size()] == '.' || key[whole.size()] == '[');
 }
 
+/// Returns the key of a problem without that of its model, "models[3].".
+std::string ownOf(const std::string& key) {
+  const size_t end = key.starts_with(kModels) ? key.find(']') : std::string::npos;
+  if (end == std::string::npos) return key;
+  return key.substr(key.compare(end + 1, 1, ".") == 0 ? end + 2 : end + 1);
+}
+
 }  // namespace
 
 UnreadKeys::UnreadKeys(const document::Problems& problems) {
@@ -30,8 +37,7 @@ UnreadKeys::UnreadKeys(const document::Problems& problems) {
     if (one.what.starts_with("the model does not follow its path")) continue;  // the path was read
     char* end = nullptr;
     const size_t index = std::strtoul(one.key.c_str() + kModels.size(), &end, 10);
-    const std::string_view rest = *end == ']' ? end + 1 : end;
-    of_models_[index].emplace_back(rest.substr(rest.starts_with('.') ? 1 : 0));
+    of_models_[index].push_back(one);
   }
 }
 
@@ -40,14 +46,13 @@ bool UnreadKeys::has(std::string_view key) const {
                      [key](const std::string& one) { return isPartOf(one, key) || isPartOf(key, one); });
 }
 
-bool UnreadKeys::isMisplaced(const std::string& key, const host::ClassInfo& info) {
-  const size_t dot = key.starts_with(kModels) ? key.find("].") : std::string::npos;
-  const std::string own = key.substr(dot == std::string::npos ? 0 : dot + 2);
+bool UnreadKeys::isReadAsMeant(const document::Problem& one, const host::ClassInfo& info) {
+  if (one.what.starts_with("unknown parameter") && one.what.find("did you mean") != std::string::npos) return true;
+  const std::string own = ownOf(one.key);
   return own != "motion" && own != "path" && info.indexOf(own) >= 0;
 }
 
-void UnreadKeys::addOwn(const std::string& key, const host::ClassInfo& info, UnreadModel& model) const {
-  if (isMisplaced(key, info)) return;  // it was read
+void UnreadKeys::addOwn(const std::string& key, UnreadModel& model) const {
   for (const char* own : {"name", "plugin", "pose", "parameters", "motion", "path"})
     if (isPartOf(key, own)) {
       model.own.insert(own);
@@ -77,11 +82,14 @@ UnreadModel UnreadKeys::ofModel(size_t index, const host::ClassInfo& info) const
   model.gravity = has("servo.gravity");
   const auto found = of_models_.find(index);
   if (found == of_models_.end()) return model;
-  for (const std::string& key : found->second)
+  for (const document::Problem& one : found->second) {
+    const std::string key = ownOf(one.key);
+    if (isReadAsMeant(one, info)) continue;
     if (key.starts_with("parameters."))
       addParameter(key.substr(kParameters.size() + 1), info, model);
     else
-      addOwn(key, info, model);
+      addOwn(key, model);
+  }
   for (const char* both : {"motion", "path"})  // these are keys of the model and may also be parameters of its plugin
     if (model.own.contains(both)) model.ids.insert(both);
   return model;

@@ -15,7 +15,7 @@ namespace hapticd::diagnostics {
 
 /// The keys and parameters of one model that could not be read.
 struct UnreadModel {
-  std::set<std::string, std::less<>> ids;  ///< parameters whose values are wrong, or whose keys are misspelt
+  std::set<std::string, std::less<>> ids;  ///< parameters whose values are wrong
   std::set<std::string, std::less<>> own;  ///< keys of the model itself: "pose", "path", "motion", ...
   bool any = false;      ///< true if a key is unknown and resembles no other: it may stand for any key that is absent
   bool gravity = false;  ///< true if servo.gravity could not be read
@@ -34,16 +34,16 @@ class UnreadKeys {
   bool has(std::string_view key) const;
   /// Returns the keys of a model that could not be read. @param info description of its plugin
   UnreadModel ofModel(size_t index, const host::ClassInfo& info) const;
-  /// Returns true if the key of a problem, such as "models[2].stiffness", is that of a parameter that stands beside
-  /// `parameters`. Its value was read all the same.
-  static bool isMisplaced(const std::string& key, const host::ClassInfo& info);
+  /// Returns true if only the key of a parameter is wrong, so that its value was read all the same: the key is
+  /// misspelt, or stands beside `parameters`, such as "models[2].stiffness".
+  static bool isReadAsMeant(const document::Problem& one, const host::ClassInfo& info);
 
  private:
-  void addOwn(const std::string& key, const host::ClassInfo& info, UnreadModel& model) const;
+  void addOwn(const std::string& key, UnreadModel& model) const;
   void addParameter(const std::string& key, const host::ClassInfo& info, UnreadModel& model) const;
 
-  std::vector<std::string> keys_;                         ///< all keys outside of models
-  std::map<size_t, std::vector<std::string>> of_models_;  ///< keys of each model, without "models[3]."
+  std::vector<std::string> keys_;                   ///< all keys outside of models
+  std::map<size_t, document::Problems> of_models_;  ///< problems of each model
 };
 
 }  // namespace hapticd::diagnostics
