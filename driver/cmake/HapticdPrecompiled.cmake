@@ -2,7 +2,7 @@
 # Headers of libraries that g++ parses once for many rooms, in the presets whose rooms are units. The other presets have
 # none of this: there a file that forgets an include does not compile.
 #   hapticd_headers              Eigen and the standard library, for code that ticks wait for
-#   hapticd_headers_no_deadline  nlohmann/json as well, for rooms with hapticd_no_deadline()
+#   hapticd_headers_no_deadline  nlohmann/json as well, for rooms with hapticd_no_deadline() or hapticd_interactive()
 # Flags of a room must be those of the headers, or g++ refuses them; a source with flags of its own says
 # SKIP_PRECOMPILE_HEADERS. A room also gets the libraries of the headers, since ccache reads the headers themselves.
 function(hapticd_use_precompiled target headers)
