@@ -113,7 +113,7 @@ double readByte(const Tree& at, const Report& report, unsigned bits) {
       first == last ? "byte " + std::to_string(last) : "bytes " + std::to_string(first) + " to " + std::to_string(last);
   at.fail(std::to_string(first) + ", so it takes the " + bytes + ", but size is " + std::to_string(report.size) +
           ": the last byte is " + std::to_string(report.size - 1) + "; expected size: " + std::to_string(last + 1) +
-          " or more, or a smaller at");
+          " or more, or a smaller at" + (report.id < 0 ? "" : "; at, from, to and size do not count the id"));
   return 0;
 }
 

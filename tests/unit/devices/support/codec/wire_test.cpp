@@ -208,6 +208,14 @@ TEST(Wire, AFieldBeyondTheReportIsToldOnceAndWithTheSizeThatItNeeds) {
             "13 or more, or a smaller at");
 }
 
+TEST(Wire, AFieldBeyondAReportWithAnIdIsToldThatTheIdIsNotCounted) {
+  const std::string said = complaint(
+      R"({"rate":1000,"input":{"id":3,"size":4,"fields":[{"is":"position","joint":1,"at":0,"type":"i16","scale":0.1},)"
+      R"({"is":"checksum","at":4,"type":"u8","method":"crc8","from":0,"to":4}]},)"
+      R"("output":{"size":2,"fields":[{"is":"torque","joint":1,"at":0,"type":"i16","scale":0.1}]}})");
+  EXPECT_TRUE(said.ends_with("or a smaller at; at, from, to and size do not count the id")) << said;
+}
+
 TEST(Wire, WhatOthersCallATypeOrAChecksumIsUnderstood) {
   const auto type = [](const char* text) { return complaint(changed("i16", text)); };
   EXPECT_NE(type("int24").find("nibbles (did you mean \"i24\"?)"), std::string::npos) << type("int24");
