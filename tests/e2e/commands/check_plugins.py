@@ -167,7 +167,9 @@ for shape in ("straight", "rubs", "drags", "magnet", "snaps"):
     check(f"{shape} passes", {t["plugin"] for t in tests} >= {shape} and not mine, mine)
 over = [(t["name"], t["why"]) for t in tests if t["plugin"] == "overruns" and t["result"] == "fail"]
 check("memory that was overrun is named beside the crash that it caused", over and "first correct what fails in eight-probes" in over[0][1] and
-      over[1][0] == "eight-probes" and "it writes behind its hsp_contact (152 bytes)" in over[1][1], over)
+      over[1][0] == "eight-probes" and any(text in over[1][1] for text in (
+          "it writes behind its hsp_contact (152 bytes)",  # told by the room behind the record, or earlier by a guarded block
+          "of a block of 1216 bytes; with 8 probes a step has 8 records")), over)
 
 # A stiffness that changes along the surface needs a force along it too; arrays that are empty by default are told.
 SOFT, LONG_LOOP = os.path.join(BROKEN, "soft_places.so"), "long-loops-give-no-energy"
