@@ -2,6 +2,7 @@
 #include "document.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "document/correction.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// A YAML or JSON file as a tree, and the line and column of each value.
 #pragma once
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

@@ -164,7 +164,7 @@ JointVector Chain::stepTowards(const Jacobian& J, const Eigen::Vector3d& error, 
   Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMaxJoints> free = J.topRows<3>();
   JointVector trial = q;
   for (int round = 0; round <= count_; ++round) {
-    Eigen::Matrix3d A = free * free.transpose();
+    Eigen::Matrix3d A = free.lazyProduct(free.transpose());
     A.diagonal().array() += lambda * (A.trace() + 1e-300);
     trial = q + free.transpose() * A.ldlt().solve(error);
     bool blocked = false;

@@ -102,9 +102,9 @@ Eigen::Vector3d weightForceAt(const KinematicsCalls& calls, const Joints& q, con
     return Eigen::Vector3d::Zero();
   const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>> J(room.data(), 3, n);
   const Eigen::Map<const Eigen::VectorXd> tau(torque.data(), n);
-  Eigen::MatrixXd square = J.transpose() * J;
+  Eigen::Matrix3d square = J.lazyProduct(J.transpose());
   square.diagonal().array() += kRoom;
-  return J * square.ldlt().solve(tau);
+  return square.inverse() * J.lazyProduct(tau);
 }
 
 constexpr double kFelt = 0.05;  ///< [N] a hand does not feel a smaller weight

@@ -245,14 +245,12 @@ void Connection::send() {
   response_.set(http::field::cache_control, "no-store");
   response_.prepare_payload();
   const bool head_only = parser_->is_header_done() && parser_->get().method() == http::verb::head;
-  auto serializer = std::make_shared<http::response_serializer<http::span_body<const char>>>(response_);
-  const auto done = [self = shared_from_this(), serializer](ErrorCode error, size_t) {
+  if (head_only) response_.body() = {};  // the head keeps its length
+  stream_.expires_after(kIdle);
+  http::async_write(stream_, response_, [self = shared_from_this()](ErrorCode error, size_t) {
     if (!error && self->response_.keep_alive()) return self->read();
     self->stream_.socket().shutdown(tcp::socket::shutdown_send, error);
-  };
-  stream_.expires_after(kIdle);
-  if (head_only) return http::async_write_header(stream_, *serializer, done);
-  http::async_write(stream_, *serializer, done);
+  });
 }
 
 Socket::Socket(beast::tcp_stream stream, ServerImpl& server)

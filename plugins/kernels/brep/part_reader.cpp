@@ -12,7 +12,7 @@
 namespace hapticd::brep {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 constexpr std::size_t kMagicLength = sizeof kPartMagic - 1;
 constexpr std::size_t kHeadLength = kMagicLength + sizeof(std::uint32_t);
 constexpr std::string_view kAnyMagic = "hapticd-part/";

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/dynamics/rigid_body.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 
 #include "kernels/dynamics/mass_properties.hpp"
 #include "kernels/dynamics/oscillator.hpp"
+#include "kernels/dynamics/positive_definite.hpp"
 
 namespace hapticd::dynamics {
 namespace {
@@ -123,7 +123,7 @@ RigidBody::Vector6d RigidBody::ownImpulse(double dt) const noexcept {
 
 /// Returns the change of velocity under an impulse that the joint allows.
 RigidBody::Vector6d RigidBody::changeUnder(const Matrix6d& resisting, const Vector6d& impulse) const noexcept {
-  if (law_.joint == Joint::kFree) return resisting.llt().solve(impulse);
+  if (law_.joint == Joint::kFree) return solvePositiveDefinite<6>(resisting, impulse);
   Vector6d free;
   if (law_.joint == Joint::kHinge) {
     free << axis_world_.cross(x_ - pivot_world_), axis_world_;
@@ -158,7 +158,8 @@ void RigidBody::step(std::span<const PredictedContact> presses, double dt) noexc
   }
   if (law_.joint != Joint::kFree) return drift(changeUnder(own, own_impulse), dt);
   Vector6d alone;  // without contacts the motion of the centre and the rotation are independent
-  alone << own_impulse.head<3>() / own(0, 0), own.bottomRightCorner<3, 3>().llt().solve(own_impulse.tail<3>());
+  alone << own_impulse.head<3>() / own(0, 0),
+      solvePositiveDefinite<3>(own.bottomRightCorner<3, 3>(), own_impulse.tail<3>());
   drift(alone, dt);
 }
 

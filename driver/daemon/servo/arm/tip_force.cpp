@@ -8,7 +8,7 @@
 namespace hapticd::servo {
 
 TipInverse::TipInverse(const TipJacobian& J) noexcept : J_(J), inverse_(Eigen::Matrix3d::Zero()) {
-  const Eigen::Matrix3d JJt = J * J.transpose();
+  const Eigen::Matrix3d JJt = J.lazyProduct(J.transpose());
   if (!JJt.allFinite()) {
     health_ = 0;
     return;

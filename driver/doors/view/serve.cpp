@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "serve.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <cstdio>
+
+#include "foxglove.hpp"
+#include "native.hpp"
+#include "server.hpp"
+#include "stage.hpp"
+#include "status/page_file.hpp"
+
+extern char** environ;
+
+namespace hapticd::view {
+namespace {
+
+constexpr int kFailed = 1, kBadInput = 2;
+constexpr std::chrono::milliseconds kTick(16);
+
+/// Tells whether a daemon holds the lock on its name.
+bool daemonLives(const std::string& lock_file) {
+  const int fd = open(lock_file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (fd < 0) return errno == EACCES;  // the lock file belongs to another user, so the daemon may run
+  const bool free = flock(fd, LOCK_SH | LOCK_NB) == 0;
+  close(fd);
+  return !free;
+}
+
+/// Starts the user's browser without waiting for its end.
+void openBrowser(const std::string& url) {
+  pid_t child = 0;
+  std::string program = "xdg-open", address = url;
+  char* arguments[] = {program.data(), address.data(), nullptr};
+  if (posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ) != 0)
+    std::fputs("no browser could be started (xdg-open is missing): open the address above yourself\n", stderr);
+}
+
+/// Calls onTick() of every conversation 60 times per second, and checks whether the daemon has ended.
+class Heartbeat {
+ public:
+  Heartbeat(boost::asio::io_context& io, Stage& stage, Server& server, std::string lock_file)
+      : io_(io), timer_(io), stage_(stage), server_(server), lock_file_(std::move(lock_file)) {}
+
+  void scheduleNext() {
+    timer_.expires_after(kTick);
+    timer_.async_wait([this](const boost::system::error_code& error) {
+      if (error) return;
+      if (server_.sockets() > 0) {
+        stage_.tick();
+        server_.tick();
+      }
+      if (!lock_file_.empty() && ++beats_ % kLook == 0 && !daemonLives(lock_file_)) return io_.stop();
+      scheduleNext();
+    });
+  }
+
+ private:
+  /// Number of ticks between two checks whether the daemon has ended: about one second.
+  static constexpr unsigned kLook = 64;
+  boost::asio::io_context& io_;
+  boost::asio::steady_timer timer_;
+  Stage& stage_;
+  Server& server_;
+  std::string lock_file_;
+  unsigned beats_ = 0;
+};
+
+std::unique_ptr<PeerSession> startSession(Subprotocol protocol, Peer& peer, Stage& stage) {
+  return protocol == Subprotocol::kFoxglove ? startFoxgloveSession(peer, stage) : startNativeSession(peer, stage);
+}
+
+}  // namespace
+
+int serve(const ServeOptions& options) {
+  boost::asio::io_context io(1);
+  StageOptions what;
+  what.folder = status::runtimeFolderOf(options.name);
+  what.name = options.name;
+  what.file = options.file;
+  what.drawings = options.drawings;
+  what.control = options.control && options.file.empty();
+  const std::string lock_file = options.until_end ? what.folder + "/" + what.name + ".lock" : "";
+  Stage stage(io, what);
+  if (auto opened = stage.open(); !opened) {
+    std::fprintf(stderr, "error: %s\n", opened.error().c_str());
+    return kBadInput;
+  }
+  auto server = Server::listen(io, options.port,
+                               [&](Subprotocol protocol, Peer& peer) { return startSession(protocol, peer, stage); });
+  if (!server) {
+    std::fprintf(stderr, "error: %s\n", server.error().c_str());
+    return kFailed;
+  }
+  std::printf("%s\n", (*server)->url().c_str());
+  std::fflush(stdout);
+  if (options.open) openBrowser((*server)->url());
+  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  signals.async_wait([&](const auto&, int) { io.stop(); });
+  Heartbeat heartbeat(io, stage, **server, lock_file);
+  heartbeat.scheduleNext();
+  io.run();
+  return 0;
+}
+
+}  // namespace hapticd::view
