@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <map>
 #include <set>
+#include <span>
 #include <unordered_map>
 
 #include "base/nearest_word.hpp"
@@ -14,7 +15,11 @@ namespace hapticd::scene::detail {
 using namespace document;
 namespace {
 
-const std::vector<std::string> kMotions = {"static", "kinematic", "dynamic"};
+constexpr std::string_view kMotions[] = {"static", "kinematic", "dynamic"};
+
+std::vector<std::string> wordsOf(std::span<const std::string_view> words) {
+  return {words.begin(), words.end()};
+}
 
 class SceneLoader {
  public:
@@ -135,11 +140,12 @@ class SceneLoader {
   void readMotion(const Node& node, const std::string& key, const host::ClassInfo& info, ParameterReader& reader) {
     const int index = info.indexOf("motion");
     if (index >= 0) return reader.readOne(node, key, static_cast<uint32_t>(index));
-    const auto choice = in_.choice(node, key, kMotions);
+    const auto choice = in_.choice(node, key, wordsOf(kMotions));
     if (choice && kMotions[*choice] != "dynamic" && (info.flags & HSP_C_MOVES) != 0)
       return in_.problem(node, key,
-                         "plugin " + info.name + " moves the model by itself, so it is not " + kMotions[*choice] +
-                             "; expected no motion" + (kMotions[*choice] == "kinematic" ? " and no path" : ""));
+                         "plugin " + info.name + " moves the model by itself, so it is not " +
+                             std::string(kMotions[*choice]) + "; expected no motion" +
+                             (kMotions[*choice] == "kinematic" ? " and no path" : ""));
     if (choice && kMotions[*choice] == "dynamic" && (info.flags & HSP_C_MOVES) == 0)
       in_.problem(node, key,
                   "plugin " + info.name +
@@ -166,8 +172,8 @@ class SceneLoader {
   /// Reads `clients`: a mode alone, or a mapping that contains the mode.
   void readClients(const Node& node) {
     if (node.isMap()) return in_.object(node, "clients", kClientsTable, &scene_.clients);
-    const std::vector<std::string> modes(std::begin(kClientModes), std::end(kClientModes));
-    if (const auto mode = in_.choice(node, "clients", modes)) scene_.clients.mode = static_cast<ClientMode>(*mode);
+    if (const auto mode = in_.choice(node, "clients", wordsOf(kClientModes)))
+      scene_.clients.mode = static_cast<ClientMode>(*mode);
   }
 
   void addDevices(const Node& root) {
@@ -209,9 +215,9 @@ class SceneLoader {
     if (!list.isSequence() || elements.empty() || elements.size() > kMaxDevices)
       in_.problem(list, "devices",
                   (list.isSequence() ? "a list of " + std::to_string(elements.size()) : describe(list)) +
-                      ", expected a list of 1 to " + numberText(kMaxDevices) + " device files" +
+                      ", expected a list of 1 to " + std::to_string(kMaxDevices) + " device files" +
                       (list.isMap() ? "; begin each of them with \"- \", as an element of a list" : ""));
-    for (size_t i = 0; i < std::min(elements.size(), static_cast<size_t>(kMaxDevices)); ++i)
+    for (size_t i = 0; i < std::min<size_t>(elements.size(), kMaxDevices); ++i)
       addNamed(*elements[i], "devices[" + std::to_string(i) + "]");
   }
 
