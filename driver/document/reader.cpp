@@ -289,7 +289,8 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
         known->store(*this, entry.value, path, *known, object);
     } else {
       problem(entry.key, path,
-              "unknown key, expected one of " + listed(table.names(), 20) + hintAbout(entry, table, empty));
+              "unknown key, expected one of " + listed(table.names(), 20) + hintAbout(entry, table, empty),
+              ProblemKind::kUnknownKey);
       const Key* meant = empty == nullptr ? meantKey(node, entry, table) : nullptr;
       if (meant == nullptr || meant->store == nullptr) continue;
       if (std::find(misspelt.begin(), misspelt.end(), meant) != misspelt.end()) continue;

@@ -29,8 +29,9 @@ class Reader {
  public:
   Reader(std::filesystem::path file, Problems& problems) : file_(std::move(file)), problems_(problems) {}
 
-  void problem(const Node& at, const std::string& key, const std::string& what) {
-    report(problems_, place(at), key, what);
+  void problem(const Node& at, const std::string& key, const std::string& what,
+               ProblemKind kind = ProblemKind::kValue) {
+    report(problems_, place(at), key, what, kind);
   }
   Place place(const Node& at) const { return {file_.string(), at.line, at.column}; }
   const std::filesystem::path& file() const { return file_; }

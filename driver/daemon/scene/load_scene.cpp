@@ -160,7 +160,8 @@ class SceneLoader {
       in_.problem(*path, key + ".path",
                   "the model does not follow its path, because it is not kinematic; " +
                       (motion == nullptr ? "add motion: kinematic to the model"
-                                         : "write motion: kinematic in line " + std::to_string(motion->line)));
+                                         : "write motion: kinematic in line " + std::to_string(motion->line)),
+                  ProblemKind::kUnusedValue);
     const auto file = in_.existingFile(*path, key + ".path");
     if (!file) return;
     std::vector<PathPoint> points = readKinematicPath(*file, in_.problems());

@@ -123,7 +123,8 @@ void ParameterReader::nothing(const Entry& entry, const std::string& key, uint32
 
 void ParameterReader::unknown(const Node& around, const Entry& entry, const std::string& key, const std::string& id) {
   std::vector<std::string> ids = info_.paramIds();
-  if (ids.empty()) return in_->problem(entry.key, key, "unknown key: " + info_.name + " has no parameters");
+  if (ids.empty())
+    return in_->problem(entry.key, key, "unknown key: " + info_.name + " has no parameters", ProblemKind::kUnknownKey);
   constexpr const char* kOfTheFile[] = {"name", "mount", "limits", "admittance", "hand", "hd", "module"};
   const bool of_the_file =
       info_.kind == host::Kind::kDevice &&
@@ -144,10 +145,11 @@ void ParameterReader::unknown(const Node& around, const Entry& entry, const std:
   const std::vector<std::string> names = withGroupsAsOne(idsIn(info_, group));
   if (group.empty()) ids.insert(ids.begin(), names.begin(), names.end());
   const std::string inside = group.empty() ? idEndingWith(id, ids) : "";
+  const std::string meant = inside.empty() ? nearestWord(id, ids) : inside;
   in_->problem(entry.key, key,
                "unknown parameter of " + info_.name + ", expected one of " + document::listed(names, 24) +
-                   (inside.empty() ? document::suggestion(id, ids) : " (did you mean \"" + inside + "\"?)"));
-  const std::string meant = inside.empty() ? nearestWord(id, ids) : inside;
+                   (inside.empty() ? document::suggestion(id, ids) : " (did you mean \"" + inside + "\"?)"),
+               meant.empty() || entry.value.isNull() ? ProblemKind::kUnknownKey : ProblemKind::kMisspeltKey);
   if (around.find(meant.substr(meant.rfind('.') + 1)) == nullptr) judgeAs(meant, entry, key);
 }
 
