@@ -86,9 +86,8 @@ std::string wrongChecksum(const std::string& name) {
 bool isUsbId(std::string_view id) {
   const auto isNumber = [](std::string_view digits) {
     uint16_t number = 0;
-    const char* const last = digits.data() + digits.size();
-    const auto [end, error] = std::from_chars(digits.data(), last, number, 16);
-    return digits.size() <= 4 && error == std::errc() && end == last;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number, 16);
+    return digits.size() <= 4 && error == std::errc() && end == digits.data() + digits.size();
   };
   const size_t colon = id.find(':');
   return colon != id.npos && isNumber(id.substr(0, colon)) && isNumber(id.substr(colon + 1));
