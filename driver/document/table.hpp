@@ -83,6 +83,11 @@ template <auto M>
 auto& member(void* object) {
   return static_cast<Class<M>*>(object)->*M;
 }
+/// Stores a value in a member, which may be optional.
+template <class Member, class Value>
+void assign(Member& member, const Value& value) {
+  member = value;
+}
 std::vector<std::string> texts(std::span<const std::string_view> words);
 }  // namespace detail
 
@@ -97,7 +102,7 @@ constexpr Key real(const char* name, Range range, const char* def, const char* d
           {},
           nullptr,
           [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
-            if (const auto value = in.number(node, path, key.range)) detail::member<M>(object) = *value;
+            if (const auto value = in.number(node, path, key.range)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
@@ -128,7 +133,7 @@ constexpr Key boolean(const char* name, const char* def, const char* doc) {
           {},
           nullptr,
           [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
-            if (const auto value = in.boolean(node, path)) detail::member<M>(object) = *value;
+            if (const auto value = in.boolean(node, path)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
@@ -166,7 +171,7 @@ constexpr Key name(const char* name, const char* doc) {
           {},
           nullptr,
           [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
-            if (const auto value = in.name(node, path)) detail::member<M>(object) = *value;
+            if (const auto value = in.name(node, path)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
@@ -181,7 +186,7 @@ constexpr Key file(const char* name, const char* doc) {
           {},
           nullptr,
           [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
-            if (const auto value = in.existingFile(node, path)) detail::member<M>(object) = *value;
+            if (const auto value = in.existingFile(node, path)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
@@ -196,7 +201,7 @@ constexpr Key vector3(const char* name, Range range, const char* def, const char
           {},
           nullptr,
           [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
-            if (const auto value = in.vector3(node, path, key.range)) detail::member<M>(object) = *value;
+            if (const auto value = in.vector3(node, path, key.range)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
@@ -211,7 +216,7 @@ constexpr Key quaternion(const char* name, const char* def, const char* doc) {
           {},
           nullptr,
           [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
-            if (const auto value = in.quaternion(node, path)) detail::member<M>(object) = *value;
+            if (const auto value = in.quaternion(node, path)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 

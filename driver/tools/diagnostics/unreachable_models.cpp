@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "diagnostics/arm_reach.hpp"
+#include "diagnostics/far_limits.hpp"
 #include "diagnostics/key_place.hpp"
 #include "servo/loop/lockstep.hpp"
 
