@@ -11,6 +11,7 @@
 
 namespace hapticd::document {
 
+struct Key;
 struct Table;
 
 /// Bounds of a number. An infinite bound means that there is none.
@@ -57,6 +58,9 @@ class Reader {
   void object(const Node& node, const std::string& key, const Table& table, void* object);
 
  private:
+  /// Reports a wrong value that stands outside of the mapping to which its key belongs; nullptr reports nothing.
+  void judge(const Node& node, const std::string& path, const Key* key);
+
   std::filesystem::path file_;
   Problems& problems_;
 };

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <map>
 #include <set>
 #include <span>
@@ -30,6 +31,7 @@ class SceneLoader {
     in_.object(root, "", kSceneTable, &text_);
     scene_.file = in_.file();
     scene_.servo = text_.servo;
+    adoptParameters(root);
     scene_.models.reserve(text_.models.size());
     for (size_t i = 0; i < text_.models.size(); ++i) addModel(text_.models[i], "models[" + std::to_string(i) + "]");
     if (text_.clients != nullptr) readClients(*text_.clients);
@@ -38,6 +40,16 @@ class SceneLoader {
   }
 
  private:
+  /// Reads parameters at the top of the scene as those of the only model that has none. Their key was reported before.
+  void adoptParameters(const Node& root) {
+    const Node* parameters = root.find("parameters");
+    const auto lacks = [](const ModelText& text) { return text.node->isMap() && text.parameters == nullptr; };
+    const auto model = std::find_if(text_.models.begin(), text_.models.end(), lacks);
+    if (parameters == nullptr || model == text_.models.end() || std::count_if(model, text_.models.end(), lacks) > 1)
+      return;
+    model->parameters = parameters;
+  }
+
   void addModel(const ModelText& text, const std::string& key) {
     Model model;
     model.name = text.name;

@@ -86,15 +86,24 @@ void ParameterReader::overrideFrom(Reader& in) {
 
 void ParameterReader::read(const Node& node, const std::string& key, const std::string& prefix,
                            const std::string& skip) {
-  if (!node.isMap())
-    return in_->problem(node, key,
-                        describe(node) + ", expected a mapping with " + document::listed(idsIn(info_, prefix)) +
-                            document::suggestMapping(node));
+  if (!node.isMap()) {
+    in_->problem(node, key,
+                 describe(node) + ", expected a mapping with " + document::listed(idsIn(info_, prefix)) +
+                     document::suggestMapping(node));
+    for (const Node& item : node.items)  // keys with dashes before them
+      if (item.isMap()) read(item, key, prefix, skip);
+    return;
+  }
   for (const Entry& entry : node.entries) {
     if (!skip.empty() && entry.key.scalar == skip) continue;
-    if (node.find(entry.key.scalar) != &entry.value) continue;  // given twice: the parser has reported it
     const std::string id = joined(prefix, entry.key.scalar), path = joined(key, entry.key.scalar);
     const int index = info_.indexOf(id);
+    if (node.find(entry.key.scalar) != &entry.value) {  // given twice: the parser has reported it
+      Value unused;
+      if (index >= 0 && !entry.value.isNull())
+        readValue(entry.value, path, info_.params[static_cast<size_t>(index)], unused);
+      continue;
+    }
     if (index >= 0 && entry.value.isNull())
       nothing(entry, path, static_cast<uint32_t>(index));
     else if (index >= 0)
