@@ -104,7 +104,7 @@ std::optional<std::string> Reader::text(const Node& node, const std::string& key
 }
 
 std::optional<std::string> Reader::name(const Node& node, const std::string& key) {
-  const std::optional<std::string> given = text(node, key);
+  std::optional<std::string> given = text(node, key);
   if (!given) return std::nullopt;
   bool good = !given->empty() && given->size() <= kLongestName && given->front() != ' ' && given->back() != ' ';
   for (const char c : *given) good = good && static_cast<unsigned char>(c) >= 0x20 && c != ',' && c != '"' && c != 0x7f;
@@ -123,7 +123,7 @@ std::optional<std::filesystem::path> Reader::existingFile(const Node& node, cons
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::path written(node.scalar);
-  const fs::path full = fs::absolute(file_.parent_path() / written, error).lexically_normal();
+  fs::path full = fs::absolute(file_.parent_path() / written, error).lexically_normal();
   const auto where = whereToOpen(full.string());
   if (!where) {
     problem(node, key, full.string() + " " + where.error());

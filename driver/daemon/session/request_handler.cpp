@@ -125,7 +125,7 @@ Result<std::string> RequestHandler::answerQuery(const control::Peer& peer, const
 
 Result<std::string> RequestHandler::execute(const control::Peer& peer, const Request& request) {
   const std::string good = lineOf({{"ok", true}});
-  const auto plain = [&](Result<void> done) -> Result<std::string> {
+  const auto plain = [&](const Result<void>& done) -> Result<std::string> {
     if (!done) return Error{done.error()};
     return good;
   };
