@@ -2,6 +2,8 @@
 /// Tables of the keys of a file. One line of a table describes one key: its type, unit, range, default and
 /// documentation. The parser and the JSON Schema use the same line.
 #pragma once
+#include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -268,13 +270,18 @@ constexpr Key list(const char* name, const Table& table, Range count, const char
             for (size_t i = 0; i < elements.size(); ++i) {
               auto& item = target.emplace_back();
               if constexpr (requires { item.node = &node; }) item.node = elements[i];
+              const size_t before = in.problems().size();
               in.object(*elements[i], path + "[" + std::to_string(i) + "]", *key.table, &item);
               if constexpr (requires { item.name; })  // of a mapping of names to elements
                 if (node.isMap() && elements[i] != &node && item.name.empty()) {
                   item.name = node.entries[i].key.scalar;
-                  std::erase_if(in.problems(), [&](const Problem& one) {
-                    return one.key == path + "[" + std::to_string(i) + "].name" && one.what.starts_with("missing");
-                  });
+                  const std::string no_name = path + "[" + std::to_string(i) + "].name";
+                  auto& told = in.problems();
+                  told.erase(std::remove_if(told.begin() + static_cast<std::ptrdiff_t>(before), told.end(),
+                                            [&no_name](const Problem& one) {
+                                              return one.key == no_name && one.what.starts_with("missing");
+                                            }),
+                             told.end());
                 }
             }
           }};

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "base/nearest_word.hpp"
@@ -94,11 +96,13 @@ void ParameterReader::read(const Node& node, const std::string& key, const std::
       if (item.isMap()) read(item, key, prefix, skip);
     return;
   }
+  std::set<std::string_view> known;
   for (const Entry& entry : node.entries) {
+    const bool again = !known.insert(entry.key.scalar).second;
     if (!skip.empty() && entry.key.scalar == skip) continue;
     const std::string id = joined(prefix, entry.key.scalar), path = joined(key, entry.key.scalar);
     const int index = info_.indexOf(id);
-    if (node.find(entry.key.scalar) != &entry.value) {  // given twice: the parser has reported it
+    if (again) {  // given twice: the parser has reported it
       Value unused;
       if (index >= 0 && !entry.value.isNull())
         readValue(entry.value, path, info_.params[static_cast<size_t>(index)], unused);
@@ -159,7 +163,7 @@ void ParameterReader::unknown(const Node& around, const Entry& entry, const std:
                "unknown parameter of " + info_.name + ", expected one of " + document::listed(names, 24) +
                    (inside.empty() ? document::suggestion(id, ids) : " (did you mean \"" + inside + "\"?)"),
                meant.empty() || entry.value.isNull() ? ProblemKind::kUnknownKey : ProblemKind::kMisspeltKey);
-  if (around.find(meant.substr(meant.rfind('.') + 1)) == nullptr) judgeAs(meant, entry, key);
+  if (!meant.empty() && around.find(meant.substr(meant.rfind('.') + 1)) == nullptr) judgeAs(meant, entry, key);
 }
 
 void ParameterReader::judgeAs(const std::string& meant, const Entry& entry, const std::string& key) {

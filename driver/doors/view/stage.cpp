@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "document/json_text.hpp"
 #include "mesh.hpp"
@@ -184,23 +185,26 @@ void Stage::draw(const std::string& model, std::function<void(const DrawnModel&)
   const auto known = meshes_.find(model);
   if (known != meshes_.end()) return drawn(known->second);
   const uint64_t run = run_;
-  daemon_->ask(geometryRequest(model), [this, model, run, drawn](const Json& answer, const Descriptor& memory) {
-    DrawnModel result;
-    if (answer.value("ok", false)) result.mesh = meshMessage(answer, memory.get());
-    if (!result.mesh) result.error = answer.value("error", std::string("the model's triangles cannot be read"));
-    if (run == run_ && result.mesh && !soft_.contains(model)) meshes_[model] = result;
-    drawn(result);
-  });
+  daemon_->ask(geometryRequest(model),
+               [this, model, run, drawn = std::move(drawn)](const Json& answer, const Descriptor& memory) {
+                 DrawnModel result;
+                 if (answer.value("ok", false)) result.mesh = meshMessage(answer, memory.get());
+                 if (!result.mesh)
+                   result.error = answer.value("error", std::string("the model's triangles cannot be read"));
+                 if (run == run_ && result.mesh && !soft_.contains(model)) meshes_[model] = result;
+                 drawn(result);
+               });
 }
 
 void Stage::drawAt(const std::string& model, double t, std::function<void(const Message&)> drawn) {
   Json request = geometryRequest(model);
   request["at"] = t;
-  daemon_->ask(request, [this, model, drawn, run = run_](const Json& answer, const Descriptor& memory) {
-    const auto soft = soft_.find(model);
-    if (run != run_) return;
-    drawn(soft != soft_.end() ? verticesMessage(answer, memory.get(), soft->second.number, 0) : nullptr);
-  });
+  daemon_->ask(request,
+               [this, model, drawn = std::move(drawn), run = run_](const Json& answer, const Descriptor& memory) {
+                 const auto soft = soft_.find(model);
+                 if (run != run_) return;
+                 drawn(soft != soft_.end() ? verticesMessage(answer, memory.get(), soft->second.number, 0) : nullptr);
+               });
 }
 
 std::vector<std::string> Stage::bodies() const {
