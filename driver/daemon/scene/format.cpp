@@ -238,7 +238,7 @@ constexpr Elsewhere kBesideClients[] = {{&kDeviceTable, "the device file"},
 constexpr Elsewhere kBesideReference[] = {{&kDeviceTable, "the device file"},
                                           {&kSceneTable, "the scene itself, outside of device"}};
 constexpr Elsewhere kBesideScene[] = {{&kClientsTable, "the mapping clients"},
-                                      {&kModelTable, "a model, an element of the list models"},
+                                      {&kModelTable, "a model (an element of the list models)"},
                                       {&kDeviceTable, "the device file"},
                                       {&kDaemonTable, "the daemon file"}};
 constexpr Elsewhere kBesideDevice[] = {{&kSceneTable, "the scene file"}, {&kDaemonTable, "the daemon file"}};
