@@ -10,7 +10,9 @@ namespace {
 
 constexpr size_t kMaxBytes = size_t{1} << 30;
 
-const document::CsvRules kRules{{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, true, true};
+document::CsvRules rules() {
+  return {{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, true, true};
+}
 
 document::CsvTable orThrow(std::optional<document::CsvTable> table, const document::Problems& problems) {
   if (table) return std::move(*table);
@@ -31,12 +33,12 @@ HandPath::HandPath(const document::CsvTable& table, std::string file)
 
 HandPath HandPath::read(const std::string& file) {
   document::Problems problems;
-  return HandPath(orThrow(document::readCsv(file, kMaxBytes, kRules, problems), problems), file);
+  return HandPath(orThrow(document::readCsv(file, kMaxBytes, rules(), problems), problems), file);
 }
 
 HandPath HandPath::parse(const std::string& text, const std::string& name) {
   document::Problems problems;
-  return HandPath(orThrow(document::parseCsv(text, name, kRules, problems), problems), name);
+  return HandPath(orThrow(document::parseCsv(text, name, rules(), problems), problems), name);
 }
 
 void HandPath::at(double t, Eigen::Vector3d& position, Eigen::Vector3d& velocity) const noexcept {

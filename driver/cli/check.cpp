@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "cli/check_draft.hpp"
@@ -76,22 +77,22 @@ bool tells(const document::Problems& told, const document::Problem& one) {
 
 /// Judges the hands of a scene. Models that their plugins refuse are left out, and those whose surfaces are doubtful.
 document::Problems warningsOfHands(scene::Scene full, const ModelTrial& trial, CheckResult& result) {
-  std::vector<bool> refused(full.models.size()), has_problem(full.models.size());
+  std::vector<bool> refused(full.models.size()), curved(full.models.size());
   for (const document::Problem& one : result.problems)
-    if (const auto model = modelOf(one.key); model && *model < refused.size())
-      has_problem[*model] = true;
-    else  // `run` refuses the hand, or an arm
-      return fastHands(full);
-  for (size_t i = 0; i < refused.size(); ++i)
-    refused[i] = has_problem[i] && !leaveOutCurves(full.models[i], i, result.problems);
+    if (const auto model = modelOf(one.key); !model || *model >= refused.size())
+      return fastHands(full);  // `run` refuses the hand, or an arm
+  const std::vector<document::Problems> of_models = problemsOfModels(result.problems, refused.size());
+  for (size_t i = 0; i < refused.size(); ++i) {
+    curved[i] = !of_models[i].empty() && leaveOutCurves(full.models[i], i, of_models[i]);
+    refused[i] = !of_models[i].empty() && !curved[i];
+  }
   for (const document::Problem& one : trial.warnings)
     if (const auto model = modelOf(one.key); model && *model < refused.size() && isOfSurfaces(one))
-      refused[*model] = true;
+      refused[*model] = true, curved[*model] = false;
   result.hands_moved = true;
   document::Problems warnings =
       warnOfHandsOfRest(full, trial.boxes, refused, std::vector<bool>(full.models.size(), true), catalog());
-  for (size_t i = 0; i < refused.size(); ++i)
-    if (has_problem[i] && !refused[i]) dropOfCurves(i, warnings);
+  dropOfCurves(curved, warnings);
   return warnings;
 }
 
@@ -198,6 +199,7 @@ class KeyPlaces {
 /// Finds the line of each warning that has only a key, or the pose of a model, and removes warnings that occur twice.
 void placeWarnings(document::Problems& warnings) {
   document::Problems once;
+  std::set<std::tuple<std::string, std::string, int, int, std::string>> told;
   KeyPlaces places;
   for (document::Problem& one : warnings) {
     constexpr std::string_view kPosition = ".position";
@@ -209,10 +211,8 @@ void placeWarnings(document::Problems& warnings) {
         found = places.of(one.place.file, one.key.substr(0, one.key.size() - kPosition.size()));
       if (found) one.place = *found;
     }
-    if (std::none_of(once.begin(), once.end(), [&one](const document::Problem& told) {
-          return told.place.line > 1 && told.key == one.key && told.place.file == one.place.file &&
-                 told.place.line == one.place.line && told.place.column == one.place.column && told.what == one.what;
-        }))
+    const bool placed = one.place.line > 1;
+    if (!placed || told.emplace(one.key, one.place.file, one.place.line, one.place.column, one.what).second)
       once.push_back(std::move(one));
   }
   warnings = std::move(once);

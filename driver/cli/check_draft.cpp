@@ -100,18 +100,19 @@ class Models {
     std::vector<bool> unsound(draft_.models.size()), placed(draft_.models.size(), true), curved(draft_.models.size());
     scene::Scene draft = draft_;
     if (known == Known::kNothing) draft.devices.clear();
+    const std::vector<document::Problems> of_models = problemsOfModels(problems, unsound.size());
+    const bool wrong_path =  // of which model is not known
+        std::any_of(problems.begin(), problems.end(),
+                    [](const document::Problem& one) { return one.place.file.ends_with(".csv"); });
     for (size_t i = 0; i < unsound.size(); ++i) {
-      const scene::Model& model = draft_.models[i];
-      const bool has_problem = std::any_of(problems.begin(), problems.end(),
-                                           [i](const document::Problem& one) { return modelOf(one.key) == i; });
-      curved[i] = has_problem && leaveOutCurves(draft.models[i], i, problems);
-      unsound[i] = plugins_[i] == nullptr || lacks_[i] || !(unread_[i].sound() || curved[i]);
-      for (const document::Problem& one : problems) {
-        const bool own = modelOf(one.key) == i && !(plugins_[i] && UnreadKeys::isReadAsMeant(one, *plugins_[i]));
-        const bool of_path = model.kinematic && one.place.file.ends_with(".csv");  // which of the files is not known
-        unsound[i] = unsound[i] || (own && !curved[i]) || of_path;
+      curved[i] = !of_models[i].empty() && leaveOutCurves(draft.models[i], i, of_models[i]);
+      unsound[i] = plugins_[i] == nullptr || lacks_[i] || !(unread_[i].sound() || curved[i]) ||
+                   (wrong_path && draft_.models[i].kinematic);
+      for (const document::Problem& one : of_models[i]) {
+        if (plugins_[i] != nullptr && UnreadKeys::isReadAsMeant(one, *plugins_[i])) continue;
+        unsound[i] = unsound[i] || !curved[i];
         const bool turned = one.key.find("].pose.orientation") != std::string::npos;
-        placed[i] = placed[i] && !(own && one.key.find("].pose") != std::string::npos && !turned);
+        placed[i] = placed[i] && (turned || one.key.find("].pose") == std::string::npos);
       }
     }
     for (const document::Problem& one : trial.warnings)
@@ -120,8 +121,7 @@ class Models {
     moved = std::find(unsound.begin(), unsound.end(), false) != unsound.end();
     document::Problems warnings =
         warnOfHandsOfRest(draft, trial.boxes, unsound, placed, catalog(), known == Known::kMotion);
-    for (size_t i = 0; i < curved.size(); ++i)
-      if (curved[i]) dropOfCurves(i, warnings);
+    dropOfCurves(curved, warnings);
     return warnings;
   }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/clock.hpp"
@@ -191,10 +192,10 @@ std::string exampleOf(const std::string& word) {
 /// Adds a subcommand that sends the request that `build` makes from the options.
 template <class Build>
 const Command addRequest(const Command& parent, const char* word, const char* doc,
-                         const std::shared_ptr<CtlArguments>& options, int& exit_code, Build build) {
+                         const std::shared_ptr<CtlArguments>& options, int& exit_code, Build&& build) {
   const Command command = parent.addSubcommand(word, doc);
   command.footer(exampleOf(word));
-  command.callback([options, &exit_code, build, word] {
+  command.callback([options, &exit_code, build = std::forward<Build>(build), word] {
     Json json = {{"do", word}};
     build(json);
     awaitDaemon(*options);

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/command.hpp"
@@ -81,6 +82,17 @@ std::string wrongChecksum(const std::string& name) {
          "lists all)";
 }
 
+/// Returns true for two numbers of one to four hexadecimal digits, such as 16c0:0486.
+bool isUsbId(std::string_view id) {
+  const auto isNumber = [](std::string_view digits) {
+    uint16_t number = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number, 16);
+    return digits.size() <= 4 && error == std::errc() && end == digits.data() + digits.size();
+  };
+  const size_t colon = id.find(':');
+  return colon != id.npos && isNumber(id.substr(0, colon)) && isNumber(id.substr(colon + 1));
+}
+
 std::string wrongIn(const NewDeviceArguments& o) {
   const bool hid = o.bus == "hid", bulk = o.bus == "bulk";
   if (!hid && !bulk) return "--bus " + o.bus + ": expected hid or bulk";
@@ -101,10 +113,7 @@ std::string wrongIn(const NewDeviceArguments& o) {
   if (o.report_id < 0 || o.report_id > 255)
     return "--report-id " + std::to_string(o.report_id) + ": expected 1 to 255, or 0 if reports have none";
   if (o.buttons < 0 || o.buttons > 32) return "--buttons " + std::to_string(o.buttons) + ": expected 0 to 32";
-  unsigned vendor = 0, product = 0;
-  int used = 0;
-  if (std::sscanf(o.id.c_str(), "%4x:%4x%n", &vendor, &product, &used) != 2 || static_cast<size_t>(used) != o.id.size())
-    return "--id " + o.id + ": expected vendor:product, hexadecimal, such as 1234:0006";
+  if (!isUsbId(o.id)) return "--id " + o.id + ": expected vendor:product, hexadecimal, such as 1234:0006";
   return "";
 }
 
@@ -197,7 +206,8 @@ std::string armOf(const NewDeviceArguments& o) {
 /// Returns how many bits a checksum takes, in whole bytes, from its name: 16 for crc16-modbus, 8 for crc5-usb.
 int checksumBits(const std::string& name) {
   const size_t digits = name.find_first_of("0123456789");
-  const int bits = digits == std::string::npos ? 8 : std::atoi(name.c_str() + digits);
+  int bits = 8;  // of sum, xor
+  if (digits != std::string::npos) std::from_chars(name.data() + digits, name.data() + name.size(), bits);
   return std::clamp((bits + 7) / 8 * 8, 8, 64);
 }
 

@@ -196,6 +196,9 @@ std::string suggestList(const Node& node, size_t count) {
 }
 
 std::string suggestMapping(const Node& node) {
+  const bool dashes = node.isSequence() && !node.items.empty() &&
+                      std::all_of(node.items.begin(), node.items.end(), [](const Node& item) { return item.isMap(); });
+  if (dashes) return "; leave out \"- \" before its keys";
   if (!node.isScalar() || node.quoted || node.scalar.size() > kLongest) return "";
   const size_t sign = node.scalar.find_first_of(":=");
   if (sign == std::string::npos || sign == 0 || sign + 1 >= node.scalar.size()) return "";

@@ -4,6 +4,7 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
+#include <iterator>
 #include <sstream>
 #include <unordered_map>
 
@@ -72,11 +73,17 @@ class Builder final : public YAML::EventHandler {
   const YAML::Mark& lastQuoted() const { return last_quoted_; }
 
  private:
+  /// A key of a mapping, to find those that are given twice.
+  struct Known {
+    int line;
+    size_t entry;  // its index in the mapping
+  };
   struct Open {
     Node node;
     YAML::anchor_t anchor;
-    std::optional<Node> key;                     // in a map: the key whose value has not come yet
-    std::unordered_map<std::string, int> names;  // in a map: all keys so far with their lines, to find duplicates
+    std::optional<Node> key;  // in a map: the key whose value has not come yet
+    std::unordered_map<std::string, Known> names;
+    std::optional<size_t> twice;  // in a map: the entry that has the same key as `key`
   };
 
   Node make(const YAML::Mark& mark, Node::Kind kind) {
@@ -103,7 +110,7 @@ class Builder final : public YAML::EventHandler {
     if (open_.size() >= kMaxDepth)
       throw Refused{
           mark, "lists and mappings are nested deeper than " + std::to_string(kMaxDepth) + " levels, expected fewer"};
-    open_.push_back({make(mark, kind), anchor, std::nullopt, {}});
+    open_.push_back({make(mark, kind), anchor, std::nullopt, {}, std::nullopt});
   }
   /// Adds the keys of other mappings (merge key << of YAML 1.1). If a key is in both, this mapping's own value counts.
   void merge(Open& map) {
@@ -118,7 +125,7 @@ class Builder final : public YAML::EventHandler {
         report(problems_, file_, other.line, other.column, "<<",
                describe(other) + ", expected a mapping to merge, such as an alias (*name) of one, or a list of them");
       for (const Entry& entry : other.entries)
-        if (map.names.emplace(entry.key.scalar, entry.key.line).second) entries.push_back(entry);
+        if (map.names.emplace(entry.key.scalar, Known{entry.key.line, entries.size()}).second) entries.push_back(entry);
     }
   }
   void closeLast() {
@@ -146,15 +153,28 @@ class Builder final : public YAML::EventHandler {
       if (!node.isScalar() && !node.isNull()) {
         report(problems_, file_, node.line, node.column, "", "a key that is " + describe(node) + ", expected a name");
         node.scalar.assign(1, '?');
-      } else if (const auto [first, is_new] = map.names.emplace(node.scalar, node.line); !is_new) {
-        report(problems_, file_, node.line, node.column, node.scalar,
-               "given twice (first in line " + std::to_string(first->second) + "), expected each key once");
+      } else if (const auto [first, is_new] = map.names.emplace(node.scalar, Known{node.line, map.node.entries.size()});
+                 !is_new) {
+        map.twice = first->second.entry;
       }
       map.key = std::move(node);
       return;
     }
-    map.node.entries.push_back({*std::move(map.key), std::move(node)});
+    const bool merged = map.twice && reportTwice(*map.key, map.node.entries[*map.twice], node);
+    if (!merged) map.node.entries.push_back({*std::move(map.key), std::move(node)});
     map.key.reset();
+    map.twice.reset();
+  }
+  /// Reports a key that is given twice, with both values if they are short. Of two mappings, the second is merged into
+  /// the first, so that the keys of both are judged. @return true if they were merged
+  bool reportTwice(const Node& key, Entry& first, Node& second) {
+    const bool texts = first.value.isScalar() && second.isScalar() && first.value.scalar != second.scalar;
+    report(problems_, file_, key.line, key.column, key.scalar,
+           "given twice (first in line " + std::to_string(first.key.line) + "), expected each key once" +
+               (texts ? ": " + describe(first.value) + " or " + describe(second) : ""));
+    if (!first.value.isMap() || !second.isMap()) return false;
+    std::move(second.entries.begin(), second.entries.end(), std::back_inserter(first.value.entries));
+    return true;
   }
 
   std::string file_;

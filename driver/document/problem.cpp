@@ -19,11 +19,12 @@ std::string Problem::text() const {
   return where + ": " + (key.empty() ? "" : key + ": ") + what;
 }
 
-void report(Problems& problems, const Place& place, const std::string& key, const std::string& what) {
+void report(Problems& problems, const Place& place, const std::string& key, const std::string& what, ProblemKind kind) {
   Problem problem;
   problem.place = place;
   problem.key = key;
   problem.what = what;
+  problem.kind = kind;
   problems.push_back(problem);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Problems: what is wrong with a file, in words for the person who wrote the file.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,14 @@ struct Place {
   int line = 0, column = 0;
 };
 
+/// What a problem says about its key, for those who rely on the value.
+enum class ProblemKind : uint8_t {
+  kValue,        ///< the value is wrong, is missing, or cannot be read
+  kUnknownKey,   ///< no such key; it may stand for any other
+  kMisspeltKey,  ///< the key of a parameter is misspelt; the value was read as that of the parameter that is meant
+  kUnusedValue   ///< the value was read, but another key says that it is not used
+};
+
 struct Problem {
   Place place;
   std::string key;   ///< such as "models[2].parameters.stiffness"; "" for the file as a whole
@@ -19,6 +28,7 @@ struct Problem {
   /// Of a syntax error: the text that was not read because of it, or that may stand in another place than the writer
   /// meant. Problems that may follow from it are not told (see dropFollowUps()).
   std::string left_out{};
+  ProblemKind kind = ProblemKind::kValue;
 
   /// Returns a message such as "scene.yaml:12:18: models[2].parameters.stiffness: -5 N/m is out of range, expected 0 to
   /// 20000 N/m".
@@ -28,7 +38,8 @@ struct Problem {
 using Problems = std::vector<Problem>;
 
 /// Adds a problem.
-void report(Problems& problems, const Place& place, const std::string& key, const std::string& what);
+void report(Problems& problems, const Place& place, const std::string& key, const std::string& what,
+            ProblemKind kind = ProblemKind::kValue);
 void report(Problems& problems, const std::string& file, int line, int column, const std::string& key,
             const std::string& what);
 

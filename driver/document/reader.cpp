@@ -104,7 +104,7 @@ std::optional<std::string> Reader::text(const Node& node, const std::string& key
 }
 
 std::optional<std::string> Reader::name(const Node& node, const std::string& key) {
-  const std::optional<std::string> given = text(node, key);
+  std::optional<std::string> given = text(node, key);
   if (!given) return std::nullopt;
   bool good = !given->empty() && given->size() <= kLongestName && given->front() != ' ' && given->back() != ' ';
   for (const char c : *given) good = good && static_cast<unsigned char>(c) >= 0x20 && c != ',' && c != '"' && c != 0x7f;
@@ -123,7 +123,7 @@ std::optional<std::filesystem::path> Reader::existingFile(const Node& node, cons
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::path written(node.scalar);
-  const fs::path full = fs::absolute(file_.parent_path() / written, error).lexically_normal();
+  fs::path full = fs::absolute(file_.parent_path() / written, error).lexically_normal();
   const auto where = whereToOpen(full.string());
   if (!where) {
     problem(node, key, full.string() + " " + where.error());
@@ -230,13 +230,16 @@ std::string belongsTo(const Table& table, const std::string& name, bool near) {
     return "; " + name + " belongs under the key " + parentOf(path);
   const bool may_be_parameter = table.find("parameters") != nullptr;
   const std::string parameter = "; a parameter of the plugin or module belongs under parameters";
+  std::string there;
   for (const Elsewhere& other : table.elsewhere) {
     const std::string path = pathIn(*other.table, name), parent = parentOf(path);
-    if (path.empty() || (near && !parent.empty())) continue;
-    const std::string there = name + " belongs in " + other.where + (parent.empty() ? "" : ", under " + parent);
-    return may_be_parameter && !parent.empty() ? parameter + "; " + there : "; " + there;
+    if (path.empty() || (!parent.empty() && (near || !there.empty()))) continue;
+    there += there.empty() ? "; " + name + " belongs in " + other.where : ", or in " + std::string(other.where);
+    if (parent.empty()) continue;
+    there += ", under " + parent;
+    return may_be_parameter ? parameter + there : there;
   }
-  return may_be_parameter ? parameter : "";
+  return there.empty() && may_be_parameter ? parameter : there;
 }
 
 /// Returns true if a key of exactly this name belongs in another place. @param place the hint of belongsTo()
@@ -270,7 +273,27 @@ std::string hintAbout(const Entry& entry, const Table& table, const std::string*
   return (hasAnotherPlace(place, name) ? "" : meant) + place + tooDeep(table, entry.value);
 }
 
+/// Returns the key of this name in the mappings of a table; nullptr if there is none.
+const Key* keyWithin(const Table& table, const std::string& name) {
+  for (const Key& key : table.keys) {
+    if (key.type != Type::kObject) continue;
+    if (const Key* known = key.table->find(name)) return known;
+    if (const Key* known = keyWithin(*key.table, name)) return known;
+  }
+  return nullptr;
+}
+
 }  // namespace
+
+void Reader::judge(const Node& node, const std::string& path, const Key* key) {
+  if (key == nullptr || node.isNull()) return;
+  if (key->type == Type::kReal) number(node, path, key->range);
+  if (key->type == Type::kInteger) whole(node, path, key->range);
+  if (key->type == Type::kBool) boolean(node, path);
+  if (key->type == Type::kChoice) choice(node, path, detail::texts(key->choices));
+  if (key->type == Type::kVector3) vector3(node, path, key->range);
+  if (key->type == Type::kQuaternion) quaternion(node, path);
+}
 
 void Reader::object(const Node& node, const std::string& key, const Table& table, void* object) {
   if (!node.isMap()) {
@@ -289,8 +312,10 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
         known->store(*this, entry.value, path, *known, object);
     } else {
       problem(entry.key, path,
-              "unknown key, expected one of " + listed(table.names(), 20) + hintAbout(entry, table, empty));
+              "unknown key, expected one of " + listed(table.names(), 20) + hintAbout(entry, table, empty),
+              ProblemKind::kUnknownKey);
       const Key* meant = empty == nullptr ? meantKey(node, entry, table) : nullptr;
+      if (meant == nullptr) judge(entry.value, path, keyWithin(table, entry.key.scalar));
       if (meant == nullptr || meant->store == nullptr) continue;
       if (std::find(misspelt.begin(), misspelt.end(), meant) != misspelt.end()) continue;
       misspelt.push_back(meant);

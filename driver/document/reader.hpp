@@ -11,6 +11,7 @@
 
 namespace hapticd::document {
 
+struct Key;
 struct Table;
 
 /// Bounds of a number. An infinite bound means that there is none.
@@ -29,8 +30,9 @@ class Reader {
  public:
   Reader(std::filesystem::path file, Problems& problems) : file_(std::move(file)), problems_(problems) {}
 
-  void problem(const Node& at, const std::string& key, const std::string& what) {
-    report(problems_, place(at), key, what);
+  void problem(const Node& at, const std::string& key, const std::string& what,
+               ProblemKind kind = ProblemKind::kValue) {
+    report(problems_, place(at), key, what, kind);
   }
   Place place(const Node& at) const { return {file_.string(), at.line, at.column}; }
   const std::filesystem::path& file() const { return file_; }
@@ -56,6 +58,9 @@ class Reader {
   void object(const Node& node, const std::string& key, const Table& table, void* object);
 
  private:
+  /// Reports a wrong value that stands outside of the mapping to which its key belongs; nullptr reports nothing.
+  void judge(const Node& node, const std::string& path, const Key* key);
+
   std::filesystem::path file_;
   Problems& problems_;
 };

@@ -2,6 +2,8 @@
 /// Tables of the keys of a file. One line of a table describes one key: its type, unit, range, default and
 /// documentation. The parser and the JSON Schema use the same line.
 #pragma once
+#include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -83,6 +85,11 @@ template <auto M>
 auto& member(void* object) {
   return static_cast<Class<M>*>(object)->*M;
 }
+/// Stores a value in a member, which may be optional.
+template <class Member, class Value>
+void assign(Member& member, const Value& value) {
+  member = value;
+}
 std::vector<std::string> texts(std::span<const std::string_view> words);
 }  // namespace detail
 
@@ -97,7 +104,7 @@ constexpr Key real(const char* name, Range range, const char* def, const char* d
           {},
           nullptr,
           [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
-            if (const auto value = in.number(node, path, key.range)) detail::member<M>(object) = *value;
+            if (const auto value = in.number(node, path, key.range)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
@@ -128,7 +135,7 @@ constexpr Key boolean(const char* name, const char* def, const char* doc) {
           {},
           nullptr,
           [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
-            if (const auto value = in.boolean(node, path)) detail::member<M>(object) = *value;
+            if (const auto value = in.boolean(node, path)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
@@ -166,7 +173,7 @@ constexpr Key name(const char* name, const char* doc) {
           {},
           nullptr,
           [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
-            if (const auto value = in.name(node, path)) detail::member<M>(object) = *value;
+            if (const auto value = in.name(node, path)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
@@ -181,7 +188,7 @@ constexpr Key file(const char* name, const char* doc) {
           {},
           nullptr,
           [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
-            if (const auto value = in.existingFile(node, path)) detail::member<M>(object) = *value;
+            if (const auto value = in.existingFile(node, path)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
@@ -196,7 +203,7 @@ constexpr Key vector3(const char* name, Range range, const char* def, const char
           {},
           nullptr,
           [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
-            if (const auto value = in.vector3(node, path, key.range)) detail::member<M>(object) = *value;
+            if (const auto value = in.vector3(node, path, key.range)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
@@ -211,7 +218,7 @@ constexpr Key quaternion(const char* name, const char* def, const char* doc) {
           {},
           nullptr,
           [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
-            if (const auto value = in.quaternion(node, path)) detail::member<M>(object) = *value;
+            if (const auto value = in.quaternion(node, path)) detail::assign(detail::member<M>(object), *value);
           }};
 }
 
@@ -263,13 +270,18 @@ constexpr Key list(const char* name, const Table& table, Range count, const char
             for (size_t i = 0; i < elements.size(); ++i) {
               auto& item = target.emplace_back();
               if constexpr (requires { item.node = &node; }) item.node = elements[i];
+              const size_t before = in.problems().size();
               in.object(*elements[i], path + "[" + std::to_string(i) + "]", *key.table, &item);
               if constexpr (requires { item.name; })  // of a mapping of names to elements
                 if (node.isMap() && elements[i] != &node && item.name.empty()) {
                   item.name = node.entries[i].key.scalar;
-                  std::erase_if(in.problems(), [&](const Problem& one) {
-                    return one.key == path + "[" + std::to_string(i) + "].name" && one.what.starts_with("missing");
-                  });
+                  const std::string no_name = path + "[" + std::to_string(i) + "].name";
+                  auto& told = in.problems();
+                  told.erase(std::remove_if(told.begin() + static_cast<std::ptrdiff_t>(before), told.end(),
+                                            [&no_name](const Problem& one) {
+                                              return one.key == no_name && one.what.starts_with("missing");
+                                            }),
+                             told.end());
                 }
             }
           }};

@@ -340,8 +340,8 @@ MedialFile parseMedialFile(const std::string& text, const std::string& name, con
   const auto some = [](const std::vector<double>& values) {
     return std::any_of(values.begin(), values.end(), [](double x) { return x > 0; });
   };
-  file.swings = some(file.grid ? file.grid->mass : file.mesh->mass);
-  file.damps = some(file.grid ? file.grid->damping : file.mesh->damping);
+  if (file.grid) file.swings = some(file.grid->mass), file.damps = some(file.grid->damping);
+  if (file.mesh) file.swings = some(file.mesh->mass), file.damps = some(file.mesh->damping);
   return file;
 }
 

@@ -36,6 +36,7 @@ class Tree {
   /// makes has() and at() take this value for a key that is not given
   void readInstead(const char* key, const Tree& value) const;
   void fail(const std::string& what) const;  ///< notes the problem "path: what"
+  const std::string& path() const { return path_; }
   bool exists() const { return value_ != nullptr; }
   size_t problems() const;  ///< number of problems noted so far in the whole document
 

@@ -104,6 +104,13 @@ bool readType(const Tree& tree, Field& field) {
   return good;
 }
 
+/// Returns the key of the report's size, such as "wire.input.size", from a key of one of its fields. With the whole
+/// key, who shows the message can add the line.
+std::string sizeKey(const Tree& of_field) {
+  const std::string fields = of_field.path().substr(0, of_field.path().rfind('['));
+  return fields.substr(0, fields.rfind('.')) + ".size";
+}
+
 /// Reads the first byte of a field. The bits of the field must fit into the report from this byte on.
 double readByte(const Tree& at, const Report& report, unsigned bits) {
   const double byte = at.whole(0, kMaxReportBytes);
@@ -111,9 +118,10 @@ double readByte(const Tree& at, const Report& report, unsigned bits) {
   if (last < report.size) return byte;
   const std::string bytes =
       first == last ? "byte " + std::to_string(last) : "bytes " + std::to_string(first) + " to " + std::to_string(last);
-  at.fail(std::to_string(first) + ", so it takes the " + bytes + ", but size is " + std::to_string(report.size) +
-          ": the last byte is " + std::to_string(report.size - 1) + "; expected size: " + std::to_string(last + 1) +
-          " or more, or a smaller at" + (report.id < 0 ? "" : "; at, from, to and size do not count the id"));
+  at.fail(std::to_string(first) + ", so it takes the " + bytes + ", but " + sizeKey(at) + " is " +
+          std::to_string(report.size) + ": the last byte is " + std::to_string(report.size - 1) +
+          "; expected size: " + std::to_string(last + 1) + " or more, or a smaller at" +
+          (report.id < 0 ? "" : "; at, from, to and size do not count the id"));
   return 0;
 }
 
@@ -123,7 +131,7 @@ void readPlace(const Tree& tree, const Report& report, Field& field) {
     tree.at("bit_offset").fail("a text field has no bit_offset; only fields of type i, u or f have one");
   if (field.bits > 8 * report.size)
     return tree.at("type").fail("\"" + tree.at("type").text() + "\" takes " + std::to_string((field.bits + 7) / 8) +
-                                " bytes, but the report has only " + std::to_string(report.size) +
+                                " bytes, but " + sizeKey(tree) + " is " + std::to_string(report.size) +
                                 "; expected a narrower type, or a larger size");
   const bool at_bit = tree.has("bit_offset");
   double skip = at_bit && !tree.has("at") ? 0 : 8 * readByte(tree.at("at"), report, at_bit ? 8 : field.bits);

@@ -3,6 +3,8 @@
 
 #include <cstring>
 
+#include "host/class_params.hpp"
+
 namespace hapticd::host {
 
 std::string statusText(hsp_status status) {
@@ -56,7 +58,7 @@ namespace {
 
 bool isNumberIn(const char* unit, const hsp_class& shape, uint32_t param) noexcept {
   if (param >= shape.param_count) return false;
-  const hsp_param& described = *HSP_AT(const hsp_param, shape.params, shape.params[0].struct_size, param);
+  const hsp_param& described = paramAt(shape, param);
   return described.kind == HSP_REAL && described.unit != nullptr && std::strcmp(described.unit, unit) == 0;
 }
 

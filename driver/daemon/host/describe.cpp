@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "host/child.hpp"
+#include "host/class_params.hpp"
 #include "host/class_table.hpp"
 #include "host/library.hpp"
 #include "host/wire.hpp"
@@ -67,7 +68,7 @@ ClassInfo copyClass(const Class& given, Kind kind, const std::filesystem::path& 
                              " parameters; expected at most 4096");
   std::set<std::string> ids;
   for (uint32_t i = 0; i < given.param_count; ++i) {
-    const ParamInfo param = copyParam(*HSP_AT(const hsp_param, given.params, given.params[0].struct_size, i));
+    const ParamInfo param = copyParam(paramAt(given, i));
     if (const std::string wrong = wrongIn(param); !wrong.empty())
       throw std::runtime_error("class '" + info.name + "': its parameter table is wrong: " + wrong);
     if (!ids.insert(param.id).second)

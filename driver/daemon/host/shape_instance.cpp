@@ -8,6 +8,7 @@
 #include "base/call_name.hpp"
 #include "base/owner_file.hpp"
 #include "host/catalog.hpp"
+#include "host/class_params.hpp"
 #include "host/class_table.hpp"
 #include "host/file_stamp.hpp"
 
@@ -48,7 +49,7 @@ double dampingOf(const hsp_class& shape, const std::vector<scene::Value>& given)
   double most = 0;
   for (uint32_t i = 0; i < shape.param_count; ++i) {
     if (!damps(shape, i)) continue;
-    double value = HSP_AT(const hsp_param, shape.params, shape.params[0].struct_size, i)->def;
+    double value = paramAt(shape, i).def;
     for (const scene::Value& v : given)
       if (v.index == i) value = v.number;
     most = std::max(most, value);

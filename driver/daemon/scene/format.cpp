@@ -238,9 +238,9 @@ constexpr Elsewhere kBesideClients[] = {{&kDeviceTable, "the device file"},
 constexpr Elsewhere kBesideReference[] = {{&kDeviceTable, "the device file"},
                                           {&kSceneTable, "the scene itself, outside of device"}};
 constexpr Elsewhere kBesideScene[] = {{&kClientsTable, "the mapping clients"},
+                                      {&kModelTable, "a model (an element of the list models)"},
                                       {&kDeviceTable, "the device file"},
-                                      {&kDaemonTable, "the daemon file"},
-                                      {&kModelTable, "a model: an element of the list models"}};
+                                      {&kDaemonTable, "the daemon file"}};
 constexpr Elsewhere kBesideDevice[] = {{&kSceneTable, "the scene file"}, {&kDaemonTable, "the daemon file"}};
 constexpr Elsewhere kBesideDaemon[] = {{&kSceneTable, "the scene file"}, {&kDeviceTable, "the device file"}};
 

@@ -2,6 +2,7 @@
 /// The tables of the keys of the three file formats, and the plain structs into which the reader writes the values.
 /// load.cpp checks what the values mean.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -15,7 +16,7 @@ using document::Node;
 using document::Table;
 
 /// Largest numbers of models and of arms (one probe each) in one scene.
-constexpr double kMaxModels = 20000, kMaxDevices = 8;
+constexpr uint32_t kMaxModels = 20000, kMaxDevices = 8;
 
 struct ModelText {
   const Node* node = nullptr;

@@ -18,8 +18,6 @@ std::string wrongQuaternion(const double* row, size_t columns) {
   return "the quaternion has length " + numberText(q.norm()) + ", expected 1 within 0.001 (order w, x, y, z)";
 }
 
-const CsvRules kRules{{"t,x,y,z,qw,qx,qy,qz", "t,x,y,z"}, true, true, kFarthest, wrongQuaternion, "qw"};
-
 std::vector<PathPoint> pointsOf(const CsvTable& table) {
   std::vector<PathPoint> points(table.rows());
   for (size_t i = 0; i < table.rows(); ++i) {
@@ -36,17 +34,18 @@ std::vector<PathPoint> pointsOf(const CsvTable& table) {
 }  // namespace
 
 const CsvRules& kinematicPathRules() {
+  static const CsvRules kRules{{"t,x,y,z,qw,qx,qy,qz", "t,x,y,z"}, true, true, kFarthest, wrongQuaternion, "qw"};
   return kRules;
 }
 
 std::vector<PathPoint> parseKinematicPath(const std::string& text, const std::string& file, Problems& problems) {
-  const auto table = parseCsv(text, file, kRules, problems);
+  const auto table = parseCsv(text, file, kinematicPathRules(), problems);
   return table ? pointsOf(*table) : std::vector<PathPoint>{};
 }
 
 std::vector<PathPoint> readKinematicPath(const std::filesystem::path& file, Problems& problems) {
-  auto table = readCsv(file, kMaxPathBytes, kRules, problems);
-  if (!table) table = readSoundRows(file, kMaxPathBytes, kRules);  // so that a check can judge them
+  auto table = readCsv(file, kMaxPathBytes, kinematicPathRules(), problems);
+  if (!table) table = readSoundRows(file, kMaxPathBytes, kinematicPathRules());  // so that a check can judge them
   return table ? pointsOf(*table) : std::vector<PathPoint>{};
 }
 

@@ -133,7 +133,8 @@ std::optional<Scene> sceneDraft(const std::filesystem::path& file, host::Catalog
   Problems known;
   Reader in(file, known);
   const auto root = readFileOn(file, known);
-  const Format* format = root ? detail::formatOf(*root) : nullptr;
+  if (!root) return std::nullopt;
+  const Format* format = detail::formatOf(*root);
   if (format == nullptr || format->table != &kSceneTable) return std::nullopt;
   return detail::loadScene(*root, in, catalog, {.default_device = true, .device_file = {}});
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <map>
 #include <set>
+#include <span>
 #include <unordered_map>
 
 #include "base/nearest_word.hpp"
@@ -14,7 +16,11 @@ namespace hapticd::scene::detail {
 using namespace document;
 namespace {
 
-const std::vector<std::string> kMotions = {"static", "kinematic", "dynamic"};
+constexpr std::string_view kMotions[] = {"static", "kinematic", "dynamic"};
+
+std::vector<std::string> wordsOf(std::span<const std::string_view> words) {
+  return {words.begin(), words.end()};
+}
 
 class SceneLoader {
  public:
@@ -25,6 +31,7 @@ class SceneLoader {
     in_.object(root, "", kSceneTable, &text_);
     scene_.file = in_.file();
     scene_.servo = text_.servo;
+    adoptParameters(root);
     scene_.models.reserve(text_.models.size());
     for (size_t i = 0; i < text_.models.size(); ++i) addModel(text_.models[i], "models[" + std::to_string(i) + "]");
     if (text_.clients != nullptr) readClients(*text_.clients);
@@ -33,6 +40,16 @@ class SceneLoader {
   }
 
  private:
+  /// Reads parameters at the top of the scene as those of the only model that has none. Their key was reported before.
+  void adoptParameters(const Node& root) {
+    const Node* parameters = root.find("parameters");
+    const auto lacks = [](const ModelText& text) { return text.node->isMap() && text.parameters == nullptr; };
+    const auto model = std::find_if(text_.models.begin(), text_.models.end(), lacks);
+    if (parameters == nullptr || model == text_.models.end() || std::count_if(model, text_.models.end(), lacks) > 1)
+      return;
+    model->parameters = parameters;
+  }
+
   void addModel(const ModelText& text, const std::string& key) {
     Model model;
     model.name = text.name;
@@ -135,11 +152,12 @@ class SceneLoader {
   void readMotion(const Node& node, const std::string& key, const host::ClassInfo& info, ParameterReader& reader) {
     const int index = info.indexOf("motion");
     if (index >= 0) return reader.readOne(node, key, static_cast<uint32_t>(index));
-    const auto choice = in_.choice(node, key, kMotions);
+    const auto choice = in_.choice(node, key, wordsOf(kMotions));
     if (choice && kMotions[*choice] != "dynamic" && (info.flags & HSP_C_MOVES) != 0)
       return in_.problem(node, key,
-                         "plugin " + info.name + " moves the model by itself, so it is not " + kMotions[*choice] +
-                             "; expected no motion" + (kMotions[*choice] == "kinematic" ? " and no path" : ""));
+                         "plugin " + info.name + " moves the model by itself, so it is not " +
+                             std::string(kMotions[*choice]) + "; expected no motion" +
+                             (kMotions[*choice] == "kinematic" ? " and no path" : ""));
     if (choice && kMotions[*choice] == "dynamic" && (info.flags & HSP_C_MOVES) == 0)
       in_.problem(node, key,
                   "plugin " + info.name +
@@ -154,7 +172,8 @@ class SceneLoader {
       in_.problem(*path, key + ".path",
                   "the model does not follow its path, because it is not kinematic; " +
                       (motion == nullptr ? "add motion: kinematic to the model"
-                                         : "write motion: kinematic in line " + std::to_string(motion->line)));
+                                         : "write motion: kinematic in line " + std::to_string(motion->line)),
+                  ProblemKind::kUnusedValue);
     const auto file = in_.existingFile(*path, key + ".path");
     if (!file) return;
     std::vector<PathPoint> points = readKinematicPath(*file, in_.problems());
@@ -166,8 +185,8 @@ class SceneLoader {
   /// Reads `clients`: a mode alone, or a mapping that contains the mode.
   void readClients(const Node& node) {
     if (node.isMap()) return in_.object(node, "clients", kClientsTable, &scene_.clients);
-    const std::vector<std::string> modes(std::begin(kClientModes), std::end(kClientModes));
-    if (const auto mode = in_.choice(node, "clients", modes)) scene_.clients.mode = static_cast<ClientMode>(*mode);
+    if (const auto mode = in_.choice(node, "clients", wordsOf(kClientModes)))
+      scene_.clients.mode = static_cast<ClientMode>(*mode);
   }
 
   void addDevices(const Node& root) {
@@ -209,9 +228,9 @@ class SceneLoader {
     if (!list.isSequence() || elements.empty() || elements.size() > kMaxDevices)
       in_.problem(list, "devices",
                   (list.isSequence() ? "a list of " + std::to_string(elements.size()) : describe(list)) +
-                      ", expected a list of 1 to " + numberText(kMaxDevices) + " device files" +
+                      ", expected a list of 1 to " + std::to_string(kMaxDevices) + " device files" +
                       (list.isMap() ? "; begin each of them with \"- \", as an element of a list" : ""));
-    for (size_t i = 0; i < std::min(elements.size(), static_cast<size_t>(kMaxDevices)); ++i)
+    for (size_t i = 0; i < std::min<size_t>(elements.size(), kMaxDevices); ++i)
       addNamed(*elements[i], "devices[" + std::to_string(i) + "]");
   }
 

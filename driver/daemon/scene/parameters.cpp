@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "base/nearest_word.hpp"
@@ -86,15 +88,26 @@ void ParameterReader::overrideFrom(Reader& in) {
 
 void ParameterReader::read(const Node& node, const std::string& key, const std::string& prefix,
                            const std::string& skip) {
-  if (!node.isMap())
-    return in_->problem(node, key,
-                        describe(node) + ", expected a mapping with " + document::listed(idsIn(info_, prefix)) +
-                            document::suggestMapping(node));
+  if (!node.isMap()) {
+    in_->problem(node, key,
+                 describe(node) + ", expected a mapping with " + document::listed(idsIn(info_, prefix)) +
+                     document::suggestMapping(node));
+    for (const Node& item : node.items)  // keys with dashes before them
+      if (item.isMap()) read(item, key, prefix, skip);
+    return;
+  }
+  std::set<std::string_view> known;
   for (const Entry& entry : node.entries) {
+    const bool again = !known.insert(entry.key.scalar).second;
     if (!skip.empty() && entry.key.scalar == skip) continue;
-    if (node.find(entry.key.scalar) != &entry.value) continue;  // given twice: the parser has reported it
     const std::string id = joined(prefix, entry.key.scalar), path = joined(key, entry.key.scalar);
     const int index = info_.indexOf(id);
+    if (again) {  // given twice: the parser has reported it
+      Value unused;
+      if (index >= 0 && !entry.value.isNull())
+        readValue(entry.value, path, info_.params[static_cast<size_t>(index)], unused);
+      continue;
+    }
     if (index >= 0 && entry.value.isNull())
       nothing(entry, path, static_cast<uint32_t>(index));
     else if (index >= 0)
@@ -123,7 +136,8 @@ void ParameterReader::nothing(const Entry& entry, const std::string& key, uint32
 
 void ParameterReader::unknown(const Node& around, const Entry& entry, const std::string& key, const std::string& id) {
   std::vector<std::string> ids = info_.paramIds();
-  if (ids.empty()) return in_->problem(entry.key, key, "unknown key: " + info_.name + " has no parameters");
+  if (ids.empty())
+    return in_->problem(entry.key, key, "unknown key: " + info_.name + " has no parameters", ProblemKind::kUnknownKey);
   constexpr const char* kOfTheFile[] = {"name", "mount", "limits", "admittance", "hand", "hd", "module"};
   const bool of_the_file =
       info_.kind == host::Kind::kDevice &&
@@ -144,11 +158,12 @@ void ParameterReader::unknown(const Node& around, const Entry& entry, const std:
   const std::vector<std::string> names = withGroupsAsOne(idsIn(info_, group));
   if (group.empty()) ids.insert(ids.begin(), names.begin(), names.end());
   const std::string inside = group.empty() ? idEndingWith(id, ids) : "";
+  const std::string meant = inside.empty() ? nearestWord(id, ids) : inside;
   in_->problem(entry.key, key,
                "unknown parameter of " + info_.name + ", expected one of " + document::listed(names, 24) +
-                   (inside.empty() ? document::suggestion(id, ids) : " (did you mean \"" + inside + "\"?)"));
-  const std::string meant = inside.empty() ? nearestWord(id, ids) : inside;
-  if (around.find(meant.substr(meant.rfind('.') + 1)) == nullptr) judgeAs(meant, entry, key);
+                   (inside.empty() ? document::suggestion(id, ids) : " (did you mean \"" + inside + "\"?)"),
+               meant.empty() || entry.value.isNull() ? ProblemKind::kUnknownKey : ProblemKind::kMisspeltKey);
+  if (!meant.empty() && around.find(meant.substr(meant.rfind('.') + 1)) == nullptr) judgeAs(meant, entry, key);
 }
 
 void ParameterReader::judgeAs(const std::string& meant, const Entry& entry, const std::string& key) {

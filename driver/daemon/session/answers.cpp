@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "document/suggestion.hpp"
+#include "host/class_params.hpp"
 #include "host/class_table.hpp"
 #include "session/event_finder.hpp"
 #include "session/silence_reason.hpp"
@@ -16,10 +17,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kClientModes[] = {"off", "add", "instead"};  ///< in the order of scene::ClientMode
-
-const hsp_param& paramAt(const hsp_class& plugin, uint32_t index) {
-  return *HSP_AT(const hsp_param, plugin.params, plugin.params[0].struct_size, index);
-}
 
 const scene::Value* given(const scene::Model& model, uint32_t index) {
   const auto found = std::find_if(model.parameters.begin(), model.parameters.end(),
@@ -58,7 +55,7 @@ Json liveParameters(const Session& session, uint32_t place) {
   Json live = Json::array();
   const hsp_class& plugin = session.runner.world().shapes()[place]->description();
   for (uint32_t i = 0; i < plugin.param_count; ++i) {
-    const hsp_param& param = paramAt(plugin, i);
+    const hsp_param& param = host::paramAt(plugin, i);
     if ((param.flags & HSP_P_LIVE) == 0 || param.kind > HSP_ENUM) continue;
     live.push_back({{"id", param.id},
                     {"unit", host::textOf(param.unit)},
@@ -250,7 +247,7 @@ std::string snapshotAnswer(const Session& session) {
 std::string noSuchParameter(const hsp_class& plugin, const std::string& parameter, uint32_t flags) {
   std::vector<std::string> names;
   for (uint32_t i = 0; i < plugin.param_count; ++i)
-    if ((paramAt(plugin, i).flags & flags) == flags) names.emplace_back(paramAt(plugin, i).id);
+    if ((host::paramAt(plugin, i).flags & flags) == flags) names.emplace_back(host::paramAt(plugin, i).id);
   return "parameter \"" + parameter.substr(0, 100) + "\" of " + plugin.name + ": there is no " +
          ((flags & HSP_P_LIVE) != 0 ? "live " : "") + "parameter of that name, expected one of " +
          document::listed(names) + document::suggestion(parameter.substr(0, 100), names);
@@ -269,7 +266,7 @@ Result<std::string> valuesAnswer(const Session& session, uint32_t place, const s
   const scene::Model& model = session.places[place].model;
   Json values = Json::object();
   for (uint32_t i = 0; i < plugin.param_count; ++i) {
-    const hsp_param& param = paramAt(plugin, i);
+    const hsp_param& param = host::paramAt(plugin, i);
     if (parameter == param.id)
       return lineOf({{"ok", true}, {"value", valueJson(model, param, i)}, {"unit", host::textOf(param.unit)}});
     values[param.id] = valueJson(model, param, i);

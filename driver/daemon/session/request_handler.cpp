@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "document/suggestion.hpp"
+#include "host/class_params.hpp"
 #include "host/class_table.hpp"
 #include "record/dump_folder.hpp"
 #include "session/foreign_files.hpp"
@@ -23,15 +24,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using control::Request;
-
-/// Returns the parameter of a class with this id, or nullptr.
-const hsp_param* parameterOf(const hsp_class& plugin, const std::string& id, uint32_t& index) {
-  for (index = 0; index < plugin.param_count; ++index) {
-    const hsp_param* param = HSP_AT(const hsp_param, plugin.params, plugin.params[0].struct_size, index);
-    if (id == param->id) return param;
-  }
-  return nullptr;
-}
 
 /// Returns the allowed values, such as "a number from 0 to 3000 N/m", or the words of a choice.
 std::string expectedOf(const hsp_param& param) {
@@ -133,7 +125,7 @@ Result<std::string> RequestHandler::answerQuery(const control::Peer& peer, const
 
 Result<std::string> RequestHandler::execute(const control::Peer& peer, const Request& request) {
   const std::string good = lineOf({{"ok", true}});
-  const auto plain = [&](Result<void> done) -> Result<std::string> {
+  const auto plain = [&](const Result<void>& done) -> Result<std::string> {
     if (!done) return Error{done.error()};
     return good;
   };
@@ -262,9 +254,11 @@ Result<void> RequestHandler::set(const Request& request) {
   Order order;
   order.kind = Order::Kind::kSet;
   order.target = *place;
-  const hsp_param* param = parameterOf(plugin, request.parameter, order.param);
+  const auto index = host::paramIndexOf(plugin, request.parameter);
   const std::string what = "parameter \"" + request.parameter.substr(0, 100) + "\" of " + plugin.name;
-  if (param == nullptr) return refuse("unknown", noSuchParameter(plugin, request.parameter, HSP_P_LIVE));
+  if (!index) return refuse("unknown", noSuchParameter(plugin, request.parameter, HSP_P_LIVE));
+  order.param = *index;
+  const hsp_param* const param = &host::paramAt(plugin, *index);
   if ((param->flags & HSP_P_LIVE) == 0 || param->kind > HSP_ENUM)
     return refuse("unsupported",
                   what + " cannot change while the model runs\n  fix: change the scene, then: hapticd ctl reload");

@@ -109,7 +109,7 @@ void printCulprit(Line& line) noexcept {
   else
     line.add("the daemon itself");
   line.add(" was ended by ").add(crash_steps.reason.text());
-  if (crash_steps.called) addCall(line.add(","), *culprit, crash_steps.call);
+  if (culprit != nullptr && crash_steps.called) addCall(line.add(","), *culprit, crash_steps.call);
   if (crash_steps.suspicion == Suspicion::kTorn) line.add(": memory was overwritten, or freed twice");
   line.add("\n  ");
 }

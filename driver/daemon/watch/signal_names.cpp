@@ -24,8 +24,9 @@ const char* crashName(int signal) noexcept {
       return "a breakpoint without a debugger (SIGTRAP)";
     case SIGSYS:
       return "a system call that does not exist (SIGSYS)";
+    default:
+      return nullptr;
   }
-  return nullptr;
 }
 
 Line signalName(int signal) noexcept {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "host/class_params.hpp"
 #include "host/device_instance.hpp"
 
 namespace hapticd::servo {
@@ -25,7 +26,7 @@ double describedForce(const scene::Device& device) {
   if (!instance) return 0;
   const hdv_class& module = (*instance)->description();
   for (uint32_t i = 0; i < module.param_count; ++i) {
-    const hsp_param& param = *HSP_AT(const hsp_param, module.params, module.params[0].struct_size, i);
+    const hsp_param& param = host::paramAt(module, i);
     if (std::find(std::begin(kNames), std::end(kNames), param.id) == std::end(kNames)) continue;
     for (const scene::Value& value : device.parameters)
       if (value.index == i) return value.number;

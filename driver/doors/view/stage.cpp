@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "document/json_text.hpp"
 #include "mesh.hpp"
@@ -31,7 +32,7 @@ void eachModel(const Json& list, Use&& use) {
 
 /// Requests the triangles as memory instead of text: with exact normals, without a limit on the size, and without
 /// conversion.
-Json geometryOf(const std::string& model) {
+Json geometryRequest(const std::string& model) {
   return {{"do", "geometry"}, {"model", model}, {"as", "memory"}};
 }
 
@@ -142,7 +143,7 @@ void Stage::askVertices(const std::string& name) {
 void Stage::askGeometry(const std::string& name) {
   soft_[name].asked = true;
   soft_[name].next = Clock::now() + kGeometryEvery;
-  daemon_->ask(geometryOf(name), [this, name, run = run_](const Json& answer, const Descriptor& memory) {
+  daemon_->ask(geometryRequest(name), [this, name, run = run_](const Json& answer, const Descriptor& memory) {
     const auto soft = soft_.find(name);
     if (run != run_ || soft == soft_.end()) return;
     soft->second.asked = false;
@@ -184,23 +185,26 @@ void Stage::draw(const std::string& model, std::function<void(const DrawnModel&)
   const auto known = meshes_.find(model);
   if (known != meshes_.end()) return drawn(known->second);
   const uint64_t run = run_;
-  daemon_->ask(geometryOf(model), [this, model, run, drawn](const Json& answer, const Descriptor& memory) {
-    DrawnModel result;
-    if (answer.value("ok", false)) result.mesh = meshMessage(answer, memory.get());
-    if (!result.mesh) result.error = answer.value("error", std::string("the model's triangles cannot be read"));
-    if (run == run_ && result.mesh && !soft_.contains(model)) meshes_[model] = result;
-    drawn(result);
-  });
+  daemon_->ask(geometryRequest(model),
+               [this, model, run, drawn = std::move(drawn)](const Json& answer, const Descriptor& memory) {
+                 DrawnModel result;
+                 if (answer.value("ok", false)) result.mesh = meshMessage(answer, memory.get());
+                 if (!result.mesh)
+                   result.error = answer.value("error", std::string("the model's triangles cannot be read"));
+                 if (run == run_ && result.mesh && !soft_.contains(model)) meshes_[model] = result;
+                 drawn(result);
+               });
 }
 
 void Stage::drawAt(const std::string& model, double t, std::function<void(const Message&)> drawn) {
-  Json request = geometryOf(model);
+  Json request = geometryRequest(model);
   request["at"] = t;
-  daemon_->ask(request, [this, model, drawn, run = run_](const Json& answer, const Descriptor& memory) {
-    const auto soft = soft_.find(model);
-    if (run != run_) return;
-    drawn(soft != soft_.end() ? verticesMessage(answer, memory.get(), soft->second.number, 0) : nullptr);
-  });
+  daemon_->ask(request,
+               [this, model, drawn = std::move(drawn), run = run_](const Json& answer, const Descriptor& memory) {
+                 const auto soft = soft_.find(model);
+                 if (run != run_) return;
+                 drawn(soft != soft_.end() ? verticesMessage(answer, memory.get(), soft->second.number, 0) : nullptr);
+               });
 }
 
 std::vector<std::string> Stage::bodies() const {

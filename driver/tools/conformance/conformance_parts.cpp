@@ -98,10 +98,6 @@ std::string wrongStatus(const Answer& answer) {
   return notFinite(answer);
 }
 
-const hsp_param& paramAt(const hsp_class& c, uint32_t i) {
-  return *HSP_AT(const hsp_param, c.params, c.params[0].struct_size, i);
-}
-
 Verdict warningOfParams(const Recipe& recipe, const std::function<std::string(const hsp_param&)>& objection,
                         const std::string& between, const std::string& advice) {
   auto made = Subject::make(recipe);

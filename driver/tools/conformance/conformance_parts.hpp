@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "conformance/conformance.hpp"
+#include "host/class_params.hpp"
 
 namespace hapticd::conformance {
 
@@ -105,7 +106,7 @@ Verdict eightProbes(const Recipe& recipe, uint64_t);
 /// Returns "" if the status is one that a step may return and the answer is finite, otherwise what is wrong.
 std::string wrongStatus(const Answer& answer);
 
-const hsp_param& paramAt(const hsp_class& c, uint32_t i);
+using host::paramAt;
 
 /// Returns a warning: what `objection` says about each parameter, separated by `between`, and then `advice`. Passes if
 /// there is no objection.

@@ -10,6 +10,7 @@
 
 #include "diagnostics/hand_script.hpp"
 #include "document/node.hpp"
+#include "host/class_params.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -24,12 +25,11 @@ void collect(const document::Node& node, std::vector<double>& numbers) {
 std::vector<double> listOf(const scene::Model& model, const hsp_class& plugin, const char* id) {
   if (const scene::Value* value = givenIn(model.parameters, id)) return value->numbers;
   std::vector<double> numbers;
-  for (uint32_t i = 0; i < plugin.param_count; ++i) {
-    const hsp_param& param = *HSP_AT(const hsp_param, plugin.params, plugin.params[0].struct_size, i);
-    if (std::string_view(param.id) != id || param.def_text == nullptr) continue;
-    document::Problems unread;
-    if (const auto node = document::parseText(param.def_text, "default", unread)) collect(*node, numbers);
-  }
+  const auto index = host::paramIndexOf(plugin, id);
+  const char* text = index ? host::paramAt(plugin, *index).def_text : nullptr;
+  document::Problems unread;
+  if (const auto node = text != nullptr ? document::parseText(text, "default", unread) : std::nullopt)
+    collect(*node, numbers);
   return numbers;
 }
 

@@ -2,8 +2,10 @@
 #include "diagnostics/device_trial.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -91,6 +93,26 @@ bool isOfKey(const std::string& what) {
   return what.starts_with("unknown key") || what.starts_with("belongs one level up");
 }
 
+/// Adds its line to each key whose value a message gives, as in "wire.input.size (line 12) is 62".
+std::string withLines(const std::string& what, const Node& parameters) {
+  const auto mayBeOfKey = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("_.[]").find(c) != std::string_view::npos;
+  };
+  std::string text;
+  for (size_t begin = 0; begin < what.size();) {
+    const auto from = what.begin() + static_cast<std::ptrdiff_t>(begin);
+    const std::string word(from, std::max(std::find_if_not(from, what.end(), mayBeOfKey), from + 1));
+    begin += word.size();
+    text += word;
+    const size_t point = word.rfind('.');
+    if (point == std::string::npos || what.compare(begin, 4, " is ") != 0) continue;
+    const Node* key = walk(&parameters, word, true);
+    if (key->isScalar() && key->scalar == word.substr(point + 1)) text += " (line " + std::to_string(key->line) + ")";
+  }
+  return text;
+}
+
 /// Reports the messages of a module about its parameters, each with the line and column of its parameter in the file.
 void placeComplaints(const std::string& error, const scene::Device& draft, const Node& root, const std::string& file,
                      const document::Problems& known, document::Problems& problems) {
@@ -105,6 +127,7 @@ void placeComplaints(const std::string& error, const scene::Device& draft, const
     }
     std::string what = key.empty() ? message : message.substr(begin + key.size() + 2);
     const Node* at = walk(&parameters, key, isOfKey(what));
+    what = withLines(what, parameters);
     if (at->isSequence()) what += adviceOnCommas(draft, key, *at);
     document::report(problems, file, at->line, at->column, key.empty() ? "parameters" : "parameters." + key, what);
   }

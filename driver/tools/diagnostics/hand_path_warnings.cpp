@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 
 #include "diagnostics/given_values.hpp"
@@ -107,7 +107,9 @@ document::Problems unreachableRows(const scene::Scene& scene) {
     const auto told = host::runInChild([&] { return tryRows(device, file); }, kPathLimitMs);
     if (!told || *told == "=") continue;
     const size_t colon = told->find(": ");
-    document::report(warnings, file, std::atoi(told->c_str()), 1, "hand.path", told->substr(colon + 2));
+    int line = 0;
+    std::from_chars(told->data(), told->data() + colon, line);
+    document::report(warnings, file, line, 1, "hand.path", told->substr(colon + 2));
   }
   return warnings;
 }

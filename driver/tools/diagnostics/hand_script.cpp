@@ -11,6 +11,7 @@
 #include "diagnostics/hand_values.hpp"
 #include "document/csv.hpp"
 #include "document/reader.hpp"
+#include "host/class_params.hpp"
 #include "host/device_instance.hpp"
 
 namespace hapticd::diagnostics {
@@ -24,11 +25,8 @@ constexpr size_t kMaxPathBytes = size_t{1} << 30;
 /// Returns a number as the files give it, or the module's default.
 double numberOf(const scene::Device& device, const hdv_class& module, const char* id) {
   if (const scene::Value* value = givenIn(device.parameters, id)) return value->number;
-  for (uint32_t i = 0; i < module.param_count; ++i) {
-    const hsp_param& param = *HSP_AT(const hsp_param, module.params, module.params[0].struct_size, i);
-    if (std::string_view(param.id) == id) return param.def;
-  }
-  return 0;
+  const auto index = host::paramIndexOf(module, id);
+  return index ? host::paramAt(module, *index).def : 0;
 }
 
 void readPath(const scene::Device& device, HandScript& hand) {

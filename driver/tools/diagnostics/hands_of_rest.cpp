@@ -50,7 +50,6 @@ bool leaveOutCurves(scene::Model& model, size_t index, const document::Problems&
                                           "friction_dynamic", "friction_viscous", "texture"};
   const std::string before = std::string(kModels) + std::to_string(index) + "].parameters.";
   for (const document::Problem& one : problems) {
-    if (modelOf(one.key) != index) continue;
     const std::string id = one.key.starts_with(before) ? one.key.substr(before.size()) : "";
     const std::string group = id.substr(0, id.find_first_of(".["));
     if (std::find(std::begin(kCurves), std::end(kCurves), group) == std::end(kCurves)) return false;
@@ -59,10 +58,20 @@ bool leaveOutCurves(scene::Model& model, size_t index, const document::Problems&
   return true;
 }
 
-void dropOfCurves(size_t model, document::Problems& warnings) {
-  std::erase_if(warnings, [model](const document::Problem& one) {
+std::vector<document::Problems> problemsOfModels(const document::Problems& problems, size_t count) {
+  std::vector<document::Problems> of_models(count);
+  for (const document::Problem& one : problems)
+    if (const auto model = modelOf(one.key); model && *model < count) of_models[*model].push_back(one);
+  return of_models;
+}
+
+void dropOfCurves(const std::vector<bool>& curved, document::Problems& warnings) {
+  if (std::find(curved.begin(), curved.end(), true) == curved.end()) return;
+  std::erase_if(warnings, [&curved](const document::Problem& one) {
     const bool of_place = one.key.ends_with(".axis") || one.key.find("].pose") != std::string::npos;
-    return (modelOf(one.key) == model && !of_place) || one.what.find("cuts the force") != std::string::npos;
+    const auto model = modelOf(one.key);
+    return (model && *model < curved.size() && curved[*model] && !of_place) ||
+           one.what.find("cuts the force") != std::string::npos;
   });
 }
 

@@ -25,12 +25,13 @@ document::Problems warnOfHandsOfRest(const scene::Scene& scene, const ModelBoxes
 
 /// [main] Removes from a model the wrong parameters that change only how it feels, such as the detent of a button. The
 /// surfaces are where they are without them, so a hand can be judged.
-/// @param problems all problems of the scene
+/// @param problems all problems of the model
 /// @return true if the model has no other problem
 bool leaveOutCurves(scene::Model& model, size_t index, const document::Problems& problems);
 
-/// [main] Removes warnings that may only follow from parameters that leaveOutCurves() removed from a model.
-void dropOfCurves(size_t model, document::Problems& warnings);
+/// [main] Removes warnings that may only follow from parameters that leaveOutCurves() removed.
+/// @param curved true for each model that it kept
+void dropOfCurves(const std::vector<bool>& curved, document::Problems& warnings);
 
 /// [main] Returns true if a warning says that a model's surfaces are not where they were meant, so that what a hand
 /// meets there only follows from it.
@@ -38,5 +39,9 @@ bool isOfSurfaces(const document::Problem& warning);
 
 /// [main] Returns the index of the model that a key such as "models[3].pose" is about.
 std::optional<size_t> modelOf(const std::string& key);
+
+/// [main] Returns the problems of each model, in their order. The time is proportional to the number of problems.
+/// @param count number of models; problems of models beyond it are left out
+std::vector<document::Problems> problemsOfModels(const document::Problems& problems, size_t count);
 
 }  // namespace hapticd::diagnostics

@@ -12,6 +12,7 @@
 #include "diagnostics/key_place.hpp"
 #include "host/catalog.hpp"
 #include "host/child.hpp"
+#include "host/class_params.hpp"
 #include "host/shape_instance.hpp"
 #include "host/wire.hpp"
 
@@ -221,21 +222,18 @@ bool isOfItself(const std::string& id) {
   return std::find(std::begin(kOwn), std::end(kOwn), id) != std::end(kOwn);
 }
 
-/// Returns the parameter `geometry` of a model whose file does not give it; nothing if its plugin has none.
-std::optional<scene::Value> geometryOf(const scene::Model& model, const Log& log) {
+/// Returns an empty parameter `geometry` for a model whose file does not give it; nothing if its plugin has none.
+std::optional<scene::Value> absentGeometry(const scene::Model& model, const Log& log) {
   const auto shape = host::ShapeInstance::create(model, log);
   if (!shape) return std::nullopt;
-  const hsp_class& info = (*shape)->description();
-  for (uint32_t i = 0; i < info.param_count; ++i) {
-    const hsp_param& param = *HSP_AT(const hsp_param, info.params, info.params[0].struct_size, i);
-    if (std::string_view(param.id) != "geometry" || param.kind != HSP_PATH) continue;
-    scene::Value value;
-    value.id = param.id;
-    value.index = i;
-    value.kind = HSP_PATH;
-    return value;
-  }
-  return std::nullopt;
+  const hsp_class& plugin = (*shape)->description();
+  const auto index = host::paramIndexOf(plugin, "geometry");
+  if (!index || host::paramAt(plugin, *index).kind != HSP_PATH) return std::nullopt;
+  scene::Value value;
+  value.id = "geometry";
+  value.index = *index;
+  value.kind = HSP_PATH;
+  return value;
 }
 
 /// Sets up a model whose geometry was refused, or is missing, with a shipped file instead, so that objections to
@@ -248,7 +246,7 @@ void tryOtherGeometry(const scene::Scene& scene, uint32_t index, double max_forc
     auto geometry = std::find_if(other.parameters.begin(), other.parameters.end(),
                                  [](const scene::Value& value) { return value.id == "geometry"; });
     if (geometry == other.parameters.end())
-      if (const auto missing = geometryOf(other, [](int, const std::string&, const std::string&) {}))
+      if (const auto missing = absentGeometry(other, [](int, const std::string&, const std::string&) {}))
         geometry = other.parameters.insert(geometry, *missing);
     if (!file || geometry == other.parameters.end()) return;
     geometry->text = file->string();

@@ -114,7 +114,8 @@ double depthIn(const Solid& inner, const Solid& outer, size_t& tests) {
   return deepest;
 }
 
-std::string geometryOf(const scene::Model& model) {
+/// Returns what equal shapes have in common: the plugin and its file.
+std::string shapeNameOf(const scene::Model& model) {
   for (const scene::Value& value : model.parameters)
     if (value.id == "geometry") return model.plugin + " " + value.text;
   return model.plugin;
@@ -123,10 +124,10 @@ std::string geometryOf(const scene::Model& model) {
 /// Returns true for two models of a row of equal shapes, which often run into one another on purpose.
 bool areOfOneRow(const scene::Scene& scene, size_t first, size_t second) {
   constexpr long kRow = 4;
-  const std::string geometry = geometryOf(scene.models[first]);
-  return geometry == geometryOf(scene.models[second]) &&
+  const std::string shape = shapeNameOf(scene.models[first]);
+  return shape == shapeNameOf(scene.models[second]) &&
          std::count_if(scene.models.begin(), scene.models.end(),
-                       [&](const scene::Model& model) { return geometryOf(model) == geometry; }) >= kRow;
+                       [&](const scene::Model& model) { return shapeNameOf(model) == shape; }) >= kRow;
 }
 
 bool inOneGroup(const std::vector<std::vector<size_t>>& groups, size_t a, size_t b) {

@@ -31,10 +31,11 @@ UnreadKeys::UnreadKeys(const document::Problems& problems) {
     if (!one.key.starts_with(kModels)) {
       keys_.push_back(one.key);
       // An unknown key of the servo may stand for gravity; a wrong value of another key does not.
-      if (one.key.starts_with("servo.") && one.what.starts_with("unknown key")) keys_.emplace_back("servo.gravity");
+      if (one.key.starts_with("servo.") && one.kind == document::ProblemKind::kUnknownKey)
+        keys_.emplace_back("servo.gravity");
       continue;
     }
-    if (one.what.starts_with("the model does not follow its path")) continue;  // the path was read
+    if (one.kind == document::ProblemKind::kUnusedValue) continue;  // the path was read
     char* end = nullptr;
     const size_t index = std::strtoul(one.key.c_str() + kModels.size(), &end, 10);
     of_models_[index].push_back(one);
@@ -47,7 +48,7 @@ bool UnreadKeys::has(std::string_view key) const {
 }
 
 bool UnreadKeys::isReadAsMeant(const document::Problem& one, const host::ClassInfo& info) {
-  if (one.what.starts_with("unknown parameter") && one.what.find("did you mean") != std::string::npos) return true;
+  if (one.kind == document::ProblemKind::kMisspeltKey) return true;
   const std::string own = ownOf(one.key);
   return own != "motion" && own != "path" && info.indexOf(own) >= 0;
 }

@@ -265,7 +265,7 @@ void warnOfWaits(const Node& root, const scene::Device& device, document::Proble
   for (size_t i = 0; steps != nullptr && i < steps->items.size(); ++i) {
     const Node* wait = steps->items[i].isMap() ? steps->items[i].find("wait") : nullptr;
     const double given = wait != nullptr ? document::toNumber(wait->scalar).value_or(0) : 0;
-    if (given >= kLong)
+    if (wait != nullptr && given >= kLong)
       document::report(warnings, device.file.string(), wait->line, wait->column,
                        fmt::format("parameters.wire.startup[{}].wait", i),
                        fmt::format("the start waits {0:g} s here; the value must be in s: {0:g} ms is {1:g} s", given,

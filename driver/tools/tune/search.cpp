@@ -13,18 +13,18 @@ constexpr int kPasses = 3;            ///< how often the motion is repeated to m
 constexpr size_t kFewTogether = 256;  ///< if there are at most so many combinations of values, all are tried
 constexpr double kMargin = 0.5;       ///< share of a tolerance to use, because other motions may have larger errors
 
-double geometryOf(const Candidate& c) {
+double geometryErrorOf(const Candidate& c) {
   return std::max(c.error.geometry(), kErrorNoise);
 }
-double forceOf(const Candidate& c) {
+double forceErrorOf(const Candidate& c) {
   return std::max(c.error.force_n, kForceNoise);
 }
 
 /// Returns true if a is better than b in at least one respect, and worse in none.
 bool beats(const Candidate& a, const Candidate& b) {
   const bool cheaper = clearlyCheaper(a, b), no_dearer = a.cost.p50_ns <= b.cost.p50_ns;
-  const bool no_worse = geometryOf(a) <= geometryOf(b) && forceOf(a) <= forceOf(b);
-  const bool better = geometryOf(a) < geometryOf(b) || forceOf(a) < forceOf(b);
+  const bool no_worse = geometryErrorOf(a) <= geometryErrorOf(b) && forceErrorOf(a) <= forceErrorOf(b);
+  const bool better = geometryErrorOf(a) < geometryErrorOf(b) || forceErrorOf(a) < forceErrorOf(b);
   return no_worse && (cheaper || (no_dearer && better));
 }
 
@@ -208,7 +208,8 @@ void markFront(std::vector<Candidate>& candidates) {
 }
 
 bool alike(const Candidate& a, const Candidate& b) {
-  return !clearlyCheaper(a, b) && !clearlyCheaper(b, a) && geometryOf(a) == geometryOf(b) && forceOf(a) == forceOf(b);
+  return !clearlyCheaper(a, b) && !clearlyCheaper(b, a) && geometryErrorOf(a) == geometryErrorOf(b) &&
+         forceErrorOf(a) == forceErrorOf(b);
 }
 
 std::pair<size_t, bool> choose(const std::vector<Candidate>& candidates, const Goal& goal) {

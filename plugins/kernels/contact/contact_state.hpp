@@ -187,7 +187,7 @@ bool ContactState::begins(Faces& faces, const Eigen::Vector3d& p, const ContactR
 /// Returns the nearest foot if no contact is held. If the probe is inside, a contact may begin there.
 template <class Faces>
 Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule) noexcept {
-  const Foot nearest = faces.nearest();
+  Foot nearest = faces.nearest();
   if (!found(nearest)) {
     phase_ = Phase::kUnknown;
     return nearest;

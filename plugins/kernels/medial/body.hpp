@@ -75,8 +75,10 @@ class Body {
   Body& operator=(const Body&) = delete;
 
   const Skeleton& skeleton() const noexcept { return skeleton_; }
+  // NOLINTBEGIN(bugprone-unchecked-optional-access): the constructor makes it
   Deformation& deformation() noexcept { return *deformation_; }
   const Deformation& deformation() const noexcept { return *deformation_; }
+  // NOLINTEND(bugprone-unchecked-optional-access)
   const ScalarField& stiffness() const noexcept { return stiffness_; }
 
   /// [rt] Returns the force on a probe at `p` with the foot `foot`, at the depth `depth` [m] along the outward unit

@@ -79,8 +79,10 @@ class MeshBody {
   MeshBody& operator=(const MeshBody&) = delete;
 
   const MedialMesh& mesh() const noexcept { return mesh_; }
+  // NOLINTBEGIN(bugprone-unchecked-optional-access): the constructor makes it
   MeshDeformation& deformation() noexcept { return *deformation_; }
   const MeshDeformation& deformation() const noexcept { return *deformation_; }
+  // NOLINTEND(bugprone-unchecked-optional-access)
 
   /// [any] Returns the foot of p. The search starts at element `start`, or at the root of the tree if `start` is
   /// MedialMesh::kNoStart. If p is inside and another part of the body is at most `crease` [m] farther away, the normal

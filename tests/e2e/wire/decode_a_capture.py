@@ -236,6 +236,9 @@ with tempfile.TemporaryDirectory() as folder:
     code, out, err = run("new", "plain", "-o", os.path.join(folder, "plain.yaml"), "--no-questions")
     text = open(os.path.join(folder, "plain.yaml")).read()
     check("without them there is neither", code == 0 and " id: " not in text.split("wire:")[1] and "# - {is: checksum" in text, text)
+    for wrong in ("16c0", "16c0:", ":0486", "16c0:0486x", "16c0:00486", "0x16:0486", "-1:0486", " 16c0:0486"):
+        code, out, err = run("new", "usb", "-o", os.path.join(folder, "usb.yaml"), f"--id={wrong}", "--no-questions")
+        check(f"'{wrong}' is refused as an id, with an example", code == 2 and f"--id {wrong}: expected vendor:product" in err, (code, err))
     code, out, err = run("new", "phantom", "-o", arm)
     check("no file is overwritten", code == 2 and "exists already" in err, err)
     for bad in (["--kind", "scara"], ["--lengths", "1,2,3"], ["--bits", "65"], ["--bus", "can"], ["--id", "hello"], ["--checksum", "crc16, at: 0"], ["--report-id", "256"]):

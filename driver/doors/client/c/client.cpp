@@ -90,6 +90,7 @@ void endInOrder(hapticd_client& client, const hapticd_lead& lead) try {
   const std::lock_guard lock(client.asking);
   if (!client.line.ended()) (void)client.line.askForMore(lead.unlead, kPatience);
 } catch (const std::exception&) {
+  return;
 }
 
 }  // namespace hapticd::client

@@ -53,6 +53,19 @@ TEST(Node, ExpandsAliases) {
   EXPECT_EQ(toJson(root), R"({"a":{"k":[1,2]},"b":{"k":[1,2]},"c":[{"k":[1,2]},{"k":[1,2]}]})");
 }
 
+TEST(Node, KeepsTheValuesOfEqualKeysToBeJudged) {
+  Problems problems;
+  const auto root = parseText("a: 1\na: 2\nb: {x: 1, y: 2}\nb: {x: 3, z: 4}\nc: [1]\nc: 5\n", "t.yaml", problems);
+  ASSERT_TRUE(root);
+  ASSERT_EQ(problems.size(), 3u);
+  EXPECT_EQ(problems[0].text(), "t.yaml:2:1: a: given twice (first in line 1), expected each key once: 1 or 2");
+  EXPECT_EQ(problems[1].text(), "t.yaml:4:1: b: given twice (first in line 3), expected each key once");
+  EXPECT_EQ(problems[2].text(), "t.yaml:6:1: c: given twice (first in line 5), expected each key once");
+  EXPECT_EQ(toJson(*root), R"({"a":1,"b":{"x":1,"y":2,"z":4},"c":[1]})") << "the first value counts";
+  ASSERT_EQ(root->find("b")->entries.size(), 4u) << "the second x is judged, too";
+  EXPECT_EQ(root->find("b")->entries[2].value.line, 4);
+}
+
 TEST(Node, MergesMappingsBelowItsOwnKeys) {
   const Node root = parsed("a: &a {x: 1, y: 2}\nb: &b {y: 3, z: 4}\nc: {<<: [*a, *b], x: 5}\nd: {\"<<\": 6}\n");
   const Node& both = *root.find("c");

@@ -98,15 +98,14 @@ TEST(Wire, EveryMistakeIsNamedByItsPath) {
       {"i16", "f16", "wire.input.fields[0].type: \"f16\""},
       {"i16", "u08", "wire.input.fields[0].type: \"u08\""},
       {"\"at\":0", "\"at\":1",
-       "wire.input.fields[0].at: 1, so it takes the bytes 1 to 2, but size is 2: the last byte is 1; expected size: 3 "
-       "or "
-       "more"},
+       "wire.input.fields[0].at: 1, so it takes the bytes 1 to 2, but wire.input.size is 2: the last byte is 1; "
+       "expected size: 3 or more"},
       {"\"at\":0", "\"at\":-1", "wire.input.fields[0].at: -1"},
       {"\"joint\":1", "\"joint\":2", "wire.input.fields[0].joint: 2, expected 1"},
       {"\"position\"", "\"enable\"", "wire.input.fields[0].is: \"enable\" cannot be a field of an input report"},
       {"\"scale\":0.1", "\"scale\":0", "wire.input.fields[0].scale: 0, expected the value of one raw unit in SI units"},
       {"\"scale\":0.1", "\"scala\":1", "wire.input.fields[0].scala: unknown key"},
-      {"\"size\":2", "\"size\":1", "wire.input.fields[0].type: \"i16\" takes 2 bytes, but the report has only 1"},
+      {"\"size\":2", "\"size\":1", "wire.input.fields[0].type: \"i16\" takes 2 bytes, but wire.input.size is 1"},
       {"\"size\":2", "\"size\":100000", "wire.input.size: 100000"},
       {"\"rate\":1000", "\"rate\":\"fast\"", "wire.rate: \"fast\", expected a number"},
       {"\"rate\":1000", "\"rate\":1000,\"endpoints\":{\"in\":1,\"out\":2}", "wire.endpoints.in: 1"},
@@ -202,10 +201,10 @@ TEST(Wire, ANumberHasOneScaleAndATorqueNoDegrees) {
 TEST(Wire, AFieldBeyondTheReportIsToldOnceAndWithTheSizeThatItNeeds) {
   const std::string said =
       complaintOf(positionAnd(R"({"is":"checksum","at":11,"type":"u16","method":"crc16-modbus","from":0,"to":11})"));
-  EXPECT_EQ(said,
-            "wire.input.fields[1].at: 11, so it takes the bytes 11 to 12, but size is 12: the last byte is 11; "
-            "expected size: "
-            "13 or more, or a smaller at");
+  EXPECT_EQ(
+      said,
+      "wire.input.fields[1].at: 11, so it takes the bytes 11 to 12, but wire.input.size is 12: the last byte is 11; "
+      "expected size: 13 or more, or a smaller at");
 }
 
 TEST(Wire, AFieldBeyondAReportWithAnIdIsToldThatTheIdIsNotCounted) {
