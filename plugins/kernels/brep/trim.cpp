@@ -98,13 +98,12 @@ bool Trim::passesRight(const TrimPiece& piece, double u, double v) const noexcep
     const double side = way[0] * (v - piece.a[1]) - way[1] * (u - piece.a[0]);
     return way[1] > 0 ? side > 0 : side < 0;
   }
-  if (std::abs(way[1]) * per_cell_[1] >= std::abs(way[0]) * per_cell_[0]) {  // steep
-    const double chord = piece.a[0] + (v - piece.a[1]) / way[1] * way[0];
-    return std::abs(chord - u) > static_cast<double>(piece.off_u) ? chord > u : crossesBeyond(piece, 1, v, u);
-  }
-  const double chord = piece.a[1] + (u - piece.a[0]) / way[0] * way[1];
-  const bool above = std::abs(chord - v) > static_cast<double>(piece.off_v) ? chord > v : crossesBeyond(piece, 0, u, v);
-  return above != rises(piece);
+  const int axis = piece.axis;
+  const double along = axis == 0 ? v : u, beside = axis == 0 ? u : v, curve = piece.besideAt(piece.shareAt(along));
+  const bool beyond = std::abs(curve - beside) > static_cast<double>(piece.off)
+                          ? curve > beside
+                          : crossesBeyond(piece, 1 - axis, along, beside);
+  return axis == 0 ? beyond : beyond != rises(piece);
 }
 
 /// True if a piece that crosses the line v = const crosses it to the right of u.

@@ -2,6 +2,7 @@
 /// Tells whether a point of the parameter plane lies inside the loops of a face.
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -9,14 +10,27 @@
 
 namespace hapticd::brep {
 
-/// A piece of a pcurve along which u is monotone and v is monotone.
+/// A piece of a pcurve along which u is monotone and v is monotone. It is near a parabola: one coordinate as a function
+/// of the other one. A piece of kind kLine is straight and has no parabola.
 struct TrimPiece {
-  enum class Kind : std::uint32_t { kLine, kCircle, kOther };
+  enum class Kind : std::uint16_t { kLine, kCircle, kOther };
   Eigen::Vector2d a, b;  ///< ends at t0 and t1; neighbouring pieces share them bit for bit, so that there is no gap
-  float off_u, off_v;    ///< largest deviation of the curve from its chord along u and along v
-  std::uint32_t curve;   ///< index in Part::curves2
-  Kind kind;
   double t0, t1;
+  float bend;           ///< the parabola's distance from the chord in the middle, times 4
+  float off;            ///< largest deviation of the curve from the parabola, along `axis`
+  std::uint32_t curve;  ///< index in Part::curves2
+  Kind kind;
+  std::uint16_t axis;  ///< the coordinate that is the parabola's value: 0 for u, 1 for v; the other one runs more
+
+  /// [any] Returns how far along the piece the other coordinate has the value `at`, from 0 to 1.
+  double shareAt(double at) const noexcept {
+    const double run = b[1 - axis] - a[1 - axis];
+    return run == 0 ? 0.5 : std::clamp((at - a[1 - axis]) / run, 0.0, 1.0);
+  }
+  /// [any] Returns the parabola's value at a share of the piece.
+  double besideAt(double share) const noexcept {
+    return a[axis] + share * (b[axis] - a[axis]) + share * (1 - share) * static_cast<double>(bend);
+  }
 };
 
 /// Gaps between consecutive curves of a face's loops.

@@ -54,7 +54,7 @@ class TrimBuilder {
       trim_.lo_ = trim_.lo_.min(p.a.array()).min(p.b.array());
       trim_.hi_ = trim_.hi_.max(p.a.array()).max(p.b.array());
     }
-    constexpr double kCellsPerPiece = 3, kFewest = 16, kMost = 65536;
+    constexpr double kCellsPerPiece = 6, kFewest = 36, kMost = 65536;
     const double cells = std::clamp(kCellsPerPiece * static_cast<double>(trim_.pieces_.size()), kFewest, kMost);
     trim_.count_u_ = trim_.count_v_ = static_cast<int>(std::ceil(std::sqrt(cells)));
     const Array2d range = (trim_.hi_ - trim_.lo_).max(1e-300);
