@@ -9,10 +9,9 @@
 #include <span>
 #include <vector>
 
-namespace hapticd::brep {
+#include "kernels/brep/coarse.hpp"
 
-/// Four floats, on which one instruction works at once.
-using Float4 = float __attribute__((vector_size(16)));
+namespace hapticd::brep {
 
 inline Float4 squareRoots(const Float4& x) noexcept {
   return Float4{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};

@@ -20,8 +20,12 @@ using Eigen::Vector3d;
 using spline::CurvePoint;
 using spline::SurfacePoint;
 
-/// [rad] (25 degrees) largest turn of the normals of a leaf, or of the tangents of a piece of a curve.
+/// [rad] (25 degrees) largest turn of the normals of a leaf that is no spline, or of the tangents of a piece of a
+/// curve.
 constexpr double kLeafTurn = 0.44;
+/// [rad] Largest angle between the tangents of a spline leaf and their mean. Tangents that only fan out within the
+/// surface count too, so the normals of most leaves turn by far less.
+constexpr double kTangentTurn = 0.6;
 constexpr int kMostHalvings = 2;  ///< how often a leaf that bends unevenly is halved
 
 /// Computes the principal curvatures at a point, positive toward Su x Sv. Returns false if the tangents vanish.
@@ -60,7 +64,7 @@ class FaceCutter {
   void cutSpline() {
     const spline::SurfaceData data = splineOf(geometry_.part(), surface_);
     trace::BoxTree pieces;
-    pieces.add(data, 0, 1 - std::cos(kLeafTurn));
+    pieces.add(data, 0, 1 - std::cos(kTangentTurn));
     const Array2d lo(data.domain(0)[0], data.domain(1)[0]), hi(data.domain(0)[1], data.domain(1)[1]);
     for (int i = 0; i < pieces.leafCount(); ++i) {
       const trace::Leaf& piece = pieces.leaf(i);
@@ -163,10 +167,11 @@ class FaceCutter {
     int axis = -1;
     double worst = kRough;
     for (int i = 0; i < 2; ++i) {
-      const double spread = static_cast<double>(leaf.curvature.second[i].high) - leaf.curvature.second[i].low;
+      const double spread =
+          static_cast<double>(leaf.curvature.terms.high.of[2 + i].value() - leaf.curvature.terms.low.of[2 + i].value());
       if (!(leaf.curvature.focus[i] != 0 && spread > worst)) continue;
       worst = spread;
-      const Array2d run = leaf.curvature.along[i].abs() / (leaf.hi - leaf.lo);
+      const Array2d run = leaf.curvature.along(i).abs() / (leaf.hi - leaf.lo);
       axis = run[0] > run[1] ? 0 : 1;
     }
     return axis;
@@ -185,8 +190,8 @@ class FaceCutter {
         front = std::max(front, shape_.outward > 0 ? most : -least);
         back = std::max(back, shape_.outward > 0 ? -least : most);
       }
-    leaf.curvature_front = static_cast<float>(kBetweenSamples * front);
-    leaf.curvature_back = static_cast<float>(kBetweenSamples * back);
+    leaf.curvature_front = Coarse::up(kBetweenSamples * front);
+    leaf.curvature_back = Coarse::up(kBetweenSamples * back);
   }
 
   const Geometry& geometry_;
@@ -257,9 +262,13 @@ class EdgeCutter {
 
   void add(double t0, double t1, double most_curvature) {
     BoxedPiece made;
-    made.piece = {t0, t1, most_curvature, edge_index_, (t0 <= edge_.t0 ? 1u : 0u) | (t1 >= edge_.t1 ? 2u : 0u), {}};
-    made.piece.curvature = pieceCurvature(geometry_, edge_.curve, t0, t1);
-    const PieceCurvature& along = made.piece.curvature;
+    made.piece.t0 = t0;
+    made.piece.t1 = t1;
+    made.piece.most_curvature = Coarse::up(most_curvature);
+    made.piece.edge = edge_index_ & CurvePiece::kMostEdges;
+    made.piece.ends = (t0 <= edge_.t0 ? 1u : 0u) | (t1 >= edge_.t1 ? 2u : 0u);
+    const PieceFrame along = pieceFrame(geometry_, edge_.curve, t0, t1);
+    made.piece.curvature = pieceCurvature(geometry_, edge_.curve, t0, t1, along);
     if (along.tangent.squaredNorm() > 0.5) {  // otherwise the derivative of the curve is 0 in the middle
       made.oriented.frame.row(0) = along.tangent;
       made.oriented.frame.row(1) = along.binormal;

@@ -24,12 +24,20 @@ struct OrientedBox {
   Eigen::AlignedBox3d axisAligned() const;
 };
 
-/// A OrientedBox as a search uses it: in single precision, in the coordinates of its tree's nodes [m].
-struct RowBox {
-  float center[3]{}, axis[3][3]{};
-  float half[3]{};   ///< half size along each axis
-  float focus[2]{};  ///< position of the cylinders' line, from the center along axes 0 and 2
+/// A OrientedBox as a search uses it: in single precision, in the coordinates of its tree's nodes [m]. It fills one
+/// line of the cache.
+struct alignas(64) RowBox {
+  float center[3]{};
+  float axes[2][3]{};  ///< axes 0 and 1
+  float half[3]{};     ///< half size along each axis
+  float focus[2]{};    ///< position of the cylinders' line, from the center along axes 0 and 2
   float inner = -kWhole, outer = kWhole;
+
+  /// [any] Returns component k of axis 2, which is the cross product of the other two.
+  float third(int k) const noexcept {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    return axes[0][i] * axes[1][j] - axes[0][j] * axes[1][i];
+  }
 
   static constexpr float kWhole = 1e18F;  ///< means "no bound"; its square is still a finite float
 };
@@ -53,7 +61,8 @@ inline FourRowBoxes emptyFour(const RowBox&) noexcept {
 inline void put(const RowBox& box, int lane, FourRowBoxes& to) noexcept {
   for (int i = 0; i < 3; ++i) {
     to.center[i][lane] = box.center[i];
-    for (int k = 0; k < 3; ++k) to.axis[i][k][lane] = box.axis[i][k];
+    for (int k = 0; k < 2; ++k) to.axis[k][i][lane] = box.axes[k][i];
+    to.axis[2][i][lane] = box.third(i);
     to.half[i][lane] = box.half[i];
   }
   for (int i = 0; i < 2; ++i) to.focus[i][lane] = box.focus[i];
@@ -91,9 +100,11 @@ inline Float4 rowDistances(const FourRowBoxes& boxes, const BoxProbe& probe) noe
 /// [rt] Returns a lower bound of the squared distance [m^2] to the contents of one box.
 inline float rowDistance(const RowBox& box, const BoxProbe& probe) noexcept {
   const float way[3] = {probe.at[0][0] - box.center[0], probe.at[1][0] - box.center[1], probe.at[2][0] - box.center[2]};
+  const float third[3] = {box.third(0), box.third(1), box.third(2)};
+  const float* axes[3] = {box.axes[0], box.axes[1], third};
   float along[3], square[3];
   for (int i = 0; i < 3; ++i) {
-    along[i] = way[0] * box.axis[i][0] + way[1] * box.axis[i][1] + way[2] * box.axis[i][2];
+    along[i] = way[0] * axes[i][0] + way[1] * axes[i][1] + way[2] * axes[i][2];
     const float beside = std::max(std::abs(along[i]) - box.half[i], 0.0F);
     square[i] = beside * beside;
   }
