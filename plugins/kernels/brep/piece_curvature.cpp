@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -27,13 +26,9 @@ Bend bendAt(const Geometry& geometry, std::uint32_t curve, double t) {
   return {C.C, T, (C.C2 - C.C2.dot(T) * T) / speed2};
 }
 
-constexpr int kBends = 9;
-
-std::array<Bend, kBends> bendsOf(const Geometry& geometry, std::uint32_t curve, double t0, double t1) {
-  std::array<Bend, kBends> bends;
-  const double end = t1 - 1e-9 * (t1 - t0);  // at a knot, derivatives are evaluated in the span to its right
-  for (int i = 0; i < kBends; ++i)
-    bends[static_cast<std::size_t>(i)] = bendAt(geometry, curve, std::min(t0 + (t1 - t0) * i / (kBends - 1), end));
+std::vector<Bend> bendsOf(const Geometry& geometry, std::uint32_t curve, double t0, double t1) {
+  std::vector<Bend> bends;
+  for (const double t : pieceSamples(geometry, curve, t0, t1)) bends.push_back(bendAt(geometry, curve, t));
   return bends;
 }
 
@@ -58,12 +53,26 @@ struct FromProbe {
 
 }  // namespace
 
+std::vector<double> pieceSamples(const Geometry& geometry, std::uint32_t curve, double t0, double t1) {
+  constexpr int kFewest = 8, kPerSpan = 4;
+  std::vector<double> stops{t0};
+  if (geometry.part().curves3[curve].kind == CurveKind::kSpline)
+    for (const double knot : geometry.splineCurve(curve).breaks())
+      if (knot > t0 && knot < t1) stops.push_back(knot);
+  stops.push_back(t1);
+  const int spans = static_cast<int>(stops.size()) - 1, each = std::max(kPerSpan, (kFewest + spans - 1) / spans);
+  std::vector<double> samples;
+  for (std::size_t s = 0; s + 1 < stops.size(); ++s)
+    for (int i = 0; i <= each; ++i)
+      samples.push_back(stops[s] + (stops[s + 1] - stops[s]) * (i < each ? static_cast<double>(i) / each : 1 - 1e-9));
+  return samples;
+}
+
 PieceFrame pieceFrame(const Geometry& geometry, std::uint32_t curve, double t0, double t1) {
   // Length times curvature. Below it, the centre is so far away that rounding would move it by a part of the length.
   constexpr double kStraight = 1e-4;
-  const auto bends = bendsOf(geometry, curve, t0, t1);
-  const Bend& middle = bends[kBends / 2];
-  const double length = (bends.back().C - bends.front().C).norm(), most = middle.K.norm();
+  const Bend middle = bendAt(geometry, curve, 0.5 * (t0 + t1));
+  const double length = (bendAt(geometry, curve, t1).C - bendAt(geometry, curve, t0).C).norm(), most = middle.K.norm();
   const bool straight = !(most * length > kStraight);
   PieceFrame frame;
   frame.curvature = middle.K;

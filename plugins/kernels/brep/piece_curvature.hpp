@@ -3,6 +3,7 @@
 /// even if the probe is beyond a centre of curvature.
 #pragma once
 #include <Eigen/Core>
+#include <vector>
 
 #include "kernels/brep/coarse.hpp"
 #include "kernels/brep/geometry.hpp"
@@ -36,6 +37,11 @@ struct PieceCurvature {
 struct PieceFrame {
   Eigen::Vector3d centre{0, 0, 0}, curvature{0, 0, 0}, tangent{1, 0, 0}, binormal{0, 0, 1};
 };
+
+/// [main] Returns parameters from t0 to t1, in order, at which a piece of a curve is measured: at least nine, five of
+/// each span. The last one of a span is just before its end, because derivatives at a knot are those of the span to the
+/// right.
+std::vector<double> pieceSamples(const Geometry& geometry, std::uint32_t curve, double t0, double t1);
 
 /// [main] Returns the frame in the middle of the piece of a curve from t0 to t1.
 PieceFrame pieceFrame(const Geometry& geometry, std::uint32_t curve, double t0, double t1);
