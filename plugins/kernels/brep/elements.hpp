@@ -89,17 +89,17 @@ struct Leaf {
   Eigen::Array2d middle() const noexcept { return 0.5 * (lo + hi); }
 };
 
-static_assert(sizeof(Leaf) <= 176, "a part has many leaves; where they go beyond the cache, they cost time too");
-
 /// A piece of an edge that is an ellipse or a spline.
 struct CurvePiece {
   double t0 = 0, t1 = 0;
   PieceCurvature curvature{};
-  Coarse most_curvature;  ///< [1/m] largest curvature
   std::uint32_t edge : 30 = 0;
   std::uint32_t ends : 2 = 0;  ///< bit 0 is set if t0 is the t0 of the edge, bit 1 if t1 is its t1
 
   static constexpr std::uint32_t kMostEdges = (1u << 30) - 1;
 };
+
+// A part has many of them. Where they go beyond the cache, they cost time too.
+static_assert(sizeof(Leaf) <= 176 && sizeof(CurvePiece) <= 88);
 
 }  // namespace hapticd::brep

@@ -281,7 +281,7 @@ NewtonResult pieceFoot(const Geometry& geometry, const CurvePiece& piece, const 
   double d = task.descend(s);
   answer.d2 = take(task, s, d, hit);
   // If the probe is beyond a centre of curvature, there may be several feet, or only the ends may be minima.
-  const FeetOfPiece feet = std::sqrt(s.f) * static_cast<double>(piece.most_curvature.value()) < 1
+  const FeetOfPiece feet = std::sqrt(s.f) * static_cast<double>(piece.curvature.most.value()) < 1
                                ? FeetOfPiece::kOne
                                : countFeet(piece.curvature, p);
   answer.proved = feet != FeetOfPiece::kUnknown;

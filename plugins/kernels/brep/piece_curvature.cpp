@@ -56,9 +56,8 @@ struct FromProbe {
 std::vector<double> pieceSamples(const Geometry& geometry, std::uint32_t curve, double t0, double t1) {
   constexpr int kFewest = 8, kPerSpan = 4;
   std::vector<double> stops{t0};
-  if (geometry.part().curves3[curve].kind == CurveKind::kSpline)
-    for (const double knot : geometry.splineCurve(curve).breaks())
-      if (knot > t0 && knot < t1) stops.push_back(knot);
+  for (const double knot : geometry.curveKnots(curve))
+    if (knot > t0 && knot < t1) stops.push_back(knot);
   stops.push_back(t1);
   const int spans = static_cast<int>(stops.size()) - 1, each = std::max(kPerSpan, (kFewest + spans - 1) / spans);
   std::vector<double> samples;

@@ -31,6 +31,7 @@ struct PieceCurvature {
   Coarse curvature_off, curvature_off_across;
   Coarse tangent_off, tangent_off_across;  ///< the same for T
   Coarse slope;                            ///< [m] largest absolute value of (C - o) T
+  Coarse most;                             ///< [1/m] largest curvature; not set by pieceCurvature()
 };
 
 /// The same vectors before rounding.

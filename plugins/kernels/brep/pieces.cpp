@@ -21,9 +21,9 @@ using Eigen::Vector3d;
 using spline::CurvePoint;
 using spline::SurfacePoint;
 
-/// [rad] (25 degrees) largest turn of the normals of a leaf that is no spline, or of the tangents of a piece of a
-/// curve.
+/// [rad] (25 degrees) largest turn of the normals of a leaf that is no spline.
 constexpr double kLeafTurn = 0.44;
+constexpr double kPieceTurn = 0.6;  ///< [rad] largest turn of the tangents of a piece of a curve
 /// [rad] Largest angle between the tangents of a spline leaf and their mean. Tangents that only fan out within the
 /// surface count too, so the normals of most leaves turn by far less.
 constexpr double kTangentTurn = 0.6;
@@ -229,9 +229,8 @@ class EdgeCutter {
   void run() {
     // because of rounding, an edge may end just before or after a knot
     const double narrow = 1e-9 * (edge_.t1 - edge_.t0);
-    if (curve_.kind == CurveKind::kSpline)
-      for (const double knot : geometry_.splineCurve(edge_.curve).breaks())
-        if (knot > edge_.t0 + narrow && knot < edge_.t1 - narrow) knots_.push_back(knot);
+    for (const double knot : geometry_.curveKnots(edge_.curve))
+      if (knot > edge_.t0 + narrow && knot < edge_.t1 - narrow) knots_.push_back(knot);
     double from = edge_.t0;
     for (const double knot : knots_)
       if (!isSmoothAt(knot, narrow)) {
@@ -280,7 +279,7 @@ class EdgeCutter {
       turn = std::max(turn, std::atan2(C.C1.cross(first).norm(), C.C1.dot(first)));
       curvature = std::max(curvature, C.C1.cross(C.C2).norm() / (speed * speed * speed));
     }
-    if (turn > kLeafTurn && depth < kDeepest) {
+    if (turn > kPieceTurn && depth < kDeepest) {
       const double middle = middleOf(t0, t1);
       halve(t0, middle, depth + 1);
       halve(middle, t1, depth + 1);
@@ -293,11 +292,11 @@ class EdgeCutter {
     BoxedPiece made;
     made.piece.t0 = t0;
     made.piece.t1 = t1;
-    made.piece.most_curvature = Coarse::up(most_curvature);
     made.piece.edge = edge_index_ & CurvePiece::kMostEdges;
     made.piece.ends = (t0 <= edge_.t0 ? 1u : 0u) | (t1 >= edge_.t1 ? 2u : 0u);
     const PieceFrame along = pieceFrame(geometry_, edge_.curve, t0, t1);
     made.piece.curvature = pieceCurvature(geometry_, edge_.curve, t0, t1, along);
+    made.piece.curvature.most = Coarse::up(most_curvature);
     if (along.tangent.squaredNorm() > 0.5) {  // otherwise the derivative of the curve is 0 in the middle
       made.oriented.frame.row(0) = along.tangent;
       made.oriented.frame.row(1) = along.binormal;

@@ -50,10 +50,10 @@ class Trim {
   /// hi]. A point on a loop may count as inside or outside.
   bool inside(double u, double v) const noexcept {
     if (!(u >= lo_[0] && u <= hi_[0] && v >= lo_[1] && v <= hi_[1])) return false;
-    return cells_.empty() || insideGrid(u, v);
+    return rectangle() || insideGrid(u, v);
   }
   /// [any] True if the loops are the sides of the box [lo, hi], or there are none.
-  bool rectangle() const noexcept { return cells_.empty(); }
+  bool rectangle() const noexcept { return count_u_ == 0; }
   /// [any] True if a box of parameters has, or may have, points inside the loops.
   bool mayTouch(const Eigen::Array2d& lo, const Eigen::Array2d& hi) const noexcept;
   const Eigen::Array2d& lo() const noexcept { return lo_; }
@@ -64,7 +64,16 @@ class Trim {
 
  private:
   friend class TrimBuilder;
-  bool insideGrid(double u, double v) const noexcept;
+  bool insideGrid(double u, double v) const noexcept {
+    return narrow_.empty() ? insideGrid(wide_, u, v) : insideGrid(narrow_, u, v);
+  }
+  template <class Index>
+  bool insideGrid(const std::vector<Index>& grid, double u, double v) const noexcept;
+  template <class Index>
+  bool isUsed(const std::vector<Index>& grid, std::size_t cell) const noexcept;
+  std::size_t cellCount() const noexcept {
+    return static_cast<std::size_t>(count_u_) * static_cast<std::size_t>(count_v_);
+  }
   bool passesRight(const TrimPiece& piece, double u, double v) const noexcept;
   bool crossesRight(const TrimPiece& piece, double v, double u) const noexcept;
   bool crossesAbove(const TrimPiece& piece, double u, double v) const noexcept;
@@ -77,10 +86,11 @@ class Trim {
   std::int32_t count_u_ = 0, count_v_ = 0;
   LoopGaps gaps_;
   std::vector<TrimPiece> pieces_;
-  /// For each cell, row after row: the index of its first piece in of_cell_. The top bit is set if the cell's reference
-  /// point is inside. One more entry marks the end. Empty if the loops are the box.
-  std::vector<std::uint32_t> cells_;
-  std::vector<std::uint32_t> of_cell_;
+  /// The grid. First for each cell, row after row: how many pieces the cells before it have; the top bit is set if the
+  /// cell's reference point is inside. One more entry marks the end. Then the pieces of all cells, as indices in
+  /// pieces_. Only one of the two is used: `narrow_` if the numbers fit.
+  std::vector<std::uint32_t> wide_;
+  std::vector<std::uint16_t> narrow_;
 };
 
 }  // namespace hapticd::brep
