@@ -21,8 +21,8 @@ RowBox rowBox(const OrientedBox& oriented, const BoxTree& tree) {
   RowBox row;
   for (int i = 0; i < 3; ++i) {
     row.center[i] = static_cast<float>(center[i]);
-    row.axes[0][i] = static_cast<float>(oriented.frame(0, i));
-    row.axes[1][i] = static_cast<float>(turned * oriented.frame(1, i));
+    row.first[i] = static_cast<float>(oriented.frame(0, i));
+    row.second[i] = static_cast<float>(turned * oriented.frame(1, i));
     // The rounding of an axis adds a share of the other two half sizes. The tree's margin covers the rounding of the
     // center and of the probe.
     row.half[i] = static_cast<float>(half[i] * (1 + 1e-6) + 1e-6 * half.sum() + tree.margin());
@@ -31,11 +31,11 @@ RowBox rowBox(const OrientedBox& oriented, const BoxTree& tree) {
   constexpr double kLeastRadii = 30;
   if (!(oriented.outer < kLeastRadii * half.maxCoeff())) return row;
   const Vector3d middle = oriented.box.center();
-  row.focus[0] = static_cast<float>(oriented.focus[0] - middle[0]);
-  row.focus[1] = static_cast<float>(oriented.focus[1] - middle[2]);
+  row.center[3] = static_cast<float>(oriented.focus[0] - middle[0]);
+  row.half[3] = static_cast<float>(oriented.focus[1] - middle[2]);
   const double room = 2e-6 * (oriented.outer + half.sum()) + 2 * tree.margin();
-  row.inner = static_cast<float>(oriented.inner * (1 - 1e-6) - room);
-  row.outer = static_cast<float>(oriented.outer * (1 + 1e-6) + room);
+  row.first[3] = static_cast<float>(oriented.inner * (1 - 1e-6) - room);
+  row.second[3] = static_cast<float>(oriented.outer * (1 + 1e-6) + room);
   return row;
 }
 
