@@ -100,6 +100,6 @@ struct CurvePiece {
 };
 
 // A part has many of them. Where they go beyond the cache, they cost time too.
-static_assert(sizeof(Leaf) <= 176 && sizeof(CurvePiece) <= 88);
+static_assert(sizeof(Leaf) <= 176 && sizeof(CurvePiece) <= 104);
 
 }  // namespace hapticd::brep

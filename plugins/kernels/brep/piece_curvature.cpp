@@ -39,7 +39,7 @@ double valueOf(Coarse bound) noexcept {
 /// A vector from the probe to the centre of curvature: its component along the binormal, and the length of the rest.
 struct FromProbe {
   FromProbe(const PieceCurvature& piece, const Vector3d& p) noexcept
-      : from(piece.centre.cast<double>() - p), aside(from.dot(piece.binormal.cast<double>())) {
+      : from(piece.centre - p), aside(from.dot(piece.binormal.cast<double>())) {
     flat = (from - aside * piece.binormal.cast<double>()).norm();
     aside = std::abs(aside);
   }
@@ -68,8 +68,7 @@ std::vector<double> pieceSamples(const Geometry& geometry, std::uint32_t curve, 
 }
 
 PieceFrame pieceFrame(const Geometry& geometry, std::uint32_t curve, double t0, double t1) {
-  // Length times curvature. Below it, the centre is so far away that rounding would move it by a part of the length.
-  constexpr double kStraight = 1e-4;
+  constexpr double kStraight = 1e-6;  // length times curvature; below it, the centre would be mostly rounding error
   const Bend middle = bendAt(geometry, curve, 0.5 * (t0 + t1));
   const double length = (bendAt(geometry, curve, t1).C - bendAt(geometry, curve, t0).C).norm(), most = middle.K.norm();
   const bool straight = !(most * length > kStraight);
@@ -84,7 +83,7 @@ PieceFrame pieceFrame(const Geometry& geometry, std::uint32_t curve, double t0, 
 PieceCurvature pieceCurvature(const Geometry& geometry, std::uint32_t curve, double t0, double t1,
                               const PieceFrame& frame) {
   PieceCurvature piece;
-  piece.centre = frame.centre.cast<float>();
+  piece.centre = frame.centre;
   piece.curvature = frame.curvature.cast<float>();
   piece.tangent = frame.tangent.cast<float>();
   piece.binormal = frame.binormal.cast<float>();
@@ -93,7 +92,7 @@ PieceCurvature pieceCurvature(const Geometry& geometry, std::uint32_t curve, dou
   bool first = true;
   for (const Bend& b : bendsOf(geometry, curve, t0, t1)) {
     const Vector3d dk = b.K - piece.curvature.cast<double>(), dt = b.T - piece.tangent.cast<double>(),
-                   from = b.C - piece.centre.cast<double>();
+                   from = b.C - piece.centre;
     const double off[4] = {dk.norm(), std::abs(dk.dot(across)), dt.norm(), std::abs(dt.dot(across))};
     for (int i = 0; i < 4; ++i) most[i] = std::max(most[i], kBetweenSamples * off[i]);
     slope = std::max(slope, kBetweenSamples * std::abs(from.dot(b.T)));

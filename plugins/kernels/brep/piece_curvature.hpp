@@ -22,7 +22,9 @@ inline constexpr double kBetweenSamples = 1.5;
 /// A part has many pieces, so the numbers are rounded as far as the bounds allow. The vectors are rounded first, and
 /// the bounds are measured with the rounded ones: then they are exact for these.
 struct PieceCurvature {
-  Eigen::Vector3f centre{0, 0, 0};        ///< o [m]
+  /// o [m]. In double precision, because it is far away from a nearly straight piece: rounding would move it by a part
+  /// of the piece's length.
+  Eigen::Vector3d centre{0, 0, 0};
   Eigen::Vector3f curvature{0, 0, 0};     ///< about K in the middle [1/m]
   Eigen::Vector3f tangent{1, 0, 0};       ///< about T in the middle
   Eigen::Vector3f binormal{0, 0, 1};      ///< about T x K, unit; the components of K and T along it hardly change

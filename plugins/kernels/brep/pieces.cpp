@@ -21,12 +21,12 @@ using Eigen::Vector3d;
 using spline::CurvePoint;
 using spline::SurfacePoint;
 
-/// [rad] (25 degrees) largest turn of the normals of a leaf that is no spline.
+/// [rad] (25 degrees) largest turn of the normals of a leaf that is no spline, or of the tangents of a piece of a
+/// curve.
 constexpr double kLeafTurn = 0.44;
-constexpr double kPieceTurn = 0.6;  ///< [rad] largest turn of the tangents of a piece of a curve
 /// [rad] Largest angle between the tangents of a spline leaf and their mean. Tangents that only fan out within the
 /// surface count too, so the normals of most leaves turn by far less.
-constexpr double kTangentTurn = 0.6;
+constexpr double kTangentTurn = 0.7;
 constexpr int kMostHalvings = 2;  ///< how often a leaf that bends unevenly is halved
 
 /// Computes the principal curvatures at a point, positive toward Su x Sv. Returns false if the tangents vanish.
@@ -266,6 +266,16 @@ class EdgeCutter {
     return best;
   }
 
+  /// True if there are knots between t0 and t1, and the curvature varies so much there that the bounds in
+  /// PieceCurvature would be too wide for a probe far away.
+  bool isRough(double t0, double t1) const {
+    if (std::none_of(knots_.begin(), knots_.end(), [&](double knot) { return knot > t0 && knot < t1; })) return false;
+    constexpr double kRough = 0.5;  // relative to the curvature in the middle
+    const PieceCurvature bend =
+        pieceCurvature(geometry_, edge_.curve, t0, t1, pieceFrame(geometry_, edge_.curve, t0, t1));
+    return static_cast<double>(bend.curvature_off.value()) > kRough * static_cast<double>(bend.curvature.norm());
+  }
+
   void halve(double t0, double t1, int depth) {
     constexpr int kDeepest = 12;
     CurvePoint C;
@@ -279,7 +289,7 @@ class EdgeCutter {
       turn = std::max(turn, std::atan2(C.C1.cross(first).norm(), C.C1.dot(first)));
       curvature = std::max(curvature, C.C1.cross(C.C2).norm() / (speed * speed * speed));
     }
-    if (turn > kPieceTurn && depth < kDeepest) {
+    if ((turn > kLeafTurn || isRough(t0, t1)) && depth < kDeepest) {
       const double middle = middleOf(t0, t1);
       halve(t0, middle, depth + 1);
       halve(middle, t1, depth + 1);

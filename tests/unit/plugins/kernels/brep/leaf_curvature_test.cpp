@@ -148,7 +148,7 @@ void expectTrueOf(const std::string& file) {
   EXPECT_GT(tally.nowhere, 0);
   EXPECT_GT(tally.one, 0);
   EXPECT_GT(tally.passed_over, tally.one);
-  EXPECT_LT(tally.unknown, 0.5 * all);  // unknown near poles and at centres of curvature
+  EXPECT_LT(tally.unknown, 0.55 * all);  // unknown near poles and at centres of curvature
 }
 
 TEST(Coarse, RoundsOutward) {
