@@ -166,7 +166,11 @@ class ModelBuilder {
 
   /// Builds the tree of a body and the box of each element.
   void arrange(BodyTree& body) const {
-    body.tree.build(boxes_, BodyTree::kElementRow);
+    const auto bent = std::count_if(elements_.begin(), elements_.end(), [](Element element) {
+      return element.kind() == ElementKind::kLeaf || element.kind() == ElementKind::kPiece;
+    });
+    const bool is_bent = 2 * static_cast<std::size_t>(bent) > elements_.size();
+    body.tree.build(boxes_, is_bent ? BodyTree::kElementRow : 1);
     body.elements.reserve(elements_.size());
     body.rows.reserve(elements_.size());
     for (const std::uint32_t i : body.tree.order()) {

@@ -53,9 +53,11 @@ struct BodyTree {
   /// to a triangle.
   static constexpr int kMeshRow = 2;
 
-  /// Elements in one row of a body of faces. Each of them has a close box of its own.
+  /// Elements in one row of a body of which most elements are leaves and pieces. Each of them has a close box of its
+  /// own. Of other bodies a row has one element: they have so few elements that small trees matter less than quick
+  /// ones.
   static constexpr int kElementRow = 4;
-  static constexpr int kFaceRow = 8;  ///< the same in the tree of a single face
+  static constexpr int kFaceRow = 8;  ///< elements in one row of the tree of a single face
 
   BoxTree tree;
   std::vector<Element> elements;  ///< elements in the order of the tree
