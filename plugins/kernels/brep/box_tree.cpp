@@ -182,21 +182,19 @@ void BoxTree::build(std::span<const AlignedBox3d> boxes, int row) {
   own_nodes_ = nodes_.size();
 }
 
-std::int32_t BoxTree::graft(std::span<const AlignedBox3d> boxes, std::span<const RowPlace> rows) {
-  std::vector<std::uint32_t> order = std::move(order_);
+std::int32_t BoxTree::graft(std::span<const AlignedBox3d> boxes, int row, std::vector<std::uint32_t>& order) {
+  std::vector<std::uint32_t> own_order = std::move(order_);
   const std::int32_t row_count = row_count_;
   order_.resize(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) order_[i] = static_cast<std::uint32_t>(i);
-  Builder builder{*this, boxes, 1};
+  Builder builder{*this, boxes, static_cast<std::size_t>(std::clamp(row, 1, kMaxRow))};
   const std::int32_t root = builder.build(builder.rangeOf(0, boxes.size()), 0);
+  const auto base = static_cast<std::uint32_t>(order.size());
   for (std::size_t n = static_cast<std::size_t>(root); n < nodes_.size(); ++n)
-    for (std::size_t i = 0; i < 4; ++i)
-      if (const std::int32_t child = nodes_[n].child[i]; child < 0) {
-        const RowPlace& at = rows[order_[rowOf(child).first]];
-        nodes_[n].child[i] = at.child;
-        nodes_[n].row[i] = at.row;
-      }
-  order_ = std::move(order);
+    for (std::int32_t& child : nodes_[n].child)
+      if (child < 0) child = codeOf({base + rowOf(child).first, rowOf(child).count});
+  order.insert(order.end(), order_.begin(), order_.end());
+  order_ = std::move(own_order);
   row_count_ = row_count;
   return root;
 }

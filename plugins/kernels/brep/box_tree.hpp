@@ -9,10 +9,9 @@
 #include <span>
 #include <vector>
 
-namespace hapticd::brep {
+#include "kernels/brep/coarse.hpp"
 
-/// Four floats, on which one instruction works at once.
-using Float4 = float __attribute__((vector_size(16)));
+namespace hapticd::brep {
 
 inline Float4 squareRoots(const Float4& x) noexcept {
   return Float4{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
@@ -25,7 +24,7 @@ struct alignas(64) BoxNode {
   /// The index of a node if 0 or more. Otherwise the row of elements first to first + count - 1 in the tree's order,
   /// written as ~(8 * first + count - 1).
   std::array<std::int32_t, 4> child{};
-  std::array<std::int32_t, 4> row{};  ///< number of the row, for a child that is a row
+  std::array<std::int32_t, 4> row{};  ///< number of the row, for a child that is a row of the first tree
 };
 
 /// A row of elements: those with the places first to first + count - 1 in the tree's order.
@@ -35,7 +34,7 @@ struct ElementRow {
 
 class BoxTree {
  public:
-  static constexpr int kMaxRow = 4;     ///< elements in one row
+  static constexpr int kMaxRow = 8;     ///< elements in one row
   static constexpr int kMaxDepth = 60;  ///< most nodes on the way from the root to a row
   static constexpr int kMaxStack = 3 * kMaxDepth + 4;
 
@@ -43,14 +42,11 @@ class BoxTree {
   /// is the element at place i. All boxes must be finite and not empty.
   void build(std::span<const Eigen::AlignedBox3d> boxes, int row);
 
-  /// How a node refers to a row of one element: its BoxNode::child and BoxNode::row.
-  struct RowPlace {
-    std::int32_t child, row;
-  };
-  /// [main] Adds a second tree over some of the elements, with the given boxes, for searches of these elements alone.
-  /// Its nodes are appended to the nodes of the first tree, and it refers to rows of the first tree. Returns the index
-  /// of its root node.
-  std::int32_t graft(std::span<const Eigen::AlignedBox3d> boxes, std::span<const RowPlace> rows);
+  /// [main] Adds a second tree over some of the elements, with the given boxes and at most `row` elements in a row, for
+  /// searches of these elements alone. Its nodes are appended to the nodes of the first tree. @param order the indices
+  /// of the boxes are appended in the order of the second tree; its rows are ranges of this list. Returns the index of
+  /// its root node.
+  std::int32_t graft(std::span<const Eigen::AlignedBox3d> boxes, int row, std::vector<std::uint32_t>& order);
 
   const std::vector<std::uint32_t>& order() const noexcept { return order_; }
   /// [main] Frees order() and the spare memory of the nodes.

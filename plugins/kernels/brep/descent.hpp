@@ -39,13 +39,11 @@ inline int sortChildren(const BoxNode& node, const Float4& bounds, double limit,
   return count;
 }
 
-/// Returns true if the row's own box is farther than `limit`. `bound` is raised to the bound of this box; if the box is
-/// farther, `beyond` is lowered to it.
-inline bool rowIsFarther(const BodyTree& body, std::int32_t row, const BoxProbe& probe, double limit, double& bound,
-                         double& beyond) noexcept {
-  const auto at = static_cast<std::size_t>(row);
-  const float row_bound = body.discs.empty() ? rowDistance(body.rows[at], probe) : rowDistance(body.discs[at], probe);
-  bound = std::max(bound, static_cast<double>(row_bound));
+/// Returns true if a row of triangles or an element is farther than `limit` by its own shape. `bound` is raised to the
+/// bound of this shape; if that is farther, `beyond` is lowered to it.
+template <class Shape>
+inline bool isFarther(const Shape& shape, const BoxProbe& probe, double limit, double& bound, double& beyond) noexcept {
+  bound = std::max(bound, static_cast<double>(rowDistance(shape, probe)));
   if (!(bound > limit)) return false;
   beyond = std::min(beyond, bound);
   return true;

@@ -77,14 +77,14 @@ struct EdgeShape {
 
 /// A piece of a face without a closed-form foot, flat enough that Newton's method converges directly to its foot.
 struct Leaf {
-  Eigen::Array2d lo, hi;      ///< range of (u, v)
-  float curvature_front = 0;  ///< [1/m] largest curvature toward the outward normal; 0 if it never curves that way
-  float curvature_back = 0;   ///< the same toward the other side
+  Eigen::Array2d lo{0, 0}, hi{0, 0};  ///< range of (u, v)
+  LeafCurvature curvature;
+  Coarse curvature_front;  ///< [1/m] largest curvature toward the outward normal; 0 if it never curves that way
+  Coarse curvature_back;   ///< the same toward the other side
   std::uint32_t face = 0;
   /// Bit 2 * axis is set if the surface, or the box of its loops, ends on the low side of that axis; bit 2 * axis + 1
   /// if it ends on the high side.
-  std::uint32_t borders = 0;
-  LeafCurvature curvature;
+  std::uint8_t borders = 0;
 
   Eigen::Array2d middle() const noexcept { return 0.5 * (lo + hi); }
 };
@@ -92,10 +92,14 @@ struct Leaf {
 /// A piece of an edge that is an ellipse or a spline.
 struct CurvePiece {
   double t0 = 0, t1 = 0;
-  double most_curvature = 0;  ///< [1/m] largest curvature
-  std::uint32_t edge = 0;
-  std::uint32_t ends = 0;  ///< bit 0 is set if t0 is the t0 of the edge, bit 1 if t1 is its t1
   PieceCurvature curvature{};
+  std::uint32_t edge : 30 = 0;
+  std::uint32_t ends : 2 = 0;  ///< bit 0 is set if t0 is the t0 of the edge, bit 1 if t1 is its t1
+
+  static constexpr std::uint32_t kMostEdges = (1u << 30) - 1;
 };
+
+// A part has many of them. Where they go beyond the cache, they cost time too.
+static_assert(sizeof(Leaf) <= 176 && sizeof(CurvePiece) <= 104);
 
 }  // namespace hapticd::brep

@@ -87,10 +87,16 @@ Geometry::Geometry(const Part& part, spline::Form form) : part_(part) {
     if (is_spline) spline_surfaces_.emplace_back(splineOf(part, s), form);
   }
   for (const Curve3& c : part.curves3) {
-    const bool is_spline = c.kind == CurveKind::kSpline;
-    curve_slot_.push_back(is_spline ? static_cast<std::int32_t>(spline_curves_.size()) : -1);
-    if (is_spline) spline_curves_.emplace_back(splineOf(part, c), form);
+    curve_slot_.push_back(-1);
+    if (c.kind != CurveKind::kSpline) continue;
+    spline::Curve curve(splineOf(part, c), form);
+    const std::uint32_t tabled = table_curves_.add(curve);
+    curve_slot_.back() = static_cast<std::int32_t>(tabled);
+    if (tabled != TableCurves::kNotTabled) continue;
+    curve_slot_.back() = ~static_cast<std::int32_t>(spline_curves_.size());
+    spline_curves_.push_back(std::move(curve));
   }
+  table_curves_.shrink();
   for (const Curve2& c : part.curves2) {
     const bool is_spline = c.kind == CurveKind::kSpline;
     plane_slot_.push_back(is_spline ? static_cast<std::int32_t>(plane_splines_.size()) : -1);
@@ -152,7 +158,11 @@ void Geometry::offset(const Surface& s, double u, double v, SurfacePoint& out) c
 
 void Geometry::curve(std::uint32_t index, double t, CurvePoint& out) const noexcept {
   const Curve3& c = part_.curves3[index];
-  if (c.kind == CurveKind::kSpline) return splineCurve(index).evaluate2(t, out);
+  if (c.kind == CurveKind::kSpline) {
+    const std::int32_t slot = curve_slot_[index];
+    if (slot >= 0) return table_curves_.evaluate2(static_cast<std::uint32_t>(slot), t, out);
+    return spline_curves_[static_cast<std::size_t>(~slot)].evaluate2(t, out);
+  }
   const Vector3d x = vec(c.x);
   if (c.kind == CurveKind::kLine) {
     out.C = vec(c.o) + t * x;
@@ -178,6 +188,14 @@ PlanePoint Geometry::planeCurve(std::uint32_t index, double t) const noexcept {
   const double ct = std::cos(t), st = std::sin(t);
   const Vector2d y = vec(c.y);
   return {vec(c.o) + ct * x + st * y, ct * y - st * x};
+}
+
+std::vector<double> Geometry::curveKnots(std::uint32_t index) const {
+  if (part_.curves3[index].kind != CurveKind::kSpline) return {};
+  const std::int32_t slot = curve_slot_[index];
+  if (slot >= 0) return table_curves_.breaks(static_cast<std::uint32_t>(slot));
+  const auto breaks = spline_curves_[static_cast<std::size_t>(~slot)].breaks();
+  return {breaks.begin(), breaks.end()};
 }
 
 std::vector<double> Geometry::planeKnots(std::uint32_t index) const {
@@ -207,7 +225,7 @@ std::size_t Geometry::bytes() const noexcept {
   std::size_t sum = (surface_slot_.size() + curve_slot_.size() + plane_slot_.size()) * sizeof(std::int32_t);
   for (const auto& s : spline_surfaces_) sum += sizeof s + s.bytes();
   for (const auto& c : spline_curves_) sum += sizeof c + c.bytes();
-  return sum + plane_splines_.size() * sizeof(PlaneSpline);
+  return sum + table_curves_.bytes() + plane_splines_.size() * sizeof(PlaneSpline);
 }
 
 }  // namespace hapticd::brep

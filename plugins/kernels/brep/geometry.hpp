@@ -7,6 +7,7 @@
 
 #include "kernels/brep/part.hpp"
 #include "kernels/brep/plane_spline.hpp"
+#include "kernels/brep/table_curves.hpp"
 #include "kernels/spline/curve.hpp"
 #include "kernels/spline/surface.hpp"
 
@@ -45,13 +46,12 @@ class Geometry {
   /// returns the normal at a point nearer to the middle of the face, or 0 if the tangents vanish there too.
   Eigen::Vector3d normal(const Face& face, const Eigen::Vector2d& uv) const noexcept;
 
-  /// [any] The index must be that of a surface or curve of kind kSpline.
+  /// [any] The index must be that of a surface of kind kSpline.
   const spline::Surface& splineSurface(std::uint32_t index) const noexcept {
     return spline_surfaces_[static_cast<std::size_t>(surface_slot_[index])];
   }
-  const spline::Curve& splineCurve(std::uint32_t index) const noexcept {
-    return spline_curves_[static_cast<std::size_t>(curve_slot_[index])];
-  }
+  /// [main] Returns the distinct knots of a curve, ascending; empty if the curve is not a spline.
+  std::vector<double> curveKnots(std::uint32_t index) const;
   /// [main] Returns the distinct knots of a curve in a parameter plane; empty if the curve is not a spline.
   std::vector<double> planeKnots(std::uint32_t index) const;
   const Part& part() const noexcept { return part_; }
@@ -62,9 +62,12 @@ class Geometry {
 
   const Part& part_;
   std::vector<spline::Surface> spline_surfaces_;
-  std::vector<spline::Curve> spline_curves_;
+  TableCurves table_curves_;
+  std::vector<spline::Curve> spline_curves_;  ///< those that have no table
   std::vector<PlaneSpline> plane_splines_;
-  std::vector<std::int32_t> surface_slot_, curve_slot_, plane_slot_;
+  std::vector<std::int32_t> surface_slot_, plane_slot_;
+  /// For each curve that is a spline: its index in table_curves_, or ~(its index in spline_curves_).
+  std::vector<std::int32_t> curve_slot_;
 };
 
 }  // namespace hapticd::brep

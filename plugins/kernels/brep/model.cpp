@@ -2,6 +2,7 @@
 #include "kernels/brep/model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 
@@ -24,6 +25,7 @@ class ModelBuilder {
 
   void run() {
     model_.placements_ = placementsOf(part_, options_.instance, model_.feature_count_);
+    for (Curve2& curve : part_.curves2) recogniseLine(curve);
     model_.geometry_ = std::make_unique<Geometry>(part_, options_.form);
     classifyEdges(*model_.geometry_, part_.edges);
     model_.vertex_normals_ = vertexNormals(*model_.geometry_);
@@ -42,20 +44,42 @@ class ModelBuilder {
  private:
   static bool isAnalytic(const Surface& s) { return s.kind <= SurfaceKind::kTorus; }
 
+  /// Turns a pcurve that is a spline of one straight span into a line, which needs no numbers of its own.
+  void recogniseLine(Curve2& curve) const {
+    if (curve.kind != CurveKind::kSpline || curve.degree != 1 || curve.count != 2 || (curve.flags & kRational) != 0)
+      return;
+    constexpr double kFar = 10;  // farther from its parameters' origin, the line would lose digits
+    const double* knots = part_.reals.data() + curve.data;
+    const double *points = knots + 4, t0 = knots[1], t1 = knots[2];
+    if (!(std::abs(t0) + std::abs(t1) <= kFar * (t1 - t0))) return;
+    for (std::size_t i = 0; i < 2; ++i) {
+      curve.x[i] = (points[2 + i] - points[i]) / (t1 - t0);
+      curve.o[i] = points[i] - t0 * curve.x[i];
+    }
+    curve.kind = CurveKind::kLine;
+    curve.degree = curve.count = 0;
+  }
+
   void shapeFacesAndEdges() {
     model_.faces_.reserve(part_.faces.size());
     for (std::uint32_t f = 0; f < part_.faces.size(); ++f) model_.faces_.push_back(faceShape(*model_.geometry_, f));
-    model_.edges_.resize(part_.edges.size());
-    for (std::size_t e = 0; e < part_.edges.size(); ++e) {
+    model_.edge_slots_.assign(part_.edges.size(), kNone);
+    for (std::uint32_t e = 0; e < part_.edges.size(); ++e) {
       const Edge& edge = part_.edges[e];
       if (edge.curve != kNone && part_.curves3[edge.curve].kind <= CurveKind::kCircle)
-        model_.edges_[e] = edgeShape(part_, edge);
+        keepEdge(e, edgeShape(part_, edge));
       if (auto made = recogniseEdge(*model_.geometry_, edge)) {
         made->shape.recognised = static_cast<std::uint32_t>(model_.recognised_.size());
-        model_.edges_[e] = made->shape;
+        keepEdge(e, made->shape);
         model_.recognised_.push_back(std::move(*made));
       }
     }
+    model_.edges_.shrink_to_fit();
+  }
+
+  void keepEdge(std::uint32_t index, const EdgeShape& shape) {
+    model_.edge_slots_[index] = static_cast<std::uint32_t>(model_.edges_.size());
+    model_.edges_.push_back(shape);
   }
 
   void listEdgesOfVertices() {
@@ -112,7 +136,7 @@ class ModelBuilder {
       return add(ElementKind::kPole, e, point, {Eigen::Matrix3d::Identity(), point});
     }
     const CurveKind kind = part_.curves3[edge.curve].kind;
-    const std::uint32_t recognised = model_.edge(e).recognised;
+    const std::uint32_t recognised = model_.edge_slots_[e] == kNone ? kNone : model_.edge(e).recognised;
     if (kind <= CurveKind::kCircle || recognised != kNone) {
       const bool circle = recognised != kNone ? model_.recognised(recognised).is_circle : kind == CurveKind::kCircle;
       return add(circle ? ElementKind::kCircle : ElementKind::kLine, e, edgeBox(model_.edge(e), circle),
@@ -140,15 +164,19 @@ class ModelBuilder {
     made.tree.forgetOrder();
   }
 
-  /// Builds the tree of a body with one element per row, and the box of each row.
+  /// Builds the tree of a body and the box of each element.
   void arrange(BodyTree& body) const {
-    body.tree.build(boxes_, 1);
-    body.elements.reserve(elements_.size());
-    for (const std::uint32_t i : body.tree.order()) body.elements.push_back(elements_[i]);
-    body.rows.resize(elements_.size());
-    forEachRow(body, [&](std::size_t number, const ElementRow& row) {
-      body.rows[number] = rowBox(oriented_[body.tree.order()[row.first]], body.tree);
+    const auto bent = std::count_if(elements_.begin(), elements_.end(), [](Element element) {
+      return element.kind() == ElementKind::kLeaf || element.kind() == ElementKind::kPiece;
     });
+    const bool is_bent = 2 * static_cast<std::size_t>(bent) > elements_.size();
+    body.tree.build(boxes_, is_bent ? BodyTree::kElementRow : 1);
+    body.elements.reserve(elements_.size());
+    body.rows.reserve(elements_.size());
+    for (const std::uint32_t i : body.tree.order()) {
+      body.elements.push_back(elements_[i]);
+      body.rows.push_back(rowBox(oriented_[i], body.tree));
+    }
   }
 
   /// Calls use(number of the row, row) for each row of the tree.
@@ -182,15 +210,6 @@ class ModelBuilder {
     }
   }
 
-  /// Returns how the tree of a body refers to each element, in the order in which the elements were added.
-  std::vector<BoxTree::RowPlace> rowPlaces(const BodyTree& body) const {
-    std::vector<BoxTree::RowPlace> places(elements_.size());
-    forEachRow(body, [&](std::size_t number, const ElementRow& row) {
-      places[body.tree.order()[row.first]] = {BoxTree::codeOf(row), static_cast<std::int32_t>(number)};
-    });
-    return places;
-  }
-
   /// Adds a tree over each face and its edges, because a held contact asks for the nearest point of a single face.
   void addFaceTrees(const Body& body, BodyTree& made) {
     std::vector<std::vector<std::uint32_t>> of_faces(body.face_count);
@@ -200,15 +219,18 @@ class ModelBuilder {
         std::vector<std::uint32_t>& of_face = of_faces[face - body.first_face];
         if (of_face.empty() || of_face.back() != i) of_face.push_back(i);  // a seam edge has two coedges on one face
       });
-    const std::vector<BoxTree::RowPlace> places = rowPlaces(made);
+    std::vector<std::uint32_t> places(elements_.size()), order;
+    for (std::uint32_t place = 0; place < places.size(); ++place) places[made.tree.order()[place]] = place;
     std::vector<AlignedBox3d> boxes;
-    std::vector<BoxTree::RowPlace> rows;
     for (std::uint32_t f = 0; f < body.face_count; ++f) {
       if (of_faces[f].empty()) continue;
-      boxes.clear(), rows.clear();
-      for (const std::uint32_t i : of_faces[f]) boxes.push_back(boxes_[i]), rows.push_back(places[i]);
-      model_.face_roots_[body.first_face + f] = made.tree.graft(boxes, rows);
+      boxes.clear();
+      for (const std::uint32_t i : of_faces[f]) boxes.push_back(boxes_[i]);
+      const std::size_t first = order.size();
+      model_.face_roots_[body.first_face + f] = made.tree.graft(boxes, BodyTree::kFaceRow, order);
+      for (std::size_t i = first; i < order.size(); ++i) order[i] = places[of_faces[f][order[i]]];
     }
+    made.of_faces = std::vector<std::uint32_t>(order.begin(), order.end());  // without spare memory
   }
 
   void buildMeshTree(const Body& body, BodyTree& made) {
@@ -310,12 +332,13 @@ std::size_t Model::bytes() const noexcept {
   add(part_.surfaces), add(part_.curves3), add(part_.curves2), add(part_.vertices), add(part_.edges);
   add(part_.coedges), add(part_.loops), add(part_.faces), add(part_.points), add(part_.triangles);
   add(faces_), add(edges_), add(leaves_), add(pieces_), add(vertex_normals_), add(point_normals_);
-  add(smooth_corner_), add(smooth_normals_), add(placements_);
+  add(smooth_corner_), add(smooth_normals_), add(placements_), add(recognised_), add(first_edge_at_), add(edges_at_);
+  for (const RecognisedEdge& edge : recognised_) add(edge.stops), add(edge.parameters);
   for (const FaceShape& face : faces_) sum += face.trim.bytes();
-  add(face_roots_);
+  add(face_roots_), add(edge_slots_);
   for (const BodyTree& tree : bodies_) {
     sum += sizeof tree + tree.tree.bytes();
-    add(tree.elements), add(tree.rows), add(tree.discs);
+    add(tree.elements), add(tree.rows), add(tree.discs), add(tree.of_faces);
   }
   return sum + placement_tree_.bytes();
 }

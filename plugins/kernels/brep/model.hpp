@@ -53,23 +53,30 @@ struct BodyTree {
   /// to a triangle.
   static constexpr int kMeshRow = 2;
 
+  /// Elements in one row of a body of which most elements are leaves and pieces. Each of them has a close box of its
+  /// own. Of other bodies a row has one element: they have so few elements that small trees matter less than quick
+  /// ones.
+  static constexpr int kElementRow = 4;
+  static constexpr int kFaceRow = 8;  ///< elements in one row of the tree of a single face
+
   BoxTree tree;
   std::vector<Element> elements;  ///< elements in the order of the tree
-  std::vector<RowBox> rows;       ///< box of each row, indexed by row number; empty for meshes
+  std::vector<RowBox> rows;       ///< box of each element, in the order of the tree; empty for meshes
   std::vector<RowDisc> discs;     ///< disc of each row, indexed by row number; empty except for meshes
+  /// The elements of the trees of single faces, as places in `elements`. The rows of these trees are ranges of it.
+  std::vector<std::uint32_t> of_faces;
 
   /// [rt] Prefetches a child of a node that will be examined soon. @param row number of the row, for a child that is a
   /// row
   void fetchAhead(std::int32_t child, std::int32_t row) const noexcept {
-    const auto at = static_cast<std::size_t>(row);
     if (child >= 0) {
       __builtin_prefetch(&tree.node(child).lo);
       __builtin_prefetch(&tree.node(child).child);
-    } else if (!rows.empty()) {
-      __builtin_prefetch(&rows[at].center);
-      __builtin_prefetch(&rows[at].outer);
+    } else if (!discs.empty()) {
+      __builtin_prefetch(&discs[static_cast<std::size_t>(row)]);
     } else {
-      __builtin_prefetch(&discs[at]);
+      const ElementRow elements_of = BoxTree::rowOf(child);
+      for (std::uint32_t i = 0; i < elements_of.count; ++i) __builtin_prefetch(&rows[elements_of.first + i]);
     }
   }
 
@@ -96,7 +103,8 @@ class Model {
   const Part& part() const noexcept { return part_; }
   const Geometry& geometry() const noexcept { return *geometry_; }
   const FaceShape& face(std::uint32_t index) const noexcept { return faces_[index]; }
-  const EdgeShape& edge(std::uint32_t index) const noexcept { return edges_[index]; }
+  /// [any] The edge must be a line or a circle, in the file or recognised.
+  const EdgeShape& edge(std::uint32_t index) const noexcept { return edges_[edge_slots_[index]]; }
   /// [any] @param index EdgeShape::recognised, which must not be kNone
   const RecognisedEdge& recognised(std::uint32_t index) const noexcept { return recognised_[index]; }
   const Leaf& leaf(std::uint32_t index) const noexcept { return leaves_[index]; }
@@ -142,7 +150,8 @@ class Model {
   Part part_;
   std::unique_ptr<Geometry> geometry_;
   std::vector<FaceShape> faces_;
-  std::vector<EdgeShape> edges_;
+  std::vector<EdgeShape> edges_;           ///< only lines and circles
+  std::vector<std::uint32_t> edge_slots_;  ///< for each edge of the part its index in edges_, or kNone
   std::vector<RecognisedEdge> recognised_;
   std::vector<Leaf> leaves_;
   std::vector<CurvePiece> pieces_;

@@ -16,6 +16,38 @@ void NearRows<Choice>::add(const Shape& shape, std::int32_t child) noexcept {
   children_[static_cast<std::size_t>(rows_++)] = child;
 }
 
+/// Adds a shape to the candidates, if it is within reach. Returns false if there are too many.
+template <class Choice>
+bool NearRows<Choice>::consider(const Candidate& next, double reach2, double& beyond2) noexcept {
+  const auto bound = static_cast<double>(next.bound2);
+  if (!(bound <= reach2)) {
+    beyond2 = std::min(beyond2, bound);
+    return true;
+  }
+  if (candidate_count_ == Limits::kMostCandidates) return false;
+  candidates_[static_cast<std::size_t>(candidate_count_++)] = next;
+  return true;
+}
+
+/// Considers what is in a row of the tree: each element of a body of faces, or the disc of a row of triangles.
+template <class Choice>
+bool NearRows<Choice>::considerRow(const BodyTree& body, const BoxProbe& probe, const Candidate& row, double reach2,
+                                   double& beyond2) noexcept {
+  const auto boundOf = [&](std::int32_t shape) {
+    return std::max(row.bound2, rowDistance(body.template shapes<Shape>()[static_cast<std::size_t>(shape)], probe));
+  };
+  if constexpr (std::is_same_v<Shape, RowDisc>)
+    return consider({boundOf(row.row), row.row, row.child}, reach2, beyond2);
+  const ElementRow elements = BoxTree::rowOf(row.child);
+  looks_ += static_cast<int>(elements.count);
+  if (looks_ > Limits::kMostLooks) return false;
+  for (std::uint32_t i = elements.first; i < elements.first + elements.count; ++i) {
+    const auto place = static_cast<std::int32_t>(i);
+    if (!consider({boundOf(place), place, BoxTree::codeOf({i, 1})}, reach2, beyond2)) return false;
+  }
+  return true;
+}
+
 /// Collects the rows within reach as candidates. `beyond2` is lowered to the least bound of all other rows.
 template <class Choice>
 bool NearRows<Choice>::collect(const BodyTree& body, const Eigen::Vector3d& p, double reach2,
@@ -23,30 +55,22 @@ bool NearRows<Choice>::collect(const BodyTree& body, const Eigen::Vector3d& p, d
   const BoxProbe probe(body.tree, p);
   std::array<std::int32_t, BoxTree::kMaxStack> stack;
   int depth = 0, nodes = 0;
-  candidate_count_ = 0;
+  candidate_count_ = looks_ = 0;
   stack[static_cast<std::size_t>(depth++)] = 0;
   while (depth > 0) {
     if (++nodes > Limits::kMostNodes) return false;
     const BoxNode& node = body.tree.node(stack[static_cast<std::size_t>(--depth)]);
     const Float4 bounds = boxDistances(node, probe);
     for (std::size_t i = 0; i < 4; ++i) {
-      auto bound = static_cast<double>(bounds[i]);
       const std::int32_t child = node.child[i];
-      if (bound <= reach2 && child >= 0) {
+      if (!(static_cast<double>(bounds[i]) <= reach2)) {
+        beyond2 = std::min(beyond2, static_cast<double>(bounds[i]));
+      } else if (child >= 0) {
         stack[static_cast<std::size_t>(depth++)] = child;
         body.fetchAhead(child, 0);
-        continue;
+      } else if (!considerRow(body, probe, {bounds[i], node.row[i], child}, reach2, beyond2)) {
+        return false;
       }
-      if (bound <= reach2) {
-        bound = std::max(bound, static_cast<double>(rowDistance(
-                                    body.template shapes<Shape>()[static_cast<std::size_t>(node.row[i])], probe)));
-        if (bound <= reach2) {
-          if (candidate_count_ == Limits::kMostCandidates) return false;
-          candidates_[static_cast<std::size_t>(candidate_count_++)] = {static_cast<float>(bound), node.row[i], child};
-          continue;
-        }
-      }
-      beyond2 = std::min(beyond2, bound);
     }
   }
   return true;

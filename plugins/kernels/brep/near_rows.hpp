@@ -17,6 +17,7 @@ struct ElementLimits {
   static constexpr int kMostFours = 8;         ///< most groups of four rows
   static constexpr int kMostCandidates = 128;  ///< most rows within reach, from which the nearest are taken
   static constexpr int kMostNodes = 32;        ///< most nodes of the tree that gather() examines
+  static constexpr int kMostLooks = 80;        ///< most elements whose own boxes gather() measures
   static constexpr int kFew = 8, kMany = 20;   ///< the reach grows below kFew rows and shrinks above kMany
   /// Gathering pays only if the reach is at least this many times the probe's motion per tick.
   static constexpr double kWorthIt = 1.5;
@@ -26,7 +27,7 @@ struct ElementLimits {
 /// The same limits for meshes. They are higher, because the foot on a triangle costs little.
 struct TriangleLimits {
   using Shape = RowDisc;
-  static constexpr int kMostFours = 24, kMostCandidates = 96, kMostNodes = 128, kFew = 16, kMany = 32;
+  static constexpr int kMostFours = 24, kMostCandidates = 96, kMostNodes = 128, kMostLooks = 0, kFew = 16, kMany = 32;
   static constexpr double kWorthIt = 4;
   static constexpr bool kLearns = false;
 };
@@ -80,6 +81,9 @@ class NearRows {
     float bound2;
     std::int32_t row, child;
   };
+  bool consider(const Candidate& next, double reach2, double& beyond2) noexcept;
+  bool considerRow(const BodyTree& body, const BoxProbe& probe, const Candidate& row, double reach2,
+                   double& beyond2) noexcept;
   bool collect(const BodyTree& body, const Eigen::Vector3d& p, double reach2, double& beyond2) noexcept;
   void add(const Shape& shape, std::int32_t child) noexcept;
 
@@ -92,6 +96,7 @@ class NearRows {
   int rows_ = 0;
   std::array<Candidate, Limits::kMostCandidates> candidates_;
   int candidate_count_ = 0;
+  int looks_ = 0;  ///< elements whose boxes were measured to gather the rows
 };
 
 using NearElements = NearRows<ElementLimits>;

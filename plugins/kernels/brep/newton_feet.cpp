@@ -136,7 +136,9 @@ double take(const LeafTask& task, const FaceShape& face, const LeafState& s, con
 /// True if the probe is nearer to its foot than every centre of curvature of the leaf on the probe's side.
 bool isWithinFocus(const Leaf& leaf, const FaceShape& face, const LeafState& s, double offset) noexcept {
   const double side = -face.outward * s.r.dot(s.E.Su.cross(s.E.Sv));
-  return (std::sqrt(s.f) + offset) * static_cast<double>(side > 0 ? leaf.curvature_front : leaf.curvature_back) < 1;
+  return (std::sqrt(s.f) + offset) *
+             static_cast<double>((side > 0 ? leaf.curvature_front : leaf.curvature_back).value()) <
+         1;
 }
 
 /// Returns a lower bound of the squared distance to a leaf on which the probe has one foot. It follows from the slope
@@ -148,7 +150,8 @@ double lowerBoundFrom(const LeafTask& task, const LeafState& s, double least_sec
     if ((s.uv[axis] <= task.leaf.lo[axis] && slope[axis] > 0) || (s.uv[axis] >= task.leaf.hi[axis] && slope[axis] < 0))
       slope[axis] = 0;
   double square = 0;
-  for (const Array2d& along : task.leaf.curvature.along) {
+  for (int i = 0; i < 2; ++i) {
+    const Array2d along = task.leaf.curvature.along(i);
     const double one = along[0] * slope[0] + along[1] * slope[1];
     square += one * one;
   }
@@ -278,8 +281,9 @@ NewtonResult pieceFoot(const Geometry& geometry, const CurvePiece& piece, const 
   double d = task.descend(s);
   answer.d2 = take(task, s, d, hit);
   // If the probe is beyond a centre of curvature, there may be several feet, or only the ends may be minima.
-  const FeetOfPiece feet =
-      std::sqrt(s.f) * piece.most_curvature < 1 ? FeetOfPiece::kOne : countFeet(piece.curvature, p);
+  const FeetOfPiece feet = std::sqrt(s.f) * static_cast<double>(piece.curvature.most.value()) < 1
+                               ? FeetOfPiece::kOne
+                               : countFeet(piece.curvature, p);
   answer.proved = feet != FeetOfPiece::kUnknown;
   if (feet != FeetOfPiece::kOne)
     for (const double share : {0.02, 0.98}) {

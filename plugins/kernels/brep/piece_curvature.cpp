@@ -3,8 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 
 namespace hapticd::brep {
 namespace {
@@ -26,57 +26,106 @@ Bend bendAt(const Geometry& geometry, std::uint32_t curve, double t) {
   return {C.C, T, (C.C2 - C.C2.dot(T) * T) / speed2};
 }
 
+std::vector<Bend> bendsOf(const Geometry& geometry, std::uint32_t curve, double t0, double t1) {
+  std::vector<Bend> bends;
+  for (const double t : pieceSamples(geometry, curve, t0, t1)) bends.push_back(bendAt(geometry, curve, t));
+  return bends;
+}
+
+double valueOf(Coarse bound) noexcept {
+  return static_cast<double>(bound.value());
+}
+
+/// A vector from the probe to the centre of curvature: its component along the binormal, and the length of the rest.
+struct FromProbe {
+  FromProbe(const PieceCurvature& piece, const Vector3d& p) noexcept
+      : from(piece.centre - p), aside(from.dot(piece.binormal.cast<double>())) {
+    flat = (from - aside * piece.binormal.cast<double>()).norm();
+    aside = std::abs(aside);
+  }
+  double curveOff(const PieceCurvature& piece) const noexcept {
+    return flat * valueOf(piece.curvature_off) + aside * valueOf(piece.curvature_off_across);
+  }
+
+  Vector3d from;
+  double aside, flat;
+};
+
 }  // namespace
 
-PieceCurvature pieceCurvature(const Geometry& geometry, std::uint32_t curve, double t0, double t1) {
-  constexpr int kSamples = 9;
+std::vector<double> pieceSamples(const Geometry& geometry, std::uint32_t curve, double t0, double t1) {
+  constexpr int kFewest = 8, kPerSpan = 4;
+  std::vector<double> stops{t0};
+  for (const double knot : geometry.curveKnots(curve))
+    if (knot > t0 && knot < t1) stops.push_back(knot);
+  stops.push_back(t1);
+  const int spans = static_cast<int>(stops.size()) - 1, each = std::max(kPerSpan, (kFewest + spans - 1) / spans);
+  std::vector<double> samples;
+  for (std::size_t s = 0; s + 1 < stops.size(); ++s)
+    for (int i = 0; i <= each; ++i)
+      samples.push_back(stops[s] + (stops[s + 1] - stops[s]) * (i < each ? static_cast<double>(i) / each : 1 - 1e-9));
+  return samples;
+}
+
+PieceFrame pieceFrame(const Geometry& geometry, std::uint32_t curve, double t0, double t1) {
   constexpr double kStraight = 1e-6;  // length times curvature; below it, the centre would be mostly rounding error
-  std::array<Bend, kSamples> bends;
-  const double end = t1 - 1e-9 * (t1 - t0);  // at a knot, derivatives are evaluated in the span to its right
-  for (int i = 0; i < kSamples; ++i)
-    bends[static_cast<std::size_t>(i)] = bendAt(geometry, curve, std::min(t0 + (t1 - t0) * i / (kSamples - 1), end));
-  const Bend& middle = bends[kSamples / 2];
-  const double length = (bends.back().C - bends.front().C).norm(), most = middle.K.norm();
-  PieceCurvature piece;
-  piece.curvature = middle.K;
-  piece.tangent = middle.T;
+  const Bend middle = bendAt(geometry, curve, 0.5 * (t0 + t1));
+  const double length = (bendAt(geometry, curve, t1).C - bendAt(geometry, curve, t0).C).norm(), most = middle.K.norm();
   const bool straight = !(most * length > kStraight);
-  piece.centre = straight ? middle.C : Vector3d(middle.C + middle.K / (most * most));
-  piece.binormal = straight ? middle.T.unitOrthogonal() : middle.T.cross(middle.K).normalized();
-  double low = 1, high = -1;
-  for (const Bend& b : bends) {
-    const Vector3d dk = b.K - middle.K, dt = b.T - middle.T, from = b.C - piece.centre;
-    piece.curvature_off = std::max(piece.curvature_off, kBetweenSamples * dk.norm());
-    piece.curvature_off_across =
-        std::max(piece.curvature_off_across, kBetweenSamples * std::abs(dk.dot(piece.binormal)));
-    piece.tangent_off = std::max(piece.tangent_off, kBetweenSamples * dt.norm());
-    piece.tangent_off_across = std::max(piece.tangent_off_across, kBetweenSamples * std::abs(dt.dot(piece.binormal)));
-    piece.slope = std::max(piece.slope, kBetweenSamples * std::abs(from.dot(b.T)));
+  PieceFrame frame;
+  frame.curvature = middle.K;
+  frame.tangent = middle.T;
+  frame.centre = straight ? middle.C : Vector3d(middle.C + middle.K / (most * most));
+  frame.binormal = straight ? middle.T.unitOrthogonal() : middle.T.cross(middle.K).normalized();
+  return frame;
+}
+
+PieceCurvature pieceCurvature(const Geometry& geometry, std::uint32_t curve, double t0, double t1,
+                              const PieceFrame& frame) {
+  PieceCurvature piece;
+  piece.centre = frame.centre;
+  piece.curvature = frame.curvature.cast<float>();
+  piece.tangent = frame.tangent.cast<float>();
+  piece.binormal = frame.binormal.cast<float>();
+  const Vector3d across = piece.binormal.cast<double>();
+  double low = 2, high = -2, slope = 0, most[4]{};
+  bool first = true;
+  for (const Bend& b : bendsOf(geometry, curve, t0, t1)) {
+    const Vector3d dk = b.K - piece.curvature.cast<double>(), dt = b.T - piece.tangent.cast<double>(),
+                   from = b.C - piece.centre;
+    const double off[4] = {dk.norm(), std::abs(dk.dot(across)), dt.norm(), std::abs(dt.dot(across))};
+    for (int i = 0; i < 4; ++i) most[i] = std::max(most[i], kBetweenSamples * off[i]);
+    slope = std::max(slope, kBetweenSamples * std::abs(from.dot(b.T)));
     const double second = 1 + from.dot(b.K);
-    low = &b == &bends.front() ? second : std::min(low, second);
-    high = &b == &bends.front() ? second : std::max(high, second);
+    low = first ? second : std::min(low, second);
+    high = first ? second : std::max(high, second);
+    first = false;
   }
-  piece.second_low = low - (kBetweenSamples - 1) * (high - low) - kTermRounding;
-  piece.second_high = high + (kBetweenSamples - 1) * (high - low) + kTermRounding;
+  piece.curvature_off = Coarse::up(most[0]);
+  piece.curvature_off_across = Coarse::up(most[1]);
+  piece.tangent_off = Coarse::up(most[2]);
+  piece.tangent_off_across = Coarse::up(most[3]);
+  piece.slope = Coarse::up(slope);
+  const double more = (kBetweenSamples - 1) * (high - low) + kTermRounding;
+  constexpr float kUp = std::numeric_limits<float>::infinity();
+  piece.second_low = std::nextafter(static_cast<float>(low - more), -kUp);
+  piece.second_high = std::nextafter(static_cast<float>(high + more), kUp);
   return piece;
 }
 
 double leastSecondDerivative(const PieceCurvature& piece, const Vector3d& p) noexcept {
-  const Vector3d from = piece.centre - p;
-  const double aside = from.dot(piece.binormal), flat = (from - aside * piece.binormal).norm();
-  return piece.second_low + from.dot(piece.curvature) - flat * piece.curvature_off -
-         std::abs(aside) * piece.curvature_off_across;
+  const FromProbe probe(piece, p);
+  return static_cast<double>(piece.second_low) + probe.from.dot(piece.curvature.cast<double>()) - probe.curveOff(piece);
 }
 
 FeetOfPiece countFeet(const PieceCurvature& piece, const Vector3d& p) noexcept {
-  const Vector3d from = piece.centre - p;
-  const double aside = from.dot(piece.binormal), flat = (from - aside * piece.binormal).norm();
-  const double curve = from.dot(piece.curvature),
-               off = flat * piece.curvature_off + std::abs(aside) * piece.curvature_off_across;
-  if (piece.second_low + curve - off > 0) return FeetOfPiece::kOne;
-  const double slope = flat * piece.tangent_off + std::abs(aside) * piece.tangent_off_across + piece.slope;
-  if (std::abs(from.dot(piece.tangent)) * (1 - kTermRounding) > slope) return FeetOfPiece::kOne;
-  return piece.second_high + curve + off < 0 ? FeetOfPiece::kAtAnEnd : FeetOfPiece::kUnknown;
+  const FromProbe probe(piece, p);
+  const double curve = probe.from.dot(piece.curvature.cast<double>()), off = probe.curveOff(piece);
+  if (static_cast<double>(piece.second_low) + curve - off > 0) return FeetOfPiece::kOne;
+  const double slope =
+      probe.flat * valueOf(piece.tangent_off) + probe.aside * valueOf(piece.tangent_off_across) + valueOf(piece.slope);
+  if (std::abs(probe.from.dot(piece.tangent.cast<double>())) * (1 - kTermRounding) > slope) return FeetOfPiece::kOne;
+  return static_cast<double>(piece.second_high) + curve + off < 0 ? FeetOfPiece::kAtAnEnd : FeetOfPiece::kUnknown;
 }
 
 }  // namespace hapticd::brep

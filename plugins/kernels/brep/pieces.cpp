@@ -2,6 +2,7 @@
 #include "kernels/brep/pieces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -20,8 +21,12 @@ using Eigen::Vector3d;
 using spline::CurvePoint;
 using spline::SurfacePoint;
 
-/// [rad] (25 degrees) largest turn of the normals of a leaf, or of the tangents of a piece of a curve.
+/// [rad] (25 degrees) largest turn of the normals of a leaf that is no spline, or of the tangents of a piece of a
+/// curve.
 constexpr double kLeafTurn = 0.44;
+/// [rad] Largest angle between the tangents of a spline leaf and their mean. Tangents that only fan out within the
+/// surface count too, so the normals of most leaves turn by far less.
+constexpr double kTangentTurn = 0.7;
 constexpr int kMostHalvings = 2;  ///< how often a leaf that bends unevenly is halved
 
 /// Computes the principal curvatures at a point, positive toward Su x Sv. Returns false if the tangents vanish.
@@ -60,7 +65,7 @@ class FaceCutter {
   void cutSpline() {
     const spline::SurfaceData data = splineOf(geometry_.part(), surface_);
     trace::BoxTree pieces;
-    pieces.add(data, 0, 1 - std::cos(kLeafTurn));
+    pieces.add(data, 0, 1 - std::cos(kTangentTurn));
     const Array2d lo(data.domain(0)[0], data.domain(1)[0]), hi(data.domain(0)[1], data.domain(1)[1]);
     for (int i = 0; i < pieces.leafCount(); ++i) {
       const trace::Leaf& piece = pieces.leaf(i);
@@ -163,10 +168,11 @@ class FaceCutter {
     int axis = -1;
     double worst = kRough;
     for (int i = 0; i < 2; ++i) {
-      const double spread = static_cast<double>(leaf.curvature.second[i].high) - leaf.curvature.second[i].low;
+      const double spread =
+          static_cast<double>(leaf.curvature.terms.high.of[2 + i].value() - leaf.curvature.terms.low.of[2 + i].value());
       if (!(leaf.curvature.focus[i] != 0 && spread > worst)) continue;
       worst = spread;
-      const Array2d run = leaf.curvature.along[i].abs() / (leaf.hi - leaf.lo);
+      const Array2d run = leaf.curvature.along(i).abs() / (leaf.hi - leaf.lo);
       axis = run[0] > run[1] ? 0 : 1;
     }
     return axis;
@@ -185,8 +191,8 @@ class FaceCutter {
         front = std::max(front, shape_.outward > 0 ? most : -least);
         back = std::max(back, shape_.outward > 0 ? -least : most);
       }
-    leaf.curvature_front = static_cast<float>(kBetweenSamples * front);
-    leaf.curvature_back = static_cast<float>(kBetweenSamples * back);
+    leaf.curvature_front = Coarse::up(kBetweenSamples * front);
+    leaf.curvature_back = Coarse::up(kBetweenSamples * back);
   }
 
   const Geometry& geometry_;
@@ -221,35 +227,72 @@ class EdgeCutter {
         pieces_(pieces) {}
 
   void run() {
-    std::vector<double> stops{edge_.t0, edge_.t1};
-    const bool is_spline = curve_.kind == CurveKind::kSpline;
     // because of rounding, an edge may end just before or after a knot
     const double narrow = 1e-9 * (edge_.t1 - edge_.t0);
-    if (is_spline)
-      for (const double knot : geometry_.splineCurve(edge_.curve).breaks())
-        if (knot > edge_.t0 + narrow && knot < edge_.t1 - narrow) stops.push_back(knot);
-    std::sort(stops.begin(), stops.end());
-    for (std::size_t i = 0; i + 1 < stops.size(); ++i) halve(stops[i], stops[i + 1], 0);
+    for (const double knot : geometry_.curveKnots(edge_.curve))
+      if (knot > edge_.t0 + narrow && knot < edge_.t1 - narrow) knots_.push_back(knot);
+    double from = edge_.t0;
+    for (const double knot : knots_)
+      if (!isSmoothAt(knot, narrow)) {
+        halve(from, knot, 0);
+        from = knot;
+      }
+    halve(from, edge_.t1, 0);
   }
 
  private:
+  /// True if tangent and curvature hardly change at a knot, so that a piece may go on beyond it.
+  bool isSmoothAt(double knot, double narrow) const {
+    constexpr double kSame = 1e-6, kSameCurvature = 0.1;
+    CurvePoint C;
+    std::array<Vector3d, 2> first, bend;
+    for (const std::size_t side : {0, 1}) {
+      geometry_.curve(edge_.curve, side == 0 ? knot - narrow : knot, C);
+      const double speed2 = C.C1.squaredNorm();
+      if (!(speed2 > 0)) return false;
+      first[side] = C.C1;
+      bend[side] = (C.C2 - C.C2.dot(C.C1) / speed2 * C.C1) / speed2;
+    }
+    return (first[0] - first[1]).norm() <= kSame * first[1].norm() &&
+           (bend[0] - bend[1]).norm() <= kSameCurvature * std::max(bend[0].norm(), bend[1].norm());
+  }
+
+  /// Returns the knot that is nearest to the middle between t0 and t1, or the middle itself if no knot lies between.
+  double middleOf(double t0, double t1) const {
+    const double middle = 0.5 * (t0 + t1);
+    double best = middle, least = t1 - t0;
+    for (const double knot : knots_)
+      if (knot > t0 && knot < t1 && std::abs(knot - middle) < least) best = knot, least = std::abs(knot - middle);
+    return best;
+  }
+
+  /// True if there are knots between t0 and t1, and the curvature varies so much there that the bounds in
+  /// PieceCurvature would be too wide for a probe far away.
+  bool isRough(double t0, double t1) const {
+    if (std::none_of(knots_.begin(), knots_.end(), [&](double knot) { return knot > t0 && knot < t1; })) return false;
+    constexpr double kRough = 0.5;  // relative to the curvature in the middle
+    const PieceCurvature bend =
+        pieceCurvature(geometry_, edge_.curve, t0, t1, pieceFrame(geometry_, edge_.curve, t0, t1));
+    return static_cast<double>(bend.curvature_off.value()) > kRough * static_cast<double>(bend.curvature.norm());
+  }
+
   void halve(double t0, double t1, int depth) {
-    constexpr int kSamples = 6, kDeepest = 8;
-    const double end = t1 - 1e-9 * (t1 - t0);  // at a knot, derivatives are evaluated in the span to its right
+    constexpr int kDeepest = 12;
     CurvePoint C;
     Vector3d first = Vector3d::Zero();
     double turn = 0, curvature = 0;
-    for (int i = 0; i <= kSamples; ++i) {
-      geometry_.curve(edge_.curve, std::min(t0 + (t1 - t0) * i / kSamples, end), C);
+    for (const double t : pieceSamples(geometry_, edge_.curve, t0, t1)) {
+      geometry_.curve(edge_.curve, t, C);
       const double speed = C.C1.norm();
       if (!(speed > 0)) continue;
       if (first.isZero(0)) first = C.C1;
       turn = std::max(turn, std::atan2(C.C1.cross(first).norm(), C.C1.dot(first)));
       curvature = std::max(curvature, C.C1.cross(C.C2).norm() / (speed * speed * speed));
     }
-    if (turn > kLeafTurn && depth < kDeepest) {
-      halve(t0, 0.5 * (t0 + t1), depth + 1);
-      halve(0.5 * (t0 + t1), t1, depth + 1);
+    if ((turn > kLeafTurn || isRough(t0, t1)) && depth < kDeepest) {
+      const double middle = middleOf(t0, t1);
+      halve(t0, middle, depth + 1);
+      halve(middle, t1, depth + 1);
       return;
     }
     add(t0, t1, kBetweenSamples * curvature);
@@ -257,9 +300,13 @@ class EdgeCutter {
 
   void add(double t0, double t1, double most_curvature) {
     BoxedPiece made;
-    made.piece = {t0, t1, most_curvature, edge_index_, (t0 <= edge_.t0 ? 1u : 0u) | (t1 >= edge_.t1 ? 2u : 0u), {}};
-    made.piece.curvature = pieceCurvature(geometry_, edge_.curve, t0, t1);
-    const PieceCurvature& along = made.piece.curvature;
+    made.piece.t0 = t0;
+    made.piece.t1 = t1;
+    made.piece.edge = edge_index_ & CurvePiece::kMostEdges;
+    made.piece.ends = (t0 <= edge_.t0 ? 1u : 0u) | (t1 >= edge_.t1 ? 2u : 0u);
+    const PieceFrame along = pieceFrame(geometry_, edge_.curve, t0, t1);
+    made.piece.curvature = pieceCurvature(geometry_, edge_.curve, t0, t1, along);
+    made.piece.curvature.most = Coarse::up(most_curvature);
     if (along.tangent.squaredNorm() > 0.5) {  // otherwise the derivative of the curve is 0 in the middle
       made.oriented.frame.row(0) = along.tangent;
       made.oriented.frame.row(1) = along.binormal;
@@ -277,18 +324,19 @@ class EdgeCutter {
 
   /// Sets the cylinders of `oriented` about the centre of curvature in the middle of the piece.
   void addCylinders(const Vector3d& centre, double t0, double t1, OrientedBox& oriented) const {
-    constexpr int kSamples = 8;
     const Vector3d middle = oriented.frame * centre;
-    const double step = (t1 - t0) / kSamples, end = t1 - 1e-9 * (t1 - t0);
-    double inner = std::numeric_limits<double>::infinity(), outer = 0, sag = 0;
+    double inner = std::numeric_limits<double>::infinity(), outer = 0, widest = 0, bent = 0, before = t0;
     CurvePoint C;
-    for (int i = 0; i <= kSamples; ++i) {
-      geometry_.curve(edge_.curve, std::min(t0 + step * i, end), C);
+    for (const double t : pieceSamples(geometry_, edge_.curve, t0, t1)) {
+      geometry_.curve(edge_.curve, t, C);
       const Vector3d q = oriented.frame * C.C - middle;
       inner = std::min(inner, std::hypot(q[0], q[2]));
       outer = std::max(outer, std::hypot(q[0], q[2]));
-      sag = std::max(sag, kBetweenSamples / 8 * step * step * C.C2.norm());
+      widest = std::max(widest, t - before);
+      bent = std::max(bent, C.C2.norm());
+      before = t;
     }
+    const double sag = kBetweenSamples / 8 * widest * widest * bent;
     oriented.focus = {middle[0], middle[2]};
     oriented.inner = std::max(0.0, inner - sag);
     oriented.outer = outer + sag;
@@ -308,6 +356,7 @@ class EdgeCutter {
   std::uint32_t edge_index_;
   const Edge& edge_;
   const Curve3& curve_;
+  std::vector<double> knots_;  ///< the knots inside the edge, ascending
   std::vector<BoxedPiece>& pieces_;
 };
 

@@ -26,7 +26,7 @@ struct Samples {
 Samples samplesOf(const Geometry& geometry, const Edge& edge) {
   const double narrow = 1e-9 * (edge.t1 - edge.t0);
   std::vector<double> knots{edge.t0};
-  for (const double knot : geometry.splineCurve(edge.curve).breaks())
+  for (const double knot : geometry.curveKnots(edge.curve))
     if (knot > edge.t0 + narrow && knot < edge.t1 - narrow) knots.push_back(knot);
   knots.push_back(edge.t1);
   Samples samples;

@@ -24,12 +24,21 @@ struct OrientedBox {
   Eigen::AlignedBox3d axisAligned() const;
 };
 
-/// A OrientedBox as a search uses it: in single precision, in the coordinates of its tree's nodes [m].
-struct RowBox {
-  float center[3]{}, axis[3][3]{};
-  float half[3]{};   ///< half size along each axis
-  float focus[2]{};  ///< position of the cylinders' line, from the center along axes 0 and 2
-  float inner = -kWhole, outer = kWhole;
+/// A OrientedBox as a search uses it: in single precision, in the coordinates of its tree's nodes [m]. It fills one
+/// line of the cache.
+struct alignas(64) RowBox {
+  Float4 first{0, 0, 0, -kWhole};  ///< axis 0, then the radius of the inner cylinder
+  Float4 second{0, 0, 0, kWhole};  ///< axis 1, then the radius of the outer cylinder
+  /// The center, then the position of the cylinders' line along axis 0, from the center.
+  Float4 center{};
+  Float4 half{};  ///< half size along each axis, then the position of the cylinders' line along axis 2
+
+  /// [any] Returns axis 2, the cross product of the other two.
+  Float4 third() const noexcept {
+    const Float4 a = first, b = second;
+    return Float4{a[1], a[2], a[0], 0} * Float4{b[2], b[0], b[1], 0} -
+           Float4{a[2], a[0], a[1], 0} * Float4{b[1], b[2], b[0], 0};
+  }
 
   static constexpr float kWhole = 1e18F;  ///< means "no bound"; its square is still a finite float
 };
@@ -51,14 +60,18 @@ inline FourRowBoxes emptyFour(const RowBox&) noexcept {
 
 /// [rt] Writes a box to place `lane` of four.
 inline void put(const RowBox& box, int lane, FourRowBoxes& to) noexcept {
+  const Float4 third = box.third();
   for (int i = 0; i < 3; ++i) {
     to.center[i][lane] = box.center[i];
-    for (int k = 0; k < 3; ++k) to.axis[i][k][lane] = box.axis[i][k];
+    to.axis[0][i][lane] = box.first[i];
+    to.axis[1][i][lane] = box.second[i];
+    to.axis[2][i][lane] = third[i];
     to.half[i][lane] = box.half[i];
   }
-  for (int i = 0; i < 2; ++i) to.focus[i][lane] = box.focus[i];
-  to.inner[lane] = box.inner;
-  to.outer[lane] = box.outer;
+  to.focus[0][lane] = box.center[3];
+  to.focus[1][lane] = box.half[3];
+  to.inner[lane] = box.first[3];
+  to.outer[lane] = box.second[3];
 }
 
 /// [main] Rounds a box to single precision. The result encloses the box.
@@ -90,17 +103,16 @@ inline Float4 rowDistances(const FourRowBoxes& boxes, const BoxProbe& probe) noe
 
 /// [rt] Returns a lower bound of the squared distance [m^2] to the contents of one box.
 inline float rowDistance(const RowBox& box, const BoxProbe& probe) noexcept {
-  const float way[3] = {probe.at[0][0] - box.center[0], probe.at[1][0] - box.center[1], probe.at[2][0] - box.center[2]};
-  float along[3], square[3];
-  for (int i = 0; i < 3; ++i) {
-    along[i] = way[0] * box.axis[i][0] + way[1] * box.axis[i][1] + way[2] * box.axis[i][2];
-    const float beside = std::max(std::abs(along[i]) - box.half[i], 0.0F);
-    square[i] = beside * beside;
-  }
-  const float x = along[0] - box.focus[0], z = along[2] - box.focus[1];
+  constexpr Float4 kZero{};
+  const Float4 way = Float4{probe.at[0][0], probe.at[1][0], probe.at[2][0], 0} - box.center;
+  const Float4 a = way * box.first, b = way * box.second, c = way * box.third();
+  const Float4 along = Float4{a[0], b[0], c[0], 0} + Float4{a[1], b[1], c[1], 0} + Float4{a[2], b[2], c[2], 0};
+  const Float4 beyond = (along > kZero ? along : -along) - box.half, beside = beyond > kZero ? beyond : kZero;
+  const Float4 square = beside * beside;
+  const float x = along[0] - box.center[3], z = along[2] - box.half[3];
   const float radius = std::sqrt(x * x + z * z);
-  const float beside = std::max(std::max(box.inner - radius, radius - box.outer), 0.0F);
-  return (std::max(beside * beside, square[0] + square[2]) + square[1]) * kRowShare;
+  const float bent = std::max(std::max(box.first[3] - radius, radius - box.second[3]), 0.0F);
+  return (std::max(bent * bent, square[0] + square[2]) + square[1]) * kRowShare;
 }
 
 }  // namespace hapticd::brep

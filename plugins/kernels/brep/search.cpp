@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/brep/descent.hpp"
 #include "kernels/brep/feet.hpp"
 #include "kernels/brep/newton_feet.hpp"
 #include "kernels/brep/triangle_foot.hpp"
@@ -169,77 +168,6 @@ double Search::examine(std::uint32_t place, Element element, const Vector3d& p, 
     run.others2 = std::min(run.others2, d2);
   }
   return lowerBoundOf(d2, examination);
-}
-
-void Search::searchTree(const BodyTree& body, std::int32_t root, std::uint32_t place, const Vector3d& p,
-                        Run& run) noexcept {
-  if (body.tree.empty() || root == BodyTree::kNoRoot) return;
-  Nearest& best = run.best;
-  const Element first = run.first_place == place ? run.first : Element();  // begin() has examined this element
-  const BoxProbe probe(body.tree, p);
-  std::array<DescentEntry, BoxTree::kMaxStack> stack;
-  std::array<DescentEntry, 4> children;
-  int depth = 0;
-  stack[static_cast<std::size_t>(depth++)] = {0, root, 0};
-  while (depth > 0) {
-    const DescentEntry entry = stack[static_cast<std::size_t>(--depth)];
-    auto bound = static_cast<double>(entry.bound);
-    if (bound > run.within2()) {
-      run.others2 = std::min(run.others2, bound);
-      continue;
-    }
-    if (best.nodes >= run.budget.nodes || best.elements >= run.budget.elements) {
-      best.exhausted = true;
-      run.open2 = std::min(run.open2, bound);
-      continue;
-    }
-    if (entry.child < 0) {
-      if (rowIsFarther(body, entry.row, probe, run.within2(), bound, run.others2)) continue;
-      const ElementRow row = BoxTree::rowOf(entry.child);
-      for (std::uint32_t i = row.first; i < row.first + row.count; ++i)
-        if (const Element element = body.elements[i]; !(element == first)) examine(place, element, p, bound, run);
-      continue;
-    }
-    ++best.nodes;
-    const BoxNode& node = body.tree.node(entry.child);
-    const int count = sortChildren(node, boxDistances(node, probe), run.within2(), children, run.others2);
-    for (int i = 0; i < count; ++i) {
-      const DescentEntry& child = children[static_cast<std::size_t>(i)];
-      stack[static_cast<std::size_t>(depth++)] = child;
-      body.fetchAhead(child.child, child.row);
-    }
-  }
-}
-
-/// Searches the tree of the placements, and in it the trees of their bodies.
-void Search::searchPlaces(const Vector3d& p, Run& run) noexcept {
-  const BoxTree& tree = model_.placementTree();
-  const BoxProbe probe(tree, p);
-  std::array<DescentEntry, BoxTree::kMaxStack> stack;
-  std::array<DescentEntry, 4> children;
-  int depth = 0;
-  stack[static_cast<std::size_t>(depth++)] = {0, 0, 0};
-  while (depth > 0) {
-    const DescentEntry entry = stack[static_cast<std::size_t>(--depth)];
-    const auto bound = static_cast<double>(entry.bound);
-    if (bound > run.within2()) {
-      run.others2 = std::min(run.others2, bound);
-      continue;
-    }
-    if (entry.child < 0) {
-      const ElementRow row = BoxTree::rowOf(entry.child);
-      for (std::uint32_t i = row.first; i < row.first + row.count; ++i) {
-        const std::uint32_t place = tree.order()[i];
-        const Placement& at = model_.placements()[place];
-        searchTree(model_.body(at.body), 0, place, at.toBody(p), run);
-      }
-      continue;
-    }
-    ++run.best.nodes;
-    const BoxNode& node = tree.node(entry.child);
-    const int count = sortChildren(node, boxDistances(node, probe), run.within2(), children, run.others2);
-    for (int i = 0; i < count; ++i) stack[static_cast<std::size_t>(depth++)] = children[static_cast<std::size_t>(i)];
-  }
 }
 
 void Search::searchWhole(const Vector3d& p, Run& run) noexcept {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "kernels/brep/descent.hpp"
 #include "kernels/brep/model.hpp"
 #include "kernels/brep/near_places.hpp"
 #include "kernels/brep/near_rows.hpp"
@@ -94,6 +95,16 @@ class Search {
     double least2 = -1;  ///< out: leaves only, the result of lowerBoundOf()
   };
 
+  /// The search of one tree.
+  struct Descent {
+    const BodyTree& body;
+    const std::uint32_t* of_face;  ///< BodyTree::of_faces in the tree of a single face, else null
+    std::uint32_t place;
+    const Eigen::Vector3d& p;
+    Element first;  ///< an element that was examined before
+    BoxProbe probe;
+  };
+
   void begin(const Eigen::Vector3d& p, Run& run) noexcept;
   bool reuseLast(const Eigen::Vector3d& p, double way, const Run& run) noexcept;
   bool searchNear(const Eigen::Vector3d& p, double way, Run& run) noexcept;
@@ -108,6 +119,8 @@ class Search {
   void examineAll(Near& near, const Eigen::Vector3d& p, Run& run) noexcept;
   template <class Near>
   bool examineNear(Near& near, const Eigen::Vector3d& p, Run& run) noexcept;
+  void examineTriangles(const Descent& at, const DescentEntry& entry, Run& run) noexcept;
+  void examineElements(const Descent& at, const DescentEntry& entry, Run& run) noexcept;
   void searchTree(const BodyTree& body, std::int32_t root, std::uint32_t place, const Eigen::Vector3d& p,
                   Run& run) noexcept;
   void searchWhole(const Eigen::Vector3d& p, Run& run) noexcept;

@@ -98,13 +98,12 @@ bool Trim::passesRight(const TrimPiece& piece, double u, double v) const noexcep
     const double side = way[0] * (v - piece.a[1]) - way[1] * (u - piece.a[0]);
     return way[1] > 0 ? side > 0 : side < 0;
   }
-  if (std::abs(way[1]) * per_cell_[1] >= std::abs(way[0]) * per_cell_[0]) {  // steep
-    const double chord = piece.a[0] + (v - piece.a[1]) / way[1] * way[0];
-    return std::abs(chord - u) > static_cast<double>(piece.off_u) ? chord > u : crossesBeyond(piece, 1, v, u);
-  }
-  const double chord = piece.a[1] + (u - piece.a[0]) / way[0] * way[1];
-  const bool above = std::abs(chord - v) > static_cast<double>(piece.off_v) ? chord > v : crossesBeyond(piece, 0, u, v);
-  return above != rises(piece);
+  const int axis = piece.axis;
+  const double along = axis == 0 ? v : u, beside = axis == 0 ? u : v, curve = piece.besideAt(piece.shareAt(along));
+  const bool beyond = std::abs(curve - beside) > static_cast<double>(piece.off)
+                          ? curve > beside
+                          : crossesBeyond(piece, 1 - axis, along, beside);
+  return axis == 0 ? beyond : beyond != rises(piece);
 }
 
 /// True if a piece that crosses the line v = const crosses it to the right of u.
@@ -123,39 +122,49 @@ bool Trim::crossesAbove(const TrimPiece& piece, double u, double v) const noexce
 
 /// Counts the crossings of the loops with a path from the point to the right border of its cell, and along the border
 /// to the reference point. For the reference point it is known whether it is inside.
-bool Trim::insideGrid(double u, double v) const noexcept {
+template <class Index>
+bool Trim::insideGrid(const std::vector<Index>& grid, double u, double v) const noexcept {
+  constexpr auto kCount = static_cast<Index>(~kInsideBit<Index>);
   const int i = std::min(static_cast<int>((u - lo_[0]) * per_cell_[0]), count_u_ - 1);
   const int j = std::min(static_cast<int>((v - lo_[1]) * per_cell_[1]), count_v_ - 1);
   const auto cell = static_cast<std::size_t>(j) * static_cast<std::size_t>(count_u_) + static_cast<std::size_t>(i);
-  bool in = (cells_[cell] & kInsideBit) != 0;
+  bool in = (grid[cell] & kInsideBit<Index>) != 0;
   const double border = gridBorder(lo_[0], cell_[0], i), height = gridHeight(lo_[1], cell_[1], j);
-  const std::uint32_t end = cells_[cell + 1] & ~kInsideBit;
-  for (std::uint32_t k = cells_[cell] & ~kInsideBit; k < end; ++k) {
-    const TrimPiece& piece = pieces_[of_cell_[k]];
+  const Index* const of_cell = grid.data() + cellCount() + 1;
+  const std::size_t end = grid[cell + 1] & kCount;
+  for (std::size_t k = grid[cell] & kCount; k < end; ++k) {
+    const TrimPiece& piece = pieces_[of_cell[k]];
     if (spans(piece.a[1], piece.b[1], v)) in ^= crossesRight(piece, v, u) != crossesRight(piece, v, border);
     if (spans(piece.a[0], piece.b[0], border))
       in ^= crossesAbove(piece, border, v) != crossesAbove(piece, border, height);
   }
   return in;
 }
+template bool Trim::insideGrid(const std::vector<std::uint32_t>&, double, double) const noexcept;
+template bool Trim::insideGrid(const std::vector<std::uint16_t>&, double, double) const noexcept;
+
+/// True if a cell has pieces, or lies inside the loops.
+template <class Index>
+bool Trim::isUsed(const std::vector<Index>& grid, std::size_t cell) const noexcept {
+  return grid[cell] != (grid[cell + 1] & ~kInsideBit<Index>);
+}
 
 bool Trim::mayTouch(const Array2d& lo, const Array2d& hi) const noexcept {
   if ((hi < lo_).any() || (lo > hi_).any()) return false;
-  if (cells_.empty()) return true;
+  if (rectangle()) return true;
   const Array2d most = Array2d(count_u_ - 1, count_v_ - 1);
   const Array2d first = ((lo - lo_) * per_cell_).floor().max(0).min(most);
   const Array2d last = ((hi - lo_) * per_cell_).floor().max(0).min(most);
   for (int j = static_cast<int>(first[1]); j <= static_cast<int>(last[1]); ++j)
     for (int i = static_cast<int>(first[0]); i <= static_cast<int>(last[0]); ++i) {
       const auto cell = static_cast<std::size_t>(j * count_u_ + i);
-      const bool holds_pieces = (cells_[cell] & ~kInsideBit) != (cells_[cell + 1] & ~kInsideBit);
-      if (holds_pieces || (cells_[cell] & kInsideBit) != 0) return true;
+      if (narrow_.empty() ? isUsed(wide_, cell) : isUsed(narrow_, cell)) return true;
     }
   return false;
 }
 
 std::size_t Trim::bytes() const noexcept {
-  return pieces_.size() * sizeof(TrimPiece) + (cells_.size() + of_cell_.size()) * sizeof(std::uint32_t);
+  return pieces_.size() * sizeof(TrimPiece) + wide_.size() * sizeof wide_[0] + narrow_.size() * sizeof narrow_[0];
 }
 
 }  // namespace hapticd::brep

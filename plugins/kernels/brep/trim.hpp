@@ -2,6 +2,7 @@
 /// Tells whether a point of the parameter plane lies inside the loops of a face.
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -9,14 +10,27 @@
 
 namespace hapticd::brep {
 
-/// A piece of a pcurve along which u is monotone and v is monotone.
+/// A piece of a pcurve along which u is monotone and v is monotone. It is near a parabola: one coordinate as a function
+/// of the other one. A piece of kind kLine is straight and has no parabola.
 struct TrimPiece {
-  enum class Kind : std::uint32_t { kLine, kCircle, kOther };
+  enum class Kind : std::uint16_t { kLine, kCircle, kOther };
   Eigen::Vector2d a, b;  ///< ends at t0 and t1; neighbouring pieces share them bit for bit, so that there is no gap
-  float off_u, off_v;    ///< largest deviation of the curve from its chord along u and along v
-  std::uint32_t curve;   ///< index in Part::curves2
-  Kind kind;
   double t0, t1;
+  float bend;           ///< the parabola's distance from the chord in the middle, times 4
+  float off;            ///< largest deviation of the curve from the parabola, along `axis`
+  std::uint32_t curve;  ///< index in Part::curves2
+  Kind kind;
+  std::uint16_t axis;  ///< the coordinate that is the parabola's value: 0 for u, 1 for v; the other one runs more
+
+  /// [any] Returns how far along the piece the other coordinate has the value `at`, from 0 to 1.
+  double shareAt(double at) const noexcept {
+    const double run = b[1 - axis] - a[1 - axis];
+    return run == 0 ? 0.5 : std::clamp((at - a[1 - axis]) / run, 0.0, 1.0);
+  }
+  /// [any] Returns the parabola's value at a share of the piece.
+  double besideAt(double share) const noexcept {
+    return a[axis] + share * (b[axis] - a[axis]) + share * (1 - share) * static_cast<double>(bend);
+  }
 };
 
 /// Gaps between consecutive curves of a face's loops.
@@ -36,10 +50,10 @@ class Trim {
   /// hi]. A point on a loop may count as inside or outside.
   bool inside(double u, double v) const noexcept {
     if (!(u >= lo_[0] && u <= hi_[0] && v >= lo_[1] && v <= hi_[1])) return false;
-    return cells_.empty() || insideGrid(u, v);
+    return rectangle() || insideGrid(u, v);
   }
   /// [any] True if the loops are the sides of the box [lo, hi], or there are none.
-  bool rectangle() const noexcept { return cells_.empty(); }
+  bool rectangle() const noexcept { return count_u_ == 0; }
   /// [any] True if a box of parameters has, or may have, points inside the loops.
   bool mayTouch(const Eigen::Array2d& lo, const Eigen::Array2d& hi) const noexcept;
   const Eigen::Array2d& lo() const noexcept { return lo_; }
@@ -50,7 +64,16 @@ class Trim {
 
  private:
   friend class TrimBuilder;
-  bool insideGrid(double u, double v) const noexcept;
+  bool insideGrid(double u, double v) const noexcept {
+    return narrow_.empty() ? insideGrid(wide_, u, v) : insideGrid(narrow_, u, v);
+  }
+  template <class Index>
+  bool insideGrid(const std::vector<Index>& grid, double u, double v) const noexcept;
+  template <class Index>
+  bool isUsed(const std::vector<Index>& grid, std::size_t cell) const noexcept;
+  std::size_t cellCount() const noexcept {
+    return static_cast<std::size_t>(count_u_) * static_cast<std::size_t>(count_v_);
+  }
   bool passesRight(const TrimPiece& piece, double u, double v) const noexcept;
   bool crossesRight(const TrimPiece& piece, double v, double u) const noexcept;
   bool crossesAbove(const TrimPiece& piece, double u, double v) const noexcept;
@@ -63,10 +86,11 @@ class Trim {
   std::int32_t count_u_ = 0, count_v_ = 0;
   LoopGaps gaps_;
   std::vector<TrimPiece> pieces_;
-  /// For each cell, row after row: the index of its first piece in of_cell_. The top bit is set if the cell's reference
-  /// point is inside. One more entry marks the end. Empty if the loops are the box.
-  std::vector<std::uint32_t> cells_;
-  std::vector<std::uint32_t> of_cell_;
+  /// The grid. First for each cell, row after row: how many pieces the cells before it have; the top bit is set if the
+  /// cell's reference point is inside. One more entry marks the end. Then the pieces of all cells, as indices in
+  /// pieces_. Only one of the two is used: `narrow_` if the numbers fit.
+  std::vector<std::uint32_t> wide_;
+  std::vector<std::uint16_t> narrow_;
 };
 
 }  // namespace hapticd::brep

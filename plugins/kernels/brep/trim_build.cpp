@@ -30,6 +30,7 @@ class TrimBuilder {
     setBox();
     fillGrid();
     for (const TrimPiece& p : trim_.pieces_) markRows(p);
+    keepGrid();
   }
 
  private:
@@ -54,7 +55,7 @@ class TrimBuilder {
       trim_.lo_ = trim_.lo_.min(p.a.array()).min(p.b.array());
       trim_.hi_ = trim_.hi_.max(p.a.array()).max(p.b.array());
     }
-    constexpr double kCellsPerPiece = 3, kFewest = 16, kMost = 65536;
+    constexpr double kCellsPerPiece = 6, kFewest = 36, kMost = 65536;
     const double cells = std::clamp(kCellsPerPiece * static_cast<double>(trim_.pieces_.size()), kFewest, kMost);
     trim_.count_u_ = trim_.count_v_ = static_cast<int>(std::ceil(std::sqrt(cells)));
     const Array2d range = (trim_.hi_ - trim_.lo_).max(1e-300);
@@ -100,13 +101,13 @@ class TrimBuilder {
 
   void fillGrid() {
     const std::size_t cells = cellOf(0, trim_.count_v_);
-    trim_.cells_.assign(cells + 1, 0);
-    for (const TrimPiece& p : trim_.pieces_) overCells(p, [&](int i, int j) { ++trim_.cells_[cellOf(i, j) + 1]; });
-    for (std::size_t c = 0; c < cells; ++c) trim_.cells_[c + 1] += trim_.cells_[c];
-    trim_.of_cell_.resize(trim_.cells_[cells]);
-    std::vector<std::uint32_t> place(trim_.cells_.begin(), trim_.cells_.end() - 1);
+    cells_.assign(cells + 1, 0);
+    for (const TrimPiece& p : trim_.pieces_) overCells(p, [&](int i, int j) { ++cells_[cellOf(i, j) + 1]; });
+    for (std::size_t c = 0; c < cells; ++c) cells_[c + 1] += cells_[c];
+    of_cell_.resize(cells_[cells]);
+    std::vector<std::uint32_t> place(cells_.begin(), cells_.end() - 1);
     for (std::uint32_t k = 0; k < trim_.pieces_.size(); ++k)
-      overCells(trim_.pieces_[k], [&](int i, int j) { trim_.of_cell_[place[cellOf(i, j)]++] = k; });
+      overCells(trim_.pieces_[k], [&](int i, int j) { of_cell_[place[cellOf(i, j)]++] = k; });
   }
 
   /// Marks which reference points are inside: each piece that crosses a row's height to the right of a reference point
@@ -118,13 +119,30 @@ class TrimBuilder {
       if ((p.a[1] <= height) == (p.b[1] <= height)) continue;
       for (int i = 0; i < trim_.count_u_; ++i) {
         if (!trim_.crossesRight(p, height, gridBorder(trim_.lo_[0], trim_.cell_[0], i))) break;
-        trim_.cells_[cellOf(i, j)] ^= kInsideBit;
+        cells_[cellOf(i, j)] ^= kInsideBit<std::uint32_t>;
       }
     }
   }
 
+  void keepGrid() {
+    constexpr std::size_t kNarrow = 0x8000;
+    if (of_cell_.size() >= kNarrow || trim_.pieces_.size() >= kNarrow) {
+      trim_.wide_.reserve(cells_.size() + of_cell_.size());
+      trim_.wide_.assign(cells_.begin(), cells_.end());
+      trim_.wide_.insert(trim_.wide_.end(), of_cell_.begin(), of_cell_.end());
+      return;
+    }
+    trim_.narrow_.reserve(cells_.size() + of_cell_.size());
+    for (const std::uint32_t cell : cells_) {
+      const bool inside = (cell & kInsideBit<std::uint32_t>) != 0;
+      trim_.narrow_.push_back(static_cast<std::uint16_t>(inside ? cell | kInsideBit<std::uint16_t> : cell));
+    }
+    for (const std::uint32_t piece : of_cell_) trim_.narrow_.push_back(static_cast<std::uint16_t>(piece));
+  }
+
   const Face& face_;
   Trim& trim_;
+  std::vector<std::uint32_t> cells_, of_cell_;  ///< the two parts of the grid, see Trim::wide_
 };
 
 Trim::Trim(const Geometry& geometry, const Face& face) {

@@ -6,7 +6,8 @@
 
 namespace hapticd::brep {
 
-inline constexpr std::uint32_t kInsideBit = 0x80000000u;
+template <class Index>
+inline constexpr Index kInsideBit = Index{1} << (8 * sizeof(Index) - 1);
 
 /// [any] Returns u at the right border of column i.
 inline double gridBorder(double lo, double cell, int i) noexcept {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace hapticd::brep {
@@ -31,7 +32,7 @@ class Cutter {
       if (!gap) continue;
       ++gaps.count;
       gaps.widest = std::max(gaps.widest, (pointAt(to) - pointAt(end)).norm());
-      pieces_.push_back({end, to, 0, 0, 0, TrimPiece::Kind::kLine, 0, 1});
+      pieces_.push_back({end, to, 0, 1, 0, 0, 0, TrimPiece::Kind::kLine, 0});
     }
   }
 
@@ -49,9 +50,10 @@ class Cutter {
   /// pcurves.
   void addCurve(const Coedge& c, const Vector2d& a, const Vector2d& b) {
     if (part_.curves2[c.pcurve].kind == CurveKind::kLine || isStraight(c, a, b)) {
-      pieces_.push_back({a, b, 0, 0, c.pcurve, TrimPiece::Kind::kLine, c.t0, c.t1});
+      pieces_.push_back({a, b, c.t0, c.t1, 0, 0, c.pcurve, TrimPiece::Kind::kLine, 0});
       return;
     }
+    knots_ = innerKnots(c);
     std::vector<double> cuts = turns(c);
     cuts.push_back(c.t1);
     double t = c.t0;
@@ -81,7 +83,14 @@ class Cutter {
     return true;
   }
 
-  /// Returns the parameters inside the pcurve where u or v turns back, and the inner knots of a spline.
+  std::vector<double> innerKnots(const Coedge& c) const {
+    std::vector<double> inner;
+    for (const double knot : geometry_.planeKnots(c.pcurve))
+      if (knot > c.t0 && knot < c.t1) inner.push_back(knot);
+    return inner;
+  }
+
+  /// Returns the parameters inside the pcurve where u or v turns back, and the knots where a spline has a kink.
   std::vector<double> turns(const Coedge& c) const {
     const Curve2& curve = part_.curves2[c.pcurve];
     std::vector<double> found;
@@ -105,65 +114,107 @@ class Cutter {
   }
 
   void sampledTurns(const Coedge& c, std::vector<double>& found) const {
-    constexpr int kSamples = 12;  // per knot span
-    std::vector<double> stops{c.t0, c.t1};
-    for (const double knot : geometry_.planeKnots(c.pcurve))
-      if (knot > c.t0 && knot < c.t1) stops.push_back(knot);
-    std::sort(stops.begin(), stops.end());
-    for (std::size_t s = 0; s + 1 < stops.size(); ++s) {
-      if (s > 0) found.push_back(stops[s]);
-      const double step = (stops[s + 1] - stops[s]) / kSamples;
-      for (int i = 0; i < kSamples; ++i)
-        for (int axis = 0; axis < 2; ++axis)
-          bisect(c.pcurve, axis, stops[s] + i * step, stops[s] + (i + 1) * step, found);
-    }
+    std::vector<double> stops{c.t0};
+    stops.insert(stops.end(), knots_.begin(), knots_.end());
+    stops.push_back(c.t1);
+    for (std::size_t s = 1; s + 1 < stops.size(); ++s)
+      if (hasKink(c.pcurve, stops[s], stops[s] - stops[s - 1])) found.push_back(stops[s]);
+    for (int axis = 0; axis < 2; ++axis) addTurns(c, axis, stops, found);
   }
 
-  /// Adds to `found` the parameter between low and high at which the slope along an axis changes its sign.
-  void bisect(std::uint32_t curve, int axis, double low, double high, std::vector<double>& found) const {
-    const double end = high - 1e-9 * (high - low);  // at a knot, derivatives are evaluated in the span to its right
+  /// Adds the parameters where the slope along an axis changes its sign. Slopes that move the curve by less than kFlat
+  /// are left out, because rounding alone makes their sign.
+  void addTurns(const Coedge& c, int axis, const std::vector<double>& stops, std::vector<double>& found) const {
+    constexpr int kSamples = 12;     // per knot span
+    constexpr double kFlat = 1e-14;  // relative to the face's range
+    const double flat = kFlat * range_[axis] / (c.t1 - c.t0);
+    double last_t = c.t0, last = 0;
+    for (std::size_t s = 0; s + 1 < stops.size(); ++s)
+      for (int i = 0; i <= kSamples; ++i) {
+        // at a knot, derivatives are evaluated in the span to its right
+        const double share = i < kSamples ? static_cast<double>(i) / kSamples : 1 - 1e-9;
+        const double t = stops[s] + share * (stops[s + 1] - stops[s]),
+                     slope = geometry_.planeCurve(c.pcurve, t).c1[axis];
+        if (!(std::abs(slope) > flat)) continue;
+        if (slope * last < 0) found.push_back(i == 0 ? t : turnBetween(c.pcurve, axis, last_t, t));
+        last = slope;
+        last_t = t;
+      }
+  }
+
+  /// True if the derivatives on both sides of a knot differ. @param before length of the span that ends at the knot
+  bool hasKink(std::uint32_t curve, double knot, double before) const {
+    constexpr double kSame = 1e-6;
+    const Vector2d left = geometry_.planeCurve(curve, knot - 1e-9 * before).c1;
+    const Vector2d right = geometry_.planeCurve(curve, knot).c1;
+    return !((left - right).cwiseAbs().maxCoeff() <= kSame * std::min(left.norm(), right.norm()));
+  }
+
+  /// Returns the parameter between a and b at which the slope along an axis changes its sign.
+  double turnBetween(std::uint32_t curve, int axis, double a, double b) const {
     const auto rises = [&](double t) { return geometry_.planeCurve(curve, t).c1[axis] > 0; };
-    const bool rising = rises(low);
-    if (rising == rises(end)) return;
-    double a = low, b = end;
+    const bool rising = rises(a);
     for (int i = 0; i < 60; ++i) {
       const double middle = 0.5 * (a + b);
       if (middle <= a || middle >= b) break;
       (rises(middle) == rising ? a : b) = middle;
     }
-    found.push_back(b);
+    return b;
   }
 
-  /// True if a piece is near its chord along u and along v. Then only few points of the face lie between the two, and
-  /// the chord alone decides for all others. The deviation is compared with the size of the piece or, if the piece is
-  /// narrow, with that of the face. Otherwise halving might never end: where u or v turns back, or where a piece is
-  /// parallel to u or v except for rounding, each half deviates as much relative to its size as the whole.
-  bool isNear(const Vector2d& off, const Vector2d& way) const {
-    constexpr double kNear = 0.05, kNarrow = 1e-4;  // relative to the piece, and to the face
-    for (int axis = 0; axis < 2; ++axis) {
-      const bool narrow = off[axis] <= kNarrow * range_[axis] || std::abs(way[1 - axis]) <= kNarrow * range_[1 - axis];
-      if (!narrow && off[axis] > kNear * std::abs(way[axis])) return false;
-    }
-    return true;
+  /// True if a piece is near its parabola. Then only few points of the face lie between the two, and the parabola alone
+  /// decides for all others. The deviation is compared with the size of the piece or, if the piece is narrow, with that
+  /// of the face. Otherwise halving might never end: where u or v turns back, or where a piece is parallel to u or v
+  /// except for rounding, each half deviates as much relative to its size as the whole.
+  bool isNear(double off, const Vector2d& way, int axis) const {
+    constexpr double kNear = 0.02, kFine = 1e-3, kNarrow = 1e-4;  // relative to the piece, and twice to the face
+    return off <= kNear * std::abs(way[axis]) || off <= kFine * range_[axis] ||
+           std::abs(way[1 - axis]) <= kNarrow * range_[1 - axis];
   }
 
-  /// Adds a monotone piece, halved until each part is near its chord.
+  /// Adds a monotone piece, halved until each part is near its parabola.
   void addMonotone(const Coedge& c, double t0, double t1, const Vector2d& a, const Vector2d& b, int depth) {
     constexpr int kDeepest = 12;
-    TrimPiece piece{a, b, 0, 0, c.pcurve, TrimPiece::Kind::kOther, t0, t1};
-    const Vector2d off = offChord(c, t0, t1, a, b);
-    piece.off_u = std::nextafter(static_cast<float>(off[0]), 1e30F);
-    piece.off_v = std::nextafter(static_cast<float>(off[1]), 1e30F);
+    TrimPiece piece{a, b, t0, t1, 0, 0, c.pcurve, TrimPiece::Kind::kOther, 0};
+    const Vector2d way = b - a;
+    piece.axis = std::abs(way[1]) * range_[0] >= std::abs(way[0]) * range_[1] ? 0 : 1;
+    const double off = fitParabola(piece);
     if (isRound(part_.curves2[c.pcurve])) {
       piece.kind = TrimPiece::Kind::kCircle;
-    } else if (depth < kDeepest && !isNear(off, b - a)) {
-      const double middle = 0.5 * (t0 + t1);
+    } else if (depth < kDeepest && !isNear(off, way, piece.axis)) {
+      const double middle = middleOf(t0, t1);
       const Vector2d there = at(c, middle);
       addMonotone(c, t0, middle, a, there, depth + 1);
       addMonotone(c, middle, t1, there, b, depth + 1);
       return;
     }
     pieces_.push_back(piece);
+  }
+
+  /// Returns the knot that is nearest to the middle between t0 and t1, or the middle itself if no knot lies between.
+  double middleOf(double t0, double t1) const {
+    const double middle = 0.5 * (t0 + t1);
+    const auto after = std::lower_bound(knots_.begin(), knots_.end(), middle);
+    double best = middle, least = 0.5 * (t1 - t0);
+    for (const auto near : {after, after == knots_.begin() ? after : after - 1})
+      if (near != knots_.end() && *near > t0 && *near < t1 && std::abs(*near - middle) < least)
+        best = *near, least = std::abs(*near - middle);
+    return best;
+  }
+
+  /// Returns the parameters between t0 and t1, in order, at which the curve is compared with its chord.
+  std::vector<double> samplesBetween(double t0, double t1) const {
+    constexpr int kFewest = 9, kPerSpan = 4;
+    std::vector<double> stops{t0};
+    for (auto knot = std::upper_bound(knots_.begin(), knots_.end(), t0); knot != knots_.end() && *knot < t1; ++knot)
+      stops.push_back(*knot);
+    stops.push_back(t1);
+    const int spans = static_cast<int>(stops.size()) - 1, each = std::max(kPerSpan, (kFewest + spans - 1) / spans);
+    std::vector<double> samples;
+    for (std::size_t s = 0; s + 1 < stops.size(); ++s)
+      for (int i = 0; i < each; ++i) samples.push_back(stops[s] + (stops[s + 1] - stops[s]) * i / each);
+    samples.push_back(t1);
+    return samples;
   }
 
   static bool isRound(const Curve2& c) {
@@ -173,26 +224,34 @@ class Cutter {
            std::abs(c.x[0] * c.y[0] + c.x[1] * c.y[1]) <= kRound * x * y;
   }
 
-  /// Returns the largest deviation of a piece from its chord along u and along v at samples, plus half of that for the
-  /// points between the samples.
-  Vector2d offChord(const Coedge& c, double t0, double t1, const Vector2d& a, const Vector2d& b) const {
-    constexpr int kSamples = 9;
-    Vector2d most(0, 0);
-    for (int i = 0; i <= kSamples; ++i) {
-      const Vector2d there = at(c, t0 + (t1 - t0) * i / kSamples);
-      for (int axis = 0; axis < 2; ++axis) {
-        const double run = b[1 - axis] - a[1 - axis];
-        const double share = run == 0 ? 0.5 : std::clamp((there[1 - axis] - a[1 - axis]) / run, 0.0, 1.0);
-        most[axis] = std::max(most[axis], std::abs(there[axis] - a[axis] - share * (b[axis] - a[axis])));
+  /// Sets the parabola of a piece, by least squares over samples, and returns the largest deviation from it: that at
+  /// the samples, plus half of it for the points between them.
+  double fitParabola(TrimPiece& piece) const {
+    const std::vector<double> samples = samplesBetween(piece.t0, piece.t1);
+    double product = 0, square = 0, most = 0;
+    for (const bool fitted : {false, true}) {
+      for (const double t : samples) {
+        const Vector2d there = geometry_.planeCurve(piece.curve, t).c;
+        const double share = piece.shareAt(there[1 - piece.axis]), hump = share * (1 - share);
+        const double beside = there[piece.axis] - piece.besideAt(share);
+        most = std::max(most, std::abs(beside));
+        product += hump * beside;
+        square += hump * hump;
       }
+      if (fitted || !(square > 0)) break;
+      piece.bend = static_cast<float>(product / square);
+      most = 0;
     }
-    return 1.5 * most + 1e-15 * (a.cwiseAbs() + b.cwiseAbs());
+    const double off = 1.5 * most + 1e-15 * std::max(std::abs(piece.a[piece.axis]), std::abs(piece.b[piece.axis]));
+    piece.off = std::nextafter(static_cast<float>(off), std::numeric_limits<float>::infinity());
+    return off;
   }
 
   const Geometry& geometry_;
   const Part& part_;
   std::uint32_t surface_;
   Vector2d range_;
+  std::vector<double> knots_;  ///< inner knots of the pcurve that is being cut, ascending
   std::vector<TrimPiece>& pieces_;
 };
 

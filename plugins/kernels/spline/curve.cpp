@@ -50,6 +50,13 @@ Curve::Curve(const CurveData& data, Form form, Instructions instructions) : name
   net_kernel_ = {pair[0], pair[1]};
 }
 
+TableCell Curve::cell(std::int32_t span) const noexcept {
+  const Cell& at = axis_.cell(span);
+  return {{at.lo, 0},       {at.end, 1},
+          {at.origin, 0},   table_.cells.data() + span * table_.row_stride,
+          table_kernel_[1], {table_.size_u, table_.size_v}};
+}
+
 void Curve::evaluate(int order, double u, std::int32_t& span, double* out) const noexcept {
   u = axis_.locate(u, span);
   const Cell& cell = axis_.cell(span);

@@ -47,6 +47,10 @@ class Curve {
   const std::string& name() const noexcept { return name_; }
   /// [any] Returns the form in use.
   Form form() const noexcept { return table_.cells.empty() ? Form::kNet : Form::kTable; }
+  /// [any] True if coordinates are extreme, so that they are not stored in m.
+  bool scaled() const noexcept { return scale_ != 1; }
+  /// [any] Returns the cell of span `span`; its kernel is null if form() is not kTable. Along v it has one coefficient.
+  TableCell cell(std::int32_t span) const noexcept;
   /// [any] Returns the memory that this curve has allocated, in bytes.
   std::size_t bytes() const noexcept {
     return net_.capacity() * sizeof(Quad) + table_.cells.capacity() * sizeof(double) + axis_.bytes();

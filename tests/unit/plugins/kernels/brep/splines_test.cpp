@@ -75,5 +75,39 @@ TEST(SplineFeet, OfTheSphere) {
   expectAsNearAsTraceFinds("sphere.yaml", 1e-10);
 }
 
+TEST(TableCurves, EvaluateAsTheCurvesThatTheyCopy) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> share(-0.1, 1.1);
+  TableCurves tables;
+  std::vector<spline::Curve> curves;
+  for (int k = 0; k < 24; ++k) {
+    const int degree = 1 + k % 7, spans = 1 + k % 4;
+    spline::CurveData data;
+    data.degree = degree;
+    data.knots.assign(static_cast<std::size_t>(degree + 1), 0.0);
+    for (int i = 1; i <= spans; ++i)
+      data.knots.insert(data.knots.end(), i < spans ? 1u : static_cast<std::size_t>(degree + 1), 1.0 * i / spans);
+    for (int i = 0; i < degree + spans; ++i) {
+      data.points.emplace_back(i + share(random), share(random), share(random));
+      if (k % 2 == 1) data.weights.push_back(1 + 0.1 * share(random));
+    }
+    curves.emplace_back(data, spline::Form::kTable);
+    ASSERT_EQ(tables.add(curves.back()), curves.size() - 1);
+  }
+  for (std::uint32_t k = 0; k < curves.size(); ++k) {
+    const auto breaks = curves[k].breaks();
+    EXPECT_EQ(tables.breaks(k), std::vector<double>(breaks.begin(), breaks.end()));
+    for (int i = 0; i < 200; ++i) {
+      const double t = i == 0 ? 0 : i == 1 ? 1 : i == 2 ? std::nan("") : i % 3 == 0 ? 0.25 * (i % 5) : share(random);
+      spline::CurvePoint ours, theirs;
+      ours.span = i % 9 - 2;
+      tables.evaluate2(k, t, ours);
+      curves[k].evaluate2(t, theirs);
+      ASSERT_TRUE(ours.C == theirs.C && ours.C1 == theirs.C1 && ours.C2 == theirs.C2 && ours.span == theirs.span)
+          << k << ' ' << t;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hapticd::brep

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "kernels/brep/feet.hpp"
+#include "kernels/spline/refinement.hpp"
 #include "sample_splines.hpp"
 
 namespace hapticd::brep {
@@ -67,6 +68,31 @@ TEST(TrimPieces, AreFewAboutTheTurnOfACurve) {
   const Trim trim(geometry, face.faces[0]);
   expectInside(trim, {1, 1.2}, [](double u, double) { return 1 + 0.8 * u * (1 - u); });
   EXPECT_LT(trim.bytes(), 6000u);
+}
+
+/// Exporters write simple curves as splines of many spans. A piece may run over several of them.
+TEST(TrimPieces, AreFewAlongACurveOfManySpans) {
+  spline::CurveData curve;
+  curve.degree = 2;
+  curve.knots = {0, 0, 0, 1, 1, 1};
+  curve.points = {{1, 1, 0}, {0.5, 1.4, 0}, {0, 1, 0}};
+  std::vector<double> added;
+  for (int i = 1; i < 40; ++i) added.push_back(i / 40.0);
+  curve = spline::refine(curve, added);
+  Part part;
+  Curve2 top;
+  top.kind = CurveKind::kSpline;
+  top.degree = 2;
+  top.count = static_cast<std::uint32_t>(curve.points.size());
+  top.data = samples::addReals(part, curve.knots);
+  for (const Eigen::Vector3d& p : curve.points) samples::addReals(part, {p[0], p[1]});
+  const std::vector<Curve2> sides{samples::line2({0, 0}, {1, 0}), samples::line2({1, 0}, {0, 1}), top,
+                                  samples::line2({0, 1}, {0, -1})};
+  const Part face = faceOf(std::move(part), sides, {1, 1.2});
+  const Geometry geometry(face, spline::Form::kTable);
+  const Trim trim(geometry, face.faces[0]);
+  expectInside(trim, {1, 1.2}, [](double u, double) { return 1 + 0.8 * u * (1 - u); });
+  EXPECT_LT(trim.bytes(), 1000u);
 }
 
 /// Exporters write lines as splines whose points have rounding errors. Each half of such a piece deviates from its
