@@ -66,7 +66,7 @@ class PlantOf final : public Plant {
     const Eigen::Vector3d force =
         pull.stiffness * (pull.target - mechanism_.tip) + pull.damping * (pull.velocity - tip_velocity) + pull.force;
     hand_force_ = force;
-    A_.noalias() = mechanism_.J.transpose() * mechanism_.J;
+    A_.noalias() = mechanism_.J.transpose().lazyProduct(mechanism_.J);
     K_ = pull.stiffness * A_;
     D_ = pull.damping * A_;
     tau_ = mechanism_.J.transpose() * force - mechanism_.bias;

@@ -46,7 +46,7 @@ std::optional<double> farthestReach(const Eigen::Matrix3Xd& jacobian, const std:
   const auto joints = static_cast<int>(jacobian.cols());
   if (joints < 3 || torque.size() != static_cast<size_t>(joints) || !jacobian.allFinite()) return std::nullopt;
   // The eigenvalues of J J^T, in ascending order, are the squares of the singular values of J.
-  const Eigen::Matrix3d square = jacobian * jacobian.transpose();
+  const Eigen::Matrix3d square = jacobian.lazyProduct(jacobian.transpose());
   const Eigen::Vector3d squares =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(square, Eigen::EigenvaluesOnly).eigenvalues();
   if (!(squares[0] > kFlat * kFlat * squares[2])) return std::nullopt;
