@@ -2,7 +2,7 @@
 # Headers of libraries that g++ parses once for many rooms, in the presets whose rooms are units. The other presets have
 # none of this: there a file that forgets an include does not compile.
 #   hapticd_headers              Eigen and the standard library, for code that ticks wait for
-#   hapticd_headers_no_deadline  nlohmann/json and fmt as well, for rooms with hapticd_no_deadline() or hapticd_interactive()
+#   hapticd_headers_no_deadline  nlohmann/json as well, for rooms with hapticd_no_deadline() or hapticd_interactive()
 # Flags of a room must be those of the headers, or g++ refuses them; a source with flags of its own says
 # SKIP_PRECOMPILE_HEADERS. A room also gets the libraries of the headers, since ccache reads the headers themselves.
 function(hapticd_use_precompiled target headers)
@@ -12,16 +12,14 @@ function(hapticd_use_precompiled target headers)
 endfunction()
 
 function(hapticd_precompile headers)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES;DEFINITIONS;ROOMS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES;ROOMS")
   file(WRITE ${CMAKE_BINARY_DIR}/${headers}.cpp "// nothing: its target precompiles headers\n")
   add_library(${headers} OBJECT ${CMAKE_BINARY_DIR}/${headers}.cpp)
   target_link_libraries(${headers} PRIVATE hapticd_options ${arg_LIBRARIES})
-  target_compile_definitions(${headers} PRIVATE ${arg_DEFINITIONS})
   target_precompile_headers(${headers} PRIVATE ${arg_HEADERS})
   foreach(room IN LISTS arg_ROOMS)
     if(TARGET ${room})
       hapticd_use_precompiled(${room} ${headers} ${arg_LIBRARIES})
-      target_compile_definitions(${room} PRIVATE ${arg_DEFINITIONS})
     endif()
   endforeach()
 endfunction()
@@ -35,15 +33,10 @@ if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     hapticd_medial hapticd_spline hapticd_trace hapticd_traced_shape mat_deformable_objects
     nurbs_rigid_objects pendulum_objects push_button_objects hapticd_wire_arm usb_hid_objects usb_bulk_objects vme_objects
     vendor_hd_objects vendor_dhd_objects)
-  hapticd_precompile(hapticd_headers_no_deadline HEADERS <Eigen/Geometry> <fmt/format.h> <map> <nlohmann/json.hpp> ${standard}
-    LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json
-    DEFINITIONS FMT_SHARED # as fmt's own target says, which would make each room need the library
-    ROOMS
-    hapticd hapticd_capture hapticd_conformance hapticd_diagnostics hapticd_document hapticd_export
+  hapticd_precompile(hapticd_headers_no_deadline HEADERS <Eigen/Geometry> <nlohmann/json.hpp> ${standard}
+    LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json ROOMS
+    hapticd_capture hapticd_conformance hapticd_diagnostics hapticd_document hapticd_export
     hapticd_importing hapticd_mesh_import hapticd_model_file hapticd_part hapticd_record hapticd_scene hapticd_session hapticd_tune hapticd_view_parts
     hapticd_world hapticd_client_objects hapticd_control hapticd_haply_parts hapticd_hd)
   hapticd_no_deadline(hapticd_headers_no_deadline)
-  # a program would have -fPIE, and g++ takes the headers for one of the two only
-  set_target_properties(hapticd PROPERTIES POSITION_INDEPENDENT_CODE OFF)
-  target_compile_options(hapticd PRIVATE -fPIC)
 endif()
