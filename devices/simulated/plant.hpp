@@ -66,6 +66,7 @@ class PlantOf final : public Plant {
     const Eigen::Vector3d force =
         pull.stiffness * (pull.target - mechanism_.tip) + pull.damping * (pull.velocity - tip_velocity) + pull.force;
     hand_force_ = force;
+    // lazyProduct(): the code for large matrices is not instantiated; the bits are the same for so few joints
     A_.noalias() = mechanism_.J.transpose().lazyProduct(mechanism_.J);
     K_ = pull.stiffness * A_;
     D_ = pull.damping * A_;

@@ -164,6 +164,7 @@ JointVector Chain::stepTowards(const Jacobian& J, const Eigen::Vector3d& error, 
   Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMaxJoints> free = J.topRows<3>();
   JointVector trial = q;
   for (int round = 0; round <= count_; ++round) {
+    // lazyProduct(): the code for large matrices is not instantiated; the bits are the same for so few joints
     Eigen::Matrix3d A = free.lazyProduct(free.transpose());
     A.diagonal().array() += lambda * (A.trace() + 1e-300);
     trial = q + free.transpose() * A.ldlt().solve(error);

@@ -8,6 +8,7 @@
 namespace hapticd::servo {
 
 TipInverse::TipInverse(const TipJacobian& J) noexcept : J_(J), inverse_(Eigen::Matrix3d::Zero()) {
+  // lazyProduct(): the code for large matrices is not instantiated; the bits are the same for so few joints
   const Eigen::Matrix3d JJt = J.lazyProduct(J.transpose());
   if (!JJt.allFinite()) {
     health_ = 0;

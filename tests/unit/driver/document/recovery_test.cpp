@@ -116,7 +116,6 @@ TEST(Recovery, DropsWhatFollowsFromTextThatWasLeftOut) {
                                             "u.yaml models[0].plugin"}));
 }
 
-/// A text that cannot be read as it is never becomes one without a problem, whatever is broken in it.
 /// Returns how many times longer a text takes that has eight times as many parts. A time is the shortest of three.
 double growth(std::string (*textOf)(int parts), int parts) {
   const auto shortest = [textOf](int count) {
@@ -163,6 +162,7 @@ TEST(Recovery, TriesFewCorrectionsOfALongLine) {
   EXPECT_LT(corrections({words}, {"", 1, 4}).size(), kMost);
 }
 
+/// A text that cannot be read as it is never becomes one without a problem, whatever is broken in it.
 TEST(Recovery, NeverAcceptsABrokenText) {
   const std::string good =
       "hapticd: 1\nservo: {rate: 1000, gravity: [0, 0, 0]}\nmodels:\n  - name: \"ball\"\n    plugin: torus\n"
