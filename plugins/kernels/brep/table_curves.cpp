@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "kernels/spline/surface.hpp"
+
 namespace hapticd::brep {
 
 std::uint32_t TableCurves::add(const spline::Curve& curve) {
