@@ -24,17 +24,21 @@ function(hapticd_precompile headers)
   endforeach()
 endfunction()
 
+find_package(nlohmann_json REQUIRED)
+add_library(hapticd_precompiled_json INTERFACE)
+target_include_directories(hapticd_precompiled_json INTERFACE ${CMAKE_CURRENT_LIST_DIR}/precompiled)
+target_link_libraries(hapticd_precompiled_json INTERFACE nlohmann_json::nlohmann_json)
+
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  find_package(nlohmann_json REQUIRED)
   set(standard <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem> <functional> <memory> <optional> <string> <vector>)
   hapticd_precompile(hapticd_headers HEADERS <Eigen/Geometry> ${standard} LIBRARIES Eigen3::Eigen ROOMS
-    hapticd_arm hapticd_core hapticd_host hapticd_loop hapticd_passivity hapticd_safety hapticd_sim hapticd_telemetry
+    hapticd_base hapticd_status hapticd_watch hapticd_codec hapticd_arm hapticd_core hapticd_host hapticd_loop hapticd_passivity hapticd_safety hapticd_sim hapticd_telemetry
     hapticd_velocity hapticd_kinematics hapticd_simulated simulated_objects hapticd_brep hapticd_contact hapticd_dynamics
     hapticd_medial hapticd_spline hapticd_trace hapticd_traced_shape mat_deformable_objects
     nurbs_rigid_objects pendulum_objects push_button_objects hapticd_wire_arm usb_hid_objects usb_bulk_objects vme_objects
     vendor_hd_objects vendor_dhd_objects)
-  hapticd_precompile(hapticd_headers_no_deadline HEADERS <Eigen/Geometry> <nlohmann/json.hpp> ${standard}
-    LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json ROOMS
+  hapticd_precompile(hapticd_headers_no_deadline HEADERS <Eigen/Geometry> <json_without_literals.hpp> ${standard}
+    LIBRARIES Eigen3::Eigen hapticd_precompiled_json ROOMS
     hapticd_capture hapticd_conformance hapticd_diagnostics hapticd_document hapticd_export
     hapticd_importing hapticd_mesh_import hapticd_model_file hapticd_part hapticd_record hapticd_scene hapticd_session hapticd_tune hapticd_view_parts
     hapticd_world hapticd_client_objects hapticd_control hapticd_haply_parts hapticd_hd)
