@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "cli/command.hpp"
+#include "host/build_folders.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -55,7 +56,7 @@ std::string renamed(std::string text, const std::string& name) {
 std::optional<fs::path> templateFolder() {
   if (const auto installed = host::shippedFile("template")) return installed;
   std::error_code error;
-  const fs::path source = HAPTICD_TEMPLATE_DIR;
+  const fs::path source = fs::path(host::buildFolders().source) / "plugins/template";
   return fs::is_directory(source, error) ? std::optional(source) : std::nullopt;
 }
 
@@ -63,7 +64,7 @@ std::optional<fs::path> templateFolder() {
 /// which the program was built.
 fs::path includeFolder() {
   std::error_code error;
-  const fs::path source = fs::path(HAPTICD_TEMPLATE_DIR) / "../../driver/include";
+  const fs::path source = fs::path(host::buildFolders().source) / "driver/include";
   if (fs::exists(source / "hapticd/shape.hpp", error)) return source.lexically_normal();
   return "/usr/include";
 }

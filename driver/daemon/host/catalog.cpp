@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "document/suggestion.hpp"
+#include "host/build_folders.hpp"
 #include "host/built_in.hpp"
 #include "host/library.hpp"
 
@@ -37,7 +38,7 @@ bool plainName(const std::string& name) {
   return !name.empty() && name.find('/') == std::string::npos && name.size() < 200 && name[0] != '.';
 }
 
-std::string textOf(const std::vector<fs::path>& dirs) {
+std::string folderLines(const std::vector<fs::path>& dirs) {
   std::string text;
   for (const fs::path& dir : dirs) {
     std::error_code error;
@@ -63,9 +64,10 @@ fs::path executableDir() {
 }
 
 std::optional<fs::path> shippedFile(const fs::path& relative) {
+  const BuildFolders& folders = buildFolders();
   std::error_code error;
-  for (const fs::path& root :
-       {executableDir() / ".." / "share" / "hapticd", fs::path(HAPTICD_SOURCE_CONFIG), fs::path(HAPTICD_INSTALL_DATA)})
+  for (const fs::path& root : {executableDir() / ".." / "share" / "hapticd", fs::path(folders.source) / "config",
+                               fs::path(folders.installed_data)})
     if (fs::exists(root / relative, error)) return (root / relative).lexically_normal();
   return std::nullopt;
 }
@@ -74,10 +76,11 @@ namespace {
 
 /// Returns the folders with the modules that ship with this program: beside the program, and in the installation.
 std::vector<fs::path> shippedRoots() {
+  const BuildFolders& folders = buildFolders();
   const fs::path beside = executableDir() / "..";
   std::vector<fs::path> roots;
   for (const fs::path& root :
-       {beside / "lib" / "hapticd", beside / HAPTICD_INSTALL_LIBDIR / "hapticd", fs::path(HAPTICD_INSTALL_MODULES)})
+       {beside / "lib" / "hapticd", beside / folders.library / "hapticd", fs::path(folders.installed_modules)})
     roots.push_back(root.lexically_normal());
   return roots;
 }
@@ -185,7 +188,7 @@ std::string Catalog::notFound(Kind kind, const std::string& name, const std::str
   if (reason.empty())
     for (const CatalogFile* file : files(kind))
       if (!file->error.empty()) text += "\n  not usable: " + file->error;
-  text += "\n  searched:" + textOf(dirs(kind)) + "\n  fix: ";
+  text += "\n  searched:" + folderLines(dirs(kind)) + "\n  fix: ";
   if (reason.empty() && shipsName(name))  // happens only in a source checkout, since the packages contain all of them
     return text + "it is part of hapticd but is not built here: run cmake --build build/release --target modules";
   text += "write an existing name, or add the folder of the missing file to HAPTICD_PLUGIN_PATH";

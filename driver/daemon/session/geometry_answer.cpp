@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "base/sealed_memory.hpp"
@@ -28,7 +27,7 @@ bool tooLong(const std::string& text) {
 bool appendPlaces(std::string& text, const float* xyz, std::size_t count) {
   for (std::size_t i = 0; i < count && !tooLong(text); ++i) {
     if (!std::isfinite(xyz[i])) return false;
-    fmt::format_to(std::back_inserter(text), "{}{:.7g}", i == 0 ? "" : ",", xyz[i]);
+    text += fmt::format("{}{:.7g}", i == 0 ? "" : ",", xyz[i]);
   }
   return true;
 }
@@ -84,7 +83,7 @@ Result<std::string> geometryAnswer(const host::ShapeInstance& shape, double tole
   if (!appendPlaces(text, mesh->xyz, 3 * std::size_t{mesh->vertex_count})) return Error{kNotANumber};
   text += R"(],"triangles":[)";
   for (std::size_t i = 0; i < 3 * std::size_t{mesh->triangle_count} && !tooLong(text); ++i)
-    fmt::format_to(std::back_inserter(text), "{}{}", i == 0 ? "" : ",", mesh->indices[i]);
+    text += fmt::format("{}{}", i == 0 ? "" : ",", mesh->indices[i]);
   text += "]}";
   if (tooLong(text)) return tooMany(*mesh, control::Server::kMaxWaiting, tolerance);
   return text;

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <iterator>
 
 #include "mesh.hpp"
 
@@ -145,11 +144,10 @@ std::string sceneUpdate(const std::string& model, const std::string& mesh, uint6
       R"("color":{{"r":0.64,"g":0.72,"b":0.79,"a":1}},"colors":[],"points":[)",
       time, name, name);
   for (uint32_t i = 0; i < vertices; ++i)
-    fmt::format_to(std::back_inserter(text), R"({}{{"x":{:.7g},"y":{:.7g},"z":{:.7g}}})", i == 0 ? "" : ",", xyz[3 * i],
-                   xyz[3 * i + 1], xyz[3 * i + 2]);
+    text += fmt::format(R"({}{{"x":{:.7g},"y":{:.7g},"z":{:.7g}}})", i == 0 ? "" : ",", xyz[3 * i], xyz[3 * i + 1],
+                        xyz[3 * i + 2]);
   text += R"(],"indices":[)";
-  for (uint32_t i = 0; i < 3 * triangles; ++i)
-    fmt::format_to(std::back_inserter(text), "{}{}", i == 0 ? "" : ",", corners[i]);
+  for (uint32_t i = 0; i < 3 * triangles; ++i) text += fmt::format("{}{}", i == 0 ? "" : ",", corners[i]);
   return text + "]}]}]}";
 }
 

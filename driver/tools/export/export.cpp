@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -59,16 +58,16 @@ void appendNumber(std::string& line, const RecordedStream& stream, uint64_t row,
   uint64_t count = 0;
   if (column.type == ColumnType::kCount) {  // not through a double, because it may have more than 53 bits
     std::memcpy(&count, at, sizeof count);
-    fmt::format_to(std::back_inserter(line), "{}", count);
+    line += fmt::format("{}", count);
     return;
   }
   const double value = stream.number(row, column);
   if (std::isnan(value))
     line += "nan";
   else if (column.type == ColumnType::kReal32)
-    fmt::format_to(std::back_inserter(line), "{:.9g}", value);
+    line += fmt::format("{:.9g}", value);
   else
-    fmt::format_to(std::back_inserter(line), "{:.17g}", value);
+    line += fmt::format("{:.17g}", value);
 }
 
 }  // namespace
