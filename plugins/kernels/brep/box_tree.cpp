@@ -62,8 +62,10 @@ struct BoxTree::Builder {
     };
     if (depth >= kTooDeep || !(extent > 0)) return half();
     const double low = 2 * centers.min()[axis], scale = kBins / (2 * extent) * (1 - 1e-9);
+    // If the centers almost coincide, the scale overflows and a place may be no number: it counts as bin 0.
     const auto binOf = [&](std::uint32_t i) {
-      return std::min(kBins - 1, static_cast<int>((center(i) - low) * scale));
+      const double place = (center(i) - low) * scale;
+      return place > 0 ? static_cast<int>(std::min(place, kBins - 1.0)) : 0;
     };
     std::array<Bin, kBins> bins;
     for (auto i = begin; i != end; ++i) {
