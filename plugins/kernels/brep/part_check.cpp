@@ -197,7 +197,9 @@ class Checker {
     at.index_or_none(e.last_vertex, part_.vertices.size(), "vertex");
     at.finite(std::array{e.angle}, 7, "the angle");
     at.tolerance(e.tolerance);
-    if (e.kind != EdgeKind::kPole) {
+    if (e.kind == EdgeKind::kPole) {
+      at.need(e.curve == kNone, "a pole has a curve, expected none: it is a single point");
+    } else {
       at.index_in(e.curve, part_.curves3.size(), "curve");
       at.ascending(e.t0, e.t1, "parameters");
       const CurveKind kind = part_.curves3[e.curve].kind;

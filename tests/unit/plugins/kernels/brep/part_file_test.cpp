@@ -109,6 +109,8 @@ TEST(PartCheck, NamesTheRecordThatBreaksARule) {
   EXPECT_EQ(spoilt([](Part& p) { p.instances[0].pose[0] = -1; }),
             "instance 0: the pose mirrors, expected a rotation (store a mirrored body as a separate body)");
   EXPECT_EQ(spoilt([](Part& p) { p.instances[0].parent = 0; }), "instance 0: parent 0, but the index must be below 0");
+  EXPECT_EQ(spoilt([](Part& p) { p.edges[0].kind = EdgeKind::kPole; }),
+            "edge 0: a pole has a curve, expected none: it is a single point");
   EXPECT_EQ(spoilt([](Part& p) { p.instances.clear(); }), "the part has no instances, expected at least one");
   EXPECT_EQ(spoilt([](Part& p) { p.bodies[0].face_count = 2; }),
             "bodies: together they have 2 faces, but the part has 3; each must belong to exactly one body");
