@@ -113,6 +113,16 @@ class ModelBuilder {
     oriented_.push_back(oriented);
   }
 
+  /// Refuses the boxes from index `first` on if one is too far. @param name returns what they belong to
+  template <class Name>
+  void checkReach(std::size_t first, const Name& name) const {
+    const auto within = [](const Vector3d& corner) { return (corner.array().abs() <= kFarthestReach).all(); };
+    for (std::size_t i = first; i < boxes_.size(); ++i)
+      if (!within(boxes_[i].min()) || !within(boxes_[i].max()))
+        throw std::invalid_argument(name() + " reaches beyond 1e15 m, expected a part within this distance of its "
+                                             "origin; the file may be damaged (import the part again)");
+  }
+
   void addFace(std::uint32_t f) {
     constexpr std::size_t kMostLeaves = 20'000'000;
     if (isAnalytic(part_.surfaces[part_.faces[f].surface]))
@@ -157,8 +167,16 @@ class ModelBuilder {
     oriented_.clear();
     BodyTree& made = model_.bodies_[b];
     if (body.kind == BodyKind::kMesh) return buildMeshTree(body, made);
-    for (std::uint32_t i = 0; i < body.face_count; ++i) addFace(body.first_face + i);
-    for (std::uint32_t i = 0; i < body.edge_count; ++i) addEdge(body.first_edge + i);
+    for (std::uint32_t f = body.first_face; f < body.first_face + body.face_count; ++f) {
+      const std::size_t first = boxes_.size();
+      addFace(f);
+      checkReach(first, [&] { return faceName(part_, f); });
+    }
+    for (std::uint32_t e = body.first_edge; e < body.first_edge + body.edge_count; ++e) {
+      const std::size_t first = boxes_.size();
+      addEdge(e);
+      checkReach(first, [&] { return "edge " + std::to_string(e); });
+    }
     arrange(made);
     addFaceTrees(body, made);
     made.tree.forgetOrder();

@@ -14,6 +14,9 @@ namespace hapticd::brep {
 inline constexpr std::uint32_t kNone = 0xffffffffu;
 /// Largest absolute value of coordinates and radii [m].
 inline constexpr double kFarthestPart = 1e6;
+/// Largest absolute value of the coordinates of all points of faces and edges [m]. A plane with wide bounds reaches
+/// farther than its axes. Squares of their sums must be finite in single precision.
+inline constexpr double kFarthestReach = 1e15;
 
 using Vector = std::array<double, 3>;
 using Vector2 = std::array<double, 2>;

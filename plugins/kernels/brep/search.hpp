@@ -63,6 +63,9 @@ class Search {
   /// Relative rounding error of a distance: a box or foot that is farther than the best one by less than this share of
   /// the distance counts as equally near.
   static constexpr double kRounding = 1e-12;
+  /// [m^2] Squared distance of the nearest point up to which rows are gathered. Beyond it, an unused place among them
+  /// (RowBox::kWhole) could look as near.
+  static constexpr double kFarthestNear2 = 1e34;
 
   /// The state of one search.
   struct Run {

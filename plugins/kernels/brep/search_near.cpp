@@ -165,7 +165,7 @@ bool Search::searchNear(Near& near, const Vector3d& p, double way, Run& run) noe
 
 /// Searches only the rows around the probe. Returns true if the result is the same as from a search of the whole model.
 bool Search::searchNear(const Vector3d& p_model, double way, Run& run) noexcept {
-  if (!last_.found() || last_.exhausted) return false;
+  if (!last_.found() || last_.exhausted || !(run.within2() < kFarthestNear2)) return false;
   if (model_.placements().size() > 1)
     return whole_nodes_ >= NearPlaces::kFewestNodes && run.budget.elements > NearPlaces::kMostRows &&
            searchNear(near_places_, p_model, way, run);

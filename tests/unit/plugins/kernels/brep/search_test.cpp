@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <stdexcept>
+#include <string>
 
+#include "kernels/brep/part_check.hpp"
 #include "sample_parts.hpp"
 
 namespace hapticd::brep {
@@ -60,6 +63,38 @@ TEST(Search, SkipsChangeNoAnswer) {
     ASSERT_NEAR(found.distance(), cold.nearest(p).distance(), 1e-15);
   }
   EXPECT_GT(skipped, 50000);
+}
+
+/// A probe that rests far away gathers rows around it. An unused place among them must not look as near as they do.
+TEST(Search, FindsThePartFromAnyDistance) {
+  const Model model(samples::cappedCylinder(10, 20));
+  Search search(model);
+  for (const double far : {1.0, 1e6, 1e15, 1e17, 1e18, 3e18, 1e19, 1e30, 1e100, 1.0})
+    for (int tick = 0; tick < 10; ++tick) {
+      const Nearest& found = search.nearest({far, 0, 0.01});
+      ASSERT_TRUE(found.found() || far > 1e18) << far;
+      ASSERT_TRUE(!found.found() || std::abs(found.distance() - (far - 0.01)) <= 1e-9 * far) << far;
+    }
+  ASSERT_TRUE(search.nearest({0.02, 0, 0.01}).proved);
+}
+
+/// The bounds of a face without loops may be anything finite.
+TEST(Model, RefusesAFaceThatReachesTooFar) {
+  Part part;
+  Surface plane;
+  plane.kind = SurfaceKind::kPlane;
+  plane.x = {1, 0, 0};
+  plane.y = {0, 1, 0};
+  plane.z = {0, 0, 1};
+  samples::addFace(part, plane, 0, {-1e20, 0}, {1, 1});
+  samples::endBody(part, BodyKind::kSheet, 0);
+  ASSERT_NO_THROW(checkPart(part));
+  try {
+    const Model model(part);
+    FAIL() << "was made";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("face 0 reaches beyond 1e15 m"), std::string::npos) << error.what();
+  }
 }
 
 /// A pcurve that is shifted by 0.5 mm leaves a gap at each of its ends.
