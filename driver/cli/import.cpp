@@ -11,6 +11,7 @@
 #include "cli/file_content.hpp"
 #include "cli/import_cad.hpp"
 #include "cli/import_mesh.hpp"
+#include "cli/output_file.hpp"
 #include "document/node.hpp"
 #include "import/bezier_import.hpp"
 #include "import/calibrate.hpp"
@@ -64,6 +65,18 @@ std::string misplaced(const ImportArguments& options, bool cad) {
   if (options.out.empty() && !options.cad.check)
     return "--out is required: the name of the file to write, such as part.hpart";
   return "";
+}
+
+/// Returns why the file to write must not be replaced, or "". A medial mesh (.ma) begins like any list of numbers, so it
+/// has no kind and only the inputs are kept.
+std::string whyKept(const ImportArguments& options) {
+  const std::string ending = std::filesystem::path(options.out).extension().string();
+  const OutputKind any{"a file", {""}};
+  const OutputKind& kind = ending == ".hpart" ? partKind() : ending == ".ma" ? any : modelKind();
+  return whyNotWritten(options.out, kind,
+                       {{options.file, "the input"},
+                        {options.answers, "the file of presses"},
+                        {options.dents, "the file of dents"}});
 }
 
 int importCadFile(const ImportArguments& options) {
@@ -123,6 +136,7 @@ int importModel(const ImportArguments& options) {
   const bool from_cad = isCadFile(options.file) && !options.medial;
   if (const std::string wrong = misplaced(options, from_cad); !wrong.empty())
     return fail(kBadInput, options.file + ": " + wrong);
+  if (const std::string wrong = whyKept(options); !wrong.empty()) return fail(kBadInput, wrong);
   if (from_cad) return importCadFile(options);
   if (options.medial) return importSoftBody(options);
   if (!options.answers.empty()) {

@@ -66,6 +66,16 @@ const OutputKind& objKind() {
   return kind;
 }
 
+const OutputKind& partKind() {
+  static const OutputKind kind{"a part (.hpart)", {"hapticd-part/"}};
+  return kind;
+}
+
+const OutputKind& modelKind() {
+  static const OutputKind kind{"a model file", {"#", "format: ", "{"}, "hapticd-model/"};
+  return kind;
+}
+
 OutputKind tableKind(std::string_view header) {
   return {"a table of this command (CSV)", {header}};
 }

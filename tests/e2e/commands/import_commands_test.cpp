@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,25 @@ TEST_F(ImportCommands, ImportScalesCentresAndKeepsTheCredit) {
             "    knots: [[0, 0, 1, 1], [0, 0, 1, 1]]\n"
             "    points: [[-1, 0, -0.5], [-1, 0, 0.5],\n             [1, 0, -0.5], [1, 0, 0.5]]\n");
   EXPECT_EQ(run("import " + patch + " -o /nowhere/at/all.yaml").exit_code, 1);
+}
+
+TEST_F(ImportCommands, ImportKeepsItsInputsAndFilesOfOtherKinds) {
+  const std::string text = "1\n1 1\n0 0 0\n0 0 2\n4 0 0\n4 0 2\n", scene = "format: hapticd-scene/1\n";
+  const std::string patch = put("patch.bpt", text), other = put("scene.yaml", scene);
+  std::filesystem::create_symlink("patch.bpt", dir_ / "link.yaml");
+  std::filesystem::create_hard_link(dir_ / "patch.bpt", dir_ / "twin.yaml");
+  for (const char* out : {"patch.bpt", "link.yaml", "twin.yaml"}) {
+    const Outcome outcome = run("import " + patch + " -o " + (dir_ / out).string());
+    EXPECT_EQ(outcome.exit_code, 2) << out;
+    EXPECT_TRUE(has(outcome.text, "is the input itself, expected another file")) << outcome.text;
+  }
+  EXPECT_EQ(get("patch.bpt"), text);
+  const Outcome outcome = run("import " + patch + " -o " + other);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_TRUE(has(outcome.text, "exists already and is not a model file, so it would be lost")) << outcome.text;
+  EXPECT_EQ(get("scene.yaml"), scene);
+  const std::string model = (dir_ / "model.yaml").string();
+  for (int times = 0; times < 2; ++times) EXPECT_EQ(run("import " + patch + " -o " + model).exit_code, 0);
 }
 
 TEST_F(ImportCommands, ImportSaysWhereAPatchFileIsWrong) {
