@@ -48,7 +48,7 @@ def foreign(folder, ask):
     code, out, err = ask("import", write(folder, "cubestl", STL), "-o", os.path.join(folder, "x.hpart"))
     check("a file without an ending is asked for it", code == 2 and "expected the ending .bpt, .stl" in err, (code, out, err))
     code, out, err = ask("import", write(folder, "short.stl", STL[:-1]), "-o", os.path.join(folder, "x.hpart"))
-    check("a short STL is told its length", code != 0 and "1 triangles has 134 bytes, but this file has 133" in err, (code, out, err))
+    check("a short STL is told its length", code != 0 and "1 triangle has 134 bytes, but this file has 133" in err, (code, out, err))
 
 
 def cube(at, size=0.04):

@@ -245,7 +245,7 @@ TEST(MeshImport, ReadsStlAsOtherProgramsWriteIt) {
   binary[80] = 1;
   EXPECT_TRUE(parseStlMesh(binary, "x.stl"));
   EXPECT_EQ(parseStlMesh(binary + "more", "x.stl")->remarks[0], "4 bytes after the last triangle were passed over");
-  EXPECT_NE(errorOf(parseStlMesh(binary.substr(0, 130), "x.stl")).find("1 triangles has 134 bytes"), std::string::npos);
+  EXPECT_NE(errorOf(parseStlMesh(binary.substr(0, 130), "x.stl")).find("1 triangle has 134 bytes"), std::string::npos);
 }
 
 TEST(MeshImport, ReadsPlyAsOtherProgramsWriteIt) {
