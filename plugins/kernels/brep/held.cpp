@@ -96,6 +96,20 @@ Followed Tracer::follow(double side, const Vector3d& p, Foot& foot) noexcept {
   return Followed::kOn;
 }
 
+/// Finds the nearest point of a face of the held body. If the nearest point of all certainly lies in the interior of
+/// this face, it is that one, and the face need not be searched alone. Returns false, and leaves `hit`, if none is
+/// found.
+bool Tracer::nearestOn(std::uint32_t face, const Vector3d& p, Hit& hit) noexcept {
+  const bool certain = nearestOnce(p).status == contact::FootStatus::kNearest;
+  if (certain && nearest_.place == held_.place && nearest_.face == face && !isEdge(nearest_.hit)) {
+    hit = nearest_.hit;
+    return true;
+  }
+  const Nearest found = search_.nearestOf(held_.place, face, p, held_.hit, budget_);
+  if (found.found()) hit = found.hit;
+  return found.found();
+}
+
 /// Moves the foot to the nearest point of the held face, or over its edges to a neighbour that is nearer to the probe.
 Followed Tracer::followFace(double side, const Vector3d& p) noexcept {
   for (int i = 0; i < kMaxCrossings; ++i) {
@@ -106,9 +120,7 @@ Followed Tracer::followFace(double side, const Vector3d& p) noexcept {
         return Followed::kOn;
       }
     }
-    const Nearest on_face = search_.nearestOf(held_.place, held_.face, p, held_.hit, budget_);
-    if (!on_face.found()) return Followed::kLost;
-    held_.hit = on_face.hit;
+    if (!nearestOn(held_.face, p, held_.hit)) return Followed::kLost;
     if (!isEdge(held_.hit)) return Followed::kOn;
     const std::uint32_t index = held_.hit.element.index();
     const std::uint32_t edge = held_.hit.element.kind() == ElementKind::kPiece ? model().piece(index).edge : index;
@@ -152,8 +164,8 @@ Followed Tracer::slideOver(std::uint32_t edge, double t, double side, const Vect
     const Vector3d there = side * coedgeNormal(geometry, beyond, t);
     const contact::EdgeKind kind = contact::edgeKind(side * here, there, out);
     if (contact::atEdge(kind, there, r) == AtEdge::kRelease) return Followed::kReleased;
-    const Nearest found = search_.nearestOf(held_.place, beyond.face, p, held_.hit, budget_);
-    if (found.found() && found.hit.d2 < next.hit.d2) next = {held_.place, beyond.face, found.hit};
+    Hit hit;
+    if (nearestOn(beyond.face, p, hit) && hit.d2 < next.hit.d2) next = {held_.place, beyond.face, hit};
   }
   return Followed::kOn;
 }

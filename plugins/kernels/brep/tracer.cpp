@@ -18,7 +18,7 @@ class Tracer::Faces {
   Faces(Tracer& tracer, const Vector3d& p) : tracer_(tracer), p_(p) {}
 
   contact::Followed follow(double side, Foot& foot) noexcept { return tracer_.follow(side, p_, foot); }
-  Foot nearest() noexcept { return tracer_.nearestFelt(p_); }
+  Foot nearest() noexcept { return tracer_.nearestOnce(p_); }
   bool enter(const Vector3d& from, contact::Sides sides, double& side) noexcept {
     return tracer_.enter(from, p_, sides, side);
   }
@@ -87,6 +87,12 @@ Foot Tracer::nearestFelt(const Vector3d& p) noexcept {
   return foot;
 }
 
+const Foot& Tracer::nearestOnce(const Vector3d& p) noexcept {
+  if (!has_felt_) felt_ = nearestFelt(p);
+  has_felt_ = true;
+  return felt_;
+}
+
 Foot Tracer::nearest(const Vector3d& p, const SearchBudget& budget) noexcept {
   budget_ = budget;
   return nearestFelt(p);
@@ -105,6 +111,7 @@ Foot Tracer::step(const Vector3d& p, const contact::ContactRule& rule, const Sea
     return foot;
   }
   budget_ = budget;
+  has_felt_ = false;
   Faces faces(*this, p);
   foot = contact_.step(faces, has_last_ ? last_p_ : p, p, rule);
   last_p_ = p;

@@ -53,14 +53,19 @@ class Tracer {
   contact::Followed followTriangles(double side, const Eigen::Vector3d& p) noexcept;
   contact::Followed slideOver(std::uint32_t edge, double t, double side, const Eigen::Vector3d& p, Held& next) noexcept;
   bool enter(const Eigen::Vector3d& from, const Eigen::Vector3d& p, contact::Sides sides, double& side) noexcept;
+  bool nearestOn(std::uint32_t face, const Eigen::Vector3d& p, Hit& hit) noexcept;
   contact::Foot nearestFelt(const Eigen::Vector3d& p) noexcept;
+  /// Returns nearestFelt() of this tick's probe, which is found when it is first asked for.
+  const contact::Foot& nearestOnce(const Eigen::Vector3d& p) noexcept;
   Held heldAt(const Nearest& nearest) const noexcept;
   void count(const contact::Foot& foot) noexcept;
 
   Search search_;
   contact::ContactState contact_;
   Held held_;
-  Held nearest_;  ///< result of nearestFelt() in this tick
+  Held nearest_;         ///< result of nearestFelt() in this tick
+  contact::Foot felt_;   ///< result of nearestOnce() in this tick
+  bool has_felt_ = false;
   SearchBudget budget_;
   Eigen::Vector3d last_p_{0, 0, 0};
   bool has_last_ = false;
