@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The foot of a held contact: finds where the path of the probe meets a face, and moves the foot on over edges.
+/// Moves the foot of a held contact over its face, and on over edges.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,6 @@ namespace {
 using contact::AtEdge;
 using contact::Followed;
 using contact::Foot;
-using contact::Sides;
 using Eigen::Vector3d;
 
 constexpr int kMaxCrossings = 6;       ///< most changes of faces over edges in one tick
@@ -196,37 +195,6 @@ Followed Tracer::followTriangles(double side, const Vector3d& p_model) noexcept 
     held_.face = best.element.index();
   }
   return Followed::kOn;
-}
-
-/// Finds the first face on the path of the probe by sphere tracing (Hart 1996): it goes along the path in steps that
-/// are no longer than the distance to the nearest face.
-bool Tracer::enter(const Vector3d& from, const Vector3d& p, Sides sides, double& side) noexcept {
-  constexpr int kMostSteps = 64;
-  constexpr double kMet = 1e-8;  // [m] a face that is nearer than this has been reached
-  const double length = (p - from).norm();
-  if (!(length > 0)) return false;
-  const Vector3d way = (p - from) / length;
-  double s = 0;
-  for (int i = 0; i < kMostSteps; ++i) {
-    const Vector3d at = from + s * way;
-    const Nearest& found = search_.nearest(at, budget_);
-    if (!found.found()) return false;
-    const Held met = heldAt(found);
-    const Foot foot = describe(model(), met.place, met.hit, met.face, at);
-    const bool last = i + 1 == kMostSteps;
-    if (foot.distance <= kMet || last) {
-      const double from_side = i == 0 && foot.distance <= kMet ? side : (foot.depth > 0 ? -1.0 : 1.0);
-      const bool felt = sides == Sides::kBoth || (sides == Sides::kFront) == (from_side > 0);
-      if (felt && from_side * way.dot(foot.normal) < 0) {
-        side = from_side;
-        held_ = met;
-        return true;
-      }
-    }
-    s += std::max(foot.distance * (1 - 1e-9), kMet);
-    if (s >= length) return false;
-  }
-  return false;
 }
 
 }  // namespace hapticd::brep

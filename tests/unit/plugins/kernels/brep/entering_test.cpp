@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+/// Paths that graze curved faces: a contact begins exactly if the path leads through the face.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "kernels/brep/tracer.hpp"
+#include "sample_solids.hpp"
+#include "sample_splines.hpp"
+
+namespace hapticd::brep {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A value [m] that is above 0 on one side of a face, and about the distance near it.
+using Height = std::function<double(const Vector3d&)>;
+
+/// Makes paths of 1 um to 1 mm from points near a face, most of them nearly along it. Each is a contact of its own with
+/// a shell that is felt from both sides: its end must be felt as inside exactly if it is on the other side.
+void expectEntriesAsBy(const Height& height, Part part, const Vector3d& lo, const Vector3d& hi) {
+  constexpr int kPaths = 20000;
+  const Model model(std::move(part));
+  Tracer tracer(model);
+  const contact::ContactRule both{contact::Sides::kBoth};
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::normal_distribution<double> normal;
+  int entered = 0, paths = 0;
+  while (paths < kPaths) {
+    const Vector3d at = lo + Vector3d(share(random), share(random), share(random)).cwiseProduct(hi - lo);
+    const contact::Foot near = tracer.nearest(at);
+    const double length = std::pow(10, -6 + 3 * share(random));
+    const Vector3d from = near.point + 0.3 * length * normal(random) * near.normal;
+    const Vector3d way = Vector3d(normal(random), normal(random), normal(random)).normalized();
+    const Vector3d along = (way - 0.9 * way.dot(near.normal) * near.normal).normalized();
+    const Vector3d p = from + length * along;
+    if (std::abs(height(from)) < 1e-7 || std::abs(height(p)) < 1e-7) continue;
+    if (((from - lo).array() < 0).any() || ((hi - from).array() < 0).any()) continue;
+    ++paths;
+    tracer.reset();
+    tracer.step(from, both);
+    const bool is_inside = tracer.step(p, both).depth > 0;
+    ASSERT_EQ(is_inside, (height(from) > 0) != (height(p) > 0)) << from.transpose() << " to " << p.transpose();
+    entered += is_inside;
+  }
+  EXPECT_GT(entered, kPaths / 20);
+}
+
+TEST(Entering, ASphere) {
+  expectEntriesAsBy([](const Vector3d& p) { return p.norm() - 0.010; }, samples::sphere(10), {-0.01, -0.01, -0.008},
+                    {0.01, 0.01, 0.008});
+}
+
+TEST(Entering, ACylinder) {
+  expectEntriesAsBy([](const Vector3d& p) { return p.head<2>().norm() - 0.010; }, samples::cappedCylinder(10, 40),
+                    {-0.012, -0.012, 0.015}, {0.012, 0.012, 0.025});
+}
+
+TEST(Entering, ACone) {
+  expectEntriesAsBy([](const Vector3d& p) { return (p.head<2>().norm() + 0.5 * p.z()) / std::hypot(1, 0.5); },
+                    samples::cone(10, 20), {-0.006, -0.006, -0.012}, {0.006, 0.006, -0.003});
+}
+
+TEST(Entering, ATorus) {
+  expectEntriesAsBy([](const Vector3d& p) { return std::hypot(p.head<2>().norm() - 0.010, p.z()) - 0.006; },
+                    samples::torus(10, 6), {-0.017, -0.017, -0.007}, {0.017, 0.017, 0.007});
+}
+
+TEST(Entering, ASplineSheet) {
+  constexpr double kHeights[4][4] = {{0, 4, -3, 1}, {2, -5, 6, 0}, {-1, 5, -6, 3}, {0, 2, 4, -4}};  // [mm]
+  spline::SurfaceData data;
+  data.degree[0] = data.degree[1] = 3;
+  data.knots[0] = data.knots[1] = {0, 0, 0, 0, 1, 1, 1, 1};
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) data.points.emplace_back(0.01 * i, 0.01 * j, 0.001 * kHeights[i][j]);
+  const auto height = [&](const Vector3d& p) {
+    const auto bernstein = [](double t) {
+      const double s = 1 - t;
+      return std::array{s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t};
+    };
+    const auto b = bernstein(p.x() / 0.03), c = bernstein(p.y() / 0.03);  // x and y are linear in u and v
+    double z = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < 4; ++j) z += b[i] * c[j] * 0.001 * kHeights[i][j];
+    return p.z() - z;
+  };
+  expectEntriesAsBy(height, samples::sheetOf({data}), {0.003, 0.003, -0.004}, {0.027, 0.027, 0.004});
+}
+
+}  // namespace
+}  // namespace hapticd::brep
