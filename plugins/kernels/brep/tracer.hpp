@@ -63,8 +63,8 @@ class Tracer {
   Search search_;
   contact::ContactState contact_;
   Held held_;
-  Held nearest_;         ///< result of nearestFelt() in this tick
-  contact::Foot felt_;   ///< result of nearestOnce() in this tick
+  Held nearest_;        ///< result of nearestFelt() in this tick
+  contact::Foot felt_;  ///< result of nearestOnce() in this tick
   bool has_felt_ = false;
   SearchBudget budget_;
   Eigen::Vector3d last_p_{0, 0, 0};
