@@ -95,6 +95,25 @@ Followed Tracer::follow(int part, double side, const Vector3d& p, const TraceOpt
   return Followed::kOn;
 }
 
+/// Returns the outward normal of the neighbour across a joined side, at the point of the side that is nearest to uv.
+Vector3d Tracer::normalBeyond(const Patch& patch, int side, const Array2d& uv) const noexcept {
+  const Side& edge = patch.sides[static_cast<std::size_t>(side)];
+  const Patch& next = model_.patch(edge.patch);
+  const double fraction = patch.fractionOn(side, uv);
+  return next.normalAt(next.onSide(edge.side, edge.flipped ? 1 - fraction : fraction));
+}
+
+/// True if the surface goes on without an edge beyond each of some sides of a patch, near uv.
+bool Tracer::goesOn(const Patch& patch, SideMask sides, const Array2d& uv) const noexcept {
+  constexpr double kSmooth = 1 - 1e-6;  // cosine of the angle between the normals
+  for (int at = 0; at < kSides; ++at) {
+    if (!(sides & bit(at))) continue;
+    if (patch.sides[static_cast<std::size_t>(at)].kind != SideKind::kJoined) return false;
+    if (!(patch.normalAt(uv).dot(normalBeyond(patch, at, uv)) > kSmooth)) return false;
+  }
+  return true;
+}
+
 /// True if the held foot is on a convex edge that the probe has crossed, and the probe is in front of the next face.
 bool Tracer::isReleased(int track, int side, double felt, const Vector3d& p) const noexcept {
   const Track& t = tracks_[track];
@@ -109,9 +128,7 @@ bool Tracer::isReleased(int track, int side, double felt, const Vector3d& p) con
   if (!(length2 > 0)) return false;
   const Vector3d out = (across - along * (along.dot(across) / length2)).stableNormalized(), r = p - t.foot.S;
   if (!(r.dot(out) > 0)) return false;
-  const double fraction = patch.fractionOn(side, t.foot.uv);
-  const Patch& next = model_.patch(edge.patch);
-  const Vector3d there = felt * next.normalAt(next.onSide(edge.side, edge.flipped ? 1 - fraction : fraction));
+  const Vector3d there = felt * normalBeyond(patch, side, t.foot.uv);
   const contact::EdgeKind kind = contact::edgeKind(felt * surfaceNormal(track), there, out);
   return contact::atEdge(kind, there, r) == contact::AtEdge::kRelease;
 }
@@ -136,6 +153,20 @@ int Tracer::slideOver(int track, int side, const Vector3d& p, const TraceOptions
   return track;
 }
 
+/// Moves a foot of this tick on over sides beyond which the surface goes on without an edge. Returns its track.
+int Tracer::slideOn(int track, const Vector3d& p, const TraceOptions& options) noexcept {
+  for (int i = 0; i < kMaxCrossings && tracks_[track].foot.sides != 0; ++i) {
+    const LocalFoot foot = tracks_[track].foot;
+    const Patch& patch = model_.patch(tracks_[track].patch);
+    int next = -1;
+    for (int at = 0; at < kSides && next < 0; ++at)
+      if ((foot.sides & bit(at)) && goesOn(patch, bit(at), foot.uv)) next = slideOver(track, at, p, options);
+    if (next < 0) break;
+    track = next;
+  }
+  return track;
+}
+
 /// Finds the first surface that the straight path from `from` to p enters through a side that is felt. @param touching
 /// the side (1 front, -1 back) on which `from` counts if it lies on a surface
 Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vector3d& p, double touching,
@@ -157,37 +188,49 @@ Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vec
   for (int i = 0; i < count; ++i) {
     int track = near[static_cast<std::size_t>(i)];
     if (tracks_[track].slot < 0) continue;
-    if (budget_ > 0) track = refine(track, p, options);
+    if (budget_ > 0) track = slideOn(refine(track, p, options), p, options);
     if (first.track >= 0 && tracks_[first.track].slot < 0) first.track = track;  // the two tracks were merged
     if (tracks_[track].tick != tracks_.tick() || !(tracks_[track].foot.distance <= length + kMet)) continue;
     Crossing crossing;
     crossing.side = touching;
     crossing.track = track;
-    if (!crosses(track, from, p, crossing) || !(crossing.share < first.share)) continue;
+    if (!crosses(track, from, p, options, crossing) || !(crossing.share < first.share)) continue;
     const auto sides = options.rule.sides;
     if (sides == contact::Sides::kBoth || (sides == contact::Sides::kFront) == (crossing.side > 0)) first = crossing;
   }
   return first;
 }
 
+/// Returns the height [m] of a point over the surface, near a foot of this tick. The height over the tangent plane at
+/// that foot has another sign if a path grazes the surface: its start is over a sphere, and under the plane.
+double Tracer::heightOver(int track, const Vector3d& point, const TraceOptions& options) noexcept {
+  const LocalFoot foot = tracks_[track].foot;
+  Iterate at;
+  at.uv = foot.uv;
+  const LocalFoot below = footFrom(tracks_[track].patch, at, point, options);
+  return below.regular && below.converged ? below.height : (point - foot.S).dot(surfaceNormal(track));
+}
+
 /// Tests whether the path from `from` to p crosses the surface near a foot of this tick, and where.
-bool Tracer::crosses(int track, const Vector3d& from, const Vector3d& p, Crossing& crossing) noexcept {
+bool Tracer::crosses(int track, const Vector3d& from, const Vector3d& p, const TraceOptions& options,
+                     Crossing& crossing) noexcept {
   const LocalFoot foot = tracks_[track].foot;
   const Patch& patch = model_.patch(tracks_[track].patch);
-  const Vector3d n = surfaceNormal(track), way = p - from;
-  const double before = (from - foot.S).dot(n), after = (p - foot.S).dot(n);
+  const Vector3d way = p - from;
+  const double before = heightOver(track, from, options), after = (p - foot.S).dot(surfaceNormal(track));
   if (std::abs(before) > kMet) crossing.side = before > 0 ? 1 : -1;
   if (!(crossing.side * after < 0)) return false;
   PathHit start;
   start.uv = foot.uv;
   start.share = std::clamp(before / (before - after), 0.0, 1.0);
   const PathHit met = intersect(patch, from, way, start, budget_);
-  if (!met.found) {  // use the tangent plane instead of the surface, unless the path passes beside the patch
-    crossing.share = start.share;
-    return foot.sides == 0 && patch.sidesAt(met.uv) == 0;
-  }
   crossing.share = met.share;
-  return met.share >= -kBeyond && met.share <= 1 + kBeyond && crossing.side * way.dot(met.normal) < 0;
+  if (met.found && met.share >= -kBeyond && met.share <= 1 + kBeyond && crossing.side * way.dot(met.normal) < 0)
+    return true;
+  // If the path grazes the surface, it may meet it a second time, and that place was found. There is another one
+  // between its ends, unless the path passes beside the surface.
+  crossing.share = start.share;
+  return foot.sides == 0 && goesOn(patch, patch.sidesAt(met.uv), met.uv);
 }
 
 }  // namespace hapticd::trace

@@ -111,10 +111,15 @@ class Tracer {
   contact::Followed follow(int part, double side, const Eigen::Vector3d& p, const TraceOptions& options,
                            Foot& foot) noexcept;
   int slideOver(int track, int side, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
+  int slideOn(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   bool isReleased(int track, int side, double felt, const Eigen::Vector3d& p) const noexcept;
   Crossing firstCrossing(int part, const Eigen::Vector3d& from, const Eigen::Vector3d& p, double touching,
                          const TraceOptions& options) noexcept;
-  bool crosses(int track, const Eigen::Vector3d& from, const Eigen::Vector3d& p, Crossing& crossing) noexcept;
+  Eigen::Vector3d normalBeyond(const Patch& patch, int side, const Eigen::Array2d& uv) const noexcept;
+  bool goesOn(const Patch& patch, SideMask sides, const Eigen::Array2d& uv) const noexcept;
+  double heightOver(int track, const Eigen::Vector3d& point, const TraceOptions& options) noexcept;
+  bool crosses(int track, const Eigen::Vector3d& from, const Eigen::Vector3d& p, const TraceOptions& options,
+               Crossing& crossing) noexcept;
 
   Foot nearestFoot(int part, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   Foot describe(int track, const Eigen::Vector3d& p, int evaluations) const noexcept;

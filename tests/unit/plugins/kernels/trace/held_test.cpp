@@ -2,11 +2,14 @@
 /// Contacts that are held: thin walls, edges, fast probes, starts inside.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 
 #include "kernels/trace/tracer.hpp"
 #include "shapes.hpp"
+#include "traced_shape/model_file.hpp"
 
 namespace hapticd::trace {
 namespace {
@@ -276,6 +279,48 @@ TEST(Held, InAThickSolidIsTheNearestPoint) {
       p += 1e-4 * heading;
     }
     EXPECT_LE(wrong, 200) << name;  // near sharp edges of the box and the cylinder, where the contact is held
+  }
+}
+
+/// A value [m] that is below 0 inside a solid, and about the distance near its surface.
+using Height = double (*)(const Vector3d&);
+
+double overSphere(const Vector3d& p) {
+  return p.norm() - 0.05;
+}
+double overTorus(const Vector3d& p) {  // about y
+  return std::hypot(std::hypot(p.x(), p.z()) - 0.05, p.y()) - 0.02;
+}
+
+/// Walks along a shell that is felt from both sides, mostly along its surface and in and out of it. The start is
+/// outside, so a probe inside is always pushed out: a way in that is not seen would turn the shell around.
+int ticksOnTheWrongSide(const std::string& file, Height height, const Vector3d& start, unsigned seed) {
+  const Model model(readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + file).surfaces);
+  Hand hand{model};
+  hand.options = holding(Sides::kBoth);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::normal_distribution<double> normal;
+  Vector3d p = start;
+  int wrong = 0;
+  for (int i = 0; i < 20000; ++i) {
+    wrong += (hand.at(p).depth > 0) != (height(p) < 0);
+    Vector3d out;
+    for (int axis = 0; axis < 3; ++axis) out[axis] = (height(p + 1e-7 * Vector3d::Unit(axis)) - height(p)) / 1e-7;
+    const Vector3d any(normal(random), normal(random), normal(random));
+    const Vector3d along = (any - any.dot(out) * out).normalized();
+    const Vector3d next =
+        p + std::pow(10, -5 + 1.7 * share(random)) * (along + (0.1 * normal(random) - 50 * height(p)) * out);
+    const bool at_pole = std::hypot(next.x(), next.z()) < 0.002;
+    if (std::abs(height(next)) > 1e-8 && !at_pole) p = next;
+  }
+  return wrong;
+}
+
+TEST(Held, AShellIsEnteredByPathsThatGrazeIt) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    EXPECT_EQ(ticksOnTheWrongSide("sphere.yaml", overSphere, {0.051, 0, 0}, seed), 0) << seed;
+    EXPECT_EQ(ticksOnTheWrongSide("torus.yaml", overTorus, {0.071, 0, 0}, seed), 0) << seed;
   }
 }
 
