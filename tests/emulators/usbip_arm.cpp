@@ -24,18 +24,20 @@ namespace {
 constexpr const char* kHost = "/sys/devices/platform/vhci_hcd.0/";
 enum : uint32_t { kSubmit = 1, kUnlink = 2, kSubmitted = 3, kUnlinked = 4 };
 
+struct Submit {
+  uint32_t flags, length, start_frame, packets, interval;
+  uint8_t setup[8];
+};
+struct Answer {
+  uint32_t status, actual, start_frame, packets, errors;
+  uint8_t padding[8];
+};
 /// What precedes every message, big endian (Documentation/usb/usbip_protocol.rst).
 struct Header {
   uint32_t command, number, device, direction, endpoint;
   union {
-    struct {
-      uint32_t flags, length, start_frame, packets, interval;
-      uint8_t setup[8];
-    } submit;
-    struct {
-      uint32_t status, actual, start_frame, packets, errors;
-      uint8_t padding[8];
-    } answer;
+    Submit submit;
+    Answer answer;
     uint32_t victim;
   };
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "session.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hapticd::haply {
@@ -125,11 +126,12 @@ void Session::execute(const Json& message) {
     noteProblem("the basis \"" + permutation.get<std::string>().substr(0, 40) +
                 "\" is not a permutation of X, Y and Z, such as \"XZY\"");
   for (const Json& device : childOf(message, "inverse3")) {
-    const Json& id = childOf(device, "device_id");
-    if (!id.is_string()) continue;
+    const Json& asked = childOf(device, "device_id");
+    if (!asked.is_string()) continue;
+    const auto id = asked.get<std::string>();
     const auto arm = std::find_if(arms_.begin(), arms_.end(), [&](const auto& one) { return one->name() == id; });
     if (arm == arms_.end())
-      noteProblem("there is no arm \"" + id.get<std::string>().substr(0, 100) + "\"");
+      noteProblem("there is no arm \"" + id.substr(0, 100) + "\"");
     else
       executeForArm(**arm, childOf(device, "commands"));
   }

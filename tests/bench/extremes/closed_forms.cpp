@@ -2,7 +2,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <random>
 
 #include "extreme_case.hpp"
@@ -15,7 +14,6 @@ using Eigen::Vector3d;
 using spline::SurfaceData;
 using Truth = std::function<double(const Vector3d&)>;
 
-constexpr double kTurn = 2 * std::numbers::pi;
 const double kRoot = std::sqrt(0.5);
 
 /// Returns the surface of revolution of a profile about y. A point of the profile is (radius, height, weight). The
