@@ -240,13 +240,23 @@ void suspendProcess() {
 }
 
 void prepareSignalStack() {
-  constexpr size_t kBytes = 64 * 1024;
-  // The stack lives until the thread ends, because the thread may crash until then.
-  static thread_local std::unique_ptr<std::byte[]> stack(new std::byte[kBytes]());
-  stack_t signal_stack{};
-  signal_stack.ss_sp = stack.get();
-  signal_stack.ss_size = kBytes;
-  sigaltstack(&signal_stack, nullptr);
+  static constexpr size_t kBytes = 64 * 1024;
+  /// Lives until the thread ends, because the thread may crash until then. Afterwards signals have their former stack.
+  struct SignalStack {
+    std::unique_ptr<std::byte[]> bytes{new std::byte[kBytes]()};
+    stack_t former{};
+
+    SignalStack() {
+      stack_t own{};
+      own.ss_sp = bytes.get();
+      own.ss_size = kBytes;
+      sigaltstack(&own, &former);
+    }
+    ~SignalStack() { sigaltstack(&former, nullptr); }
+    SignalStack(const SignalStack&) = delete;
+    SignalStack& operator=(const SignalStack&) = delete;
+  };
+  static thread_local const SignalStack stack;
 }
 
 std::error_code limitRealTimeRun(uint64_t us) {
