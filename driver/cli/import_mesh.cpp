@@ -51,8 +51,8 @@ std::string unitOf(const importing::Placement& placement) {
 }
 
 void print(const importing::MeshReport& r, const std::string& out) {
-  std::printf("%s: %zu triangles, %zu points, %.4g x %.4g x %.4g m, %s\n", out.c_str(), r.triangles, r.points,
-              r.size.x(), r.size.y(), r.size.z(),
+  std::printf("%s: %zu triangle%s, %zu points, %.4g x %.4g x %.4g m, %s\n", out.c_str(), r.triangles,
+              r.triangles == 1 ? "" : "s", r.points, r.size.x(), r.size.y(), r.size.z(),
               r.closed ? "closed" : "open: a shell that is felt from both sides unless the scene says sides: front");
   for (const std::string& line : importing::linesOf(r)) std::printf("  %s\n", line.c_str());
   if (r.size.maxCoeff() > kTooLarge)

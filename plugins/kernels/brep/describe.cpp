@@ -218,4 +218,10 @@ Foot describe(const Model& model, std::uint32_t place, const Hit& hit, std::uint
   return foot;
 }
 
+Vector3d surfaceNormal(const Model& model, std::uint32_t place, const Hit& hit, const Foot& foot) noexcept {
+  if (hit.element.kind() != ElementKind::kTriangle) return foot.normal;
+  const Around a = onTriangle(model, hit);
+  return a.felt.isZero(0) ? foot.normal : Vector3d(model.placements()[place].rotation * a.normal);
+}
+
 }  // namespace hapticd::brep

@@ -13,6 +13,7 @@ using contact::Foot;
 using contact::Sides;
 using Eigen::Vector3d;
 
+constexpr double kMet = 1e-8;  ///< [m] a face that is nearer than this has been reached
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 constexpr double kFlat = 0.25;  ///< clearWay() goes no farther than this share of the radius of curvature
 
@@ -49,17 +50,20 @@ double curvatureToward(const Model& model, const Hit& hit, double side) noexcept
   return static_cast<double>((side > 0 ? leaf.curvature_front : leaf.curvature_back).value());
 }
 
-/// Returns how far [m] the probe can go along `way` (unit) from where `found` was found and meet no face. That is no
-/// farther than to the second nearest element, since a farther one cannot be met before. The height over the nearest
-/// one changes by the slope of the way, and its second derivative along the way is at least -k / (1 - k d) for a
-/// curvature k toward the probe at a distance d.
-double clearWay(const Model& model, const Nearest& found, const Foot& foot, const Vector3d& way) noexcept {
+/// Returns how far [m] the probe can go along `way` (unit) from `at`, where `found` was found, and meet no face. That
+/// is no farther than to the second nearest element, since a farther one cannot be met before. The distance to the
+/// nearest one changes by the slope of the way, and its second derivative along the way is at least -k / (1 - k d) for
+/// a curvature k toward the probe at a distance d. All ends short of kMet, so that rounding does not decide on which
+/// side of a face the probe is then.
+double clearWay(const Model& model, const Nearest& found, const Foot& foot, const Vector3d& at,
+                const Vector3d& way) noexcept {
   constexpr double kSafe = 4;  // the second derivative is bounded three times as far as needed
-  const double height = foot.distance, side = foot.depth > 0 ? -1 : 1;
+  const double height = foot.distance - 0.5 * kMet, side = foot.depth > 0 ? -1 : 1;
+  if (!(height > 0)) return 0;
   const double curvature = curvatureToward(model, found.hit, side);
-  const double reach = found.proved ? std::min(found.others, kFlat / curvature - height) : 0;
+  const double reach = found.proved ? std::min(found.others - 0.5 * kMet, kFlat / curvature - foot.distance) : 0;
   if (!(reach > height)) return height;
-  const double slope = side * way.dot(foot.normal);
+  const double slope = way.dot(at - foot.point) / foot.distance;
   const double bend = kSafe * curvature, root = std::sqrt(slope * slope + 2 * bend * height);
   const double fall = slope > 0 ? (slope + root) / bend : 2 * height / (root - slope);  // no number for 0 / 0
   return std::max(height, std::min(fall, reach));
@@ -71,7 +75,6 @@ double clearWay(const Model& model, const Nearest& found, const Foot& foot, cons
 /// are no longer than clearWay().
 bool Tracer::enter(const Vector3d& from, const Vector3d& p, Sides sides, double& side) noexcept {
   constexpr int kMostSteps = 64;
-  constexpr double kMet = 1e-8;  // [m] a face that is nearer than this has been reached
   const double length = (p - from).norm();
   if (!(length > 0)) return false;
   const Vector3d way = (p - from) / length;
@@ -86,13 +89,13 @@ bool Tracer::enter(const Vector3d& from, const Vector3d& p, Sides sides, double&
     if (foot.distance <= kMet || last) {
       const double from_side = i == 0 && foot.distance <= kMet ? side : (foot.depth > 0 ? -1.0 : 1.0);
       const bool felt = sides == Sides::kBoth || (sides == Sides::kFront) == (from_side > 0);
-      if (felt && from_side * way.dot(foot.normal) < 0) {
+      if (felt && from_side * way.dot(surfaceNormal(model(), met.place, met.hit, foot)) < 0) {
         side = from_side;
         held_ = met;
         return true;
       }
     }
-    s += std::max(clearWay(model(), found, foot, way) * (1 - 1e-9), kMet);
+    s += std::max(clearWay(model(), found, foot, at, way), kMet);
     if (s >= length) return false;
   }
   return false;

@@ -119,8 +119,9 @@ class ModelBuilder {
     const auto within = [](const Vector3d& corner) { return (corner.array().abs() <= kFarthestReach).all(); };
     for (std::size_t i = first; i < boxes_.size(); ++i)
       if (!within(boxes_[i].min()) || !within(boxes_[i].max()))
-        throw std::invalid_argument(name() + " reaches beyond 1e15 m, expected a part within this distance of its "
-                                             "origin; the file may be damaged (import the part again)");
+        throw std::invalid_argument(name() +
+                                    " reaches beyond 1e15 m, expected a part within this distance of its "
+                                    "origin; the file may be damaged (import the part again)");
   }
 
   void addFace(std::uint32_t f) {

@@ -8,8 +8,8 @@ using contact::FootStatus;
 using Eigen::Vector3d;
 
 namespace {
-constexpr double kFarthest = 1e150;  ///< [m] squares of larger coordinates overflow
-constexpr int kMostAround = 8;       ///< most bodies whose boxes contain the probe that one tick examines
+constexpr double kFarthest = 1e12;  ///< [m] from farther away, distances to a part have too few digits
+constexpr int kMostAround = 8;      ///< most bodies whose boxes contain the probe that one tick examines
 }  // namespace
 
 /// Lets contact::ContactState query the part at the probe of this tick.

@@ -81,4 +81,9 @@ std::uint32_t faceOf(const Model& model, const Hit& hit, std::uint32_t before) n
 contact::Foot describe(const Model& model, std::uint32_t place, const Hit& hit, std::uint32_t face,
                        const Eigen::Vector3d& p) noexcept;
 
+/// [rt] Returns the outward normal of the surface at a hit, of which describe() made `foot`. It differs from the normal
+/// that is felt where the normals of a mesh are interpolated.
+Eigen::Vector3d surfaceNormal(const Model& model, std::uint32_t place, const Hit& hit,
+                              const contact::Foot& foot) noexcept;
+
 }  // namespace hapticd::brep

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <vector>
 
 #include "kernels/brep/tracer.hpp"
 #include "sample_solids.hpp"
@@ -89,6 +90,77 @@ TEST(Entering, ASplineSheet) {
     return p.z() - z;
   };
   expectEntriesAsBy(height, samples::sheetOf({data}), {0.003, 0.003, -0.004}, {0.027, 0.027, 0.004});
+}
+
+/// Returns a strip of triangles, two for each pair of neighbouring points of a line that runs in the plane y = 0, and
+/// 0.1 m wide along y. @param smooth_angle [rad] of the mesh
+Part strip(const std::vector<Vector3d>& line, double smooth_angle) {
+  Part part;
+  for (const Vector3d& p : line)
+    for (const double y : {-0.05, 0.05}) part.points.push_back({p.x(), y, p.z()});
+  const auto count = static_cast<std::uint32_t>(line.size() - 1);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Triangle lower, upper;
+    lower.corner = {2 * i, 2 * i + 2, 2 * i + 1};  // edges: along y = -0.05, across the quad, at its start
+    upper.corner = {2 * i + 1, 2 * i + 2, 2 * i + 3};
+    lower.across = {kNone, 4 * (2 * i + 1) + 0, i == 0 ? kNone : 4 * (2 * i - 1) + 1};
+    upper.across = {4 * (2 * i) + 1, i + 1 == count ? kNone : 4 * (2 * i + 2) + 2, kNone};
+    part.triangles.insert(part.triangles.end(), {lower, upper});
+  }
+  samples::endBody(part, BodyKind::kMesh, 0);
+  part.bodies.back().smooth_angle = smooth_angle;
+  return part;
+}
+
+/// True if a tick from `from` to p is felt as a press, on a shell that is felt from both sides.
+bool isFelt(const Model& model, const Vector3d& from, const Vector3d& p) {
+  const contact::ContactRule both{contact::Sides::kBoth};
+  Tracer tracer(model);
+  tracer.step(from, both);
+  return tracer.step(p, both).depth > 0;
+}
+
+/// The interpolated normals of a facet are not those along which the probe comes.
+TEST(Entering, ASmoothedArc) {
+  std::vector<Vector3d> line;
+  for (int i = 0; i <= 8; ++i) line.emplace_back(0.05 * std::sin(0.1 * (i - 4)), 0, 0.05 * std::cos(0.1 * (i - 4)));
+  const Model model(strip(line, 0.5));
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int i = 0; i < 20000; ++i) {
+    const std::size_t k = static_cast<std::size_t>(8 * share(random));
+    const double t = 0.01 + 0.98 * share(random), slope = std::pow(10, -2 * share(random));
+    const Vector3d chord = line[k + 1] - line[k], along = chord.normalized();
+    const Vector3d met = line[k] + t * chord + Vector3d(0, 0.09 * (share(random) - 0.5), 0);
+    const Vector3d out = Vector3d(-along.z(), 0, along.x()) * (along.x() > 0 ? 1 : -1);
+    const double reach = 0.5 * std::min(t, 1 - t) * chord.norm();  // the path stays over its facet
+    const Vector3d way = reach * (along + slope * out) / std::hypot(1, slope);
+    for (const double from : {1.0, -1.0}) {
+      ASSERT_TRUE(isFelt(model, met + from * way, met - 0.5 * from * way)) << k << ' ' << t << ' ' << slope;
+      ASSERT_TRUE(isFelt(model, met + from * reach * out, met - 0.5 * from * reach * out)) << k << ' ' << t;
+    }
+  }
+}
+
+/// The distance to a free edge is not the height over its triangle.
+TEST(Entering, ASheetOverItsFreeEdge) {
+  const Model model(strip({{0, 0, 0}, {0.1, 0, 0}}, 0));
+  EXPECT_TRUE(isFelt(model, {-1e-4, 0, 1e-5}, {2e-4, 0, -1e-5}));
+  EXPECT_FALSE(isFelt(model, {-1e-4, 0, 1e-6}, {2e-5, 0, -1e-5}));  // passes in front of the edge
+}
+
+/// Rounding must not decide on which side of a face a step of the way ends.
+TEST(Entering, APlaneFarFromTheOriginByShallowPaths) {
+  const Model model(samples::prism({{0, 0}, {100, 0}, {100, 150}, {0, 150}}, 100));  // the plane y = 0.15
+  for (const double slope : {1e-1, 1e-2, 3e-3, 1e-3})
+    for (const double height : {1e-6, 3e-7, 1e-7, 3e-8, 1.5e-8})
+      for (int i = 0; i < 300; ++i)
+        for (const double side : {1.0, -1.0}) {
+          const double way = height / slope;
+          const Vector3d from(0.03 + 1e-4 * i, 0.15 + side * height, 0.04 + 1e-5 * i);
+          const Vector3d p = from + Vector3d(1.2 * way, -1.8 * side * height, 0.9 * way);
+          ASSERT_TRUE(isFelt(model, from, p)) << slope << ' ' << height << ' ' << side;
+        }
 }
 
 }  // namespace
