@@ -176,8 +176,8 @@ std::string readModelText(const std::string& path) {
   auto text = document::readFile(path, kMostJson, problems);
   if (text) return *std::move(text);
   throwOne(path, problems.front().what +
-                     "; expected a model file (format hapticd-model/1) of at most 32 MiB; for larger models, " +
-                     "make a part file: " + kPartWay);
+                     "; expected a model file (format hapticd-model/1) of at most 32 MiB, or a part (.hpart), which " +
+                     "may be larger: " + kPartWay);
 }
 
 Json parseDocument(const std::string& text, const std::string& file, Problems& problems) {
