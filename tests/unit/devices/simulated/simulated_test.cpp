@@ -197,8 +197,8 @@ TEST(Simulated, LetsAProgramLeadTheHandAndTellsItTheTruth) {
   EXPECT_LT((tip - arm.tip()).norm(), 6e-5);
   EXPECT_LT(velocity.norm(), 1e-6);
   EXPECT_LT(force.norm(), 1e-4) << "nothing pushes back";
-  const double nan = std::nan("");
-  EXPECT_LT(hand.guide(arm.handle(), &nan, rest.data(), rest.data()), 0);
+  const Vector3d nan = Vector3d::Constant(std::nan(""));
+  EXPECT_LT(hand.guide(arm.handle(), nan.data(), rest.data(), rest.data()), 0);
 }
 
 TEST(Simulated, SaysWhyAHandCannotBeWhereTheScriptWantsIt) {

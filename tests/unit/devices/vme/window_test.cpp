@@ -77,12 +77,13 @@ TEST_F(VmeWindowTest, AsksForTheWindowAndReadsAndWritesInIt) {
   EXPECT_FALSE(window.isFile());
   PackedMaster asked{};
   std::memcpy(&asked, master_.data(), sizeof asked);
-  EXPECT_EQ(asked.enable, 1u);
-  EXPECT_EQ(asked.address, 0x100000u);
-  EXPECT_EQ(asked.size, 0x10000u);
-  EXPECT_EQ(asked.space, kA24);
-  EXPECT_EQ(asked.width, kD16);
-  EXPECT_EQ(asked.cycle, kSingle | kUser | kData);
+  // The records are packed, so a reference to a field may be misaligned: + makes a copy.
+  EXPECT_EQ(+asked.enable, 1u);
+  EXPECT_EQ(+asked.address, 0x100000u);
+  EXPECT_EQ(+asked.size, 0x10000u);
+  EXPECT_EQ(+asked.space, kA24);
+  EXPECT_EQ(+asked.width, kD16);
+  EXPECT_EQ(+asked.cycle, kSingle | kUser | kData);
   const std::array<uint8_t, 4> sent{1, 2, 3, 4};
   std::array<uint8_t, 4> got{};
   EXPECT_EQ(window.write(0x40, sent), 4);
@@ -99,7 +100,7 @@ TEST_F(VmeWindowTest, SpeaksToOldKernelsToo) {
   ASSERT_TRUE(opened) << opened.error();
   OldMaster asked{};
   std::memcpy(&asked, master_.data(), sizeof asked);
-  EXPECT_EQ(asked.address, 0x100000u);
+  EXPECT_EQ(+asked.address, 0x100000u);
   EXPECT_FALSE(window.isFile());
 }
 
