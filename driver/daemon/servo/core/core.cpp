@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "servo/core/core.hpp"
 
+#include <algorithm>
+
 #include "base/clock.hpp"
 
 namespace hapticd::servo {
@@ -9,6 +11,11 @@ namespace {
 
 using Map = Eigen::Map<Vector3d>;
 using ConstMap = Eigen::Map<const Vector3d>;
+
+/// Returns a time in ns. The first ticks of a rerun, in which a model settles, lie before time 0 and count as 0.
+Nanoseconds nanosecondsOf(double t) noexcept {
+  return static_cast<Nanoseconds>(std::max(t, 0.0) * 1e9);
+}
 
 }  // namespace
 
@@ -79,7 +86,7 @@ double Core::deepest(uint32_t probe) const noexcept HSP_RT {
 
 void Core::publish(double t, std::span<const Probe> probes) noexcept HSP_RT {
   link::ArmState& arm = link_.arm.back();
-  arm.time_ns = static_cast<Nanoseconds>(t * 1e9);
+  arm.time_ns = nanosecondsOf(t);
   arm.probe_count = probe_count_;
   for (uint32_t i = 0; i < probe_count_; ++i) {
     arm.valid[i] = probes[i].valid;
@@ -180,7 +187,7 @@ void Core::fillProbe(const ModelState& model, const Probe& probe, uint32_t index
   hsp_probe& in = inputs_[index];
   in = hsp_probe{};
   in.orientation[0] = 1;
-  in.time_ns = static_cast<uint64_t>(t * 1e9);
+  in.time_ns = nanosecondsOf(t);
   if (jumped_[index] != 0) in.flags |= HSP_IN_JUMP;
   if (!probe.valid) in.flags |= HSP_IN_INVALID;
   const Vector3d& p_world = last_position_[index];  // from the last good sample
