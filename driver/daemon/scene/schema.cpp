@@ -123,9 +123,8 @@ Json schemaOf(const host::ParamInfo& param) {
     json["default"] = param.def;
   }
   if (param.kind == HSP_BOOL) json["default"] = param.def != 0;
-  const auto choice = static_cast<size_t>(param.def);
-  if (param.kind == HSP_ENUM && param.def >= 0 && choice < param.choices.size())
-    json["default"] = param.choices[choice];
+  if (param.kind == HSP_ENUM && param.def >= 0 && param.def < static_cast<double>(param.choices.size()))
+    json["default"] = param.choices[static_cast<size_t>(param.def)];
   if (param.def_text && param.kind == HSP_ARRAY) json["default"] = defaultOf(*param.def_text);
   json["description"] = param.unit.empty() ? param.doc : param.doc + " [" + param.unit + "]";
   return json;
