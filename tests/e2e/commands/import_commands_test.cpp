@@ -66,7 +66,7 @@ TEST_F(ImportCommands, ImportMakesAPartOfTriangles) {
   EXPECT_TRUE(has(wrong.text, "triangles become a part, expected a name that ends in .hpart")) << wrong.text;
   const Outcome made = run("import " + mesh + " --scale 0.1 -o " + part);
   EXPECT_EQ(made.exit_code, 0);
-  EXPECT_TRUE(has(made.text, "1 triangles, 3 points, 0.1 x 0.1 x 0 m, open")) << made.text;
+  EXPECT_TRUE(has(made.text, "1 triangle, 3 points, 0.1 x 0.1 x 0 m, open")) << made.text;
   EXPECT_TRUE(has(made.text, "1 hole with 3 free edges")) << made.text;
   const Outcome info = run("part info " + part);
   EXPECT_EQ(info.exit_code, 0);
