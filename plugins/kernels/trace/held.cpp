@@ -203,12 +203,17 @@ Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vec
 
 /// Returns the height [m] of a point over the surface, near a foot of this tick. The height over the tangent plane at
 /// that foot has another sign if a path grazes the surface: its start is over a sphere, and under the plane.
-double Tracer::heightOver(int track, const Vector3d& point, const TraceOptions& options) noexcept {
+double Tracer::heightOver(int track, const Vector3d& point) noexcept {
+  constexpr double kNear = 1e-6;  // [m] the height changes by the square of an error of the foot
   const LocalFoot foot = tracks_[track].foot;
-  Iterate at;
-  at.uv = foot.uv;
-  const LocalFoot below = footFrom(tracks_[track].patch, at, point, options);
-  return below.regular && below.converged ? below.height : (point - foot.S).dot(surfaceNormal(track));
+  if (budget_ > 0) {
+    Iterate at;
+    at.uv = foot.uv;
+    const LocalFoot below = newtonFoot(model_.patch(tracks_[track].patch), point, at, kNear, budget_);
+    budget_ -= below.evaluations;
+    if (below.regular && below.converged) return below.height;
+  }
+  return (point - foot.S).dot(surfaceNormal(track));
 }
 
 /// Tests whether the path from `from` to p crosses the surface near a foot of this tick, and where.
@@ -217,7 +222,11 @@ bool Tracer::crosses(int track, const Vector3d& from, const Vector3d& p, const T
   const LocalFoot foot = tracks_[track].foot;
   const Patch& patch = model_.patch(tracks_[track].patch);
   const Vector3d way = p - from;
-  const double before = heightOver(track, from, options), after = (p - foot.S).dot(surfaceNormal(track));
+  // The tangent plane is enough for a solid: the probe is then inside, and its nearest face is as good as that of
+  // entry.
+  const Vector3d n = surfaceNormal(track);
+  const bool shell = options.rule.sides == contact::Sides::kBoth;
+  const double before = shell ? heightOver(track, from) : (from - foot.S).dot(n), after = (p - foot.S).dot(n);
   if (std::abs(before) > kMet) crossing.side = before > 0 ? 1 : -1;
   if (!(crossing.side * after < 0)) return false;
   PathHit start;

@@ -117,7 +117,7 @@ class Tracer {
                          const TraceOptions& options) noexcept;
   Eigen::Vector3d normalBeyond(const Patch& patch, int side, const Eigen::Array2d& uv) const noexcept;
   bool goesOn(const Patch& patch, SideMask sides, const Eigen::Array2d& uv) const noexcept;
-  double heightOver(int track, const Eigen::Vector3d& point, const TraceOptions& options) noexcept;
+  double heightOver(int track, const Eigen::Vector3d& point) noexcept;
   bool crosses(int track, const Eigen::Vector3d& from, const Eigen::Vector3d& p, const TraceOptions& options,
                Crossing& crossing) noexcept;
 
