@@ -105,8 +105,8 @@ struct ParameterTable {
         F::vector3("hand.normal", &T::normal, "", -1, 1, "[0, 0, 1]", "Direction from the centre to the hand."),
         F::vector3("hand.axis", &T::axis, "", -1, 1, "[0, 1, 0]", "Axis that strokes and circles turn about."),
         F::real("hand.radius", &T::radius, "m", 0, 10, 0.045,
-                "Distance from the centre or axis to the point that the hand aims for. To press, it must be smaller "
-                "than the object's radius."),
+                "Distance from the centre or axis to the point that the hand aims for. stroke, circle: less than the "
+                "object's radius. press, tap: the object's radius; hand.rise is the depth."),
         F::real("hand.sweep", &T::sweep, "rad", 0, 100, 0.9, "Angle of a stroke to either side."),
         F::real("hand.rise", &T::rise, "m", 0, 1, 0.008,
                 "stroke: height of the rise along the axis. press, tap: depth to which the hand moves inwards from "

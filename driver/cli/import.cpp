@@ -67,16 +67,15 @@ std::string misplaced(const ImportArguments& options, bool cad) {
   return "";
 }
 
-/// Returns why the file to write must not be replaced, or "". A medial mesh (.ma) begins like any list of numbers, so it
-/// has no kind and only the inputs are kept.
+/// Returns why the file to write must not be replaced, or "". A medial mesh (.ma) begins like any list of numbers, so
+/// it has no kind and only the inputs are kept.
 std::string whyKept(const ImportArguments& options) {
   const std::string ending = std::filesystem::path(options.out).extension().string();
   const OutputKind any{"a file", {""}};
   const OutputKind& kind = ending == ".hpart" ? partKind() : ending == ".ma" ? any : modelKind();
-  return whyNotWritten(options.out, kind,
-                       {{options.file, "the input"},
-                        {options.answers, "the file of presses"},
-                        {options.dents, "the file of dents"}});
+  return whyNotWritten(
+      options.out, kind,
+      {{options.file, "the input"}, {options.answers, "the file of presses"}, {options.dents, "the file of dents"}});
 }
 
 int importCadFile(const ImportArguments& options) {
@@ -112,6 +111,9 @@ int importPatches(const ImportArguments& options, const Placement& placement) {
   placeModel(*model, placement);
   if (options.outward != "auto") model->reversed = options.outward == "reversed";
 
+  if (std::filesystem::path(options.out).extension() == ".hpart")
+    return fail(kBadInput,
+                options.out + ": Bezier patches become a model file, expected a name that ends in .yaml or .json");
   const bool json = options.out.size() > 5 && options.out.substr(options.out.size() - 5) == ".json";
   const std::string result = json ? toModelJson(*model) : toModelYaml(*model);
   if (options.out == "-") {

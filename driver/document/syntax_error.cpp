@@ -66,7 +66,7 @@ std::optional<Problem> wrongBlank(const std::string& text, int last, const std::
     if (first == std::string::npos || line[first] == '#') continue;
     if (line[first] == '\t' && line.find_first_not_of(" \t\r") != std::string::npos)
       return Problem{
-          {file, number, static_cast<int>(first) + 1}, "", "not YAML: a tab indents this line, expected blanks"};
+          {file, number, static_cast<int>(first) + 1}, "", "not YAML: a tab indents this line, expected spaces"};
     if (line.compare(first, 2, "//") == 0)
       return Problem{{file, number, static_cast<int>(first) + 1}, "", "not YAML: // begins no comment, expected #"};
     if (auto dash = gluedDash(line, first, number, file)) return dash;

@@ -192,16 +192,16 @@ HAPTICD_API long hapticd_read(hapticd_client* client, int stream, uint64_t* row,
 HAPTICD_API int hapticd_wait(hapticd_client* client, uint64_t tick, int timeout_ms);
 
 /* Begins to lead a kinematic model, a simulated hand, or a force on an arm. Returns NULL on failure; `error` says why.
- * If a lead of a force works but the arm gets no force now, the result is not NULL, `error->code` is "no_force", and
+ * If the lead of a force begins but the arm gets no force now, the result is not NULL, `error->code` is "no_force", and
  * `error->text` says why the arm gets no force. */
 HAPTICD_API hapticd_lead* hapticd_lead_model(hapticd_client* client, const char* model, hapticd_error* error);
 HAPTICD_API hapticd_lead* hapticd_lead_hand(hapticd_client* client, const char* device, hapticd_error* error);
 HAPTICD_API hapticd_lead* hapticd_lead_force(hapticd_client* client, const char* device, hapticd_error* error);
-/* Sets where a model or a hand must go. Wait-free; one thread per lead. Returns 0, or -1 if the lead is a lead of a
+/* Sets where a model or a hand must go. Wait-free; one thread per lead. Returns 0, or -1 if the lead is for a
  * force or has ended. */
 HAPTICD_API int hapticd_lead_put(hapticd_lead* lead, const hapticd_target* target);
 /* Answers a tick with a force. Wait-free; one thread per lead. Returns 0. Returns -1 and pushes nothing if the lead is
- * not a lead of a force or has ended, or if a number is not finite or is beyond 1e6. */
+ * not for a force or has ended, or if a number is not finite or is beyond 1e6. */
 HAPTICD_API int hapticd_lead_push(hapticd_lead* lead, const hapticd_push* push);
 /* Ends a lead and frees it: a model brakes and stays, a force ramps out. `lead` may be NULL. */
 HAPTICD_API void hapticd_lead_end(hapticd_lead* lead);

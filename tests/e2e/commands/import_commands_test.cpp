@@ -21,6 +21,9 @@ TEST_F(ImportCommands, ImportScalesCentresAndKeepsTheCredit) {
             "    knots: [[0, 0, 1, 1], [0, 0, 1, 1]]\n"
             "    points: [[-1, 0, -0.5], [-1, 0, 0.5],\n             [1, 0, -0.5], [1, 0, 0.5]]\n");
   EXPECT_EQ(run("import " + patch + " -o /nowhere/at/all.yaml").exit_code, 1);
+  const Outcome part = run("import " + patch + " -o " + (dir_ / "patch.hpart").string());
+  EXPECT_EQ(part.exit_code, 2);
+  EXPECT_TRUE(has(part.text, "Bezier patches become a model file, expected a name that ends in .yaml or .json"));
 }
 
 TEST_F(ImportCommands, ImportKeepsItsInputsAndFilesOfOtherKinds) {
