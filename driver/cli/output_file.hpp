@@ -23,8 +23,8 @@ const OutputKind& reportKind();                                        ///< JSON
 const OutputKind& mcapKind();                                          ///< MCAP
 constexpr const char* kObjBeginning = "# hapticd ctl geometry, in m";  ///< first line of such an OBJ file
 const OutputKind& objKind();                                           ///< triangles of `ctl geometry --obj`
-const OutputKind& partKind();                                         ///< part of `import`
-const OutputKind& modelKind();                                        ///< model file of `import`, YAML or JSON
+const OutputKind& partKind();                                          ///< part of `import`
+const OutputKind& modelKind();                                         ///< model file of `import`, YAML or JSON
 /// Returns the kind of CSV files whose header begins with these columns. @param header must live as long as the kind
 OutputKind tableKind(std::string_view header);
 

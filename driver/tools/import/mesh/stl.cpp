@@ -162,9 +162,9 @@ Result<MeshFile> parseStlMesh(std::string_view bytes, const std::string& name) {
   if (bytes.size() < kStlHead)
     return Error{name + ": has " + std::to_string(bytes.size()) +
                  " bytes, but a binary STL has at least 84; the file is damaged, or not an STL"};
-  return Error{name + ": a binary STL of " + std::to_string(count) + (count == 1 ? " triangle has " : " triangles has ") +
-               std::to_string(whole) + " bytes, but this file has " + std::to_string(bytes.size()) +
-               "; it is damaged, or not an STL"};
+  return Error{name + ": a binary STL of " + std::to_string(count) +
+               (count == 1 ? " triangle has " : " triangles has ") + std::to_string(whole) +
+               " bytes, but this file has " + std::to_string(bytes.size()) + "; it is damaged, or not an STL"};
 }
 
 }  // namespace hapticd::importing
