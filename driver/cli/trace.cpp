@@ -159,8 +159,8 @@ void addTrace(const Command& app, int& exit_code) {
   command.footer(
       "The column status is 0 (nearest) if the foot is the nearest point, 1 (degraded) if the answer is coarser than "
       "asked\nor not proved to be the nearest, 2 (held) if a contact is held and another point is nearer, -2 if the "
-      "model was silenced, and -6 if the "
-      "surface or\nthe sample was lost (no force).\nForces are those of the models without limits: limits belong to a "
+      "model was\nsilenced, and -6 if the surface or the sample was lost (no force).\nForces are those of the models "
+      "without limits: limits belong to a "
       "device, and a trace has none.\nThe columns of the foot point are nan while nothing of the model is "
       "traced.\n\nExample:\n  hapticd trace config/scenes/teapot.yaml --probe stroke.csv --out feet.csv");
   command.callback([options, &exit_code] { exit_code = trace(*options); });
