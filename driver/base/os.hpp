@@ -44,6 +44,9 @@ void unlockMemory();
 /// Gives the calling thread the policy SCHED_FIFO at `priority`.
 std::error_code setFifo(int priority);
 
+/// Returns how many processors this machine has, with those that are switched off.
+int processors();
+
 /// Pins the calling thread to one processor.
 std::error_code pinTo(int cpu);
 

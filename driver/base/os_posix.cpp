@@ -96,6 +96,10 @@ std::error_code setFifo(int priority) {
   return error(pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter));
 }
 
+int processors() {
+  return static_cast<int>(sysconf(_SC_NPROCESSORS_CONF));
+}
+
 std::error_code pinTo(int cpu) {
   cpu_set_t set;
   CPU_ZERO(&set);

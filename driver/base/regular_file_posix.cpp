@@ -15,7 +15,8 @@ namespace hapticd {
 namespace {
 
 Error cannotBeRead(int code) {
-  return Error{code == ENOENT ? "there is no such file" : std::string("cannot be read: ") + std::strerror(code)};
+  return Error{code == ENOENT ? "there is no such file, expected the path of a file"
+                              : std::string("cannot be read: ") + std::strerror(code)};
 }
 
 std::filesystem::file_type typeOf(mode_t mode) {

@@ -326,8 +326,9 @@ int check(const CheckArguments& options) {
         Json{{"problems", problems}, {"files", files}}.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
   if (problems == 0) return kWorked;
   std::fflush(stdout);
-  std::fprintf(stderr, "%zu problem%s in %zu of %zu file%s%s%s\n", problems, problems == 1 ? "" : "s", bad_files,
-               options.files.size(), options.files.size() == 1 ? "" : "s",
+  const size_t all = options.files.size();
+  const std::string where = all == 1 ? "1 file" : std::to_string(bad_files) + " of " + std::to_string(all) + " files";
+  std::fprintf(stderr, "%zu problem%s in %s%s%s\n", problems, problems == 1 ? "" : "s", where.c_str(),
                whole ? "" : "; some checks can run only after these are corrected, and may find more",
                whole || !hand_left_out ? "" : ": the hand was not moved yet");
   return kBadInput;

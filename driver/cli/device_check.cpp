@@ -78,6 +78,11 @@ std::vector<Outcome> examine(const scene::Device& device, const ExamineArguments
   return outcomes;
 }
 
+/// Returns what to do about the test after which the others were not run.
+const char* wayOn(const Outcome& last) {
+  return last.found.verdict == Passed::kSkipped ? "they need the arm" : "first correct what stopped them";
+}
+
 int sum(const std::vector<Outcome>& outcomes, const ExamineArguments& options, const std::string& module,
         nlohmann::ordered_json& all) {
   int failed = 0;
@@ -89,7 +94,7 @@ int sum(const std::vector<Outcome>& outcomes, const ExamineArguments& options, c
   const size_t left = device_check::tests().size() - outcomes.size();
   if (!options.json)
     std::printf("%zu tests, %d failed%s\n", outcomes.size(), failed,
-                left > 0 ? (", " + std::to_string(left) + " not run: first correct what stopped them").c_str() : "");
+                left > 0 ? (", " + std::to_string(left) + " not run: " + wayOn(outcomes.back())).c_str() : "");
   return failed;
 }
 

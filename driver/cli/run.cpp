@@ -237,6 +237,16 @@ int run(const RunArguments& options) {
   return runScene(options, *scene);
 }
 
+/// Returns "" if the text is the number of a processor of this machine.
+std::string ownProcessor(const std::string& text) {
+  const int last = os::processors() - 1;
+  const std::string range = last > 0 ? "0 to " + std::to_string(last) : "0";
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (end != text.c_str() && *end == '\0' && number >= 0 && number <= last) return "";
+  return "this machine has no processor " + text + ", expected " + range;
+}
+
 /// Returns "" if the text is a number; for "1s" and the like, returns what to write instead.
 std::string plainSeconds(const std::string& text) {
   char* end = nullptr;
@@ -254,7 +264,7 @@ void addTiming(const Command& command, RunArguments& options) {
                   "run as fast as the processor allows, on simulated devices; the same input gives the same bits");
   command.addOption("--rate", options.rate, "servo rate [Hz] instead of the scene's")
       .within(10.0, 20000.0);  // the range of servo.rate
-  command.addOption("--cpu", options.cpu, "processor to pin the servo thread to").wholeWithin(0, 1023);
+  command.addOption("--cpu", options.cpu, "processor to pin the servo thread to").check(ownProcessor).wholeWithin(0, 1023);
   command
       .addOption("--priority", options.priority,
                  "SCHED_FIFO priority of the servo thread; default: the daemon file's, or 80")

@@ -190,6 +190,13 @@ std::string clientsTable(const View& view) {
   return text;
 }
 
+/// Returns the word of the column STATUS.
+std::string statusOf(const ModelLine& model) {
+  if (!model.silenced.empty()) return "SILENCED";
+  if (model.now.waits != 0) return "waits for the tip to leave it";
+  return model.now.status == HSP_OK ? "ok" : host::statusText(model.now.status);
+}
+
 /// Returns the share of the ticks in which the foot point was certain: it was the nearest point, or the contact was
 /// held. Ticks without a foot point do not count.
 std::string knownShare(const status::ModelFeet& feet) {
@@ -219,10 +226,7 @@ std::string table(const View& view, size_t rows) {
     const ModelLine& m = view.models[i];
     const std::string depth = m.traced ? fmt::format("{:.3f}", m.now.depth * 1e3) : "-";
     text += fmt::format("{:<28.28} {:<16.16} {:9.3f} {:>9} {:8.2f} {:8.2f} {:8.1f} {:5} {:>7}  {}\n", m.name, m.plugin,
-                        m.now.force, depth, m.p50, m.p99, m.max, m.now.iterations, knownShare(m.feet),
-                        !m.silenced.empty() ? "SILENCED"
-                        : m.now.waits != 0  ? "waits for the tip to leave it"
-                                            : host::statusText(m.now.status));
+                        m.now.force, depth, m.p50, m.p99, m.max, m.now.iterations, knownShare(m.feet), statusOf(m));
   }
   if (view.models.size() > rows) text += fmt::format("... and {} more\n", view.models.size() - rows);
   for (const ModelLine& m : view.models)
@@ -360,9 +364,9 @@ void addTop(const Command& app, int& exit_code) {
   command.footer(
       "Keys: s, f, d and n sort by step time, force, depth and name; q quits.\n\n"
       "late: how long after their deadlines the ticks began; tick: how long they took. ITER: how often the last step\n"
-      "evaluated a surface. KNOWN: share of the ticks in which the foot point surely was the nearest, or was kept by "
-      "a\n"
-      "contact.\n\n"
+      "evaluated a surface. KNOWN: share of the ticks in which the foot point surely was the nearest, or was kept by\n"
+      "a contact. STATUS: ok, degraded (a cheaper method gave the foot point) or the error of the last step, which the\n"
+      "host faded out; SILENCED models give no force until the end of the run, and a line below says why.\n\n"
       "Examples:\n  hapticd top --sort force\n  hapticd top --json --every 1 | jq .models[0].force_n");
   command.callback([options, &exit_code] { exit_code = top(*options); });
 }

@@ -185,10 +185,9 @@ std::string overheating(const std::string& device, double sustained, const std::
          text(std::round(static_cast<double>(forces.size()) / rate)) + " s) and sustains " + text(sustained) +
          " N (device.continuous_force): real motors would overheat; " +
          (pusher.empty()
-              ? "use a softer model, or limits.force: " + text(sustained) + " in the device file"
+              ? "use a softer model, or write limits.force: " + text(sustained) + " in the device file"
               : "no model was touched, and " + pusher +
-                    " pushed: let it push less, or write clients.max_force: " + text(sustained) + " in the scene") +
-         ", which they sustain";
+                    " pushed: let it push less, or write clients.max_force: " + text(sustained) + " in the scene");
 }
 
 }  // namespace hapticd::tune

@@ -58,6 +58,12 @@ TEST_F(Commands, ANumberThatIsNoneIsOutOfEveryRange) {
   }
 }
 
+TEST_F(Commands, AProcessorThatIsNotThereIsRefused) {
+  const Outcome outcome = run("run " + put("scene.yaml", kScene) + " --for 0.1 --cpu 1023");
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "this machine has no processor 1023, expected 0")) << outcome.text;
+}
+
 TEST_F(Commands, VersionIsOneLine) {
   const Outcome outcome = run("--version");
   EXPECT_EQ(outcome.exit_code, 0);
@@ -80,6 +86,7 @@ TEST_F(Commands, CheckPrintsTheProblemsOfEveryFileAndGoesOn) {
   EXPECT_TRUE(has(outcome.text, "missing.yaml:1:1: there is no such file")) << outcome.text;
   EXPECT_TRUE(has(outcome.text, good + ": ok")) << outcome.text;
   EXPECT_TRUE(has(outcome.text, "3 problems in 2 of 3 files")) << outcome.text;
+  EXPECT_TRUE(has(run("check " + bad).text, "2 problems in 1 file"));
 }
 
 TEST_F(Commands, CheckTellsWhatOnlyThePluginKnows) {
