@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
+#include "base/regular_file.hpp"
 #include "cli/command.hpp"
 #include "cli/file_content.hpp"
 #include "cli/import_cad.hpp"
@@ -97,6 +97,21 @@ int importSoftBody(const ImportArguments& options) {
   return done ? kWorked : fail(kFailed, done.error());
 }
 
+int writeModel(const BezierModel& model, const std::string& out) {
+  const std::string text = std::filesystem::path(out).extension() == ".json" ? toModelJson(model) : toModelYaml(model);
+  const Eigen::Vector3d size = boundsOf(model).sizes();
+  if (out == "-") {
+    std::fputs(text.c_str(), stdout);
+  } else {
+    if (const auto written = writeWhole(out, text); !written) return fail(kFailed, written.error());
+    std::printf("%s: %zu surface%s, %.4g x %.4g x %.4g m%s\n", out.c_str(), model.patches.size(),
+                model.patches.size() == 1 ? "" : "s", size.x(), size.y(), size.z(),
+                model.reversed ? ", outward reversed" : "");
+  }
+  warnOfSize(out, size.maxCoeff());
+  return kWorked;
+}
+
 int importPatches(const ImportArguments& options, const Placement& placement) {
   document::Problems problems;
   const auto text = document::readFile(options.file, document::kMaxFileBytes, problems);
@@ -110,23 +125,10 @@ int importPatches(const ImportArguments& options, const Placement& placement) {
   if (!model) return fail(kBadInput, model.error());
   placeModel(*model, placement);
   if (options.outward != "auto") model->reversed = options.outward == "reversed";
-
   if (std::filesystem::path(options.out).extension() == ".hpart")
     return fail(kBadInput,
                 options.out + ": Bezier patches become a model file, expected a name that ends in .yaml or .json");
-  const bool json = options.out.size() > 5 && options.out.substr(options.out.size() - 5) == ".json";
-  const std::string result = json ? toModelJson(*model) : toModelYaml(*model);
-  if (options.out == "-") {
-    std::fputs(result.c_str(), stdout);
-    return kWorked;
-  }
-  std::ofstream out(options.out, std::ios::binary);
-  out << result << std::flush;
-  if (!out)
-    return fail(kFailed, options.out + ": cannot be written, expected a file in a folder that you may write to");
-  std::printf("%s: %zu surfaces%s\n", options.out.c_str(), model->patches.size(),
-              model->reversed ? ", outward reversed" : "");
-  return kWorked;
+  return writeModel(*model, options.out);
 }
 
 int importModel(const ImportArguments& options) {

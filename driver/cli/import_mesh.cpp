@@ -55,17 +55,21 @@ void print(const importing::MeshReport& r, const std::string& out) {
               r.triangles == 1 ? "" : "s", r.points, r.size.x(), r.size.y(), r.size.z(),
               r.closed ? "closed" : "open: a shell that is felt from both sides unless the scene says sides: front");
   for (const std::string& line : importing::linesOf(r)) std::printf("  %s\n", line.c_str());
-  if (r.size.maxCoeff() > kTooLarge)
-    std::fprintf(stderr, "warning: the part is %.4g m large; if the file counts millimetres, add --scale 0.001\n",
-                 r.size.maxCoeff());
-  else if (r.size.maxCoeff() < kTooSmall)
-    std::fprintf(
-        stderr,
-        "warning: the part is %.3g mm large, too small to be felt; is --scale (metres per unit of the file) right?\n",
-        r.size.maxCoeff() * 1e3);
+  warnOfSize(out, r.size.maxCoeff());
 }
 
 }  // namespace
+
+void warnOfSize(const std::string& out, double extent) {
+  if (extent > kTooLarge)
+    std::fprintf(stderr, "warning: %s: %.4g m large; if the imported file counts millimetres, add --scale 0.001\n",
+                 out.c_str(), extent);
+  else if (extent < kTooSmall)
+    std::fprintf(stderr,
+                 "warning: %s: %.3g mm large, too small to be felt; is --scale (metres per unit of the imported file) "
+                 "right?\n",
+                 out.c_str(), extent * 1e3);
+}
 
 int failLines(int exit_code, const std::string& lines) {
   for (std::size_t begin = 0; begin < lines.size();) {

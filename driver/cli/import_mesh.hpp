@@ -17,6 +17,9 @@ struct MeshImport {
 /// [main] Prints each line of an error as an error of its own. @return the given exit code
 int failLines(int exit_code, const std::string& lines);
 
+/// [main] Warns if what was imported is larger or smaller than a hand can feel. @param extent [m] largest extent
+void warnOfSize(const std::string& out, double extent);
+
 /// [main] Converts the mesh and prints the report or the error. @return the exit code
 int importMesh(const MeshImport& options);
 

@@ -161,17 +161,20 @@ Result<BezierModel> parseBpt(const std::string& text, const std::string& file) {
   return model;
 }
 
+Eigen::AlignedBox3d boundsOf(const BezierModel& model) {
+  Eigen::AlignedBox3d box;
+  for (const BezierPatch& patch : model.patches)
+    for (const Vector3d& point : patch.points) box.extend(point);
+  return box;
+}
+
 void placeModel(BezierModel& model, const Placement& placement) {
-  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (BezierPatch& patch : model.patches)
-    for (Vector3d& point : patch.points) {
-      point = turned(point, placement.up);
-      low = low.cwiseMin(point);
-      high = high.cwiseMax(point);
-    }
-  const double extent = (high - low).maxCoeff();
+    for (Vector3d& point : patch.points) point = turned(point, placement.up);
+  const Eigen::AlignedBox3d box = boundsOf(model);
+  const double extent = box.sizes().maxCoeff();
   const double scale = placement.fit > 0 && extent > 0 ? placement.fit / extent : placement.scale;
-  const Vector3d origin = placement.center ? Vector3d(0.5 * (low + high)) : Vector3d::Zero();
+  const Vector3d origin = placement.center ? Vector3d(0.5 * (box.min() + box.max())) : Vector3d::Zero();
   for (BezierPatch& patch : model.patches)
     for (Vector3d& point : patch.points) point = (scale * (point - origin)).unaryExpr(&clean);
 }

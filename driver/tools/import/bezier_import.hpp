@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Converts Bezier patches (.bpt) into a model file of format hapticd-model/1.
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <string>
 #include <vector>
 
@@ -31,6 +31,9 @@ struct Placement {
 
 /// [main] Reads patches: a count, then for each patch two degrees and its points; # begins a comment line.
 Result<BezierModel> parseBpt(const std::string& text, const std::string& file);
+
+/// [main] Returns the box around the control points, in the unit of the model.
+Eigen::AlignedBox3d boundsOf(const BezierModel& model);
 
 /// [main] Turns, scales and centres all points.
 void placeModel(BezierModel& model, const Placement& placement);

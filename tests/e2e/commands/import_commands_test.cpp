@@ -20,6 +20,9 @@ TEST_F(ImportCommands, ImportScalesCentresAndKeepsTheCredit) {
             "# By somebody\nformat: hapticd-model/1\nsurfaces:\n  - name: patch0\n    degree: [1, 1]\n"
             "    knots: [[0, 0, 1, 1], [0, 0, 1, 1]]\n"
             "    points: [[-1, 0, -0.5], [-1, 0, 0.5],\n             [1, 0, -0.5], [1, 0, 0.5]]\n");
+  EXPECT_TRUE(has(outcome.text, "model.yaml: 1 surface, 2 x 0 x 1 m")) << outcome.text;
+  const Outcome large = run("import " + patch + " --scale 5 -o " + (dir_ / "large.yaml").string());
+  EXPECT_TRUE(has(large.text, "large.yaml: 20 m large; if the imported file counts millimetres, add --scale 0.001"));
   EXPECT_EQ(run("import " + patch + " -o /nowhere/at/all.yaml").exit_code, 1);
   const Outcome part = run("import " + patch + " -o " + (dir_ / "patch.hpart").string());
   EXPECT_EQ(part.exit_code, 2);
