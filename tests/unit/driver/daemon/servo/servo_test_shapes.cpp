@@ -107,6 +107,20 @@ struct Turning : hapticd::Shape {
   }
 };
 
+/// Pushes with as many newtons as the seconds of its time.
+struct Clocked : hapticd::Shape {
+  int unused;
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.clocked", "clocked", "1.0.0", "MIT", "Tells the time."};
+  static constexpr auto fields() {
+    return std::array{Fields<Clocked>::integer("unused", &Clocked::unused, "", 0, 1, 0, "Nothing.")};
+  }
+  void activate(const hsp_activation&, hsp_report&) {}
+  hsp_status touch(const hsp_probe& in, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
+    out.force[1] = 1e-9 * static_cast<double>(in.time_ns);
+    return HSP_OK;
+  }
+};
+
 /// Turns the hand back toward where it was at first, by 2 N m for each radian.
 struct Aligning : hapticd::Shape {
   int unused;
@@ -281,4 +295,4 @@ struct Throwing : hapticd::Shape {
 }  // namespace
 
 HAPTICD_SHAPES(Wall, Pulling, Misbehaving, Sliding, Allocating, Throwing, Deadly, Turning, Rude, Aligning, Obliging,
-               Searched)
+               Searched, Clocked)

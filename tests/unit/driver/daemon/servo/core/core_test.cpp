@@ -57,6 +57,14 @@ TEST(Core, ServesNoTorqueToArmsThatOnlyPush) {
   EXPECT_DOUBLE_EQ(world->core().exchange(0).recoverable, 0.0);
 }
 
+TEST(Core, GivesShapesNoTimeBeforeTheStart) {
+  scene::Scene scene;
+  scene.models.push_back(testModel("clocked"));
+  auto world = testWorld(scene);
+  EXPECT_DOUBLE_EQ(tickOnce(*world, -500, probeAt({0, 0, 0})).y(), 0);  // 0.5 s before it, where a model settles
+  EXPECT_DOUBLE_EQ(tickOnce(*world, 250, probeAt({0, 0, 0})).y(), 0.25);
+}
+
 TEST(Core, GivesShapesTheVelocityRelativeToTheModel) {
   scene::Scene scene;
   scene.models.push_back(testModel("sliding"));
