@@ -55,8 +55,6 @@ for ending in ("step", "iges", "brep"):
     refused(f"text in a .{ending}", put(f"text.{ending}", b"a part it is not\n" * 50))
 refused("STEP without shapes", put("bare.step", re.sub(rb"(?s)DATA;.*ENDSEC;", b"DATA;\nENDSEC;", step)))
 refused("an IGES file that is called .step", put("other.step", iges))
-refused("too little memory", put("large.step", step), "--memory", "64")
-
 
 
 def told(what, words, file, *arguments):
@@ -82,7 +80,9 @@ for name, content, words in (("step.stl", step, "is a STEP file, by its first by
     told(f"{name} is told what it holds", words, put(name, content))
 told("a STEP file that ends too early is told so", "its last line END-ISO-10303-21; is missing", put("early.step", step[:len(step) // 2]))
 told("a damaged STEP file is told so", "it is a damaged STEP file", put("broken.step", step.replace(b"DATA;", b"DATB;", 1)))
-told("too little memory is told with the limit", "it needs more than the 64 MB", put("large.step", step), "--memory", "64")
+if not os.environ.get("HAPTICD_SANITIZE"):  # a sanitizer needs an address space without a limit, so the importer sets none
+    refused("too little memory", put("large.step", step), "--memory", "64")
+    told("too little memory is told with the limit", "it needs more than the 64 MB", join("large.step"), "--memory", "64")
 read_with("a mark of UTF-8 before STEP is passed over", "nothing was lost", put("mark.step", b"\xef\xbb\xbf" + step))
 read_with("an unknown prefix of a unit is told", "check the size of the part", put("prefix.step", step.replace(b".MILLI.", b".MILLY.")))
 read_with("a point without its coordinates is told", "the part may have another shape",
