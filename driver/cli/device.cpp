@@ -110,9 +110,9 @@ void printLimits(const scene::Limits& limits, double most) {
                                        diagnostics::enableButtonText(*limits.enable.button))
                                           .c_str());
   std::printf("  ramps      %g s to full force, %g s to zero\n  passivity  %s\n", limits.ramp_in, limits.ramp_out,
-              !limits.passivity   ? "guarded, unless its description was tried on hardware"
-              : *limits.passivity ? "guarded"
-                                  : "not guarded");
+              !limits.passivity   ? "on until its description was tried on hardware"
+              : *limits.passivity ? "on: a damper takes up energy that the loop creates"
+                                  : "off");
 }
 
 void printCapabilities(uint32_t flags) {

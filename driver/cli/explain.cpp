@@ -107,7 +107,8 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
     printLine("  velocity",
               (report.flags & HSP_R_VELOCITY) != 0 ? "used (damping, viscosity or friction)" : "not used");
     printLine("  memory", bytes(report.locked_bytes));
-    printLine("  cost", std::to_string(costs[i]) + " ns per tick near the surface (median of 300)");
+    printLine("  cost", std::to_string(costs[i]) +
+                            " ns per tick of a probe that rests near the surface; --cost: along the hand's path");
     const auto [begin, end] = details.equal_range(model.name);
     for (auto detail = begin; detail != end; ++detail) printLine(detail == begin ? "  details" : "", detail->second);
   }

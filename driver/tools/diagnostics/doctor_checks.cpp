@@ -103,7 +103,7 @@ Finding checkGroup() {
   if (haptic == nullptr)
     return {"group", Verdict::kFail, "there is no group haptic on this machine",
             "only root gets real-time rights and devices, but hapticd should not run as root",
-            "sudo groupadd --system haptic && sudo usermod -aG haptic $USER, then log in again"};
+            "sudo groupadd --system --force haptic && sudo usermod -aG haptic $USER, then log in again"};
   if (inGroup(haptic->gr_gid)) return ok("group", "this process is in group haptic");
   const bool root = geteuid() == 0;
   return {"group", root ? Verdict::kWarn : Verdict::kFail,

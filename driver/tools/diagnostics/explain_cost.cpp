@@ -306,7 +306,7 @@ Result<std::vector<CostRow>> costOf(const scene::Scene& scene) {
 }
 
 std::string costTable(const std::vector<CostRow>& rows) {
-  std::string text = "what the scene needs, and what each part costs\n";
+  std::string text = "what the scene needs, and what each part costs in a second of the hand's motion\n";
   text += fmt::format("  {:<34} {:>9} {:>10}  {}\n", "part", "ns per tick", "bytes", "asked for by");
   for (const CostRow& row : rows)
     if (row.there())
