@@ -9,6 +9,23 @@
 
 namespace hapticd::document {
 
+namespace {
+
+/// Returns the only candidate that begins with a word of at least four letters; "" if there is none, or several.
+std::string onlyWithBeginning(std::string_view word, const std::vector<std::string>& candidates) {
+  constexpr size_t kShortest = 4;
+  if (word.size() < kShortest) return "";
+  std::string only;
+  for (const std::string& candidate : candidates) {
+    if (!candidate.starts_with(word)) continue;
+    if (!only.empty()) return "";
+    only = candidate;
+  }
+  return only;
+}
+
+}  // namespace
+
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
   const size_t point = word.rfind('.');
   const bool decimal = point != word.npos && point > 0 && std::isdigit(static_cast<unsigned char>(word[point - 1]));
@@ -16,7 +33,8 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
   const std::string_view own = decimal ? word : word.substr(point + 1);
   for (const std::string_view key : {word, own})
     if (const std::string slip = suggestKey(key); !slip.empty()) return slip;
-  const std::string meant = nearestWord(word, candidates);
+  std::string meant = nearestWord(word, candidates);
+  if (meant.empty()) meant = onlyWithBeginning(word, candidates);
   return meant.empty() ? "" : " (did you mean \"" + meant + "\"?)";
 }
 

@@ -6,6 +6,12 @@
 namespace hapticd::document {
 namespace {
 
+TEST(Suggestion, IsTheOnlyNameThatBeginsLikeTheWord) {
+  EXPECT_EQ(suggestion("nurbs", {"mat_deformable", "nurbs_rigid"}), " (did you mean \"nurbs_rigid\"?)");
+  EXPECT_EQ(suggestion("nurbs", {"nurbs_rigid", "nurbs_elastic"}), "");
+  EXPECT_EQ(suggestion("nur", {"nurbs_rigid"}), "");
+}
+
 TEST(Listed, ShortensLongLists) {
   EXPECT_EQ(listed({"a", "b", "c"}, 3), "a, b, c");
   EXPECT_EQ(listed({"a", "b", "c"}, 2), "a, b, ... (3 in all)");
