@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Every relative link of a Markdown page leads to a file, every anchor to a heading, and every page of driver/docs that a
-source names exists.
+"""Every relative link of a Markdown page leads to a file that is installed with it, every anchor to a heading, and every
+page of driver/docs that a source names exists.
 
 Usage: links.py FOLDER   a source folder, or an installation's share/doc/hapticd
 Exit code 1: a link leads nowhere; all of them are printed as file:line."""
@@ -24,6 +24,12 @@ def anchors(page):
     return {slug(line.lstrip("#")) for line in page.read_text().splitlines() if line.startswith("#")}
 
 
+def leaves_docs(page, to, root):
+    """Only driver/docs is installed with its pages."""
+    docs = root / "driver/docs"
+    return page.is_relative_to(docs) and not to.resolve().is_relative_to(docs)
+
+
 def broken_links(page, root):
     fenced = False
     for number, line in enumerate(page.read_text().splitlines(), 1):
@@ -38,6 +44,8 @@ def broken_links(page, root):
             to = (page.parent / file) if file else page
             if not to.exists():
                 yield f"{page.relative_to(root)}:{number}: {target}: no such file"
+            elif leaves_docs(page, to, root):
+                yield f"{page.relative_to(root)}:{number}: {target}: is not installed with the pages of driver/docs"
             elif anchor and anchor not in anchors(to):
                 yield f"{page.relative_to(root)}:{number}: {target}: no such heading"
 
