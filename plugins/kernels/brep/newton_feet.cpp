@@ -133,12 +133,21 @@ double take(const LeafTask& task, const FaceShape& face, const LeafState& s, con
   return d2;
 }
 
-/// True if the probe is nearer to its foot than every centre of curvature of the leaf on the probe's side.
+/// True if the probe is nearer to its foot than every centre of curvature of the leaf on the probe's side. Where a
+/// tangent vanishes, the side is not known, and both count.
 bool isWithinFocus(const Leaf& leaf, const FaceShape& face, const LeafState& s, double offset) noexcept {
   const double side = -face.outward * s.r.dot(s.E.Su.cross(s.E.Sv));
-  return (std::sqrt(s.f) + offset) *
-             static_cast<double>((side > 0 ? leaf.curvature_front : leaf.curvature_back).value()) <
-         1;
+  const auto front = static_cast<double>(leaf.curvature_front.value()),
+             back = static_cast<double>(leaf.curvature_back.value());
+  return (std::sqrt(s.f) + offset) * (side == 0 ? std::max(front, back) : side > 0 ? front : back) < 1;
+}
+
+/// True if a tangent vanishes (at a pole, or where control points coincide). Newton's method takes such a point for a
+/// foot wherever the probe is, because every slope along that tangent is 0.
+bool isSingular(const Leaf& leaf, const LeafState& s) noexcept {
+  const Array2d size2 = (leaf.hi - leaf.lo).square();
+  constexpr double kShort2 = kShortStep * kShortStep;
+  return s.E.Su.squaredNorm() * size2[0] <= kShort2 || s.E.Sv.squaredNorm() * size2[1] <= kShort2;
 }
 
 /// Returns a lower bound of the squared distance to a leaf on which the probe has one foot. It follows from the slope
@@ -179,9 +188,11 @@ NewtonResult leafFoot(const Geometry& geometry, const Leaf& leaf, const FaceShap
   answer.d2 = take(task, face, s, d, offset, answer.untrimmed2, hit);
   answer.proved =
       task.arrived && (start.feet.number != FeetOfLeaf::kUnknown || isWithinFocus(leaf, face, s, std::abs(offset)));
+  const bool again = !answer.proved || isSingular(leaf, s);
+  answer.proved = answer.proved && (!again || start.elsewhere);
   // If the probe is beyond a centre of curvature, there may be several feet. So the search also starts near the
-  // corners.
-  for (int corner = 0; corner < 4 && !answer.proved && start.elsewhere; ++corner) {
+  // corners, and likewise if it ended where a tangent vanishes.
+  for (int corner = 0; corner < 4 && again && start.elsewhere; ++corner) {
     const Array2d share(corner % 2 == 0 ? 0.1 : 0.9, corner < 2 ? 0.1 : 0.9);
     task.at(leaf.lo + share * (leaf.hi - leaf.lo), s);
     d = descend(task, s);
@@ -223,6 +234,9 @@ struct CurveTask {
     const double step = h > 0 ? -g / h : 0;
     return std::clamp(s.t + step, piece.t0, piece.t1) - s.t;
   }
+  /// True if the derivative of the curve vanishes, as it does at an end where control points coincide. Newton's method
+  /// takes such a point for a foot wherever the probe is.
+  bool isSingular(const CurveState& s) const noexcept { return s.C.C1.norm() * (piece.t1 - piece.t0) <= kShortStep; }
   double descend(CurveState& s) noexcept {
     double d = stepFrom(s);
     CurveState trial;
@@ -280,12 +294,13 @@ NewtonResult pieceFoot(const Geometry& geometry, const CurvePiece& piece, const 
     }
   double d = task.descend(s);
   answer.d2 = take(task, s, d, hit);
+  const bool singular = task.isSingular(s);
   // If the probe is beyond a centre of curvature, there may be several feet, or only the ends may be minima.
   const FeetOfPiece feet = std::sqrt(s.f) * static_cast<double>(piece.curvature.most.value()) < 1
                                ? FeetOfPiece::kOne
                                : countFeet(piece.curvature, p);
   answer.proved = feet != FeetOfPiece::kUnknown;
-  if (feet != FeetOfPiece::kOne)
+  if (feet != FeetOfPiece::kOne || singular)
     for (const double share : {0.02, 0.98}) {
       task.at(piece.t0 + share * (piece.t1 - piece.t0), s);
       d = task.descend(s);

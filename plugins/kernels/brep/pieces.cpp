@@ -43,6 +43,41 @@ bool curvatures(const SurfacePoint& E, double& least, double& most) {
   return true;
 }
 
+/// True if tangent and curvature of a curve hardly change at a knot, so that a piece or leaf may go on beyond it.
+/// @param narrow how far before the knot the curve is evaluated
+bool isSmoothAt(const Geometry& geometry, std::uint32_t curve, double knot, double narrow) {
+  constexpr double kSame = 1e-6, kSameCurvature = 0.1;
+  CurvePoint C;
+  std::array<Vector3d, 2> first, bend;
+  for (const std::size_t side : {0, 1}) {
+    geometry.curve(curve, side == 0 ? knot - narrow : knot, C);
+    const double speed2 = C.C1.squaredNorm();
+    if (!(speed2 > 0)) return false;
+    first[side] = C.C1;
+    bend[side] = (C.C2 - C.C2.dot(C.C1) / speed2 * C.C1) / speed2;
+  }
+  return (first[0] - first[1]).norm() <= kSame * first[1].norm() &&
+         (bend[0] - bend[1]).norm() <= kSameCurvature * std::max(bend[0].norm(), bend[1].norm());
+}
+
+/// Returns the parameters between lo and hi at which a surface that is no spline may have a kink along an axis, or its
+/// curvature may jump: knots of the curve that it sweeps, or of the spline that it is offset from.
+std::vector<double> breaksAlong(const Geometry& geometry, std::uint32_t surface, int axis, double lo, double hi) {
+  const Part& part = geometry.part();
+  const Surface& s = part.surfaces[surface];
+  const double narrow = 1e-9 * (hi - lo);
+  std::vector<double> knots, breaks;
+  if (s.kind == SurfaceKind::kOffset) return breaksAlong(geometry, s.basis, axis, lo, hi);
+  if (s.kind == SurfaceKind::kSpline) knots = splineOf(part, s).knots[static_cast<std::size_t>(axis)];
+  const bool swept = s.kind == (axis == 0 ? SurfaceKind::kExtrusion : SurfaceKind::kRevolution);
+  if (swept) knots = geometry.curveKnots(s.basis);
+  for (const double knot : knots)
+    if (knot > (breaks.empty() ? lo : breaks.back()) + narrow && knot < hi - narrow &&
+        !(swept && isSmoothAt(geometry, s.basis, knot, narrow)))
+      breaks.push_back(knot);
+  return breaks;
+}
+
 class FaceCutter {
  public:
   FaceCutter(const Geometry& geometry, std::uint32_t face, const FaceShape& shape, std::vector<BoxedLeaf>& leaves)
@@ -73,19 +108,35 @@ class FaceCutter {
     }
   }
 
-  /// Cuts a surface of another kind into rows and columns, each of which turns by about the same angle. The boxes come
-  /// from samples.
+  /// Cuts a surface of another kind into rows and columns: where it has kinks, and between them so that each turns by
+  /// about the same angle. The boxes come from samples, which are blind to kinks.
   void cutEvenly() {
     const Array2d lo = vec(face_.lo).array(), hi = vec(face_.hi).array();
-    const std::array<int, 2> count{turnsAlong(0, lo, hi), turnsAlong(1, lo, hi)};
-    const Array2d step = (hi - lo) / Array2d(count[0], count[1]);
-    for (int i = 0; i < count[0]; ++i)
-      for (int j = 0; j < count[1]; ++j) {
-        const Array2d from = lo + Array2d(i, j) * step, to = lo + Array2d(i + 1, j + 1) * step;
+    const std::array<std::vector<double>, 2> stops{stopsAlong(0, lo, hi), stopsAlong(1, lo, hi)};
+    for (std::size_t i = 0; i + 1 < stops[0].size(); ++i)
+      for (std::size_t j = 0; j + 1 < stops[1].size(); ++j) {
+        const Array2d from(stops[0][i], stops[1][j]), to(stops[0][i + 1], stops[1][j + 1]);
         add(from, to, lo, hi, sampledBox(from, to));
       }
   }
 
+  /// Returns the parameters at which the surface is cut along an axis, its ends included.
+  std::vector<double> stopsAlong(int axis, Array2d lo, Array2d hi) const {
+    std::vector<double> ends = breaksAlong(geometry_, face_.surface, axis, lo[axis], hi[axis]), stops{lo[axis]};
+    const int fewest = ends.empty() ? 2 : 1;
+    ends.push_back(hi[axis]);
+    for (const double end : ends) {
+      const double begin = lo[axis] = stops.back();
+      hi[axis] = end;
+      const int count = std::max(fewest, turnsAlong(axis, lo, hi));
+      for (int i = 1; i < count; ++i) stops.push_back(begin + i * (end - begin) / count);
+      stops.push_back(end);
+    }
+    return stops;
+  }
+
+  /// Returns into how many parts the surface is cut between lo and hi. @param hi along `axis`, the surface is taken
+  /// just before it, because derivatives at a knot are those of the span to the right
   int turnsAlong(int axis, const Array2d& lo, const Array2d& hi) const {
     constexpr int kLines = 5, kSamples = 64, kMost = 256;
     double widest = 0;
@@ -95,7 +146,7 @@ class FaceCutter {
       double turn = 0;
       for (int i = 0; i <= kSamples; ++i) {
         Array2d share;
-        share[axis] = static_cast<double>(i) / kSamples;
+        share[axis] = i < kSamples ? static_cast<double>(i) / kSamples : 1 - 1e-9;
         share[1 - axis] = (line + 0.5) / kLines;
         const Array2d uv = lo + share * (hi - lo);
         geometry_.surface(face_.surface, uv[0], uv[1], E);
@@ -105,7 +156,9 @@ class FaceCutter {
       }
       widest = std::max(widest, turn);
     }
-    return std::clamp(static_cast<int>(std::ceil(widest / kLeafTurn)) + 1, 2, kMost);
+    constexpr double kLittle = 0.1;  // what turns by less than this share of kLeafTurn needs no cut
+    const double parts = widest / kLeafTurn;
+    return parts < kLittle ? 1 : std::clamp(static_cast<int>(std::ceil(parts)) + 1, 2, kMost);
   }
 
   /// Returns a box around samples, enlarged because a surface deviates from its chords by an eighth of the second
@@ -233,7 +286,7 @@ class EdgeCutter {
       if (knot > edge_.t0 + narrow && knot < edge_.t1 - narrow) knots_.push_back(knot);
     double from = edge_.t0;
     for (const double knot : knots_)
-      if (!isSmoothAt(knot, narrow)) {
+      if (!isSmoothAt(geometry_, edge_.curve, knot, narrow)) {
         halve(from, knot, 0);
         from = knot;
       }
@@ -241,22 +294,6 @@ class EdgeCutter {
   }
 
  private:
-  /// True if tangent and curvature hardly change at a knot, so that a piece may go on beyond it.
-  bool isSmoothAt(double knot, double narrow) const {
-    constexpr double kSame = 1e-6, kSameCurvature = 0.1;
-    CurvePoint C;
-    std::array<Vector3d, 2> first, bend;
-    for (const std::size_t side : {0, 1}) {
-      geometry_.curve(edge_.curve, side == 0 ? knot - narrow : knot, C);
-      const double speed2 = C.C1.squaredNorm();
-      if (!(speed2 > 0)) return false;
-      first[side] = C.C1;
-      bend[side] = (C.C2 - C.C2.dot(C.C1) / speed2 * C.C1) / speed2;
-    }
-    return (first[0] - first[1]).norm() <= kSame * first[1].norm() &&
-           (bend[0] - bend[1]).norm() <= kSameCurvature * std::max(bend[0].norm(), bend[1].norm());
-  }
-
   /// Returns the knot that is nearest to the middle between t0 and t1, or the middle itself if no knot lies between.
   double middleOf(double t0, double t1) const {
     const double middle = 0.5 * (t0 + t1);
