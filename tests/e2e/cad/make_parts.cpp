@@ -172,6 +172,18 @@ TopoDS_Shape faces(const TopoDS_Shape& shape) {
   return loose;
 }
 
+/// A plate of 40 mm, 10 mm thick, with a hole, and a pin of the same radius that stands on the rim of the hole: four
+/// faces meet there, two of each solid.
+TopoDS_Shape pinOnRim() {
+  const gp_Ax2 below(gp_Pnt(20, 20, -1), gp::DZ()), above(gp_Pnt(20, 20, 10), gp::DZ());
+  TopoDS_Compound both;
+  const BRep_Builder builder;
+  builder.MakeCompound(both);
+  builder.Add(both, BRepAlgoAPI_Cut(box(0, 0, 0, 40, 40, 10), BRepPrimAPI_MakeCylinder(below, 5, 12).Shape()).Shape());
+  builder.Add(both, BRepPrimAPI_MakeCylinder(above, 5, 10).Shape());
+  return both;
+}
+
 /// Two of one block of 10 mm, 30 mm apart along x, the second turned a quarter about z; names and colours.
 void assembly() {
   Handle(TDocStd_Document) document;
@@ -228,6 +240,8 @@ int main(int argc, char** argv) {
   brep(shellOff(), "shell_off");
   brep(boxWithCavity(10, 30), "cavity");
   brep(boxWithCavity(30, 60), "crossing_cavity");
+  brep(faces(boxWithCavity(10, 30)), "loose_cavity");
+  iges(pinOnRim(), "pin_on_rim");
   assembly();
   return failures;
 }

@@ -7,6 +7,7 @@
 #include <TDataStd_Name.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Iterator.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_Location.hxx>
@@ -44,19 +45,31 @@ std::uint32_t packed(const Quantity_ColorRGBA& colour) {
   return byte(rgb[0]) | byte(rgb[1]) << 8 | byte(rgb[2]) << 16 | byte(static_cast<double>(colour.Alpha())) << 24;
 }
 
+/// Returns the faces of a shape that belong to no shell, in the groups (nested compounds) of the file: a group is often
+/// one part.
+TopoDS_Compound looseFacesOf(const TopoDS_Shape& shape) {
+  TopoDS_Compound loose;
+  const BRep_Builder builder;
+  builder.MakeCompound(loose);
+  if (shape.ShapeType() == TopAbs_FACE) builder.Add(loose, shape);
+  if (shape.ShapeType() != TopAbs_COMPOUND) return loose;
+  for (TopoDS_Iterator at(shape); at.More(); at.Next()) {
+    if (at.Value().ShapeType() == TopAbs_FACE) builder.Add(loose, at.Value());
+    if (at.Value().ShapeType() != TopAbs_COMPOUND) continue;
+    const TopoDS_Compound group = looseFacesOf(at.Value());
+    if (TopoDS_Iterator(group).More()) builder.Add(loose, group);
+  }
+  return loose;
+}
+
 /// Returns first the solids, then the shells that belong to no solid, then the faces that belong to no shell, as one
 /// compound.
 std::vector<TopoDS_Shape> piecesOf(const TopoDS_Shape& shape) {
   std::vector<TopoDS_Shape> pieces;
   for (TopExp_Explorer at(shape, TopAbs_SOLID); at.More(); at.Next()) pieces.push_back(at.Current());
   for (TopExp_Explorer at(shape, TopAbs_SHELL, TopAbs_SOLID); at.More(); at.Next()) pieces.push_back(at.Current());
-  TopExp_Explorer loose(shape, TopAbs_FACE, TopAbs_SHELL);
-  if (!loose.More()) return pieces;
-  TopoDS_Compound sheet;
-  const BRep_Builder builder;
-  builder.MakeCompound(sheet);
-  for (; loose.More(); loose.Next()) builder.Add(sheet, loose.Current());
-  pieces.push_back(sheet);
+  const TopoDS_Compound loose = looseFacesOf(shape);
+  if (TopoDS_Iterator(loose).More()) pieces.push_back(loose);
   return pieces;
 }
 

@@ -217,6 +217,18 @@ void gatherLooseFaces(CadFile& cad, const std::string& name) {
   cad.nodes.push_back(node);
 }
 
+/// Names what the file leaves without a name after the assembly that holds it, or after the file. Otherwise neither
+/// messages nor scenes could refer to it.
+void nameNodes(CadFile& cad, const std::string& file) {
+  std::vector<int> unnamed(cad.nodes.size(), 0);
+  for (Node& node : cad.nodes) {
+    const auto parent = static_cast<std::size_t>(node.parent);
+    if (node.name.empty())
+      node.name = node.parent < 0 ? file : cad.nodes[parent].name + " " + std::to_string(++unnamed[parent]);
+    if (node.body_name.empty()) node.body_name = node.name;
+  }
+}
+
 }  // namespace
 
 CadFile readCad(const std::string& file) {
@@ -234,10 +246,7 @@ CadFile readCad(const std::string& file) {
     throw CadError("expected a name that ends in .step, .stp, .iges, .igs, .brep or .rle");
   const std::string name = std::filesystem::path(file).stem().string();
   gatherLooseFaces(cad, name);
-  for (Node& node : cad.nodes) {
-    if (node.parent < 0 && node.name.empty()) node.name = name;
-    if (node.parent < 0 && node.body_name.empty()) node.body_name = node.name;
-  }
+  nameNodes(cad, name);
   return cad;
 }
 

@@ -7,18 +7,19 @@
 #include <BRepGProp.hxx>
 #include <BRepLib.hxx>
 #include <BRep_Builder.hxx>
-#include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
 #include <ShapeBuild_ReShape.hxx>
 #include <ShapeFix_Shape.hxx>
 #include <TopExp_Explorer.hxx>
-#include <TopoDS.hxx>
-#include <TopoDS_Solid.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Iterator.hxx>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 
+#include "cad_import/closed_shells.hpp"
 #include "cad_import/progress.hpp"
 #include "cad_import/shape_fixes.hpp"
 
@@ -92,6 +93,13 @@ Seam sewn(const TopoDS_Shape& faces, const std::string& body) {
   return best;
 }
 
+/// Keeps the colours of faces that were sewn.
+TopoDS_Shape kept(const Seam& seam, const TopoDS_Shape& faces, Colours& colours) {
+  for (TopExp_Explorer face(faces, TopAbs_FACE); face.More(); face.Next())
+    moveColour(face.Current(), seam.sewing->Modified(face.Current()), colours);
+  return seam.shape;
+}
+
 TopoDS_Shape sewnFaces(const TopoDS_Shape& faces, const std::string& body, Colours& colours,
                        std::vector<std::string>& steps) {
   const Seam seam = sewn(faces, body);
@@ -99,42 +107,93 @@ TopoDS_Shape sewnFaces(const TopoDS_Shape& faces, const std::string& body, Colou
     steps.push_back(body + ": its loose faces could not be sewn within 10 s");
     return faces;
   }
-  for (TopExp_Explorer face(faces, TopAbs_FACE); face.More(); face.Next())
-    moveColour(face.Current(), seam.sewing->Modified(face.Current()), colours);
   char line[120];
   std::snprintf(line, sizeof line, ": loose faces sewn over gaps up to %.0e mm, %d edges stay free", seam.gap,
                 seam.free);
   steps.push_back(body + line);
-  return seam.shape;
+  return kept(seam, faces, colours);
 }
 
-/// Makes a solid from a closed shell, because it bounds a volume. Other shapes are returned unchanged.
-TopoDS_Shape solidOf(const TopoDS_Shape& shape, const std::string& body, std::vector<std::string>& steps) {
-  TopExp_Explorer shells(shape, TopAbs_SHELL);
-  if (!shells.More() || TopExp_Explorer(shape, TopAbs_SOLID).More()) return shape;
-  const TopoDS_Shell shell = TopoDS::Shell(shells.Current());
-  shells.Next();
-  if (shells.More() || TopExp_Explorer(shape, TopAbs_FACE, TopAbs_SHELL).More() || !BRep_Tool::IsClosed(shell))
-    return shape;
-  TopoDS_Solid solid;
+/// Sorts what a shape consists of: its groups of several faces, and as one more group everything else.
+void findGroups(const TopoDS_Shape& shape, std::vector<TopoDS_Shape>& groups, TopoDS_Compound& rest) {
   const BRep_Builder builder;
-  builder.MakeSolid(solid);
-  builder.Add(solid, shell);
-  BRepLib::OrientClosedSolid(solid);
-  steps.push_back(body + ": a closed shell, taken as a solid");
-  return solid;
+  for (TopoDS_Iterator at(shape); at.More(); at.Next()) {
+    if (at.Value().ShapeType() != TopAbs_COMPOUND) {
+      builder.Add(rest, at.Value());
+      continue;
+    }
+    TopoDS_Compound own;
+    builder.MakeCompound(own);
+    findGroups(at.Value(), groups, own);
+    TopExp_Explorer face(own, TopAbs_FACE);
+    const bool any = face.More();
+    if (any) face.Next();
+    if (any) face.More() ? groups.push_back(own) : builder.Add(rest, own);
+  }
+}
+
+/// Sews the faces of each group that closes by itself, because that is one part of an assembly: sewn together, parts
+/// that touch would grow into one. The faces of all other groups are sewn together. Returns what they became.
+std::vector<TopoDS_Shape> sewnGroups(const TopoDS_Shape& faces, const std::string& body, Colours& colours,
+                                     std::vector<std::string>& steps) {
+  std::vector<TopoDS_Shape> groups, parts;
+  TopoDS_Compound rest;
+  const BRep_Builder builder;
+  builder.MakeCompound(rest);
+  if (faces.ShapeType() == TopAbs_COMPOUND) findGroups(faces, groups, rest);
+  if (groups.size() < 2) return {sewnFaces(faces, body, colours, steps)};
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kLongest);
+  for (const TopoDS_Shape& group : groups) {
+    const Seam seam = std::chrono::steady_clock::now() < end ? sewn(group, body) : Seam{};
+    if (!seam.shape.IsNull() && seam.free == 0)
+      parts.push_back(kept(seam, group, colours));
+    else
+      builder.Add(rest, group);
+  }
+  if (parts.empty()) return {sewnFaces(faces, body, colours, steps)};
+  steps.push_back(body + ": " + std::to_string(parts.size()) + " of " + std::to_string(groups.size()) +
+                  " groups of loose faces sewn, each to a part without free edges");
+  if (TopExp_Explorer(rest, TopAbs_FACE).More()) parts.push_back(sewnFaces(rest, body, colours, steps));
+  return parts;
+}
+
+/// Makes solids of the closed shells of shapes without solids, because they bound volumes.
+std::vector<TopoDS_Shape> solidsOf(const std::vector<TopoDS_Shape>& shapes, const std::string& body,
+                                   std::vector<std::string>& steps) {
+  std::vector<TopoDS_Shape> bodies;
+  int solids = 0, cavities = 0, doubtful = 0;
+  for (const TopoDS_Shape& shape : shapes) {
+    Volumes volumes{{shape}, 0, 0, 0};
+    if (!TopExp_Explorer(shape, TopAbs_SOLID).More()) volumes = volumesOf(shape);
+    bodies.insert(bodies.end(), volumes.bodies.begin(), volumes.bodies.end());
+    solids += volumes.solids;
+    cavities += volumes.cavities;
+    doubtful += volumes.doubtful;
+  }
+  if (solids == 1 && cavities == 0)
+    steps.push_back(body + ": a closed shell, taken as a solid");
+  else if (solids > 0)
+    steps.push_back(body + ": " + std::to_string(solids + cavities) + " closed shells, taken as " +
+                    std::to_string(solids) + (solids == 1 ? " solid" : " solids") + " with " +
+                    std::to_string(cavities) + (cavities == 1 ? " cavity" : " cavities"));
+  if (doubtful > 0)
+    steps.push_back(
+        body + ": closed shells whose faces bound no single volume, felt from both sides: " + std::to_string(doubtful));
+  return bodies;
 }
 
 }  // namespace
 
-TopoDS_Shape healed(const TopoDS_Shape& shape, const std::string& body, Colours& colours,
-                    std::vector<std::string>& steps) {
-  TopoDS_Shape result = fixed(shape, body, colours, steps);
-  if (TopExp_Explorer(result, TopAbs_FACE, TopAbs_SHELL).More()) result = sewnFaces(result, body, colours, steps);
-  result = solidOf(result, body, steps);
-  BRepLib::BuildCurves3d(result);
-  BRepLib::SameParameter(result);
-  return result;
+std::vector<TopoDS_Shape> healed(const TopoDS_Shape& shape, const std::string& body, Colours& colours,
+                                 std::vector<std::string>& steps) {
+  std::vector<TopoDS_Shape> parts{fixed(shape, body, colours, steps)};
+  if (TopExp_Explorer(parts[0], TopAbs_FACE, TopAbs_SHELL).More()) parts = sewnGroups(parts[0], body, colours, steps);
+  std::vector<TopoDS_Shape> bodies = solidsOf(parts, body, steps);
+  for (TopoDS_Shape& made : bodies) {
+    BRepLib::BuildCurves3d(made);
+    BRepLib::SameParameter(made);
+  }
+  return bodies;
 }
 
 bool isInsideOut(const TopoDS_Shape& shape) {

@@ -56,13 +56,28 @@ class PartBuilder {
     instance.name = nameIndex(node.name);
     instance.colour = node.colour;
     if (node.parent >= 0) instance.parent = instance_of[static_cast<std::size_t>(node.parent)];
-    if (!node.shape.IsNull()) {
-      instance.body = bodyOf(node);
-      if (instance.body == kNone) return kNone;
-    }
     place(node.pose, instance);
+    std::vector<std::uint32_t> bodies;
+    if (!node.shape.IsNull()) {
+      bodies = bodiesOf(node);
+      if (bodies.empty()) return kNone;
+    }
+    if (bodies.size() == 1) instance.body = bodies[0];
     part_.instances.push_back(instance);
-    return static_cast<std::uint32_t>(part_.instances.size() - 1);
+    const auto index = static_cast<std::uint32_t>(part_.instances.size() - 1);
+    if (bodies.size() > 1) addChildren(index, bodies);
+    return index;
+  }
+
+  /// Adds the bodies of a shape that turned out to be several, as instances below its own.
+  void addChildren(std::uint32_t parent, const std::vector<std::uint32_t>& bodies) {
+    for (const std::uint32_t body : bodies) {
+      brep::Instance child = part_.instances[parent];
+      child.parent = parent;
+      child.body = body;
+      child.name = part_.bodies[body].name;
+      part_.instances.push_back(child);
+    }
   }
 
   static bool isRigid(const gp_Trsf& pose) { return !pose.IsNegative() && std::abs(pose.ScaleFactor() - 1) < 1e-12; }
@@ -79,9 +94,9 @@ class PartBuilder {
     }
   }
 
-  /// Returns the index of a node's body, or kNone if nothing of the body can be kept. A body is built once, but
-  /// mirrored and scaled bodies are built for each of their places.
-  std::uint32_t bodyOf(Node& node) {
+  /// Returns the indices of a node's bodies; none if nothing of them can be kept. Bodies are built once, but mirrored
+  /// and scaled ones are built for each of their places.
+  std::vector<std::uint32_t> bodiesOf(Node& node) {
     const std::string name = node.body_name.empty() ? node.name : node.body_name;
     if (!isRigid(node.pose)) {
       report_.steps.push_back(name + ": mirrored or scaled, so it was stored as a body of its own");
@@ -92,14 +107,24 @@ class PartBuilder {
     return bodies_[key] = build(node.shape, name, node.colour);
   }
 
-  std::uint32_t build(const TopoDS_Shape& shape, const std::string& name, std::uint32_t colour) {
-    TopoDS_Shape whole = shape;
+  std::vector<std::uint32_t> build(const TopoDS_Shape& shape, const std::string& name, std::uint32_t colour) {
+    std::vector<TopoDS_Shape> bodies{shape};
     try {
-      whole = healed(shape, name, file_.colours, report_.steps);
+      bodies = healed(shape, name, file_.colours, report_.steps);
     } catch (const Standard_Failure& failure) {
       report_.steps.push_back(name + ": healing failed (" + failure.DynamicType()->Name() +
                               "); the body stays as it is");
     }
+    std::vector<std::uint32_t> built;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const std::string own = bodies.size() == 1 ? name : name + " " + std::to_string(i + 1);
+      if (const std::uint32_t body = add(bodies[i], own, colour); body != kNone) built.push_back(body);
+    }
+    return built;
+  }
+
+  /// Adds one body. Returns its index, or kNone if none of its faces can be kept.
+  std::uint32_t add(const TopoDS_Shape& whole, const std::string& name, std::uint32_t colour) {
     BodyBuilder builder(file_.colours, name, part_);
     const std::uint32_t body = builder.add(whole, nameIndex(name), colour);
     report_.recognised += builder.recognisedFaces();
@@ -132,7 +157,7 @@ class PartBuilder {
   Report& report_;
   Part part_;
   std::map<std::string, std::uint32_t> names_;
-  std::map<std::pair<const void*, TopAbs_Orientation>, std::uint32_t> bodies_;
+  std::map<std::pair<const void*, TopAbs_Orientation>, std::vector<std::uint32_t>> bodies_;
   double sides_s_ = 0;  ///< [s] spent in judgeSides()
 };
 
