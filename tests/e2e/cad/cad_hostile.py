@@ -100,6 +100,8 @@ for name in others:
 told("a part in a file that is not there is told with that file", others[0], join("apart.step"))
 
 refused("an IGES file that ends too early", put("short.iges", iges[:int(0.9 * len(iges))]))
+read_with("a BREP file whose last line, the main shape, is missing", "the file names no main shape",
+          put("rootless.brep", brep.rstrip().rsplit(b"\n", 1)[0] + b"\n"))
 for share in (0.3, 0.6, 0.9, 0.97):  # these waited for words that never came
     refused(f"a BREP file that ends after {share:.0%}", put("short.brep", brep[:int(share * len(brep))]), "--time", "20")
 face = re.search(rb"(?s)(#\d+) = ADVANCED_FACE.*?;", step)

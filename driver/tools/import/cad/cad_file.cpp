@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cad_import/cad_file.hpp"
 
-#include <BRepTools.hxx>
+#include <BRepTools_ShapeSet.hxx>
 #include <BRep_Builder.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_IGESModel.hxx>
@@ -9,6 +9,7 @@
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Iterator.hxx>
 #include <XCAFApp_Application.hxx>
 #include <algorithm>
 #include <cctype>
@@ -17,6 +18,7 @@
 #include <iterator>
 #include <sstream>
 #include <string_view>
+#include <unordered_set>
 
 #include "cad_import/assembly.hpp"
 #include "cad_import/losses.hpp"
@@ -166,16 +168,47 @@ void refuseNoNumbers(const std::string& file) {
                        "source");
 }
 
+/// Returns the shapes of a BREP file that belong to no other shape and have faces.
+TopoDS_Shape mainShapes(const BRepTools_ShapeSet& set) {
+  std::unordered_set<const void*> parts;
+  for (int i = 1; i <= set.NbShapes(); ++i)
+    for (TopoDS_Iterator at(set.Shape(i)); at.More(); at.Next()) parts.insert(at.Value().TShape().get());
+  TopoDS_Compound all;
+  const BRep_Builder builder;
+  builder.MakeCompound(all);
+  for (int i = set.NbShapes(); i >= 1; --i)
+    if (const TopoDS_Shape& shape = set.Shape(i);
+        !parts.contains(shape.TShape().get()) && TopExp_Explorer(shape, TopAbs_FACE).More())
+      builder.Add(all, shape);
+  return all;
+}
+
+/// Reads the shapes of a BREP file. Some programs write the set of all shapes without its last line, which names the
+/// main one.
+TopoDS_Shape shapeOfBrep(std::istream& in, std::vector<std::string>& remarks) {
+  TopoDS_Shape shape;
+  BRepTools_ShapeSet set{BRep_Builder()};
+  const Handle(Progress) progress = new Progress("reading shapes");
+  set.Read(in, progress->Start());
+  in.exceptions(std::ios::goodbit);
+  in >> std::ws;
+  if (in.eof() && set.NbShapes() > 0) {
+    remarks.emplace_back("the file names no main shape, so the shapes that belong to no other were taken");
+    return mainShapes(set);
+  }
+  in.exceptions(std::ios::failbit | std::ios::badbit);
+  set.Read(shape, in);
+  return shape;
+}
+
 void readBrep(const std::string& file, CadFile& cad) {
   refuseNoNumbers(file);
   TopoDS_Shape shape;
-  const BRep_Builder builder;
-  const Handle(Progress) progress = new Progress("reading shapes");
   // At the end of an incomplete file Open CASCADE's reader would loop for ever, so the stream throws there.
   std::ifstream in(file);
   try {
     in.exceptions(std::ios::failbit | std::ios::badbit);
-    BRepTools::Read(shape, in, builder, progress->Start());
+    shape = shapeOfBrep(in, cad.remarks);
   } catch (const std::ios::failure&) {
     throw CadError(
         "it is not a BREP file of Open CASCADE, or it is damaged: it ends too early, or has words where numbers "
