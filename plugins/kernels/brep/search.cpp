@@ -205,10 +205,33 @@ bool Search::reuseLast(const Vector3d& p, double way, const Run& run) noexcept {
   return true;
 }
 
+/// Returns the squared distance [m^2] to the nearest of some vertices, rounded up by the tolerance of the file. A
+/// search that begins without a known point would examine hundreds of elements in one corner of a part of splines, if
+/// none of them has a foot inside its trim.
+double Search::vertexLimit(const Vector3d& p) const noexcept {
+  constexpr std::size_t kMostPlaces = 16, kMostVertices = 256;
+  const std::vector<Placement>& places = model_.placements();
+  const Part& part = model_.part();
+  const std::size_t step = (places.size() + kMostPlaces - 1) / kMostPlaces, each = kMostVertices * step / places.size();
+  double best2 = kInfinity;
+  for (std::size_t i = 0; i < places.size(); i += step) {
+    const Body& body = part.bodies[places[i].body];
+    const Vector3d q = places[i].toBody(p);
+    const std::size_t stride = std::max<std::size_t>(1, (body.vertex_count + each - 1) / each);
+    for (std::size_t v = 0; v < body.vertex_count; v += stride)
+      best2 = std::min(best2, (q - vec(part.vertices[body.first_vertex + v].point)).squaredNorm());
+  }
+  const double distance = std::sqrt(best2) + part.tolerance;
+  return distance * distance * (1 + 1e-9);
+}
+
 /// Examines the last element first, because a near start saves most of the search. The foot may have left this element,
 /// but the last point is still a point of the part and limits the search.
 void Search::begin(const Vector3d& p, Run& run) noexcept {
-  if (!last_.found()) return;
+  if (!last_.found()) {
+    run.limit2 = vertexLimit(p);
+    return;
+  }
   Examination examination;
   examination.start = &last_.hit;
   const Vector3d p_body = model_.placements()[last_.place].toBody(p);

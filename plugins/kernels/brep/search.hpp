@@ -108,6 +108,7 @@ class Search {
     BoxProbe probe;
   };
 
+  double vertexLimit(const Eigen::Vector3d& p) const noexcept;
   void begin(const Eigen::Vector3d& p, Run& run) noexcept;
   bool reuseLast(const Eigen::Vector3d& p, double way, const Run& run) noexcept;
   bool searchNear(const Eigen::Vector3d& p, double way, Run& run) noexcept;

@@ -2,12 +2,25 @@
 /// The search of whole trees of boxes, for a probe about which nothing is gathered.
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include "kernels/brep/search.hpp"
 
 namespace hapticd::brep {
 
 using Eigen::Vector3d;
+
+namespace {
+
+/// True if a search must end. Where nothing was found yet, it goes on for longer: without any foot, the part would not
+/// be felt at all.
+bool isSpent(const Nearest& best, const SearchBudget& budget) noexcept {
+  constexpr std::int64_t kMore = 8;
+  const std::int64_t times = best.found() ? 1 : kMore;
+  return best.nodes >= times * budget.nodes || best.elements >= times * budget.elements;
+}
+
+}  // namespace
 
 /// Examines a row of triangles, if its disc is near enough.
 void Search::examineTriangles(const Descent& at, const DescentEntry& entry, Run& run) noexcept {
@@ -63,7 +76,7 @@ void Search::searchTree(const BodyTree& body, std::int32_t root, std::uint32_t p
       run.others2 = std::min(run.others2, bound);
       continue;
     }
-    if (best.nodes >= run.budget.nodes || best.elements >= run.budget.elements) {
+    if (isSpent(best, run.budget)) {
       best.exhausted = true;
       run.open2 = std::min(run.open2, bound);
       continue;

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "kernels/brep/search.hpp"
 #include "kernels/brep/tracer.hpp"
 #include "kernels/trace/model.hpp"
 #include "sample_splines.hpp"
@@ -106,6 +107,23 @@ TEST(TableCurves, EvaluateAsTheCurvesThatTheyCopy) {
       ASSERT_TRUE(ours.C == theirs.C && ours.C1 == theirs.C1 && ours.C2 == theirs.C2 && ours.span == theirs.span)
           << k << ' ' << t;
     }
+  }
+}
+
+/// The first leaves that a search examines may all have their feet outside the trim. Then it must go on, because a part
+/// without a foot is not felt at all.
+TEST(SplineParts, ASearchThatHasFoundNothingGoesOn) {
+  constexpr int kFew = 4;
+  const Model model(samples::sheetOf(readModelFile(kModels + "goblet.yaml").surfaces));
+  Search search(model);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> share(-0.2, 1.2);
+  for (int i = 0; i < 3000; ++i) {
+    const Vector3d p = model.bounds().min() +
+                       Vector3d(share(random), share(random), share(random)).cwiseProduct(model.bounds().sizes());
+    search.reset();
+    const SearchBudget budget{2048, kFew};
+    ASSERT_TRUE(search.nearest(p, budget).found()) << p.transpose();
   }
 }
 
