@@ -162,6 +162,7 @@ Result<MeshFile> parseStlMesh(std::string_view bytes, const std::string& name) {
   if (bytes.size() < kStlHead)
     return Error{name + ": has " + std::to_string(bytes.size()) +
                  " bytes, but a binary STL has at least 84; the file is damaged, or not an STL"};
+  if (bytes.size() == whole) return Error{name + ": the file has no triangles; it is an empty binary STL"};
   return Error{name + ": a binary STL of " + std::to_string(count) +
                (count == 1 ? " triangle has " : " triangles has ") + std::to_string(whole) +
                " bytes, but this file has " + std::to_string(bytes.size()) + "; it is damaged, or not an STL"};

@@ -46,6 +46,11 @@ TEST(MeshImport, TellsAllWrongLinesAtOnce) {
   EXPECT_EQ(ply[2].rfind("x.ply:14: face 1 (from 0) of 2: its vertex 7 is out of range", 0), 0u);
 }
 
+TEST(MeshImport, SaysThatABinaryStlIsEmpty) {
+  EXPECT_EQ(errorIn(parseStlMesh(std::string(84, '\0'), "x.stl")),
+            "x.stl: the file has no triangles; it is an empty binary STL");
+}
+
 TEST(MeshImport, CountsTheWrongLinesBeyondTwenty) {
   std::string text;
   for (int i = 0; i < 100; ++i) text += "v 0 0\n";
