@@ -92,6 +92,30 @@ double turn(const Piece& piece, int axis) {
   return std::min(widest, 2.0);
 }
 
+/// Returns how far the control polygons along an axis turn along themselves: the largest turn within one of them, as
+/// 1 - cos of the angle to its own mean direction.
+double turnAlong(const Piece& piece, int axis) {
+  const int lines = axis == 0 ? piece.count_v : piece.count_u, count = axis == 0 ? piece.count_u : piece.count_v;
+  double widest = 0;
+  for (int line = 0; line < lines; ++line) {
+    const auto at = [&](int i) { return axis == 0 ? piece.point(i, line) : piece.point(line, i); };
+    const Vector3d mean = (at(count - 1) - at(0)).normalized();
+    for (int i = 0; i + 1 < count; ++i) {
+      const Vector3d edge = at(i + 1) - at(i);
+      if (const double length = edge.norm(); length > 0) widest = std::max(widest, 1 - edge.dot(mean) / length);
+    }
+  }
+  return std::min(widest, 2.0);
+}
+
+/// Returns the axis along which a piece is halved: the one whose control polygons turn most. If they hardly turn along
+/// themselves, they turn from one polygon to the next, and only halves across them turn less.
+int axisToHalve(const Piece& piece, double turn_u, double turn_v) {
+  constexpr double kHardly = 0.1;  // relative to the turn of all polygons
+  const int axis = turn_u >= turn_v ? 0 : 1;
+  return turnAlong(piece, axis) < kHardly * std::max(turn_u, turn_v) ? 1 - axis : axis;
+}
+
 /// Returns an estimate [rad] of the largest angle between `normal` and the normals of a nearly flat piece: 1.25 times
 /// the largest angle over the quadrilaterals of its control net, plus 0.02 rad. Returns pi if a quadrilateral has no
 /// normal.
@@ -115,7 +139,7 @@ constexpr int kMaxHalvings = 7;  // most halvings of one Bezier piece, which giv
 void addLeaves(const Piece& piece, int patch, double flat, int halvings, std::vector<Leaf>& leaves) {
   const double turn_u = turn(piece, 0), turn_v = turn(piece, 1);
   if (halvings < kMaxHalvings && std::max(turn_u, turn_v) > flat) {
-    for (const Piece& half : halves(piece, turn_u >= turn_v ? 0 : 1))
+    for (const Piece& half : halves(piece, axisToHalve(piece, turn_u, turn_v)))
       addLeaves(half, patch, flat, halvings + 1, leaves);
     return;
   }

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "kernels/trace/box_tree.hpp"
 #include "kernels/trace/newton.hpp"
 #include "shapes.hpp"
 
@@ -119,6 +120,21 @@ TEST(Model, AnEmptyModelIsRefused) {
 TEST(Model, NotANumberIsNearNothing) {
   Near near;
   EXPECT_EQ(solid("sphere").nearby(Vector3d::Constant(NAN), 1, &near, 1), 0);
+}
+
+/// A flat strip of 0.1 mm along a quarter of a circle: its short tangents turn from one side of the strip to the other,
+/// but not along themselves, so to halve it along them leads nowhere.
+TEST(BoxTree, HalvesAStripAcrossItsLength) {
+  constexpr double kArm = 0.5522847498;  // of a cubic arc over a right angle, relative to its radius
+  spline::SurfaceData strip;
+  strip.degree = {1, 3};
+  strip.knots = {std::vector<double>{0, 0, 1, 1}, std::vector<double>{0, 0, 0, 0, 1, 1, 1, 1}};
+  for (const double r : {0.02, 0.0201})
+    for (const auto& [x, y] : {std::pair(1.0, 0.0), std::pair(1.0, kArm), std::pair(kArm, 1.0), std::pair(0.0, 1.0)})
+      strip.points.emplace_back(r * x, r * y, 0);
+  BoxTree tree;
+  tree.add(strip, 0);
+  EXPECT_LE(tree.leafCount(), 16);
 }
 
 }  // namespace
