@@ -80,6 +80,13 @@ for name, content, words in (("step.stl", step, "is a STEP file, by its first by
     told(f"{name} is told what it holds", words, put(name, content))
 told("a STEP file that ends too early is told so", "its last line END-ISO-10303-21; is missing", put("early.step", step[:len(step) // 2]))
 told("a damaged STEP file is told so", "it is a damaged STEP file", put("broken.step", step.replace(b"DATA;", b"DATB;", 1)))
+told("solids that no product holds are told with a face", "it belongs to no solid, shell or set of surfaces that could be read",
+     put("unheld.step", re.sub(rb"(?s)#\d+ = (PRODUCT_DEFINITION_SHAPE|SHAPE_DEFINITION_REPRESENTATION|ADVANCED_BREP_SHAPE_REPRESENTATION)\(.*?\);\n", b"", step)))
+told("triangles in STEP are told so", "its tessellated shapes: they are triangles",
+     put("triangles.step", re.sub(rb"(?s)DATA;.*?ENDSEC;", b"""DATA;
+#1 = COORDINATES_LIST('',3,((0.,0.,0.),(1.,0.,0.),(0.,1.,0.)));
+#2 = TRIANGULATED_FACE('',#1,3,((0.,0.,1.)),$,(1,2,3),((1,2,3)));
+ENDSEC;""", step)))
 if not os.environ.get("HAPTICD_SANITIZE"):  # a sanitizer needs an address space without a limit, so the importer sets none
     refused("too little memory", put("large.step", step), "--memory", "64")
     told("too little memory is told with the limit", "it needs more than the 64 MB", join("large.step"), "--memory", "64")

@@ -80,6 +80,21 @@ std::string stepFault(const std::string& file, std::string_view start) {
   return "it is a damaged STEP file: a line breaks the rules of ISO 10303-21; write the file again from its source";
 }
 
+/// Notes that the shapes of a STEP file without faces are triangles (AP242), which Open CASCADE 7.6 does not read.
+void findTriangles(const std::string& file, CadFile& cad) {
+  for (const Node& node : cad.nodes)
+    if (!node.shape.IsNull() && TopExp_Explorer(node.shape, TopAbs_FACE).More()) return;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);)
+    if (line.find("TRIANGULATED_FACE") != line.npos || line.find("TRIANGULATED_SURFACE_SET") != line.npos) {
+      cad.losses.insert(cad.losses.begin(), {"its tessellated shapes",
+                                             "they are triangles, which are not read from STEP; export exact "
+                                             "surfaces, or an STL, OBJ or PLY file",
+                                             0, brep::kNone});
+      return;
+    }
+}
+
 void readStep(const std::string& file, CadFile& cad) {
   STEPCAFControl_Reader reader;
   reader.SetNameMode(true);
@@ -100,9 +115,10 @@ void readStep(const std::string& file, CadFile& cad) {
   const Handle(Progress) progress = new Progress("reading shapes");
   const bool made = reader.Transfer(document, progress->Start());
   findMissingFiles(reader, cad.losses);
-  if (!made) throw CadError(noShapes(cad.losses));
-  readTree(document, cad);
+  if (made) readTree(document, cad);
   findLostFaces(reader.ChangeReader().WS(), millimetresIn(cad.unit), cad.losses);
+  findTriangles(file, cad);
+  if (!made) throw CadError(noShapes(cad.losses));
 }
 
 /// Returns true if the last section of an IGES file is there: one line with a T in column 73. Open CASCADE accepts a
