@@ -215,6 +215,25 @@ def disguised():
     check("those of a cylinder too", told["face_kinds"] == {"cylinder": 1, "plane": 2}, told["face_kinds"])
 
 
+def quarter_ball(p):
+    """Distance to a quarter of a ball of 20 mm, y and z positive."""
+    x, y, z = p
+    if min(y, z) <= 0 and math.hypot(x, max(y, 0), max(z, 0)) <= 20:
+        return math.hypot(min(y, 0), min(z, 0))
+    if y >= 0 and z >= 0:
+        r = math.hypot(*p) - 20
+        return r if r > 0 else max(r, -y, -z)
+    flat = math.hypot(x, max(y, 0), max(z, 0))  # beyond the rim, outside of a flat side
+    return math.hypot(flat - 20, min(y, 0), min(z, 0))
+
+
+def to_the_poles():
+    """Edges that end where the sphere that a spline is has its poles."""
+    closed("spline_quarter.brep", quarter_ball, [-24, -4, -4], [24, 24, 24], outside=4, count=3000, tolerance=2e-9)
+    part, _ = imported("spline_quarter.brep")
+    compare("near both ends of the edges", part, quarter_ball, near(quarter_ball, [-23, -0.5, -0.5], [-18, 3, 3], 800, 0.4, 3), 2e-9)
+
+
 def sheets():
     loose, told = imported("loose.brep")
     check("six loose faces are sewn to a solid", info(loose)["bodies"][0]["kind"] == "solid" and "sewn" in " ".join(told["steps"]), told)
@@ -267,6 +286,6 @@ def check_only():
 
 
 subprocess.run([MAKE_PARTS, folder], check=True, timeout=300)
-for part_of_the_test in (check_only, solids, on_axes_and_poles, disguised, sheets, assemblies):
+for part_of_the_test in (check_only, solids, on_axes_and_poles, disguised, to_the_poles, sheets, assemblies):
     part_of_the_test()
 finish()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Writes CAD files whose distances have closed forms, for cad_truth.py.
 ///   make_parts FOLDER
+#include <BRepAlgoAPI_Common.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
@@ -172,6 +173,14 @@ TopoDS_Shape faces(const TopoDS_Shape& shape) {
   return loose;
 }
 
+/// A quarter of a ball of 20 mm, y and z positive, as splines whose own poles are not on it. Its edges are two half
+/// circles that meet at both ends: meridians of the sphere that the spline is.
+TopoDS_Shape splineQuarter() {
+  const gp_Ax2 tilted(gp_Pnt(0, 0, 0), gp_Dir(0, 1, -1), gp_Dir(0, -1, -1));
+  const TopoDS_Shape ball = BRepPrimAPI_MakeSphere(tilted, 20).Shape();
+  return BRepBuilderAPI_NurbsConvert(BRepAlgoAPI_Common(ball, box(-30, 0, 0, 60, 30, 30)).Shape(), true).Shape();
+}
+
 /// A plate of 40 mm, 10 mm thick, with a hole, and a pin of the same radius that stands on the rim of the hole: four
 /// faces meet there, two of each solid.
 TopoDS_Shape pinOnRim() {
@@ -242,6 +251,7 @@ int main(int argc, char** argv) {
   brep(boxWithCavity(30, 60), "crossing_cavity");
   brep(faces(boxWithCavity(10, 30)), "loose_cavity");
   iges(pinOnRim(), "pin_on_rim");
+  brep(splineQuarter(), "spline_quarter");
   assembly();
   return failures;
 }

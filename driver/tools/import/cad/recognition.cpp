@@ -314,9 +314,10 @@ Unfolding::Sample Unfolding::sampleAt(const Handle(Geom_Curve) & curve, double t
   const Tangents at = tangentsAt(shape_, uv);
   if (!((at.p - point).norm() <= within)) throw Unkept("an edge leaves it");
   const double uu = at.u.squaredNorm(), vv = at.v.squaredNorm();
-  if (!(uu > 0 && vv > 0)) throw Unkept("an edge runs through its pole");
+  constexpr double kPole = 1e-12;  // square of the share of a radius; nearer to the axis, the angle is rounding error
+  if (!(uu > kPole * vv)) return {t, {near_u, uv[1]}, {0, 0}, true};
   // divided separately, because the tangents along u and v are at right angles
-  return {t, {uv[0], uv[1]}, {way.dot(at.u) / uu, way.dot(at.v) / vv}};
+  return {t, {uv[0], uv[1]}, {way.dot(at.u) / uu, way.dot(at.v) / vv}, false};
 }
 
 /// Samples an edge over [t0, t1]; u is followed from `uv`, the point at t, to both ends.
@@ -332,6 +333,14 @@ std::vector<Unfolding::Sample> Unfolding::samplesAlong(const Handle(Geom_Curve) 
   for (int i = anchor - 1; i >= 0; --i)
     u = (samples[static_cast<std::size_t>(i)] = sampleAt(curve, at(i), u, within)).uv[0];
   return samples;
+}
+
+/// Returns true if an edge touches a pole of the surface, or passes it between two samples.
+bool Unfolding::runsToAPole(const std::vector<Sample>& samples) {
+  constexpr double kJump = kFullTurn / 12;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (samples[i].pole || (i > 0 && std::abs(samples[i].uv[0] - samples[i - 1].uv[0]) > kJump)) return true;
+  return false;
 }
 
 /// Returns true if a line in the parameter plane follows the edge.
@@ -353,7 +362,9 @@ std::uint32_t Unfolding::addPlaneCurve(const Handle(Geom_Curve) & curve, const b
     return index;
   }
   const brep::Curve2 line = lineBetween(samples.front().uv, samples.back().uv, t0, t1);
-  part.curves2.push_back(follows(line, samples) ? line : cubicsThrough(samples, t0, t1, part));
+  const bool straight = follows(line, samples);
+  if (!straight && runsToAPole(samples)) throw Unkept("an edge that is no meridian runs to its pole");
+  part.curves2.push_back(straight ? line : cubicsThrough(samples, t0, t1, part));
   return index;
 }
 

@@ -38,11 +38,13 @@ class Unfolding {
   struct Sample {
     double t;
     brep::Vector2 uv, slope;
+    bool pole;  ///< the surface has no angle u there; `uv` has that of the sample beside it
   };
   double angleAt(const gp_Pnt2d& uv) const;
   Sample sampleAt(const Handle(Geom_Curve) & curve, double t, double near_u, double within) const;
   std::vector<Sample> samplesAlong(const Handle(Geom_Curve) & curve, double t0, double t1, const gp_Pnt2d& uv, double t,
                                    double within) const;
+  static bool runsToAPole(const std::vector<Sample>& samples);
   bool follows(const brep::Curve2& line, const std::vector<Sample>& samples) const;
   void widen(const brep::Vector2& uv);
 
