@@ -12,6 +12,7 @@
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
+#include <chrono>
 #include <cstddef>
 
 #include "cad_import/sides_check.hpp"
@@ -68,6 +69,15 @@ void findAround(std::vector<Closed>& closed) {
   }
 }
 
+/// True if the outside is not in front of the faces of a solid.
+bool isDoubtful(const TopoDS_Solid& solid, double& seconds) {
+  if (seconds <= 0) return false;
+  const auto begun = std::chrono::steady_clock::now();
+  const bool doubtful = trySides(solid, seconds).doubtful();
+  seconds -= std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  return doubtful;
+}
+
 /// Adds to a solid the shells that lie in it, but in nothing else that lies in it. Returns their number.
 int addCavities(TopoDS_Solid& solid, std::size_t index, const std::vector<Closed>& closed) {
   const BRep_Builder builder;
@@ -85,8 +95,7 @@ int addCavities(TopoDS_Solid& solid, std::size_t index, const std::vector<Closed
 
 }  // namespace
 
-Volumes volumesOf(const TopoDS_Shape& shape) {
-  constexpr double kSeconds = 1;  // for the test of one shell
+Volumes volumesOf(const TopoDS_Shape& shape, double& seconds) {
   Volumes volumes;
   std::vector<Closed> closed;
   TopoDS_Compound rest;
@@ -95,7 +104,7 @@ Volumes volumesOf(const TopoDS_Shape& shape) {
   for (TopExp_Explorer at(shape, TopAbs_SHELL); at.More(); at.Next()) {
     const bool is_closed = BRep_Tool::IsClosed(at.Current());
     if (is_closed) closed.push_back(closedOf(at.Current()));
-    const bool doubtful = is_closed && trySides(closed.back().solid, kSeconds).doubtful();
+    const bool doubtful = is_closed && isDoubtful(closed.back().solid, seconds);
     if (doubtful) closed.pop_back(), ++volumes.doubtful;
     if (doubtful || !is_closed) builder.Add(rest, at.Current());
   }

@@ -16,6 +16,7 @@ struct Volumes {
 /// [main] Makes solids of the closed shells of a shape that holds no solid. A closed shell inside another one is a
 /// cavity of it, one inside a cavity is a solid again, and so on. If no shell bounds a volume, the only body is the
 /// shape.
-Volumes volumesOf(const TopoDS_Shape& shape);
+/// @param seconds time for testing what the shells bound; what was used is subtracted, and then they are not tested
+Volumes volumesOf(const TopoDS_Shape& shape, double& seconds);
 
 }  // namespace hapticd::cad

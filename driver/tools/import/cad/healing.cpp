@@ -162,9 +162,10 @@ std::vector<TopoDS_Shape> solidsOf(const std::vector<TopoDS_Shape>& shapes, cons
                                    std::vector<std::string>& steps) {
   std::vector<TopoDS_Shape> bodies;
   int solids = 0, cavities = 0, doubtful = 0;
+  double seconds = 4;  // for testing all shells
   for (const TopoDS_Shape& shape : shapes) {
     Volumes volumes{{shape}, 0, 0, 0};
-    if (!TopExp_Explorer(shape, TopAbs_SOLID).More()) volumes = volumesOf(shape);
+    if (!TopExp_Explorer(shape, TopAbs_SOLID).More()) volumes = volumesOf(shape, seconds);
     bodies.insert(bodies.end(), volumes.bodies.begin(), volumes.bodies.end());
     solids += volumes.solids;
     cavities += volumes.cavities;

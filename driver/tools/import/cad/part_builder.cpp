@@ -3,8 +3,10 @@
 
 #include <BRepBuilderAPI_Transform.hxx>
 #include <Standard_Failure.hxx>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <gp_Quaternion.hxx>
 #include <map>
 
@@ -134,14 +136,16 @@ class PartBuilder {
     return kNone;
   }
 
-  /// Warns of a solid whose faces do not bound one volume. All solids together get at most kSeconds, because the test
-  /// is slow for large solids.
+  /// Warns of a solid whose faces do not bound one volume. The test is slow for large solids, so for all of them
+  /// together it gets no more time than the rest of the import has taken.
   void judgeSides(const TopoDS_Shape& solid, const std::string& name) {
-    constexpr double kSeconds = 4;
-    if (sides_s_ >= kSeconds) return;
+    constexpr double kLeast = 0.5, kMost = 4;  // [s]
+    const double others = static_cast<double>(std::clock()) / CLOCKS_PER_SEC - sides_s_;
+    const double left = std::clamp(others, kLeast, kMost) - sides_s_;
+    if (left <= 0) return;
     const auto begun = std::chrono::steady_clock::now();
     try {
-      const SidesTried found = trySides(solid, kSeconds - sides_s_);
+      const SidesTried found = trySides(solid, left);
       if (found.doubtful())
         part_.warnings.push_back("'" + name + "': " + std::to_string(found.wrong) + " of " +
                                  std::to_string(found.tried) +
