@@ -233,12 +233,27 @@ static_assert(offsetof(LocalFoot, distance) == offsetof(LocalFoot, uv) + 3 * kSt
 static_assert(offsetof(LocalFoot, residual) == offsetof(LocalFoot, distance) + sizeof(double));
 static_assert(offsetof(LocalFoot, height) == offsetof(LocalFoot, distance) + 2 * sizeof(double));
 
+/// Returns the cell of an evaluated point, less a margin at the poles of the patch: there, warm steps end too early,
+/// and descend() takes over.
+spline::TableCell cellOf(const Patch& patch, const spline::SurfacePoint& E) noexcept {
+  constexpr double kMargin = 1e-5;  // share of the range of the parameter
+  spline::TableCell cell = patch.surface.cellOf(E);
+  for (int side = 0; side < kSides; ++side) {
+    if (patch.sides[static_cast<std::size_t>(side)].kind != SideKind::kPole) continue;
+    const int axis = Patch::axisOf(side);
+    const double margin = kMargin * (patch.hi[axis] - patch.lo[axis]);
+    if (side % 2 == 0) cell.lo[axis] = std::max(cell.lo[axis], patch.lo[axis] + margin);
+    if (side % 2 == 1) cell.end[axis] = std::min(cell.end[axis], patch.hi[axis] - margin);
+  }
+  return cell;
+}
+
 bool evaluateInside(WarmStepState& state, double u, double v, double* point) noexcept {
   const auto& patch = *static_cast<const Patch*>(state.patch);
   if (!(u > patch.lo[0] && u < patch.hi[0] && v > patch.lo[1] && v < patch.hi[1])) return false;
   auto& E = *static_cast<spline::SurfacePoint*>(static_cast<void*>(point));
   patch.surface.evaluate2(u, v, E);
-  state.cell = patch.surface.cellOf(E);
+  state.cell = cellOf(patch, E);
   return true;
 }
 
@@ -247,7 +262,7 @@ void prepare(const Patch& patch, Iterate& at) noexcept {
   kernels.forms(at.E.S.data(), at.state);
   at.state.calm2 = 0;
   at.state.sign = patch.sign;
-  at.state.cell = patch.surface.cellOf(at.E);
+  at.state.cell = cellOf(patch, at.E);
   at.state.evaluate = evaluateInside;
   at.state.patch = &patch;
   at.state.step = kernels.step;
@@ -302,6 +317,21 @@ double advance(const Patch& patch, const Vector3d& p, Step& step, int max_evalua
   return 0;
 }
 
+/// Moves a foot that is almost at a pole to the pole. All steps around a pole are short there, even those of a foot on
+/// the far side of it, which would seem to have converged. From the pole itself, Tracer::leavePole() finds the way.
+void snapToPole(const Patch& patch, const Iterate& at, double enough, Step& step) noexcept {
+  constexpr double kTurns = 4, kMost = 1e-5;  // a step around the pole is as long as the distance to it, or some times
+  for (int side = 0; side < kSides; ++side) {
+    if (patch.sides[static_cast<std::size_t>(side)].kind != SideKind::kPole) continue;
+    const int axis = Patch::axisOf(side);
+    const double way = (side % 2 == 0 ? patch.lo : patch.hi)[axis] - at.uv[axis];
+    const double distance = std::abs(way - step.d[axis]) * (axis == 0 ? at.E.Su : at.E.Sv).norm();
+    if (!(distance <= std::min(kTurns * enough, kMost))) continue;
+    step.d[axis] = way;
+    step.sides |= bit(side);
+  }
+}
+
 }  // namespace
 
 void startNewton(const Patch& patch, Iterate& at, LocalFoot& foot) noexcept {
@@ -327,15 +357,21 @@ void descend(const Patch& patch, const Vector3d& p, Iterate& at, double toleranc
   Gap gap = gapOf(at, p);
   const double rounding = kRounding * (p.norm() + at.E.S.norm());
   const double enough = std::max(tolerance, rounding);
-  double last_length = 0;  // length of the step that led to this point, or 0
+  double last_length = 0;         // length of the step that led to this point, or 0
+  Array2d last_tangents2(0, 0);   // squared lengths of Su and Sv before that step
+  constexpr double kAlike2 = 16;  // largest ratio of squared tangents before and after a step
   Step step;
   double length = 0;
   for (;;) {
     step = stepFrom(patch, at.uv, at.E, gap.r);
     length = (at.E.Su * step.d[0] + at.E.Sv * step.d[1]).norm();
-    // Newton's method squares the error, so the next step would be about length * (length / last_length)^2.
+    // Newton's method squares the error, so the next step would be about length * (length / last_length)^2, unless the
+    // last step led into a pole, where a tangent vanishes and the two lengths cannot be compared.
     const double ratio = length / last_length;
-    if (length <= enough || (ratio < 0.1 && 10 * length * ratio * ratio <= enough)) {
+    const Array2d tangents2(at.E.Su.squaredNorm(), at.E.Sv.squaredNorm());
+    const bool alike = (kAlike2 * tangents2 > last_tangents2).all();
+    last_tangents2 = tangents2;
+    if (length <= enough || (alike && ratio < 0.1 && 10 * length * ratio * ratio <= enough)) {
       foot.converged = true;
       break;
     }
@@ -344,6 +380,7 @@ void descend(const Patch& patch, const Vector3d& p, Iterate& at, double toleranc
     last_length = share * length;
   }
   if (foot.converged) {
+    snapToPole(patch, at, enough, step);
     moveTo(foot, patch, p, at, step);
   } else {
     moveTo(foot, patch, p, at, Step{{0, 0}, patch.sidesAt(at.uv)});

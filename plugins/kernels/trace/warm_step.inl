@@ -227,8 +227,11 @@ WarmStepResult warmStep(const double* p, double tolerance2, double* uv, double* 
   const double now = next.length2, last = step.length2, enough = tolerance2;
   const double missed = bent ? bend2 : now;
   state.calm2 = 100 * missed * missed * missed <= enough * last * last ? 4 * last : 0;
+  // If the last step led into a pole, where a tangent vanishes, the two lengths cannot be compared.
+  constexpr double kAlike2 = 16;  // largest ratio of the squared tangents before and after the step
+  const bool alike = (kAlike2 * F.G1[0] > before.G1[0]) & (kAlike2 * F.G22 > before.G22);
   const bool converged =
-      (now <= enough) | ((now < 0.01 * last) & (100 * (now + bend2) * now * now <= enough * last * last));
+      (now <= enough) | (alike & (now < 0.01 * last) & (100 * (now + bend2) * now * now <= enough * last * last));
   if (!(converged & next.good & inside(there, cell))) return WarmStepResult::kNearer;
   finish(E, p, state, F.shrink, next.d, there, now < enough ? now : enough, foot);
   return WarmStepResult::kFoot;
