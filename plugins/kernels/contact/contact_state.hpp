@@ -9,6 +9,7 @@
 /// sample, a contact that ended at an edge), a contact begins on the nearest face.
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -56,7 +57,7 @@ class ContactState {
   /// face. If the function returns true, the contact has not changed, and the result of the tick is this foot, as felt
   /// from side().
   /// @param height [m] height of the probe above the face, along its outward normal
-  /// @param distance [m] distance from the probe to the foot
+  /// @param distance [m] distance from the probe to the face: that to the foot, less the error of the foot for a shell
   bool isUnchanged(double height, double distance, const Eigen::Vector3d& p, const ContactRule& rule) noexcept {
     const double out = side_ * height;
     if (phase_ == Phase::kHeld && rule.hysteresis > 0) return out < 0;
@@ -111,6 +112,7 @@ class ContactState {
   bool isLeft(Faces& faces, const ContactRule& rule, Foot& foot) noexcept;
   template <class Faces>
   Foot atNearest(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule) noexcept;
+  bool seemsCrossed(const Foot& nearest, const Eigen::Vector3d& p, const ContactRule& rule) const noexcept;
   Foot nearestAlways(const Foot& nearest, const Eigen::Vector3d& p, Sides sides) noexcept;
   void beOutside(const Eigen::Vector3d& p, double clearance) noexcept {
     phase_ = Phase::kOutside;
@@ -184,6 +186,14 @@ bool ContactState::begins(Faces& faces, const Eigen::Vector3d& p, const ContactR
   return false;
 }
 
+/// True if the probe seems to have crossed a shell unseen, but the foot is not certain: it may be seen from a wrong
+/// side. The next certain foot decides, with the whole path since from_.
+inline bool ContactState::seemsCrossed(const Foot& nearest, const Eigen::Vector3d& p,
+                                       const ContactRule& rule) const noexcept {
+  return rule.sides == Sides::kBoth && nearest.status == FootStatus::kDegraded && side_ * nearest.behind > 0 &&
+         nearest.distance - nearest.residual <= (p - from_).norm();
+}
+
 /// Returns the nearest foot if no contact is held. If the probe is inside, a contact may begin there.
 template <class Faces>
 Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule) noexcept {
@@ -192,7 +202,8 @@ Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const Conta
     phase_ = Phase::kUnknown;
     return nearest;
   }
-  const bool touching = phase_ == Phase::kOutside && !(nearest.distance > kTouching);
+  const bool touching =
+      phase_ == Phase::kOutside && (!(nearest.distance > kTouching) || seemsCrossed(nearest, p, rule));
   if (rule.sides == Sides::kBoth && !touching) side_ = nearest.behind > 0 ? -1 : 1;
   Foot foot = seenFrom(nearest, side_);
   if (rule.sides != Sides::kBoth && foot.depth > 0) {
@@ -205,7 +216,9 @@ Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const Conta
     return foot;
   }
   foot.depth = -foot.distance;
-  if (!touching) beOutside(p, foot.status == FootStatus::kNearest ? kSure * foot.distance : 0);
+  // A foot that lags behind is farther than the face. A solid feels a probe that went into it, however it went.
+  const double certain = rule.sides == Sides::kBoth ? std::max(foot.distance - foot.residual, 0.0) : foot.distance;
+  if (!touching) beOutside(p, foot.status == FootStatus::kNearest ? kSure * certain : 0);
   return foot;
 }
 

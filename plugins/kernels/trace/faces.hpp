@@ -21,9 +21,9 @@ class Tracer::Faces {
     return nearest_;
   }
 
-  bool enter(const Eigen::Vector3d& from, contact::Sides, double& side) noexcept {
+  bool enter(const Eigen::Vector3d& from, contact::Sides sides, double& side) noexcept {
     const Crossing first = tracer_.firstCrossing(part_, from, p_, side, options_);
-    if (first.track < 0) return false;
+    if (first.track < 0) return sides == contact::Sides::kBoth && cameThrough((p_ - from).norm(), side);
     side = first.side;
     tracer_.hold(part_, first.track);
     return true;
@@ -33,6 +33,19 @@ class Tracer::Faces {
   void release() noexcept { tracer_.hold(part_, -1); }
 
  private:
+  /// True if the probe has come through a closed shell, because it was on the given side and is now on the other. Holds
+  /// the nearest foot then. This needs no place where the path meets the shell, which firstCrossing() may not find near
+  /// a pole, or with the evaluations that are left.
+  bool cameThrough(double path_length, double side) noexcept {
+    const Model& model = tracer_.model_;
+    if (model.shellCount() != 1 || !model.closed(0)) return false;  // the path may lead round the shell, or to another
+    const Foot foot = nearest();
+    const bool reached = foot.distance - foot.residual <= path_length;
+    if (foot.status != FootStatus::kNearest || !reached || !(side * foot.behind > 0)) return false;
+    holdNearest();
+    return true;
+  }
+
   Tracer& tracer_;
   const int part_;
   const Eigen::Vector3d& p_;

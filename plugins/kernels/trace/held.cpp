@@ -53,6 +53,13 @@ PathHit intersect(const Patch& patch, const Vector3d& from, const Vector3d& way,
   return at;
 }
 
+/// True if one of these sides is a pole.
+bool isAtPole(const Patch& patch, SideMask sides) noexcept {
+  for (int at = 0; at < kSides; ++at)
+    if ((sides & bit(at)) && patch.sides[static_cast<std::size_t>(at)].kind == SideKind::kPole) return true;
+  return false;
+}
+
 }  // namespace
 
 void Tracer::forgetContact() noexcept {
@@ -79,6 +86,7 @@ Followed Tracer::follow(int part, double side, const Vector3d& p, const TraceOpt
   if (contactOf(part).held < 0) return Followed::kLost;
   const int before = tracks_[contactOf(part).held].patch;
   int track = refine(contactOf(part).held, p, options);
+  unfinished_ = false;
   for (int i = 0; i < kMaxCrossings && tracks_[track].foot.sides != 0; ++i) {
     const SideMask sides = tracks_[track].foot.sides;
     int next = -1;
@@ -90,6 +98,7 @@ Followed Tracer::follow(int part, double side, const Vector3d& p, const TraceOpt
     hold(part, next);
     track = next;
   }
+  admitUnfinished(track);
   foot = describe(track, p, 0);
   foot.begins = tracks_[track].patch != before && foot.on_edge;
   return Followed::kOn;
@@ -139,12 +148,13 @@ int Tracer::slideOver(int track, int side, const Vector3d& p, const TraceOptions
   const int patch = tracks_[track].patch;
   const Patch& piece = model_.patch(patch);
   const Side& edge = piece.sides[static_cast<std::size_t>(side)];
-  if (edge.kind == SideKind::kFree || budget_ <= 0) return -1;
+  if (edge.kind == SideKind::kFree || isSpent()) return -1;
   if (edge.kind == SideKind::kPole) return leavePole(track, side, p, options, true);
   const double fraction = piece.fractionOn(side, tracks_[track].foot.uv);
   Iterate at;
   at.uv = model_.patch(edge.patch).onSide(edge.side, edge.flipped ? 1 - fraction : fraction);
   const LocalFoot foot = footFrom(edge.patch, at, p, options);
+  unfinished_ = unfinished_ || !foot.converged;
   if (!(foot.distance < tracks_[track].foot.distance)) return -1;
   if (edge.patch != patch) return tracks_.put(edge.patch, at, foot);
   tracks_[track].at = at;
@@ -201,19 +211,38 @@ Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vec
   return first;
 }
 
-/// Returns the height [m] of a point over the surface, near a foot of this tick. The height over the tangent plane at
-/// that foot has another sign if a path grazes the surface: its start is over a sphere, and under the plane.
+/// Returns the height [m] of a point over the surface, near a foot of this tick, or 0 if it cannot be computed. The
+/// height over the tangent plane at that foot has another sign if a path grazes the surface: its start is over a
+/// sphere, and under the plane. So has the height over the end of a patch, if the surface goes on beyond it.
 double Tracer::heightOver(int track, const Vector3d& point) noexcept {
   constexpr double kNear = 1e-6;  // [m] the height changes by the square of an error of the foot
-  const LocalFoot foot = tracks_[track].foot;
-  if (budget_ > 0) {
+  int patch = tracks_[track].patch;
+  Array2d uv = tracks_[track].foot.uv;
+  LocalFoot below;
+  below.distance = kInfinity;
+  for (int i = 0; i < kMaxCrossings && budget_ > 0; ++i) {
     Iterate at;
-    at.uv = foot.uv;
-    const LocalFoot below = newtonFoot(model_.patch(tracks_[track].patch), point, at, kNear, budget_);
-    budget_ -= below.evaluations;
-    if (below.regular && below.converged) return below.height;
+    at.uv = uv;
+    const LocalFoot foot = newtonFoot(model_.patch(patch), point, at, kNear, budget_);
+    budget_ -= foot.evaluations;
+    if (!foot.converged || isAtPole(model_.patch(patch), foot.sides)) return 0;
+    const bool nearer = foot.distance < below.distance;
+    if (nearer) below = foot;
+    const int side = nearer ? sideBeyond(model_.patch(patch), foot) : -1;
+    if (side < 0) return below.regular ? below.height : 0;
+    const Side& edge = model_.patch(patch).sides[static_cast<std::size_t>(side)];
+    const double fraction = model_.patch(patch).fractionOn(side, foot.uv);
+    patch = edge.patch;
+    uv = model_.patch(patch).onSide(edge.side, edge.flipped ? 1 - fraction : fraction);
   }
-  return (point - foot.S).dot(surfaceNormal(track));
+  return 0;
+}
+
+/// Returns the side on which a foot lies and beyond which the surface goes on without an edge, or -1.
+int Tracer::sideBeyond(const Patch& patch, const LocalFoot& foot) const noexcept {
+  for (int at = 0; at < kSides; ++at)
+    if ((foot.sides & bit(at)) && goesOn(patch, bit(at), foot.uv)) return at;
+  return -1;
 }
 
 /// Tests whether the path from `from` to p crosses the surface near a foot of this tick, and where.

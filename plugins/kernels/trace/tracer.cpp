@@ -124,10 +124,12 @@ inline bool Tracer::isUnchanged(const Vector3d& p, const Vector3d& last, const T
   const LocalFoot& foot = tracks_[nearest_].foot;
   if (contact.held >= 0 && contact.held != nearest_) return false;
   if (options.rule.hysteresis > 0 && !(foot.regular && foot.converged)) return false;
-  if (contact.state.isUnchanged(foot.height, foot.distance, p, options.rule)) [[likely]]
+  // The foot may lag behind, and the face is nearer then. A solid feels a probe that went into it, however it went.
+  const double distance = options.rule.sides == contact::Sides::kBoth ? foot.distance - foot.residual : foot.distance;
+  if (contact.state.isUnchanged(foot.height, distance, p, options.rule)) [[likely]]
     return true;
-  return options.rule.hysteresis > 0 && tracks_.isAlone(nearest_, (p - last).norm()) &&
-         contact.state.isPassing(foot.height, foot.distance, last, p, options.rule);
+  return options.rule.hysteresis > 0 && distance > 0 && tracks_.isAlone(nearest_, (p - last).norm()) &&
+         contact.state.isPassing(foot.height, distance, last, p, options.rule);
 }
 
 Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
@@ -228,11 +230,12 @@ bool Tracer::isHopeless(const Track& rival, double best) const noexcept {
 /// Replaces a foot by the foot found from (u, v) on the same patch, if the new foot is nearer. Returns true if it was
 /// replaced.
 bool Tracer::tryFrom(int track, const Array2d& uv, const Vector3d& p, const TraceOptions& options) noexcept {
-  if (budget_ <= 0) return false;
+  if (isSpent()) return false;
   Track& t = tracks_[track];
   Iterate other;
   other.uv = uv;
   const LocalFoot foot = footFrom(t.patch, other, p, options);
+  unfinished_ = unfinished_ || !foot.converged;
   if (!(foot.distance < t.foot.distance)) return false;
   t.foot = foot;
   t.at = other;
@@ -240,17 +243,32 @@ bool Tracer::tryFrom(int track, const Array2d& uv, const Vector3d& p, const Trac
   return true;
 }
 
-/// Follows a foot across the sides that it meets, as long as it comes nearer. Returns its last track.
+/// True if no evaluations are left in this tick, so that a place beyond a side remains unseen.
+bool Tracer::isSpent() noexcept {
+  unfinished_ = unfinished_ || budget_ <= 0;
+  return budget_ <= 0;
+}
+
+/// Follows a foot across the sides that it meets, as long as it comes nearer. Returns its last track. If the
+/// evaluations end before that, the foot is not certain.
 int Tracer::cross(int track, const Vector3d& p, const TraceOptions& options) noexcept {
-  for (int i = 0; i < kMaxCrossings && budget_ > 0; ++i) {
+  unfinished_ = false;
+  for (int i = 0; i < kMaxCrossings && tracks_[track].foot.sides != 0 && !isSpent(); ++i) {
     const SideMask sides = tracks_[track].foot.sides;
     int next = -1;
     for (int side = 0; side < kSides && next < 0; ++side)
       if (sides & bit(side)) next = crossSide(track, side, p, options);
-    if (next < 0) return track;
+    if (next < 0) break;
     track = next;
   }
+  admitUnfinished(track);
   return track;
+}
+
+/// Marks a foot as not certain if a place beyond one of its sides remains unseen.
+void Tracer::admitUnfinished(int track) noexcept {
+  LocalFoot& foot = tracks_[track].foot;
+  if (unfinished_ && model_.patch(tracks_[track].patch).continuesBeyond(foot.sides)) foot.converged = false;
 }
 
 /// Follows a foot across the seams and poles that it meets. Beyond other sides another track follows the foot. Beyond a
@@ -293,8 +311,9 @@ int Tracer::crossSide(int track, int side, const Vector3d& p, const TraceOptions
   const int next = edge.patch;
   tracks_.follow(next, there);
   if (isFarther(next, there, tracks_[track].foot, p)) tracks_.restart(next, there);
-  if (budget_ > 0) refine(next, p, options);
+  if (!isSpent()) refine(next, p, options);
   if (tracks_[next].tick != tracks_.tick()) return -1;
+  unfinished_ = unfinished_ || !tracks_[next].foot.converged;
   // The common side belongs to the neighbour too. If the neighbour's foot is farther than the point there, it is at
   // another local minimum.
   if (tracks_[next].foot.distance > best + tolerance) {
@@ -344,8 +363,9 @@ int Tracer::leavePole(int track, int side, const Vector3d& p, const TraceOptions
   if (fan.patch == patch) return tryFrom(track, uv, p, options) ? track : -1;
   const int next = fan.patch;
   tracks_.follow(next, uv);
-  if (budget_ > 0) refine(next, p, options);
+  if (!isSpent()) refine(next, p, options);
   if (tracks_[next].tick != tracks_.tick()) return -1;
+  unfinished_ = unfinished_ || !tracks_[next].foot.converged;
   if (!(tracks_[next].foot.distance < best_distance)) tryFrom(next, uv, p, options);
   return tracks_[next].foot.distance < best_distance ? next : -1;
 }

@@ -100,6 +100,8 @@ class Tracer {
   int leavePole(int track, int side, const Eigen::Vector3d& p, const TraceOptions& options, bool around) noexcept;
   void drop(int track) noexcept;
   void dropUnlessHeld(int track) noexcept;
+  bool isSpent() noexcept;
+  void admitUnfinished(int track) noexcept;
   bool isHopeless(const Track& rival, double best) const noexcept;
 
   Contact& contactOf(int part) noexcept { return contacts_[static_cast<std::size_t>(part < 0 ? 0 : part)]; }
@@ -118,6 +120,7 @@ class Tracer {
   Eigen::Vector3d normalBeyond(const Patch& patch, int side, const Eigen::Array2d& uv) const noexcept;
   bool goesOn(const Patch& patch, SideMask sides, const Eigen::Array2d& uv) const noexcept;
   double heightOver(int track, const Eigen::Vector3d& point) noexcept;
+  int sideBeyond(const Patch& patch, const LocalFoot& foot) const noexcept;
   bool crosses(int track, const Eigen::Vector3d& from, const Eigen::Vector3d& p, const TraceOptions& options,
                Crossing& crossing) noexcept;
 
@@ -137,8 +140,9 @@ class Tracer {
   std::array<Part, Model::kMaxParts> parts_{};
   std::array<Contact, Model::kMaxParts> contacts_{};  ///< one per part; the first is also used for the whole model
   Eigen::Vector3d last_p_{0, 0, 0};
-  int nearest_ = -1;  ///< track with the nearest foot point of all surfaces, or -1
-  int budget_ = 0;    ///< evaluations left in this tick
+  int nearest_ = -1;         ///< track with the nearest foot point of all surfaces, or -1
+  int budget_ = 0;           ///< evaluations left in this tick
+  bool unfinished_ = false;  ///< true if a place beyond a side of the foot that is followed remains unseen in this tick
   bool has_last_ = false;
 };
 

@@ -325,5 +325,59 @@ TEST(Held, AShellIsEnteredByPathsThatGrazeIt) {
   }
 }
 
+/// What was wrong on a walk.
+struct Wrong {
+  int side = 0;       ///< ticks in which a certain foot was felt from the wrong side
+  int foot = 0;       ///< ticks in which a certain foot was not the nearest point
+  int uncertain = 0;  ///< ticks in which the foot was not certain
+};
+
+/// Walks in and out of a closed shell, from outside, within about `reach` of a point of it, where firstCrossing() may
+/// not find the way in.
+Wrong walkAbout(const std::string& file, Height height, const Vector3d& home, double reach, Hand& hand, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> share(0.1, 1);
+  std::normal_distribution<double> normal;
+  Wrong wrong;
+  const Vector3d out = home.normalized();
+  Vector3d p = home + 0.5 * reach * (file == "torus.yaml" ? Vector3d(-out) : out);
+  for (int i = 0; i < 500; ++i) {
+    const Foot foot = hand.at(p);
+    if (foot.status == contact::FootStatus::kDegraded) {
+      ++wrong.uncertain;
+    } else {
+      wrong.side += (foot.depth > 0) != (height(p) < 0);
+      wrong.foot += std::abs(foot.distance - std::abs(height(p))) > 1e-8;
+    }
+    Vector3d step;
+    for (double& one : step) one = normal(random);
+    step *= 0.5 * reach * share(random);
+    step -= 0.5 * (p - home);
+    step -= (out.dot(step) + 0.3 * out.dot(p - home) - 0.1 * reach * normal(random)) * out;  // mostly along the shell
+    if (std::abs(height(p + step)) > 1e-8) p += step;
+  }
+  return wrong;
+}
+
+TEST(Held, AShellIsEnteredAtItsPolesAndSeams) {
+  const auto walks = [](const std::string& file, Height height, const Vector3d& home) {
+    const Model model(readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + file).surfaces);
+    Wrong sum;
+    for (unsigned seed = 1; seed <= 60; ++seed) {
+      Hand hand{model};
+      hand.options = holding(Sides::kBoth);
+      const Wrong wrong = walkAbout(file, height, home, std::pow(10, -5 + 0.04 * seed), hand, seed);
+      sum = {sum.side + wrong.side, sum.foot + wrong.foot, sum.uncertain + wrong.uncertain};
+    }
+    EXPECT_EQ(sum.side, 0) << file << ' ' << home.transpose();
+    EXPECT_EQ(sum.foot, 0) << file << ' ' << home.transpose();
+    EXPECT_LE(sum.uncertain, 200) << file << ' ' << home.transpose();  // of 30000 ticks
+  };
+  walks("sphere.yaml", overSphere, {0, 0.05, 0});  // a pole
+  walks("sphere.yaml", overSphere, {0, 0, 0.05});  // a seam
+  walks("torus.yaml", overTorus, {0, 0, 0.03});    // two seams meet
+  walks("torus.yaml", overTorus, {0.03, 0, 0});
+}
+
 }  // namespace
 }  // namespace hapticd::trace
