@@ -112,7 +112,7 @@ class ContactState {
   bool isLeft(Faces& faces, const ContactRule& rule, Foot& foot) noexcept;
   template <class Faces>
   Foot atNearest(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule) noexcept;
-  bool seemsCrossed(const Foot& nearest, const Eigen::Vector3d& p, const ContactRule& rule) const noexcept;
+  bool seemsCrossed(const Foot& nearest, const ContactRule& rule) const noexcept;
   Foot nearestAlways(const Foot& nearest, const Eigen::Vector3d& p, Sides sides) noexcept;
   void beOutside(const Eigen::Vector3d& p, double clearance) noexcept {
     phase_ = Phase::kOutside;
@@ -150,7 +150,9 @@ bool ContactState::stays(Faces& faces, const Eigen::Vector3d& p, const ContactRu
     if (foot.depth > 0 && !isLeft(faces, rule, foot)) return true;
   }
   const bool came_out = how == Followed::kReleased || (how == Followed::kOn && !(foot.depth > 0));
-  beOutside(p, 0);
+  // If the foot is not certain, the probe may not have come out: what it then enters, it enters from the shell.
+  const bool unsure = rule.sides == Sides::kBoth && how == Followed::kOn && foot.status == FootStatus::kDegraded;
+  beOutside(unsure ? foot.point : p, 0);
   if (!came_out) phase_ = Phase::kUnknown;
   faces.release();
   return false;
@@ -188,10 +190,8 @@ bool ContactState::begins(Faces& faces, const Eigen::Vector3d& p, const ContactR
 
 /// True if the probe seems to have crossed a shell unseen, but the foot is not certain: it may be seen from a wrong
 /// side. The next certain foot decides, with the whole path since from_.
-inline bool ContactState::seemsCrossed(const Foot& nearest, const Eigen::Vector3d& p,
-                                       const ContactRule& rule) const noexcept {
-  return rule.sides == Sides::kBoth && nearest.status == FootStatus::kDegraded && side_ * nearest.behind > 0 &&
-         nearest.distance - nearest.residual <= (p - from_).norm();
+inline bool ContactState::seemsCrossed(const Foot& nearest, const ContactRule& rule) const noexcept {
+  return rule.sides == Sides::kBoth && nearest.status == FootStatus::kDegraded && side_ * nearest.behind > 0;
 }
 
 /// Returns the nearest foot if no contact is held. If the probe is inside, a contact may begin there.
@@ -202,8 +202,7 @@ Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const Conta
     phase_ = Phase::kUnknown;
     return nearest;
   }
-  const bool touching =
-      phase_ == Phase::kOutside && (!(nearest.distance > kTouching) || seemsCrossed(nearest, p, rule));
+  const bool touching = phase_ == Phase::kOutside && (!(nearest.distance > kTouching) || seemsCrossed(nearest, rule));
   if (rule.sides == Sides::kBoth && !touching) side_ = nearest.behind > 0 ? -1 : 1;
   Foot foot = seenFrom(nearest, side_);
   if (rule.sides != Sides::kBoth && foot.depth > 0) {

@@ -13,7 +13,16 @@ class Tracer::Faces {
   Faces(Tracer& tracer, int part, const Eigen::Vector3d& p, const TraceOptions& options) noexcept
       : tracer_(tracer), part_(part), p_(p), options_(options) {}
 
-  contact::Followed follow(double side, Foot& foot) noexcept { return tracer_.follow(part_, side, p_, options_, foot); }
+  contact::Followed follow(double side, Foot& foot) noexcept {
+    const contact::Followed how = tracer_.follow(part_, side, p_, options_, foot);
+    const bool came_out = how == contact::Followed::kOn && !(side * foot.depth > 0);
+    if (came_out && options_.rule.sides == contact::Sides::kBoth &&
+        isBehind(side)) {  // before the face, behind the next
+      holdNearest();
+      foot = nearest();
+    }
+    return how;
+  }
 
   Foot nearest() noexcept {
     if (!known_) nearest_ = tracer_.nearestFoot(part_, p_, options_);
@@ -22,6 +31,8 @@ class Tracer::Faces {
   }
 
   bool enter(const Eigen::Vector3d& from, contact::Sides sides, double& side) noexcept {
+    // The nearest foot decides on the side of a closed shell, so it comes first, while evaluations are left.
+    if (sides == contact::Sides::kBoth && tracer_.isClosedShell()) nearest();
     const Crossing first = tracer_.firstCrossing(part_, from, p_, side, options_);
     if (first.track < 0) return sides == contact::Sides::kBoth && cameThrough((p_ - from).norm(), side);
     side = first.side;
@@ -37,13 +48,15 @@ class Tracer::Faces {
   /// the nearest foot then. This needs no place where the path meets the shell, which firstCrossing() may not find near
   /// a pole, or with the evaluations that are left.
   bool cameThrough(double path_length, double side) noexcept {
-    const Model& model = tracer_.model_;
-    if (model.shellCount() != 1 || !model.closed(0)) return false;  // the path may lead round the shell, or to another
-    const Foot foot = nearest();
-    const bool reached = foot.distance - foot.residual <= path_length;
-    if (foot.status != FootStatus::kNearest || !reached || !(side * foot.behind > 0)) return false;
+    if (!isBehind(side) || !(nearest_.distance - nearest_.residual <= path_length)) return false;
     holdNearest();
     return true;
+  }
+
+  /// True if the probe is certainly behind a closed shell, seen from the given side. Of other models, another shell may
+  /// be nearer, or the way round a free edge short.
+  bool isBehind(double side) noexcept {
+    return tracer_.isClosedShell() && nearest().status == FootStatus::kNearest && side * nearest_.behind > 0;
   }
 
   Tracer& tracer_;

@@ -206,6 +206,8 @@ Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vec
     crossing.track = track;
     if (!crosses(track, from, p, options, crossing) || !(crossing.share < first.share)) continue;
     const auto sides = options.rule.sides;
+    // A path that seems to begin on the other side of a closed shell has come through it before, at an edge or corner.
+    if (sides == contact::Sides::kBoth && isClosedShell() && crossing.side != touching) continue;
     if (sides == contact::Sides::kBoth || (sides == contact::Sides::kFront) == (crossing.side > 0)) first = crossing;
   }
   return first;

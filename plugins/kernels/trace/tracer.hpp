@@ -119,6 +119,8 @@ class Tracer {
                          const TraceOptions& options) noexcept;
   Eigen::Vector3d normalBeyond(const Patch& patch, int side, const Eigen::Array2d& uv) const noexcept;
   bool goesOn(const Patch& patch, SideMask sides, const Eigen::Array2d& uv) const noexcept;
+  /// True if the model is one closed shell: then the side of its nearest foot is the side of the probe.
+  bool isClosedShell() const noexcept { return model_.shellCount() == 1 && model_.closed(0); }
   double heightOver(int track, const Eigen::Vector3d& point) noexcept;
   int sideBeyond(const Patch& patch, const LocalFoot& foot) const noexcept;
   bool crosses(int track, const Eigen::Vector3d& from, const Eigen::Vector3d& p, const TraceOptions& options,
