@@ -9,7 +9,6 @@
 /// sample, a contact that ended at an edge), a contact begins on the nearest face.
 #pragma once
 #include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -215,8 +214,8 @@ Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const Conta
     return foot;
   }
   foot.depth = -foot.distance;
-  // A foot that lags behind is farther than the face. A solid feels a probe that went into it, however it went.
-  const double certain = rule.sides == Sides::kBoth ? std::max(foot.distance - foot.residual, 0.0) : foot.distance;
+  // A solid feels a probe that went into it, whether the way in was seen or not.
+  const double certain = rule.sides == Sides::kBoth ? atLeast(foot) : foot.distance;
   if (!touching) beOutside(p, foot.status == FootStatus::kNearest ? kSure * certain : 0);
   return foot;
 }

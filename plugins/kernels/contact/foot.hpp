@@ -2,6 +2,8 @@
 /// The foot point of a probe on a model, in the model frame: the result of every kernel that finds nearest points.
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace hapticd::contact {
@@ -57,6 +59,12 @@ inline Foot seenFrom(Foot foot, double side) noexcept {
   const double depth = foot.behind - foot.aside;
   foot.depth = depth > 0 ? depth : -foot.distance;
   return foot;
+}
+
+/// [rt] Returns how near [m] the surface about a foot may be. A foot of method dpt lags behind and is farther.
+inline double atLeast(const Foot& foot) noexcept {
+  const double height = foot.on_edge ? foot.distance : std::abs(foot.behind);
+  return std::max(std::min(foot.distance - foot.residual, height), 0.0);
 }
 
 }  // namespace hapticd::contact

@@ -48,7 +48,7 @@ class Tracer::Faces {
   /// the nearest foot then. This needs no place where the path meets the shell, which firstCrossing() may not find near
   /// a pole, or with the evaluations that are left.
   bool cameThrough(double path_length, double side) noexcept {
-    if (!isBehind(side) || !(nearest_.distance - nearest_.residual <= path_length)) return false;
+    if (!isBehind(side) || !(contact::atLeast(nearest_) <= path_length)) return false;
     holdNearest();
     return true;
   }

@@ -125,7 +125,9 @@ inline bool Tracer::isUnchanged(const Vector3d& p, const Vector3d& last, const T
   if (contact.held >= 0 && contact.held != nearest_) return false;
   if (options.rule.hysteresis > 0 && !(foot.regular && foot.converged)) return false;
   // The foot may lag behind, and the face is nearer then. A solid feels a probe that went into it, however it went.
-  const double distance = options.rule.sides == contact::Sides::kBoth ? foot.distance - foot.residual : foot.distance;
+  const double distance = options.rule.sides == contact::Sides::kBoth
+                              ? std::min(foot.distance - foot.residual, std::abs(foot.height))
+                              : foot.distance;
   if (contact.state.isUnchanged(foot.height, distance, p, options.rule)) [[likely]]
     return true;
   return options.rule.hysteresis > 0 && distance > 0 && tracks_.isAlone(nearest_, (p - last).norm()) &&
