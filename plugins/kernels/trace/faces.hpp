@@ -16,8 +16,7 @@ class Tracer::Faces {
   contact::Followed follow(double side, Foot& foot) noexcept {
     const contact::Followed how = tracer_.follow(part_, side, p_, options_, foot);
     const bool came_out = how == contact::Followed::kOn && !(side * foot.depth > 0);
-    if (came_out && options_.rule.sides == contact::Sides::kBoth &&
-        isBehind(side)) {  // before the face, behind the next
+    if (came_out && options_.rule.sides == contact::Sides::kBoth && isBehindNext(side)) {
       holdNearest();
       foot = nearest();
     }
@@ -31,10 +30,10 @@ class Tracer::Faces {
   }
 
   bool enter(const Eigen::Vector3d& from, contact::Sides sides, double& side) noexcept {
-    // The nearest foot decides on the side of a closed shell, so it comes first, while evaluations are left.
-    if (sides == contact::Sides::kBoth && tracer_.isClosedShell()) nearest();
+    const bool closed = sides == contact::Sides::kBoth && tracer_.isClosedAround(p_, (p_ - from).norm());
+    if (closed) nearest();  // it decides on the side, so it comes first, while evaluations are left
     const Crossing first = tracer_.firstCrossing(part_, from, p_, side, options_);
-    if (first.track < 0) return sides == contact::Sides::kBoth && cameThrough((p_ - from).norm(), side);
+    if (first.track < 0) return closed && cameThrough(p_ - from, side);
     side = first.side;
     tracer_.hold(part_, first.track);
     return true;
@@ -44,19 +43,26 @@ class Tracer::Faces {
   void release() noexcept { tracer_.hold(part_, -1); }
 
  private:
-  /// True if the probe has come through a closed shell, because it was on the given side and is now on the other. Holds
-  /// the nearest foot then. This needs no place where the path meets the shell, which firstCrossing() may not find near
-  /// a pole, or with the evaluations that are left.
-  bool cameThrough(double path_length, double side) noexcept {
-    if (!isBehind(side) || !(contact::atLeast(nearest_) <= path_length)) return false;
+  /// True if the probe has come through a shell without an end near by, because it was on the given side and is now on
+  /// the other. Holds the nearest foot then. This needs no place where the path meets the shell, which firstCrossing()
+  /// may not find near a pole or a crease, or with the evaluations that are left.
+  bool cameThrough(const Eigen::Vector3d& way, double side) noexcept {
+    if (!isBehind(side) || !(contact::atLeast(nearest_) <= way.norm())) return false;
+    // Between the layers of a rolled sheet, the other layer may be nearer now. The probe comes to it from behind.
+    if (!tracer_.isClosedShell() && !(way.dot(p_ - nearest_.point) > 0)) return false;
     holdNearest();
     return true;
   }
 
-  /// True if the probe is certainly behind a closed shell, seen from the given side. Of other models, another shell may
-  /// be nearer, or the way round a free edge short.
+  /// True if the probe is certainly behind its nearest foot, seen from the given side. Beside a free edge it is neither
+  /// before nor behind.
   bool isBehind(double side) noexcept {
-    return tracer_.isClosedShell() && nearest().status == FootStatus::kNearest && side * nearest_.behind > 0;
+    return nearest().status == FootStatus::kNearest && !(nearest_.aside > 0) && side * nearest_.behind > 0;
+  }
+
+  /// The same for a probe that has come out in front of the held face: it may be behind the next one.
+  bool isBehindNext(double side) noexcept {
+    return isBehind(side) && (tracer_.isClosedShell() || tracer_.isNextToHeld(part_));
   }
 
   Tracer& tracer_;

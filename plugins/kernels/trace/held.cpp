@@ -194,6 +194,7 @@ Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vec
     near[static_cast<std::size_t>(at)] = index;
     count = std::min(count + 1, kMostCandidates);
   }
+  const bool closed = options.rule.sides == contact::Sides::kBoth && isClosedAround(p, length);
   Crossing first;
   for (int i = 0; i < count; ++i) {
     int track = near[static_cast<std::size_t>(i)];
@@ -206,8 +207,9 @@ Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vec
     crossing.track = track;
     if (!crosses(track, from, p, options, crossing) || !(crossing.share < first.share)) continue;
     const auto sides = options.rule.sides;
-    // A path that seems to begin on the other side of a closed shell has come through it before, at an edge or corner.
-    if (sides == contact::Sides::kBoth && isClosedShell() && crossing.side != touching) continue;
+    // A path that seems to begin on the other side of a shell without an end near by has come through it before, at an
+    // edge or corner.
+    if (closed && crossing.side != touching) continue;
     if (sides == contact::Sides::kBoth || (sides == contact::Sides::kFront) == (crossing.side > 0)) first = crossing;
   }
   return first;
@@ -240,6 +242,16 @@ double Tracer::heightOver(int track, const Vector3d& point) noexcept {
   return 0;
 }
 
+/// True if the nearest foot lies on another patch than the held one, and the two patches are joined.
+bool Tracer::isNextToHeld(int part) const noexcept {
+  const int held = tracks_[contacts_[static_cast<std::size_t>(std::max(part, 0))].held].patch;
+  const int next = tracks_[nearestTrack(part)].patch;
+  const auto& sides = model_.patch(held).sides;
+  return next != held && std::any_of(sides.begin(), sides.end(), [next](const Side& side) {
+           return side.kind == SideKind::kJoined && side.patch == next;
+         });
+}
+
 /// Returns the side on which a foot lies and beyond which the surface goes on without an edge, or -1.
 int Tracer::sideBeyond(const Patch& patch, const LocalFoot& foot) const noexcept {
   for (int at = 0; at < kSides; ++at)
@@ -270,7 +282,8 @@ bool Tracer::crosses(int track, const Vector3d& from, const Vector3d& p, const T
   // If the path grazes the surface, it may meet it a second time, and that place was found. There is another one
   // between its ends, unless the path passes beside the surface.
   crossing.share = start.share;
-  return foot.sides == 0 && goesOn(patch, patch.sidesAt(met.uv), met.uv);
+  const SideMask sides = patch.sidesAt(met.uv);
+  return foot.sides == 0 && (isAtPole(patch, sides) || goesOn(patch, sides, met.uv));
 }
 
 }  // namespace hapticd::trace

@@ -12,7 +12,7 @@ namespace hapticd::trace {
 
 Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOptions& options) {
   if (surfaces.empty()) throw std::invalid_argument("model: there are no surfaces, expected at least one");
-  split(surfaces, options.form);
+  const std::vector<SideBoxes> sides = split(surfaces, options.form);
   tree_.build();
   bounds_ = tree_.bounds();
   constexpr double kMostCoordinate = 1e60;  // [m] products of four larger lengths overflow
@@ -20,6 +20,7 @@ Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOption
         bounds_.max().cwiseAbs().maxCoeff() <= kMostCoordinate))
     throw std::invalid_argument("model: a coordinate is beyond 1e60 m, expected smaller coordinates");
   Sewing(*this, options).run();
+  free_sides_.keep(patches_, sides);
   bool complete = true;
   part_ = groupShells(*this, complete);
   if (!complete)
@@ -28,7 +29,8 @@ Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOption
   part_count_ = 1 + *std::max_element(part_.begin(), part_.end());
 }
 
-void Model::split(const std::vector<spline::SurfaceData>& surfaces, spline::Form form) {
+std::vector<SideBoxes> Model::split(const std::vector<spline::SurfaceData>& surfaces, spline::Form form) {
+  std::vector<SideBoxes> sides;
   first_patch_.reserve(surfaces.size() + 1);
   patches_.reserve(surfaces.size());
   for (std::size_t source = 0; source < surfaces.size(); ++source) {
@@ -50,15 +52,17 @@ void Model::split(const std::vector<spline::SurfaceData>& surfaces, spline::Form
       patch.sign = surfaces[source].reversed ? -1 : 1;
       patch.source = static_cast<int>(source);
       tree_.add(part, patchCount());
+      sides.push_back(boxesOfSides(part));
       patches_.push_back(std::move(patch));
     }
   }
   first_patch_.push_back(patchCount());
+  return sides;
 }
 
 std::size_t Model::bytes() const noexcept {
-  std::size_t bytes = tree_.bytes() + patches_.capacity() * sizeof(Patch) + poles_.capacity() * sizeof(PoleFan) +
-                      vertex_normal_.capacity() * sizeof(Eigen::Vector3d);
+  std::size_t bytes = tree_.bytes() + free_sides_.bytes() + patches_.capacity() * sizeof(Patch) +
+                      poles_.capacity() * sizeof(PoleFan) + vertex_normal_.capacity() * sizeof(Eigen::Vector3d);
   for (const Patch& patch : patches_) bytes += patch.surface.bytes();
   return bytes;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kernels/trace/box_tree.hpp"
+#include "kernels/trace/free_sides.hpp"
 #include "kernels/trace/patch.hpp"
 
 namespace hapticd::trace {
@@ -77,6 +78,7 @@ class Model {
   int shellCount() const noexcept { return static_cast<int>(shell_closed_.size()); }
   /// [any] True if the shell has no free side, so that it bounds a solid.
   bool closed(int shell) const noexcept { return shell_closed_[static_cast<std::size_t>(shell)] != 0; }
+  const FreeSides& freeSides() const noexcept { return free_sides_; }
   /// [any] Returns the angle-weighted mean of the outward normals around a corner (Baerentzen & Aanaes 2005): if the
   /// nearest point is that corner, this normal decides whether the probe is outside.
   const Eigen::Vector3d& vertexNormal(int vertex) const noexcept {
@@ -97,13 +99,15 @@ class Model {
 
  private:
   friend class Sewing;
-  void split(const std::vector<spline::SurfaceData>& surfaces, spline::Form form);
+  /// Makes the patches. Returns the boxes of their sides.
+  std::vector<SideBoxes> split(const std::vector<spline::SurfaceData>& surfaces, spline::Form form);
 
   std::vector<Patch> patches_;
   std::vector<int> first_patch_;
   std::vector<PoleFan> poles_;
   std::vector<Eigen::Vector3d> vertex_normal_;
   std::vector<char> shell_closed_;
+  FreeSides free_sides_;
   std::vector<int> part_;        ///< part of each shell
   std::vector<int> patch_part_;  ///< part of each patch
   int part_count_ = 1;

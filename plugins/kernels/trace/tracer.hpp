@@ -121,6 +121,12 @@ class Tracer {
   bool goesOn(const Patch& patch, SideMask sides, const Eigen::Array2d& uv) const noexcept;
   /// True if the model is one closed shell: then the side of its nearest foot is the side of the probe.
   bool isClosedShell() const noexcept { return model_.shellCount() == 1 && model_.closed(0); }
+  /// True if the model is one shell without a free side within `reach` [m] of p: no straight path of that length to p
+  /// leads round the shell.
+  bool isClosedAround(const Eigen::Vector3d& p, double reach) const noexcept {
+    return model_.shellCount() == 1 && model_.freeSides().atLeast(p) > reach;
+  }
+  bool isNextToHeld(int part) const noexcept;
   double heightOver(int track, const Eigen::Vector3d& point) noexcept;
   int sideBeyond(const Patch& patch, const LocalFoot& foot) const noexcept;
   bool crosses(int track, const Eigen::Vector3d& from, const Eigen::Vector3d& p, const TraceOptions& options,

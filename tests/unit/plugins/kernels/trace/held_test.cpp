@@ -3,11 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 #include <string>
 
-#include "kernels/trace/tracer.hpp"
+#include "hand.hpp"
 #include "shapes.hpp"
 #include "traced_shape/model_file.hpp"
 
@@ -17,56 +16,12 @@ namespace {
 using contact::Sides;
 using Eigen::Vector3d;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-TraceOptions holding(Sides sides = Sides::kFront, double hysteresis = kInfinity) {
-  TraceOptions options;
-  options.rule = {sides, hysteresis};
-  options.unite = sides == Sides::kFront;
-  return options;
-}
-
-/// A bilinear patch whose Su x Sv points as (b - a) x (c - a).
-spline::SurfaceData flat(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  spline::SurfaceData data;
-  data.knots = {{{0, 0, 1, 1}, {0, 0, 1, 1}}};
-  data.points = {a, c, b, b + c - a};
-  return data;
-}
-
 /// A box with its corner at `lo`; outward normals.
 std::vector<spline::SurfaceData> box(const Vector3d& lo, const Vector3d& size) {
   const Vector3d x(size.x(), 0, 0), y(0, size.y(), 0), z(0, 0, size.z()), hi = lo + size;
   return {flat(hi, hi - x, hi - y), flat(lo, lo + y, lo + x), flat(hi, hi - y, hi - z),
           flat(lo, lo + z, lo + y), flat(hi, hi - z, hi - x), flat(lo, lo + x, lo + z)};
 }
-
-/// A tracer with the search that runs beside it, each fifth tick.
-struct Hand {
-  const Model& model;
-  Tracer tracer{model};
-  TraceOptions options = holding();
-  int tick = 0;
-
-  Foot at(const Vector3d& p) {
-    if (tick++ % 5 == 0) {
-      Found found;
-      model.search(p, 0.15, found);
-      for (const auto* records : {&found.nearest, &found.rivals})
-        for (const Near& near : *records) tracer.activate(near.surface, near.u, near.v, near.distance);
-    }
-    return tracer.step(p, options);
-  }
-  /// Straight from a to b in steps of about `step` [m].
-  template <class See>
-  void walk(const Vector3d& a, const Vector3d& b, double step, const See& see) {
-    const int count = std::max(1, static_cast<int>((b - a).norm() / step));
-    for (int i = 0; i <= count; ++i) {
-      const Vector3d p = a + (b - a) * i / count;
-      see(at(p), p);
-    }
-  }
-};
 
 const Vector3d kPlate(0.1, 0.1, 0.004);
 
@@ -281,130 +236,6 @@ TEST(Held, InAThickSolidIsTheNearestPoint) {
     }
     EXPECT_LE(wrong, 300) << name;  // near sharp edges of the box and the cylinder, where the contact is held
   }
-}
-
-/// A value [m] that is below 0 inside a solid, and about the distance near its surface.
-using Height = double (*)(const Vector3d&);
-
-double overSphere(const Vector3d& p) {
-  return p.norm() - 0.05;
-}
-double overTorus(const Vector3d& p) {  // about y
-  return std::hypot(std::hypot(p.x(), p.z()) - 0.05, p.y()) - 0.02;
-}
-
-double overCylinder(const Vector3d& p) {  // about y
-  const double out = std::hypot(p.x(), p.z()) - 0.04, up = std::abs(p.y()) - 0.05;
-  return std::hypot(std::max(out, 0.0), std::max(up, 0.0)) + std::min(std::max(out, up), 0.0);
-}
-double overBox(const Vector3d& p) {
-  const Vector3d out = p.cwiseAbs() - Vector3d::Constant(0.05);
-  return out.cwiseMax(0).norm() + std::min(out.maxCoeff(), 0.0);
-}
-
-/// Walks along a shell that is felt from both sides, mostly along its surface and in and out of it. The start is
-/// outside, so a probe inside is always pushed out: a way in that is not seen would turn the shell around.
-int ticksOnTheWrongSide(const std::string& file, Height height, const Vector3d& start, unsigned seed) {
-  const Model model(readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + file).surfaces);
-  Hand hand{model};
-  hand.options = holding(Sides::kBoth);
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> share(0, 1);
-  std::normal_distribution<double> normal;
-  Vector3d p = start;
-  int wrong = 0;
-  for (int i = 0; i < 20000; ++i) {
-    wrong += (hand.at(p).depth > 0) != (height(p) < 0);
-    Vector3d out;
-    for (int axis = 0; axis < 3; ++axis) out[axis] = (height(p + 1e-7 * Vector3d::Unit(axis)) - height(p)) / 1e-7;
-    const Vector3d any(normal(random), normal(random), normal(random));
-    const Vector3d along = (any - any.dot(out) * out).normalized();
-    const Vector3d next =
-        p + std::pow(10, -5 + 1.7 * share(random)) * (along + (0.1 * normal(random) - 50 * height(p)) * out);
-    const bool at_pole = std::hypot(next.x(), next.z()) < 0.002;
-    if (std::abs(height(next)) > 1e-8 && !at_pole) p = next;
-  }
-  return wrong;
-}
-
-TEST(Held, AShellIsEnteredByPathsThatGrazeIt) {
-  for (unsigned seed = 1; seed <= 5; ++seed) {
-    EXPECT_EQ(ticksOnTheWrongSide("sphere.yaml", overSphere, {0.051, 0, 0}, seed), 0) << seed;
-    EXPECT_EQ(ticksOnTheWrongSide("torus.yaml", overTorus, {0.071, 0, 0}, seed), 0) << seed;
-  }
-}
-
-/// What was wrong on a walk.
-struct Wrong {
-  int side = 0;       ///< ticks in which a certain foot was felt from the wrong side
-  int foot = 0;       ///< ticks in which a certain foot was not the nearest point
-  int uncertain = 0;  ///< ticks in which the foot was not certain
-};
-
-/// Walks in and out of a closed shell, from outside, within about `reach` of a point of it, where firstCrossing() may
-/// not find the way in.
-Wrong walkAbout(const std::string& file, Height height, const Vector3d& home, double reach, Hand& hand, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> share(0.1, 1);
-  std::normal_distribution<double> normal;
-  Wrong wrong;
-  const Vector3d out = home.normalized();
-  Vector3d p = home + 0.5 * reach * (file == "torus.yaml" ? Vector3d(-out) : out);
-  for (int i = 0; i < 500; ++i) {
-    const Foot foot = hand.at(p);
-    if (foot.status == FootStatus::kDegraded) {
-      ++wrong.uncertain;
-    } else {
-      wrong.side += (foot.depth > 0) != (height(p) < 0);
-      wrong.foot += foot.status == FootStatus::kNearest && std::abs(foot.distance - std::abs(height(p))) > 1e-8;
-    }
-    Vector3d step;
-    for (double& one : step) one = normal(random);
-    step *= 0.5 * reach * share(random);
-    step -= 0.5 * (p - home);
-    step -= (out.dot(step) + 0.3 * out.dot(p - home) - 0.1 * reach * normal(random)) * out;  // mostly along the shell
-    if (std::abs(height(p + step)) > 1e-8) p += step;
-  }
-  return wrong;
-}
-
-/// Makes 60 walks about a point, with steps of up to 5 um to 1.2 mm, together 30000 ticks.
-Wrong walksAbout(const std::string& file, Height height, const Vector3d& home) {
-  const Model model(readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + file).surfaces);
-  Wrong sum;
-  for (unsigned seed = 1; seed <= 60; ++seed) {
-    Hand hand{model};
-    hand.options = holding(Sides::kBoth);
-    const Wrong wrong = walkAbout(file, height, home, std::pow(10, -5 + 0.04 * seed), hand, seed);
-    sum = {sum.side + wrong.side, sum.foot + wrong.foot, sum.uncertain + wrong.uncertain};
-  }
-  return sum;
-}
-
-TEST(Held, AShellIsEnteredAtItsPolesAndSeams) {
-  const auto expectRight = [](const std::string& file, Height height, const Vector3d& home) {
-    const Wrong sum = walksAbout(file, height, home);
-    EXPECT_EQ(sum.side, 0) << file << ' ' << home.transpose();
-    EXPECT_EQ(sum.foot, 0) << file << ' ' << home.transpose();
-    EXPECT_LE(sum.uncertain, 300) << file << ' ' << home.transpose();
-  };
-  expectRight("sphere.yaml", overSphere, {0, 0.05, 0});  // a pole
-  expectRight("sphere.yaml", overSphere, {0, 0, 0.05});  // a seam
-  expectRight("torus.yaml", overTorus, {0, 0, 0.03});    // two seams meet
-  expectRight("torus.yaml", overTorus, {0.03, 0, 0});
-}
-
-TEST(Held, AShellKeepsItsSideAtEdgesAndCorners) {
-  const auto expectRight = [](const std::string& file, Height height, const Vector3d& home) {
-    const Wrong sum = walksAbout(file, height, home);
-    EXPECT_EQ(sum.side, 0) << file << ' ' << home.transpose();
-    EXPECT_EQ(sum.foot, 0) << file << ' ' << home.transpose();
-    EXPECT_LE(sum.uncertain, 300) << file << ' ' << home.transpose();  // a corner takes many evaluations
-  };
-  expectRight("box.yaml", overBox, {0.05, 0.05, 0});
-  expectRight("box.yaml", overBox, {0.05, 0.05, 0.05});
-  expectRight("cylinder.yaml", overCylinder, {0.04, 0.05, 0});
-  expectRight("cylinder.yaml", overCylinder, {0, -0.05, 0});  // the pole of a flat lid
 }
 
 }  // namespace

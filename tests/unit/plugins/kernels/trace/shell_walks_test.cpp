@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+/// Walks in and out of shells that are felt from both sides. A way in that is not seen turns a shell around.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "hand.hpp"
+#include "traced_shape/model_file.hpp"
+
+namespace hapticd::trace {
+namespace {
+
+using contact::Sides;
+using Eigen::Vector3d;
+
+/// A value [m] that is below 0 inside a solid, and about the distance near its surface.
+using Height = double (*)(const Vector3d&);
+
+double overSphere(const Vector3d& p) {
+  return p.norm() - 0.05;
+}
+double overTorus(const Vector3d& p) {  // about y
+  return std::hypot(std::hypot(p.x(), p.z()) - 0.05, p.y()) - 0.02;
+}
+
+double overCylinder(const Vector3d& p) {  // about y
+  const double out = std::hypot(p.x(), p.z()) - 0.04, up = std::abs(p.y()) - 0.05;
+  return std::hypot(std::max(out, 0.0), std::max(up, 0.0)) + std::min(std::max(out, up), 0.0);
+}
+double overBox(const Vector3d& p) {
+  const Vector3d out = p.cwiseAbs() - Vector3d::Constant(0.05);
+  return out.cwiseMax(0).norm() + std::min(out.maxCoeff(), 0.0);
+}
+
+/// Walks along a shell that is felt from both sides, mostly along its surface and in and out of it. The start is
+/// outside, so a probe inside is always pushed out: a way in that is not seen would turn the shell around.
+int ticksOnTheWrongSide(const std::string& file, Height height, const Vector3d& start, unsigned seed) {
+  const Model model(readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + file).surfaces);
+  Hand hand{model};
+  hand.options = holding(Sides::kBoth);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::normal_distribution<double> normal;
+  Vector3d p = start;
+  int wrong = 0;
+  for (int i = 0; i < 20000; ++i) {
+    wrong += (hand.at(p).depth > 0) != (height(p) < 0);
+    Vector3d out;
+    for (int axis = 0; axis < 3; ++axis) out[axis] = (height(p + 1e-7 * Vector3d::Unit(axis)) - height(p)) / 1e-7;
+    const Vector3d any(normal(random), normal(random), normal(random));
+    const Vector3d along = (any - any.dot(out) * out).normalized();
+    const Vector3d next =
+        p + std::pow(10, -5 + 1.7 * share(random)) * (along + (0.1 * normal(random) - 50 * height(p)) * out);
+    const bool at_pole = std::hypot(next.x(), next.z()) < 0.002;
+    if (std::abs(height(next)) > 1e-8 && !at_pole) p = next;
+  }
+  return wrong;
+}
+
+TEST(Held, AShellIsEnteredByPathsThatGrazeIt) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    EXPECT_EQ(ticksOnTheWrongSide("sphere.yaml", overSphere, {0.051, 0, 0}, seed), 0) << seed;
+    EXPECT_EQ(ticksOnTheWrongSide("torus.yaml", overTorus, {0.071, 0, 0}, seed), 0) << seed;
+  }
+}
+
+/// What was wrong on a walk.
+struct Wrong {
+  int side = 0;       ///< ticks in which a certain foot was felt from the wrong side
+  int foot = 0;       ///< ticks in which a certain foot was not the nearest point
+  int uncertain = 0;  ///< ticks in which the foot was not certain
+};
+
+/// A shell, and a point of it about which the walks go.
+struct Spot {
+  const Model& model;
+  std::function<double(const Vector3d&)> height;
+  Vector3d home, out;  ///< the point, and the direction away from the front
+};
+
+/// Walks in and out of a shell, from outside, within about `reach` of a point of it, where firstCrossing() may not find
+/// the way in.
+Wrong walkAbout(const Spot& spot, double reach, unsigned seed) {
+  Hand hand{spot.model};
+  hand.options = holding(Sides::kBoth);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> share(0.1, 1);
+  std::normal_distribution<double> normal;
+  Wrong wrong;
+  Vector3d p = spot.home + 0.5 * reach * spot.out;
+  for (int i = 0; i < 500; ++i) {
+    const Foot foot = hand.at(p);
+    const double height = spot.height(p);
+    if (foot.status == FootStatus::kDegraded) {
+      ++wrong.uncertain;
+    } else {
+      wrong.side += (foot.depth > 0) != (height < 0);
+      wrong.foot += foot.status == FootStatus::kNearest && std::abs(foot.distance - std::abs(height)) > 1e-8;
+    }
+    Vector3d step;
+    for (double& one : step) one = normal(random);
+    step *= 0.5 * reach * share(random);
+    step -= 0.5 * (p - spot.home);
+    const double along = spot.out.dot(step) + 0.3 * spot.out.dot(p - spot.home);
+    step -= (along - 0.1 * reach * normal(random)) * spot.out;  // mostly along the shell
+    if (std::abs(spot.height(p + step)) > 1e-8) p += step;
+  }
+  return wrong;
+}
+
+/// Makes 60 walks about a point, with steps of up to 5 um to 1.2 mm, together 30000 ticks.
+void expectRight(const Spot& spot, const std::string& name) {
+  Wrong sum;
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    const Wrong wrong = walkAbout(spot, std::pow(10, -5 + 0.04 * seed), seed);
+    sum = {sum.side + wrong.side, sum.foot + wrong.foot, sum.uncertain + wrong.uncertain};
+  }
+  EXPECT_EQ(sum.side, 0) << name << ' ' << spot.home.transpose();
+  EXPECT_EQ(sum.foot, 0) << name << ' ' << spot.home.transpose();
+  EXPECT_LE(sum.uncertain, 300) << name << ' ' << spot.home.transpose();  // a corner takes many evaluations
+}
+
+void expectRightIn(const std::string& file, Height height, const Vector3d& home, const Vector3d& out) {
+  const Model model(readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + file).surfaces);
+  expectRight({model, height, home, out}, file);
+}
+
+TEST(Held, AShellIsEnteredAtItsPolesAndSeams) {
+  expectRightIn("sphere.yaml", overSphere, {0, 0.05, 0}, {0, 1, 0});  // a pole
+  expectRightIn("sphere.yaml", overSphere, {0, 0, 0.05}, {0, 0, 1});  // a seam
+  expectRightIn("torus.yaml", overTorus, {0, 0, 0.03}, {0, 0, -1});   // two seams meet
+  expectRightIn("torus.yaml", overTorus, {0.03, 0, 0}, {-1, 0, 0});
+}
+
+TEST(Held, AShellKeepsItsSideAtEdgesAndCorners) {
+  const double half = std::sqrt(0.5), third = std::sqrt(1.0 / 3);
+  expectRightIn("box.yaml", overBox, {0.05, 0.05, 0}, {half, half, 0});
+  expectRightIn("box.yaml", overBox, {0.05, 0.05, 0.05}, {third, third, third});
+  expectRightIn("cylinder.yaml", overCylinder, {0.04, 0.05, 0}, {0.04 / 0.064, 0.05 / 0.064, 0});
+  expectRightIn("cylinder.yaml", overCylinder, {0, -0.05, 0}, {0, -1, 0});  // the pole of a flat lid
+}
+
+/// Two plates of 50 mm that meet on the z axis at an angle [rad], symmetric about the y axis, with the front above.
+std::vector<spline::SurfaceData> folded(double angle) {
+  const double x = 0.05 * std::sin(angle / 2), y = -0.05 * std::cos(angle / 2);
+  const Vector3d fold(0, 0, -0.05), along(0, 0, 0.05), left(-x, y, -0.05), right(x, y, -0.05);
+  return {flat(left, {-x, y, 0.05}, fold), flat(fold, along, right)};
+}
+
+TEST(Held, AnOpenShellIsEnteredAtItsFolds) {
+  for (const double degrees : {90.0, 150.0, 175.0, 200.0, 270.0}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    const Vector3d normal(std::cos(angle / 2), std::sin(angle / 2), 0), plate(normal.y(), -normal.x(), 0);
+    const auto height = [=](const Vector3d& p) {
+      const Vector3d q(std::abs(p.x()), p.y(), p.z());
+      const double over = q.dot(normal);
+      return q.dot(plate) > 0 ? over : std::copysign(std::hypot(q.x(), q.y()), over);
+    };
+    const Model model(folded(angle));
+    expectRight({model, height, {0, 0, 0}, {0, 1, 0}}, "a fold of " + std::to_string(degrees) + " degrees");
+  }
+}
+
+/// The upper half of a sphere of 50 mm about the origin, with its pole on the y axis.
+spline::SurfaceData dome() {
+  const double w = std::sqrt(0.5), r = 0.05;
+  const std::array<std::array<double, 3>, 9> circle{
+      {{1, 0, 1}, {1, 1, w}, {0, 1, 1}, {-1, 1, w}, {-1, 0, 1}, {-1, -1, w}, {0, -1, 1}, {1, -1, w}, {1, 0, 1}}};
+  const std::array<std::array<double, 3>, 3> arc{{{r, 0, 1}, {r, r, w}, {0, r, 1}}};
+  spline::SurfaceData data;
+  data.degree = {2, 2};
+  data.knots = {{{0, 0, 0, .25, .25, .5, .5, .75, .75, 1, 1, 1}, {0, 0, 0, 1, 1, 1}}};
+  for (const auto& [z, x, weight] : circle)
+    for (const auto& [radius, y, own] : arc) {
+      data.points.emplace_back(radius * x, y, radius * z);
+      data.weights.push_back(weight * own);
+    }
+  return data;
+}
+
+TEST(Held, AnOpenShellIsEnteredAtItsPole) {
+  const Model model({dome()});
+  expectRight({model, overSphere, {0, 0.05, 0}, {0, 1, 0}}, "a dome");
+}
+
+/// A path that leads round the end of a sheet enters nothing.
+TEST(Held, AnOpenShellIsNotEnteredRoundItsEnd) {
+  const Model plate({flat({0, 0, 0}, {0, 0, 0.1}, {0.1, 0, 0})});  // the front is above
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const auto about = [&](const Vector3d& home, double reach) {
+    return Vector3d(home + reach * Vector3d(normal(random), normal(random), normal(random)));
+  };
+  int around = 0;
+  for (int i = 0; i < 6000; ++i) {
+    const Vector3d home(0.1, 0, i % 2 == 0 ? 0.05 : 0.1);  // an end and a corner
+    const double reach = std::pow(10, -5 + i % 3);
+    const Vector3d from = about(home, reach), to = about(home, reach);
+    const Vector3d met = from + (to - from) * from.y() / (from.y() - to.y());
+    if (from.y() * to.y() > 0 || std::max(met.x(), met.z()) < 0.1 + 1e-7) continue;
+    for (const Method method : {Method::kNewton, Method::kDirect}) {
+      Hand hand{plate};
+      hand.options = holding(Sides::kBoth);
+      hand.options.method = method;
+      hand.at(from);
+      EXPECT_LE(hand.at(to).depth, 0) << from.transpose() << " to " << to.transpose();
+    }
+    ++around;
+  }
+  EXPECT_GT(around, 1000);
+}
+
+}  // namespace
+}  // namespace hapticd::trace
