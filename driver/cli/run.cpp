@@ -264,7 +264,9 @@ void addTiming(const Command& command, RunArguments& options) {
                   "run as fast as the processor allows, on simulated devices; the same input gives the same bits");
   command.addOption("--rate", options.rate, "servo rate [Hz] instead of the scene's")
       .within(10.0, 20000.0);  // the range of servo.rate
-  command.addOption("--cpu", options.cpu, "processor to pin the servo thread to").check(ownProcessor).wholeWithin(0, 1023);
+  command.addOption("--cpu", options.cpu, "processor to pin the servo thread to")
+      .check(ownProcessor)
+      .wholeWithin(0, 1023);
   command
       .addOption("--priority", options.priority,
                  "SCHED_FIFO priority of the servo thread; default: the daemon file's, or 80")

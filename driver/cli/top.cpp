@@ -365,8 +365,8 @@ void addTop(const Command& app, int& exit_code) {
       "Keys: s, f, d and n sort by step time, force, depth and name; q quits.\n\n"
       "late: how long after their deadlines the ticks began; tick: how long they took. ITER: how often the last step\n"
       "evaluated a surface. KNOWN: share of the ticks in which the foot point surely was the nearest, or was kept by\n"
-      "a contact. STATUS: ok, degraded (a cheaper method gave the foot point) or the error of the last step, which the\n"
-      "host faded out; SILENCED models give no force until the end of the run, and a line below says why.\n\n"
+      "a contact. STATUS: ok, degraded (a cheaper method gave the foot) or the error of the last step, which the host\n"
+      "faded out; SILENCED models give no force until the end of the run, and a line below says why.\n\n"
       "Examples:\n  hapticd top --sort force\n  hapticd top --json --every 1 | jq .models[0].force_n");
   command.callback([options, &exit_code] { exit_code = top(*options); });
 }
