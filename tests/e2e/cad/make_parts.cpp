@@ -128,18 +128,20 @@ TopoDS_Shape trough() {
   return BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeEdge(parabola).Edge(), gp_Vec(0, 0, 20)).Shape();
 }
 
-/// A roof z = |x| over |x| <= 10, 0 <= y <= 20, one spline face with a crease; and the sheet 3 mm off a curved one.
-TopoDS_Shape roof() {
+/// A roof z = |x| over |x| <= 10, 0 <= y <= 20, one spline face with a crease at the parameter `crease` of 0 to 2; and
+/// the sheet 3 mm off a curved one.
+TopoDS_Shape roof(double crease, int degree) {
   TColgp_Array2OfPnt poles(1, 3, 1, 2);
   for (int j = 1; j <= 2; ++j) {
     const double y = 20.0 * (j - 1);
     poles(1, j) = gp_Pnt(-10, y, 10), poles(2, j) = gp_Pnt(0, y, 0), poles(3, j) = gp_Pnt(10, y, 10);
   }
   TColStd_Array1OfReal u(1, 3), v(1, 2);
-  u(1) = 0, u(2) = 1, u(3) = 2, v(1) = 0, v(2) = 1;
+  u(1) = 0, u(2) = crease, u(3) = 2, v(1) = 0, v(2) = 1;
   TColStd_Array1OfInteger mu(1, 3), mv(1, 2);
   mu(1) = 2, mu(2) = 1, mu(3) = 2, mv(1) = 2, mv(2) = 2;
   const Handle(Geom_BSplineSurface) surface = new Geom_BSplineSurface(poles, u, v, mu, mv, 1, 1);
+  surface->IncreaseDegree(degree, 1);
   return BRepBuilderAPI_MakeFace(surface, 1e-7).Face();
 }
 
@@ -245,7 +247,8 @@ int main(int argc, char** argv) {
   step(plateWithHoles(), "plate");
   step(plateWithSplineHole(), "spline_hole");
   brep(trough(), "trough");
-  brep(roof(), "roof");
+  brep(roof(1, 1), "roof");
+  brep(roof(0.7, 20), "roof_of_degree_20");
   brep(shellOff(), "shell_off");
   brep(boxWithCavity(10, 30), "cavity");
   brep(boxWithCavity(30, 60), "crossing_cavity");

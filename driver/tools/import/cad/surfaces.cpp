@@ -100,6 +100,21 @@ Surface splineRecord(const Handle(Geom_BSplineSurface) & s, Part& part) {
   return record;
 }
 
+/// Returns the largest distance [mm] between points of two surfaces that have the same parameters, over a grid.
+double deviation(const Geom_Surface& a, const Geom_Surface& b, const Vector2& lo, const Vector2& hi) {
+  constexpr int kSteps = 30;
+  double most = 0;
+  for (int i = 0; i <= kSteps; ++i)
+    for (int j = 0; j <= kSteps; ++j) {
+      const double u = lo[0] + (hi[0] - lo[0]) * i / kSteps, v = lo[1] + (hi[1] - lo[1]) * j / kSteps;
+      most = std::max(most, a.Value(u, v).Distance(b.Value(u, v)));
+    }
+  return most;
+}
+
+/// Approximates a surface, unless it is a spline that a part holds. A fit that shall be smoother than the surface
+/// misses it by far beside the creases, while Open CASCADE tells a small error; so creases are allowed where the
+/// surface has some, and the error is measured as well.
 Handle(Geom_BSplineSurface)
     asSpline(const Handle(Geom_Surface) & surface, const Vector2& lo, const Vector2& hi, double& error) {
   constexpr double kSplineError = 1e-5;  // [mm]
@@ -114,12 +129,13 @@ Handle(Geom_BSplineSurface)
   }
   const Handle(Geom_RectangularTrimmedSurface) piece =
       new Geom_RectangularTrimmedSurface(surface, lo[0], hi[0], lo[1], hi[1]);
-  const GeomConvert_ApproxSurface fit(piece, kSplineError, GeomAbs_C1, GeomAbs_C1, kSplineDegree, kSplineDegree,
-                                      kMostPatches, 1);
+  const GeomAbs_Shape smooth = surface->IsCNu(1) && surface->IsCNv(1) ? GeomAbs_C1 : GeomAbs_C0;
+  const GeomConvert_ApproxSurface fit(piece, kSplineError, smooth, smooth, kSplineDegree, kSplineDegree, kMostPatches,
+                                      1);
   if (!fit.HasResult())
     throw Unkept("its surface, of kind " + std::string(surface->DynamicType()->Name()) +
                  ", cannot be approximated by a spline");
-  error = std::max(fit.MaxError(), 1e-12) * kMetres;
+  error = std::max({fit.MaxError(), deviation(*piece, *fit.Surface(), lo, hi), 1e-12}) * kMetres;
   return fit.Surface();
 }
 
