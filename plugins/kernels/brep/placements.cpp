@@ -42,7 +42,9 @@ Placement placementOf(const Part& part, std::uint32_t index) {
   place.moved = !place.rotation.isIdentity(0) || !place.position.isZero(0);
   place.body = instance.body;
   place.instance = index;
-  place.solid = (part.bodies[instance.body].flags & kClosed) != 0;
+  const Body& body = part.bodies[instance.body];
+  // a closed shell is one of which the importer did not make a solid, because its faces bound no single volume
+  place.solid = body.kind != BodyKind::kShell && (body.flags & kClosed) != 0;
   return place;
 }
 

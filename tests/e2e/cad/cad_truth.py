@@ -117,10 +117,10 @@ def imported(name, *arguments):
     return part, json.loads(out)
 
 
-def trace(part, points, parameters=None):
-    """One row a point [mm]; between two of them the probe is far away, so that every contact is fresh."""
+def trace(part, points, parameters=None, fresh=True):
+    """One row a point [mm]; if fresh, the probe is far away between two of them, so that every contact is new."""
     far = 10 * max(abs(x) for p in points for x in p) + 1000
-    rows = [q for p in points for q in ([far, far, far], p)]
+    rows = [q for p in points for q in ([far, far, far], p)] if fresh else points
     scene = {"hapticd": 1, "models": [{"name": "part", "plugin": "nurbs_rigid", "parameters": {"geometry": part, "stiffness": 1000, **(parameters or {})}}]}
     with open(join("scene.yaml"), "w") as out:
         json.dump(scene, out)
@@ -131,7 +131,7 @@ def trace(part, points, parameters=None):
     if done.returncode != 0:
         raise RuntimeError(done.stderr)
     with open(join("out.csv")) as file:
-        return [{k: (v if k == "model" else float(v)) for k, v in row.items()} for row in csv.DictReader(file)][1::2]
+        return [{k: (v if k == "model" else float(v)) for k, v in row.items()} for row in csv.DictReader(file)][1 if fresh else 0::2 if fresh else 1]
 
 
 def near(distance, lo, hi, count, inside, outside):
@@ -263,6 +263,20 @@ def sheets():
         compare(what, part, distance, near(distance, [-5, 1, -3], [5, 19, 6], 300, 0, 3), signed=False)
 
 
+def without_volume():
+    """Two faces on one another have no inside: a force from behind one of them would pull the probe in."""
+    cap = lambda p: abs(math.hypot(*p) - 10) if p[2] > 0 else math.hypot(math.hypot(p[0], p[1]) - 10, p[2])
+    for name in ("no_volume.brep", "no_volume_shell.brep"):
+        part, told = imported(name)
+        check(f"{name} is told", "1 face lies on another one" in " ".join(told["warnings"]), told)
+        check(f"{name} is no solid", info(part)["bodies"][0]["kind"] == "shell", info(part)["bodies"])
+        compare(name, part, cap, near(cap, [-12, -12, 1], [12, 12, 13], 300, 0, 3), signed=False)
+        for way, path in ((1, range(130, 60, -1)), (-1, range(70, 130))):
+            rows = trace(part, [[0, 0, z / 10] for z in path], fresh=False)
+            pushes = [way * r["fz"] for r in rows if r["contact"]]
+            check(f"{name} pushes back {'from above' if way > 0 else 'from below'}", pushes and min(pushes) >= 0, rows)
+
+
 def assemblies():
     part, told = imported("assembly.step")
     what = info(part)
@@ -287,6 +301,6 @@ def check_only():
 
 
 subprocess.run([MAKE_PARTS, folder], check=True, timeout=300)
-for part_of_the_test in (check_only, solids, on_axes_and_poles, disguised, to_the_poles, sheets, assemblies):
+for part_of_the_test in (check_only, solids, on_axes_and_poles, disguised, to_the_poles, sheets, without_volume, assemblies):
     part_of_the_test()
 finish()

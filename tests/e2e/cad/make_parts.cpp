@@ -40,12 +40,15 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Iterator.hxx>
+#include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <cstdio>
+#include <gp_Sphere.hxx>
 #include <numbers>
 #include <string>
 
@@ -195,6 +198,29 @@ TopoDS_Shape pinOnRim() {
   return both;
 }
 
+/// A closed shell without a volume: the upper half of a sphere of 10 mm, twice, with opposite normals.
+TopoDS_Shape twiceOneCap() {
+  const BRep_Builder builder;
+  TopoDS_Shell shell;
+  builder.MakeShell(shell);
+  const TopoDS_Face upper = BRepBuilderAPI_MakeFace(gp_Sphere(gp_Ax3(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), 10), 0,
+                                                    2 * std::numbers::pi, 0, std::numbers::pi / 2);
+  TopoDS_Shape again = upper.EmptyCopied();
+  for (TopoDS_Iterator at(upper); at.More(); at.Next()) builder.Add(again, at.Value());
+  builder.Add(shell, upper);
+  builder.Add(shell, again.Reversed());
+  shell.Closed(true);
+  return shell;
+}
+
+TopoDS_Shape solidOf(const TopoDS_Shape& shell) {
+  const BRep_Builder builder;
+  TopoDS_Solid solid;
+  builder.MakeSolid(solid);
+  builder.Add(solid, shell);
+  return solid;
+}
+
 /// Two of one block of 10 mm, 30 mm apart along x, the second turned a quarter about z; names and colours.
 void assembly() {
   Handle(TDocStd_Document) document;
@@ -253,6 +279,8 @@ int main(int argc, char** argv) {
   brep(boxWithCavity(10, 30), "cavity");
   brep(boxWithCavity(30, 60), "crossing_cavity");
   brep(faces(boxWithCavity(10, 30)), "loose_cavity");
+  brep(twiceOneCap(), "no_volume_shell");
+  brep(solidOf(twiceOneCap()), "no_volume");
   iges(pinOnRim(), "pin_on_rim");
   brep(splineQuarter(), "spline_quarter");
   assembly();

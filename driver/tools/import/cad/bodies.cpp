@@ -17,6 +17,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cad_import/doubled_faces.hpp"
+
 namespace hapticd::cad {
 namespace {
 
@@ -264,6 +266,37 @@ bool BodyBuilder::isClosed(const brep::Body& body) const {
   return body.face_count > 0;
 }
 
+/// Adds the faces of a shape. Of faces that lie on one another only the first is added: beside two of them, a point is
+/// in front of the one and behind the other, so the force would depend on which of the two is found. Returns how many
+/// were left out.
+std::size_t BodyBuilder::addFaces(const TopoDS_Shape& shape) {
+  const std::vector<int> doubled = doubledFaces(shape);
+  int number = 0;
+  for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next(), ++face_number_, ++number)
+    if (!std::binary_search(doubled.begin(), doubled.end(), number)) tryFace(TopoDS::Face(at.Current()));
+  if (!doubled.empty())
+    part_.warnings.push_back("'" + name_ + "': " + std::to_string(doubled.size()) +
+                             (doubled.size() == 1 ? " face lies on another one" : " faces lie on other ones") +
+                             ", with no volume between them, so " + (doubled.size() == 1 ? "it was" : "they were") +
+                             " left out; the body is taken as a shell, felt from both sides");
+  return doubled.size();
+}
+
+/// Decides whether a body is a solid. One that the file calls a solid is none if it is open, or if faces were left out
+/// because they lie on others.
+/// @param told true if the report has named already why the body may be open
+void BodyBuilder::setKind(const TopoDS_Shape& shape, brep::Body& body, bool doubled, bool told) {
+  const bool solid = TopExp_Explorer(shape, TopAbs_SOLID).More();
+  const bool shell = TopExp_Explorer(shape, TopAbs_SHELL).More();
+  if (isClosed(body)) body.flags = brep::kClosed;
+  body.kind = solid && !doubled && body.flags != 0 ? brep::BodyKind::kSolid
+              : shell                              ? brep::BodyKind::kShell
+                                                   : brep::BodyKind::kSheet;
+  if (solid && body.flags == 0 && !doubled && !told)
+    part_.warnings.push_back("'" + name_ +
+                             "' is stored as a solid, but some of its edges bound only one face: taken as a shell");
+}
+
 std::uint32_t BodyBuilder::add(const TopoDS_Shape& shape, std::uint32_t name, std::uint32_t colour) {
   brep::Body body;
   body.name = name;
@@ -278,20 +311,11 @@ std::uint32_t BodyBuilder::add(const TopoDS_Shape& shape, std::uint32_t name, st
   TopExp::MapShapes(shape, TopAbs_VERTEX, all);
   vertex_index_.assign(static_cast<std::size_t>(all.Extent()), kNone);
   const std::size_t losses = part_.losses.size();
-  for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next(), ++face_number_)
-    tryFace(TopoDS::Face(at.Current()));
+  const std::size_t doubled = addFaces(shape);
   body.face_count = sizeOf(part_.faces) - body.first_face;
   body.edge_count = sizeOf(part_.edges) - body.first_edge;
   body.vertex_count = sizeOf(part_.vertices) - body.first_vertex;
-  const bool solid = !TopExp_Explorer(shape, TopAbs_SOLID).More() ? false : true;
-  const bool shell = TopExp_Explorer(shape, TopAbs_SHELL).More();
-  if (isClosed(body)) body.flags = brep::kClosed;
-  body.kind = solid && body.flags != 0 ? brep::BodyKind::kSolid
-              : shell                  ? brep::BodyKind::kShell
-                                       : brep::BodyKind::kSheet;
-  if (solid && body.flags == 0 && part_.losses.size() == losses)
-    part_.warnings.push_back("'" + name_ +
-                             "' is stored as a solid, but some of its edges bound only one face: taken as a shell");
+  setKind(shape, body, doubled > 0, part_.losses.size() > losses);
   if (body.flags != 0 && body.kind == brep::BodyKind::kSolid && isInsideOut(shape)) {
     for (std::uint32_t f = 0; f < body.face_count; ++f) part_.faces[body.first_face + f].flags ^= brep::kReversed;
     part_.warnings.push_back("'" + name_ + "' was inside out: its faces were reversed");

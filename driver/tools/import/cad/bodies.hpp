@@ -39,6 +39,8 @@ class BodyBuilder {
   std::uint32_t vertexOf(const TopoDS_Vertex& vertex);
   void note(const std::string& what, const Kept& kept);
   bool isClosed(const brep::Body& body) const;
+  void setKind(const TopoDS_Shape& shape, brep::Body& body, bool doubled, bool told);
+  std::size_t addFaces(const TopoDS_Shape& shape);
 
   const Colours& colours_;
   std::string name_;

@@ -15,6 +15,7 @@
 #include <chrono>
 #include <cstddef>
 
+#include "cad_import/doubled_faces.hpp"
 #include "cad_import/sides_check.hpp"
 
 namespace hapticd::cad {
@@ -69,8 +70,9 @@ void findAround(std::vector<Closed>& closed) {
   }
 }
 
-/// True if the outside is not in front of the faces of a solid.
+/// True if the faces of a solid lie on one another, or do not have the outside in front of them.
 bool isDoubtful(const TopoDS_Solid& solid, double& seconds) {
+  if (!doubledFaces(solid).empty()) return true;
   if (seconds <= 0) return false;
   const auto begun = std::chrono::steady_clock::now();
   const bool doubtful = trySides(solid, seconds).doubtful();
