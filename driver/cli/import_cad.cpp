@@ -87,7 +87,7 @@ int wait(pid_t child, double seconds, bool& late) {
 bool isCadFile(const std::string& file) {
   std::string ending = fs::path(file).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  const char* const known[] = {".step", ".stp", ".iges", ".igs", ".brep", ".rle"};
+  const char* const known[] = {".step", ".stp", ".iges", ".igs", ".brep", ".brp", ".rle"};
   return std::any_of(std::begin(known), std::end(known), [&](const char* one) { return ending == one; });
 }
 

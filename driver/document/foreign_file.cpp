@@ -20,6 +20,7 @@ constexpr Kind kKinds[] = {{".step", "ISO-10303-21", "a STEP file"},
                            {".iges", "", "an IGES file"},
                            {".igs", "", "an IGES file"},
                            {".brep", "DBRep_Drawable", "a B-rep"},
+                           {".brp", "", "a B-rep"},
                            {".stl", "solid ", "a mesh (STL)"},
                            {".ply", "ply\n", "a mesh (PLY)"},
                            {".obj", "", "a mesh (OBJ)"}};

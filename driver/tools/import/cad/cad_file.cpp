@@ -289,10 +289,10 @@ CadFile readCad(const std::string& file) {
     readStep(file, cad);
   else if (ending == ".iges" || ending == ".igs")
     readIges(file, cad);
-  else if (ending == ".brep" || ending == ".rle")
+  else if (ending == ".brep" || ending == ".brp" || ending == ".rle")
     readBrep(file, cad);
   else
-    throw CadError("expected a name that ends in .step, .stp, .iges, .igs, .brep or .rle");
+    throw CadError("expected a name that ends in .step, .stp, .iges, .igs, .brep, .brp or .rle");
   const std::string name = std::filesystem::path(file).stem().string();
   gatherLooseFaces(cad, name);
   nameNodes(cad, name);

@@ -38,7 +38,7 @@ struct CadFile {
   std::vector<std::string> remarks;  ///< warnings about the file, such as a unit that had to be assumed
 };
 
-/// [main] Reads .step, .stp, .iges, .igs, .brep and .rle. @throws CadError
+/// [main] Reads .step, .stp, .iges, .igs, .brep, .brp and .rle. @throws CadError
 CadFile readCad(const std::string& file);
 
 }  // namespace hapticd::cad

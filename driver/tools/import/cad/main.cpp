@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
   const hapticd::command_line::Program app(
       "Converts CAD files (STEP, IGES, BREP) into parts. hapticd import starts it.", "hapticd-import");
   hapticd::cad::Options options;
-  app.addOption("file", options.file, ".step, .stp, .iges, .igs, .brep or .rle").required();
+  app.addOption("file", options.file, ".step, .stp, .iges, .igs, .brep, .brp or .rle").required();
   app.addOption("-o,--out", options.out, "the part file to write (.hpart)");
   app.addOption("--memory", options.memory_mb, "largest memory that the import may use [MB]");
   app.addOption("--time", options.time_s, "largest processor time that the import may use [s]");
