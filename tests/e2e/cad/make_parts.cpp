@@ -17,6 +17,7 @@
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
 #include <GeomConvert.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_BSplineSurface.hxx>
@@ -213,6 +214,14 @@ TopoDS_Shape twiceOneCap() {
   return shell;
 }
 
+/// A box of 20 mm, one of whose vertices lies 2 mm beside the ends of its three edges, with a tolerance to match.
+TopoDS_Shape boxWithVertexOff() {
+  const TopoDS_Shape shape = box(0, 0, 0, 20, 20, 20);
+  const TopoDS_Vertex vertex = TopoDS::Vertex(TopExp_Explorer(shape, TopAbs_VERTEX).Current());
+  BRep_Builder().UpdateVertex(vertex, BRep_Tool::Pnt(vertex).Translated(gp_Vec(0, 0, 2)), 2.5);
+  return shape;
+}
+
 TopoDS_Shape solidOf(const TopoDS_Shape& shell) {
   const BRep_Builder builder;
   TopoDS_Solid solid;
@@ -279,6 +288,7 @@ int main(int argc, char** argv) {
   brep(boxWithCavity(10, 30), "cavity");
   brep(boxWithCavity(30, 60), "crossing_cavity");
   brep(faces(boxWithCavity(10, 30)), "loose_cavity");
+  brep(boxWithVertexOff(), "vertex_off");
   brep(twiceOneCap(), "no_volume_shell");
   brep(solidOf(twiceOneCap()), "no_volume");
   iges(pinOnRim(), "pin_on_rim");

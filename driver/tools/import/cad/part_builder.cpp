@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "cad_import/part_builder.hpp"
 
+#include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
+#include <Bnd_Box.hxx>
 #include <Standard_Failure.hxx>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <ctime>
 #include <gp_Quaternion.hxx>
 #include <map>
 
 #include "cad_import/bodies.hpp"
+#include "cad_import/outline_check.hpp"
 #include "cad_import/progress.hpp"
 #include "cad_import/sides_check.hpp"
 
@@ -130,10 +134,32 @@ class PartBuilder {
     BodyBuilder builder(file_.colours, name, part_);
     const std::uint32_t body = builder.add(whole, nameIndex(name), colour);
     report_.recognised += builder.recognisedFaces();
+    judgeOutlines(whole, name);
     if (part_.bodies[body].kind == brep::BodyKind::kSolid) judgeSides(whole, name);
     if (part_.bodies[body].face_count > 0) return body;
     part_.bodies.pop_back();
     return kNone;
+  }
+
+  /// Warns of faces that are trimmed elsewhere than at their edges.
+  void judgeOutlines(const TopoDS_Shape& shape, const std::string& name) {
+    constexpr double kAllowed = 1e-3, kLeast = 0.02;  // share of the diagonal of the body; [mm] not felt below
+    Bnd_Box box;
+    BRepBndLib::Add(shape, box, false);
+    if (box.IsVoid() || box.IsOpen()) return;
+    const OutlinesOff off = outlinesOff(shape, std::max(kLeast, kAllowed * std::sqrt(box.SquareExtent())));
+    if (off.faces == 0) return;
+    char text[160];
+    if (off.faces == 1)
+      std::snprintf(text, sizeof text, "': the outline of face %d is off by %.2g mm: ", off.worst_face, off.worst);
+    else
+      std::snprintf(text, sizeof text,
+                    "': the outlines of %d faces are off, that of face %d most, by %.2g mm: ", off.faces,
+                    off.worst_face, off.worst);
+    part_.warnings.push_back(
+        "'" + name + text +
+        (off.at_vertex ? "an edge does not end at its vertex" : "an edge lies elsewhere than its curve on the face") +
+        ", so the face may have another shape there; compare the part with the CAD program");
   }
 
   /// Warns of a solid whose faces do not bound one volume. The test is slow for large solids, so for all of them
