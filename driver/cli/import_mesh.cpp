@@ -32,6 +32,7 @@ std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
                                          {"degenerate", r.degenerate},
                                          {"duplicates", r.duplicates},
                                          {"flipped", r.flipped},
+                                         {"touching_edges", r.touching},
                                          {"non_manifold_edges", r.non_manifold},
                                          {"unorientable_edges", r.unorientable},
                                          {"holes", r.holes},

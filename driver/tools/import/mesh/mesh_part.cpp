@@ -4,11 +4,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <stdexcept>
 
 #include "mesh_import/mesh_edges.hpp"
 #include "mesh_import/mesh_nesting.hpp"
 #include "mesh_import/mesh_slivers.hpp"
+#include "mesh_import/mesh_touching.hpp"
 
 namespace hapticd::importing {
 namespace {
@@ -30,8 +32,8 @@ class Repair {
     edges_ = meshEdges(corners_);
     orient();
     edges_ = meshEdges(corners_);  // flipped triangles have other edge numbers
-    countEdges();
     turnOutward();
+    countEdges();
     report_.flipped = static_cast<std::size_t>(std::count(turned_.begin(), turned_.end(), 1));
     report_.crossings = crossingsOf(points_, corners_, shell_, report_.shells);
     dropUnusedPoints();
@@ -111,7 +113,7 @@ class Repair {
     std::vector<std::uint32_t> next(points_.size(), kNone);  // next point along the free edges
     for (std::size_t i = 0; i < edges_.size();) {
       const std::size_t end = endOfEdge(edges_, i);
-      report_.non_manifold += end - i > 2;
+      if (end - i > 2) ++(solidsTouch(points_, corners_, edges_, i, end) ? report_.touching : report_.non_manifold);
       if (end - i == 1) {
         ++report_.free_edges;
         const Corners& c = corners_[edges_[i].code / 4];
@@ -121,6 +123,7 @@ class Repair {
       i = end;
     }
     report_.closed = report_.free_edges == 0 && report_.non_manifold == 0 && report_.unorientable == 0;
+    if (report_.closed) report_.volume = volume_;
     for (std::uint32_t start = 0; start < next.size(); ++start) {
       if (next[start] == kNone) continue;
       ++report_.holes;
@@ -128,12 +131,18 @@ class Repair {
     }
   }
 
-  /// Returns which shells have no free edge, and none where more than two triangles meet.
+  /// Returns which shells have no border: along each edge, as many of a shell's triangles run one way as the other way.
   std::vector<char> closedShells() const {
     std::vector<char> closed(report_.shells, 1);
+    std::map<std::uint32_t, int> balance;  // by shell
     for (std::size_t i = 0, end = 0; i < edges_.size(); i = end) {
       end = endOfEdge(edges_, i);
-      for (std::size_t k = i; end - i != 2 && k < end; ++k) closed[shell_[edges_[k].code / 4]] = 0;
+      if (end - i == 2 && shell_[edges_[i].code / 4] == shell_[edges_[i + 1].code / 4]) continue;
+      balance.clear();
+      for (std::size_t k = i; k < end; ++k)
+        balance[shell_[edges_[k].code / 4]] += runsForward(corners_, edges_[k]) ? 1 : -1;
+      for (const auto& [shell, sum] : balance)
+        if (sum != 0) closed[shell] = 0;
     }
     return closed;
   }
@@ -146,8 +155,8 @@ class Repair {
     if (nesting.incomplete)
       report_.remarks.emplace_back(
           "there are too many closed surfaces to look for cavities: small ones are felt as solid bodies");
-    for (std::size_t s = 0; report_.closed && s < closed.size(); ++s)
-      report_.volume += nesting.inside_out[s] != 0 ? -nesting.volume[s] : nesting.volume[s];
+    for (std::size_t s = 0; s < closed.size(); ++s)
+      volume_ += nesting.inside_out[s] != 0 ? -nesting.volume[s] : nesting.volume[s];
     for (std::size_t t = 0; t < corners_.size(); ++t)
       if (nesting.inside_out[shell_[t]] != 0) turn(t);
     const auto turned = std::count(nesting.inside_out.begin(), nesting.inside_out.end(), 1);
@@ -169,6 +178,7 @@ class Repair {
   }
 
   MeshReport& report_;
+  double volume_ = 0;                 ///< [m^3] of all closed shells
   std::vector<std::uint32_t> shell_;  ///< shell of each triangle
   std::vector<char> turned_;          ///< 1 for each triangle that is reversed
 };
@@ -259,6 +269,8 @@ std::vector<std::string> linesOf(const MeshReport& r) {
   say(r.degenerate, "triangle of zero area was left out", "triangles of zero area were left out");
   say(r.duplicates, "duplicate triangle was left out", "duplicate triangles were left out");
   say(r.flipped, "triangle was reversed", "triangles were reversed");
+  say(r.touching, "edge has more than two triangles, those of solids that touch there",
+      "edges have more than two triangles, those of solids that touch there");
   say(r.non_manifold, "edge has more than two triangles", "edges have more than two triangles");
   say(r.unorientable, "edge has triangles with contradictory outward sides",
       "edges have triangles with contradictory outward sides");

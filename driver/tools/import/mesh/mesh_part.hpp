@@ -25,7 +25,8 @@ struct MeshReport {
   std::size_t degenerate = 0;             ///< triangles that were left out because they have no area
   std::size_t duplicates = 0;    ///< triangles that were left out because they have the same three corners as another
   std::size_t flipped = 0;       ///< triangles that were reversed to agree with others, or to make the volume positive
-  std::size_t non_manifold = 0;  ///< edges with more than two triangles
+  std::size_t touching = 0;      ///< edges with more than two triangles, between which inside and outside alternate
+  std::size_t non_manifold = 0;  ///< other edges with more than two triangles
   std::size_t unorientable = 0;  ///< edges whose two triangles cannot be given the same outward side
   std::size_t free_edges = 0, holes = 0;  ///< edges with only one triangle, and the closed chains that they form
   std::size_t shells = 0;                 ///< connected surfaces
