@@ -278,7 +278,7 @@ Finding checkLatency(double seconds) {
   constexpr Nanoseconds kPeriod = 1'000'000;
   std::vector<double> late_us(static_cast<size_t>(seconds * 1e9 / static_cast<double>(kPeriod)));
   std::thread([&late_us] {
-    os::setFifo(os::kServoPriority);  // if this is refused, the test measures what this user would get
+    (void)os::setFifo(os::kServoPriority);  // if this is refused, the test measures what this user would get
     RealClock clock(0);
     Nanoseconds deadline = clock.now();
     for (double& late : late_us) {

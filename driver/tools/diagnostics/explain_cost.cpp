@@ -53,7 +53,7 @@ double clockOverhead() {
 struct Measured {
   std::vector<double> step_ns;  ///< mean time of a step of each model
   double tick_ns = 0, search_ns = 0;
-  double resting_ns() const {
+  double restingNs() const {
     double sum = tick_ns;
     for (const double step : step_ns) sum -= step;
     return std::max(0.0, sum);
@@ -164,7 +164,7 @@ class Costs {
     addEstimator(**world);
     addSearch(**world);
     add("the host's own work in a tick", scene_.file.string() + " servo", "sums, guards and contact statistics",
-        measured_.resting_ns(), 0);
+        measured_.restingNs(), 0);
     addLibraries();
     return std::move(rows_);
   }
@@ -205,7 +205,7 @@ class Costs {
     const auto less = measure(still, motion_);
     add(part, where(model.place, key + ".path"),
         fmt::format("kinematic: it follows the {} points of its path", model.path.size()),
-        less ? measured_.resting_ns() - less->resting_ns() : 0, model.path.size() * sizeof(scene::PathPoint));
+        less ? measured_.restingNs() - less->restingNs() : 0, model.path.size() * sizeof(scene::PathPoint));
   }
 
   /// Adds the row for what a parameter causes: the cost of the model with the parameter minus the cost without it.

@@ -53,6 +53,21 @@ struct FromProbe {
 
 }  // namespace
 
+bool isSmoothAt(const Geometry& geometry, std::uint32_t curve, double knot, double narrow) {
+  constexpr double kSame = 1e-6, kSameCurvature = 0.1;
+  spline::CurvePoint C;
+  std::array<Vector3d, 2> first, bend;
+  for (const std::size_t side : {0, 1}) {
+    geometry.curve(curve, side == 0 ? knot - narrow : knot, C);
+    const double speed2 = C.C1.squaredNorm();
+    if (!(speed2 > 0)) return false;
+    first[side] = C.C1;
+    bend[side] = (C.C2 - C.C2.dot(C.C1) / speed2 * C.C1) / speed2;
+  }
+  return (first[0] - first[1]).norm() <= kSame * first[1].norm() &&
+         (bend[0] - bend[1]).norm() <= kSameCurvature * std::max(bend[0].norm(), bend[1].norm());
+}
+
 std::vector<double> pieceSamples(const Geometry& geometry, std::uint32_t curve, double t0, double t1) {
   constexpr int kFewest = 8, kPerSpan = 4;
   std::vector<double> stops{t0};

@@ -41,6 +41,11 @@ struct PieceFrame {
   Eigen::Vector3d centre{0, 0, 0}, curvature{0, 0, 0}, tangent{1, 0, 0}, binormal{0, 0, 1};
 };
 
+/// [main] True if tangent and curvature of a curve hardly change at a knot, so that a piece or leaf may go on beyond
+/// it.
+/// @param narrow how far before the knot the curve is evaluated
+bool isSmoothAt(const Geometry& geometry, std::uint32_t curve, double knot, double narrow);
+
 /// [main] Returns parameters from t0 to t1, in order, at which a piece of a curve is measured: at least nine, five of
 /// each span. The last one of a span is just before its end, because derivatives at a knot are those of the span to the
 /// right.

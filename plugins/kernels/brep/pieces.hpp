@@ -9,6 +9,10 @@
 
 namespace hapticd::brep {
 
+/// [rad] (25 degrees) largest turn of the normals of a leaf that is no spline, or of the tangents of a piece of a
+/// curve.
+inline constexpr double kLeafTurn = 0.44;
+
 struct BoxedLeaf {
   Leaf leaf;
   Eigen::AlignedBox3d box;

@@ -162,7 +162,7 @@ spline::TableCell cellOf(const Patch& patch, const spline::SurfacePoint& E) noex
 bool evaluateInside(WarmStepState& state, double u, double v, double* point) noexcept {
   const auto& patch = *static_cast<const Patch*>(state.patch);
   if (!(u > patch.lo[0] && u < patch.hi[0] && v > patch.lo[1] && v < patch.hi[1])) return false;
-  auto& E = *static_cast<spline::SurfacePoint*>(static_cast<void*>(point));
+  auto& E = *reinterpret_cast<spline::SurfacePoint*>(point);
   patch.surface.evaluate2(u, v, E);
   state.cell = cellOf(patch, E);
   return true;

@@ -79,7 +79,8 @@ struct Seam {
 Seam sewn(const TopoDS_Shape& faces, const std::string& body) {
   const double widest = std::min(kWidestGap, kGapShare * diagonalOf(faces));
   Seam best;
-  for (double gap = kFirstGap; gap <= widest * (1 + 1e-9); gap *= 100) {
+  double gap = kFirstGap;
+  while (gap <= widest * (1 + 1e-9)) {
     const Handle(Progress) progress = new Progress("sewing " + body, kLongest);
     Seam made{{}, new BRepBuilderAPI_Sewing(gap), 0, gap};
     for (TopExp_Explorer face(faces, TopAbs_FACE); face.More(); face.Next()) made.sewing->Add(face.Current());
@@ -89,6 +90,7 @@ Seam sewn(const TopoDS_Shape& faces, const std::string& body) {
     made.free = made.sewing->NbFreeEdges();
     if (best.shape.IsNull() || made.free < best.free) best = made;
     if (best.free == 0) break;
+    gap *= 100;
   }
   return best;
 }

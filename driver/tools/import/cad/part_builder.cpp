@@ -178,7 +178,8 @@ class PartBuilder {
                                  " faces tried do not have the outside in front of them and the inside behind: Open "
                                  "CASCADE may have read another part of a surface than the file means; compare the "
                                  "part with the CAD program, and save the file again from there");
-    } catch (const Standard_Failure&) {  // the part is good without this test
+    } catch (const Standard_Failure&) {
+      report_.steps.push_back(name + ": its sides could not be tested");
     }
     sides_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   }
