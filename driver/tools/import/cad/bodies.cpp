@@ -239,13 +239,21 @@ bool BodyBuilder::addDisguised(const TopoDS_Face& face) {
   return false;
 }
 
+void BodyBuilder::noteOutline(const TopoDS_Face& face, bool with_curves) {
+  try {
+    outlines_.push_back(outlineOff(face, with_curves));
+    outlines_.back().face = face_number_;
+  } catch (const Standard_Failure&) {  // the face is good without this check
+  }
+}
+
 void BodyBuilder::tryFace(const TopoDS_Face& face) {
-  if (addDisguised(face)) return;
+  if (addDisguised(face)) return noteOutline(face, false);
   const Sizes before = sizes();
   std::string reason;
   try {
     addFace(face, nullptr);
-    return;
+    return noteOutline(face, true);
   } catch (const Unkept& why) {
     reason = why.what();
   } catch (const Standard_Failure& failure) {

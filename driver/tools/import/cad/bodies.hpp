@@ -9,6 +9,7 @@
 #include <string>
 
 #include "cad_import/healing.hpp"
+#include "cad_import/outline_check.hpp"
 #include "cad_import/recognition.hpp"
 #include "cad_import/surfaces.hpp"
 
@@ -23,6 +24,8 @@ class BodyBuilder {
   std::uint32_t add(const TopoDS_Shape& shape, std::uint32_t name, std::uint32_t colour);
   /// Returns how many spline faces of the body were found to be planes, cylinders, cones or spheres.
   std::size_t recognisedFaces() const { return recognised_; }
+  /// Returns how far the outlines of the faces contradict themselves.
+  const std::vector<OutlineOff>& outlines() const { return outlines_; }
 
  private:
   struct Sizes {
@@ -32,6 +35,7 @@ class BodyBuilder {
   void cutBack(const Sizes& to);
   void tryFace(const TopoDS_Face& face);
   bool addDisguised(const TopoDS_Face& face);
+  void noteOutline(const TopoDS_Face& face, bool with_curves);
   void addFace(const TopoDS_Face& face, const brep::Surface* shape);
   void addLoop(const TopoDS_Face& face, const TopoDS_Shape& wire, const brep::Face& range);
   void addCoedge(const TopoDS_Face& face, const TopoDS_Edge& edge);
@@ -48,6 +52,7 @@ class BodyBuilder {
   TopTools_IndexedMapOfShape edges_, vertices_;  ///< edges and vertices of the body; the orientation does not matter
   std::vector<std::uint32_t> edge_index_, vertex_index_;
   std::size_t face_number_ = 0, recognised_ = 0;
+  std::vector<OutlineOff> outlines_;    ///< of the faces that were kept
   std::optional<Unfolding> unfolding_;  ///< set while a face is converted whose surface was recognised
 };
 

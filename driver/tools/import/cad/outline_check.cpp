@@ -40,22 +40,16 @@ double offVertices(const TopoDS_Edge& edge, const Handle(Geom_Curve) & curve, do
 
 }  // namespace
 
-OutlinesOff outlinesOff(const TopoDS_Shape& shape, double allowed) {
-  OutlinesOff found;
-  int number = 0;
-  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next(), ++number) {
-    bool off = false;
-    for (TopExp_Explorer at(face.Current(), TopAbs_EDGE); at.More(); at.Next()) {
-      const TopoDS_Edge edge = TopoDS::Edge(at.Current());
-      double t0 = 0, t1 = 0;
-      const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, t0, t1);
-      if (curve.IsNull()) continue;  // a pole
-      const double on_face = offFace(edge, curve, TopoDS::Face(face.Current()));
-      const double at_end = offVertices(edge, curve, t0, t1), most = std::max(on_face, at_end);
-      off = off || most > allowed;
-      if (most > allowed && most > found.worst) found = {found.faces, number, most, at_end >= on_face};
-    }
-    found.faces += off ? 1 : 0;
+OutlineOff outlineOff(const TopoDS_Face& face, bool with_curves) {
+  OutlineOff found;
+  for (TopExp_Explorer at(face, TopAbs_EDGE); at.More(); at.Next()) {
+    const TopoDS_Edge edge = TopoDS::Edge(at.Current());
+    double t0 = 0, t1 = 0;
+    const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, t0, t1);
+    if (curve.IsNull()) continue;  // a pole
+    const double on_face = with_curves ? offFace(edge, curve, face) : 0;
+    const double at_end = offVertices(edge, curve, t0, t1);
+    if (std::max(on_face, at_end) > found.by) found = {0, std::max(on_face, at_end), at_end >= on_face};
   }
   return found;
 }

@@ -134,7 +134,7 @@ class PartBuilder {
     BodyBuilder builder(file_.colours, name, part_);
     const std::uint32_t body = builder.add(whole, nameIndex(name), colour);
     report_.recognised += builder.recognisedFaces();
-    judgeOutlines(whole, name);
+    judgeOutlines(builder.outlines(), whole, name);
     if (part_.bodies[body].kind == brep::BodyKind::kSolid) judgeSides(whole, name);
     if (part_.bodies[body].face_count > 0) return body;
     part_.bodies.pop_back();
@@ -142,23 +142,27 @@ class PartBuilder {
   }
 
   /// Warns of faces that are trimmed elsewhere than at their edges.
-  void judgeOutlines(const TopoDS_Shape& shape, const std::string& name) {
+  void judgeOutlines(const std::vector<OutlineOff>& outlines, const TopoDS_Shape& shape, const std::string& name) {
     constexpr double kAllowed = 1e-3, kLeast = 0.02;  // share of the diagonal of the body; [mm] not felt below
     Bnd_Box box;
     BRepBndLib::Add(shape, box, false);
     if (box.IsVoid() || box.IsOpen()) return;
-    const OutlinesOff off = outlinesOff(shape, std::max(kLeast, kAllowed * std::sqrt(box.SquareExtent())));
-    if (off.faces == 0) return;
+    const double allowed = std::max(kLeast, kAllowed * std::sqrt(box.SquareExtent()));
+    const auto count =
+        std::count_if(outlines.begin(), outlines.end(), [&](const OutlineOff& off) { return off.by > allowed; });
+    if (count == 0) return;
+    const OutlineOff worst = *std::max_element(outlines.begin(), outlines.end(),
+                                               [](const OutlineOff& a, const OutlineOff& b) { return a.by < b.by; });
     char text[160];
-    if (off.faces == 1)
-      std::snprintf(text, sizeof text, "': the outline of face %d is off by %.2g mm: ", off.worst_face, off.worst);
+    if (count == 1)
+      std::snprintf(text, sizeof text, "': the outline of face %zu is off by %.2g mm: ", worst.face, worst.by);
     else
       std::snprintf(text, sizeof text,
-                    "': the outlines of %d faces are off, that of face %d most, by %.2g mm: ", off.faces,
-                    off.worst_face, off.worst);
+                    "': the outlines of %d faces are off, that of face %zu most, by %.2g mm: ", static_cast<int>(count),
+                    worst.face, worst.by);
     part_.warnings.push_back(
         "'" + name + text +
-        (off.at_vertex ? "an edge does not end at its vertex" : "an edge lies elsewhere than its curve on the face") +
+        (worst.at_vertex ? "an edge does not end at its vertex" : "an edge lies elsewhere than its curve on the face") +
         ", so the face may have another shape there; compare the part with the CAD program");
   }
 
