@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "kernels/brep/piece_curvature.hpp"
 #include "kernels/brep/pieces.hpp"
