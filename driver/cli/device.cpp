@@ -110,7 +110,7 @@ void printLimits(const scene::Limits& limits, double most) {
                                        diagnostics::enableButtonText(*limits.enable.button))
                                           .c_str());
   std::printf("  ramps      %g s to full force, %g s to zero\n  passivity  %s\n", limits.ramp_in, limits.ramp_out,
-              !limits.passivity   ? "on until its description was tried on hardware"
+              !limits.passivity   ? "on, unless the description says device.verified"
               : *limits.passivity ? "on: a damper takes up energy that the loop creates"
                                   : "off");
 }
@@ -150,7 +150,7 @@ void printHardware(host::DeviceInstance& device) {
               info.damping, info.buttons);
   printCapabilities(info.capabilities);
   for (uint32_t i = 0; i < info.joint_count; ++i)
-    std::printf("  joint %u: %g to %g, motor %g\n", i + 1, info.position_min[i], info.position_max[i],
+    std::printf("  joint %u: %g to %g, its motor up to %g (rad and N m, or m and N)\n", i + 1, info.position_min[i], info.position_max[i],
                 info.max_torque[i]);
   printReach(device);
 }

@@ -63,7 +63,7 @@ std::string misplaced(const ImportArguments& options, bool cad) {
            "that they enclose";
   if (!cad && options.cad.check) return "--check has an effect only with CAD files (.step, .iges, .brep)";
   if (options.out.empty() && !options.cad.check)
-    return "--out is required: the name of the file to write, such as part.hpart";
+    return "--out is required: the name of the file to write, such as part.hpart, or model.yaml for patches";
   return "";
 }
 

@@ -243,7 +243,8 @@ std::string ownProcessor(const std::string& text) {
   const std::string range = last > 0 ? "0 to " + std::to_string(last) : "0";
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
-  if (end != text.c_str() && *end == '\0' && number >= 0 && number <= last) return "";
+  if (end == text.c_str() || *end != '\0') return "\"" + text + "\" is not a number, expected " + range;
+  if (number >= 0 && number <= last) return "";
   return "this machine has no processor " + text + ", expected " + range;
 }
 

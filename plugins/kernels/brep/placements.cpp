@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/brep/placements.hpp"
 
+#include <set>
 #include <stdexcept>
 
 #include "kernels/brep/part_names.hpp"
@@ -19,6 +20,26 @@ bool belongs(const Part& part, std::uint32_t index, const std::string& wanted) {
   for (; index != kNone; index = part.instances[index].parent)
     if (isNamed(part, index, wanted)) return true;
   return false;
+}
+
+/// Refuses a name that instances with different paths have. Instances with one path cannot be told apart, so all of
+/// them are taken.
+void refuseAmbiguous(const Part& part, const std::string& wanted) {
+  constexpr std::size_t kMost = 12;
+  std::set<std::string> paths;
+  for (std::uint32_t i = 0; i < part.instances.size(); ++i) {
+    const std::uint32_t parent = part.instances[i].parent;
+    if (instancePath(part, i) == wanted) return;
+    if (instanceName(part, i) == wanted && (parent == kNone || !belongs(part, parent, wanted)))
+      paths.insert(instancePath(part, i));
+  }
+  if (paths.size() < 2) return;
+  std::string listed;
+  std::size_t count = 0;
+  for (const std::string& path : paths)
+    if (count++ < kMost) listed += (count > 1 ? ", " : "") + path;
+  if (count > kMost) listed += ", ... (" + std::to_string(count) + " in all)";
+  throw std::invalid_argument("instance: several are named '" + wanted + "', expected one of their paths " + listed);
 }
 
 [[noreturn]] void failUnknown(const Part& part, const std::string& wanted) {
@@ -53,6 +74,7 @@ Placement placementOf(const Part& part, std::uint32_t index) {
 std::vector<Placement> placementsOf(const Part& part, const std::string& wanted, std::uint32_t& feature_count) {
   std::vector<Placement> placements;
   std::uint64_t features = 0;
+  if (!wanted.empty()) refuseAmbiguous(part, wanted);
   for (std::uint32_t i = 0; i < part.instances.size(); ++i) {
     if (part.instances[i].body == kNone) continue;
     const Body& body = part.bodies[part.instances[i].body];

@@ -97,6 +97,23 @@ TEST_F(ImportCommands, CheckSaysWhatAPartCannotDo) {
   EXPECT_TRUE(has(check("push_button", "").text, "is a part, but this plugin needs a model file"));
 }
 
+TEST_F(ImportCommands, ANameThatSeveralInstancesHaveNeedsAPath) {
+  const auto check = [&](const std::string& instance) {
+    return run(
+        "check " + put("scene.yaml", "hapticd: 1\nmodels:\n  - {name: a, plugin: nurbs_rigid, parameters: {geometry: " +
+                                         std::string(HAPTICD_SOURCE_DIR "/config/models/as1.hpart, instance: ") +
+                                         instance + "}}\n"),
+        kShipped);
+  };
+  const std::string path = "as1/l-bracket-assembly_2/nut-bolt-assembly_3/nut_3";
+  const Outcome several = check("nut_3");
+  EXPECT_EQ(several.exit_code, 2);
+  EXPECT_TRUE(has(several.text, "several are named 'nut_3', expected one of their paths")) << several.text;
+  EXPECT_TRUE(has(several.text, path)) << several.text;
+  EXPECT_EQ(check(path).exit_code, 0);
+  EXPECT_EQ(check("rod_1").exit_code, 0);
+}
+
 TEST_F(ImportCommands, NamesInstanceAndFaceOfAFeature) {
   const std::string part = HAPTICD_SOURCE_DIR "/config/models/as1.hpart";
   EXPECT_TRUE(has(run("part info " + part).text, "instance 'rod_1': body 1, features 16 to 19"));

@@ -16,7 +16,8 @@ bool solidsTouch(const std::vector<Vector3d>& points, const std::vector<std::arr
                  const std::vector<MeshEdge>& edges, std::size_t first, std::size_t end) {
   constexpr double kApart = 1e-6;  // [rad]
   if ((end - first) % 2 != 0) return false;
-  const Vector3d a = points[edges[first].ends >> 32], along = points[edges[first].ends & 0xffffffffu] - a;
+  const Vector3d& a = points[edges[first].ends >> 32];
+  const Vector3d along = points[edges[first].ends & 0xffffffffu] - a;
   const Vector3d x = along.unitOrthogonal(), y = along.normalized().cross(x);
   std::vector<std::pair<double, bool>> around;
   for (std::size_t k = first; k < end; ++k) {
