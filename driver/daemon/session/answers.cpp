@@ -325,13 +325,10 @@ void addProgram(const Session& session, const hapticd_event& event, Json& json) 
 
 std::string eventText(const Session& session, const hapticd_event& event) {
   Json json = {{"event", nameOfEvent(event.kind)}, {"tick", event.tick}, {"t", event.t}};
-  const auto model = static_cast<size_t>(event.model), arm = static_cast<size_t>(event.probe);
+  const auto arm = static_cast<size_t>(event.probe);
   if (event.model >= 0) json["number"] = event.model;
-  const scene::Model* known =
-      event.model >= 0 && model < session.places.size() && !session.places[model].model.name.empty()
-          ? &session.places[model].model
-          : nullptr;
-  if (known != nullptr) json["model"] = known->name;
+  const auto [model, library] = session.runner.names().of(event);
+  if (!model.empty()) json["model"] = model;
   if (event.probe >= 0 && arm < session.runner.scene().devices.size())
     json["device"] = session.runner.scene().devices[arm].name;
   json["code"] = event.code;
@@ -340,9 +337,7 @@ std::string eventText(const Session& session, const hapticd_event& event) {
   if (event.kind == HAPTICD_FAULT) json["why"] = describe(static_cast<Fault>(event.code));
   if (event.probe < 0 || arm < session.runner.arms().size()) addProgram(session, event, json);
   if (event.kind == HAPTICD_REFUSED && *whyRefused(event) != 0) json["why"] = whyRefused(event);
-  if (event.kind == HAPTICD_SILENCED)
-    json["why"] = silenceReason(event, known != nullptr ? known->name : "",
-                                known != nullptr ? known->library.string() : "FILE.so");
+  if (event.kind == HAPTICD_SILENCED) json["why"] = silenceReason(event, model, model.empty() ? "FILE.so" : library);
   return lineOf(json);
 }
 

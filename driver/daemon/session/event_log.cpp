@@ -21,13 +21,6 @@ constexpr double kBegins = 0.005;  ///< [s] a touch this early means that the ti
 
 }  // namespace
 
-void EventLog::name(uint32_t place, const std::string& model, const std::string& file) {
-  if (model.empty()) return;
-  const std::lock_guard lock(mutex_);
-  if (place >= models_.size()) models_.resize(place + 1);
-  models_[place] = {model, file};
-}
-
 void EventLog::logNewEvents(const Flight& flight) {
   logSwitches();
   logPushers();
@@ -98,12 +91,6 @@ EventLog::Message EventLog::messageOfSwitch(size_t arm) const {
           "press it"};
 }
 
-EventLog::Named EventLog::model(const hapticd_event& event) const {
-  const std::lock_guard lock(mutex_);
-  const auto place = static_cast<size_t>(event.model);
-  return event.model >= 0 && place < models_.size() ? models_[place] : Named();
-}
-
 EventLog::Named EventLog::device(const hapticd_event& event) const {
   const auto arm = static_cast<size_t>(event.probe);
   return event.probe >= 0 && arm < devices_.size() ? devices_[arm] : Named();
@@ -124,7 +111,7 @@ EventLog::Message EventLog::messageOf(const hapticd_event& event) const {
 }
 
 EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
-  const auto [who, file] = model(event);
+  const auto [who, file] = models_.of(event);
   switch (event.kind) {
     case HAPTICD_CLICK:
       return {HSP_LOG_DEBUG, who,
@@ -180,7 +167,7 @@ EventLog::Message EventLog::messageOfArm(const hapticd_event& event) const {
 EventLog::Message EventLog::messageOfLeader(const hapticd_event& event) const {
   if (event.model < 0 && event.code == static_cast<uint32_t>(Order::Led::kForce))
     return {HSP_LOG_DEBUG, "", ""};  // PusherLog reports more about programs that push
-  const std::string what = event.model >= 0 ? model(event).name : device(event).name;
+  const std::string what = event.model >= 0 ? models_.of(event).name : device(event).name;
   if (event.kind == HAPTICD_REFUSED)
     return {HSP_LOG_WARNING, what,
             fmt::format("{:.0f} record{} of its leader {} refused so far{}{}", event.value, event.value == 1 ? "" : "s",

@@ -12,6 +12,7 @@
 #include "hapticd/client.h"
 #include "servo/arm/arm.hpp"
 #include "session/flight.hpp"
+#include "session/place_names.hpp"
 #include "session/pusher_log.hpp"
 
 namespace hapticd::servo {
@@ -19,19 +20,15 @@ namespace hapticd::servo {
 class EventLog {
  public:
   using Arms = std::vector<std::unique_ptr<Arm>>;
-
-  /// A model with the file of its plugin, or an arm with its device file.
-  struct Named {
-    std::string name, file;
-  };
+  using Named = PlaceNames::Named;
 
   /// [main] @param places most models that the run can have @param devices the arms, in order
   EventLog(size_t places, std::vector<Named> devices, const Arms& arms)
       : models_(places), devices_(std::move(devices)), arms_(arms) {}
 
-  /// [any] Called when a model takes a place, or with "" when the model has left. Events before this call are reported
-  /// with the old name. @param file the file of its plugin
-  void name(uint32_t place, const std::string& model, const std::string& file);
+  /// [any] The models that have had the places of the run.
+  PlaceNames& names() { return models_; }
+  const PlaceNames& names() const { return models_; }
 
   /// [main] Writes the events since the last call.
   void logNewEvents(const Flight& flight);
@@ -61,14 +58,14 @@ class EventLog {
   void logPushers();
   void write(uint32_t arm, const PusherLog::Message& message) const;
   std::string leaderOf(const hapticd_event& event) const;
-  Named model(const hapticd_event& event) const;
   Named device(const hapticd_event& event) const;
   Message messageOfModel(const hapticd_event& event) const;
   Message messageOfArm(const hapticd_event& event) const;
   Message messageOfLeader(const hapticd_event& event) const;
 
-  mutable std::mutex mutex_;  // because the request worker adds models
-  std::vector<Named> models_, devices_;
+  mutable std::mutex mutex_;  // because the request worker notes programs
+  PlaceNames models_;
+  std::vector<Named> devices_;
   const Arms& arms_;
   std::vector<bool> told_of_switch_, held_;
   PusherLog pushers_;

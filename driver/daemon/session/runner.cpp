@@ -262,7 +262,8 @@ std::vector<std::string> Runner::enterRealTime() const {
 
 void Runner::nameModel(uint32_t place, const std::string& name, const std::string& plugin, const std::string& library) {
   telemetry_->name(place, name, plugin, library);
-  event_log_->name(place, name, library);
+  const Flight* flight = telemetry_->flight();
+  if (!name.empty()) event_log_->names().came(place, flight != nullptr ? flight->ticks() : 0, {name, library});
   if (telemetry_->statusWriter() != nullptr) telemetry_->statusWriter()->name(place, name, plugin);
 }
 

@@ -84,6 +84,8 @@ class Runner {
   void endBlackBox() { telemetry_->flight()->ring().removeFile(); }
   /// [any] Called from the thread of postOrder() when a model takes a place, or has left it (`name` is "").
   void nameModel(uint32_t place, const std::string& name, const std::string& plugin, const std::string& library);
+  /// [any] Names of the models that events are about.
+  const PlaceNames& names() const { return event_log_->names(); }
   /// [any] Called from the thread of postOrder() when a program is about to lead.
   void nameLeader(pid_t pid, const std::string& program) { event_log_->leads(pid, program); }
   /// [any] Called from the thread of postOrder() when a program begins to push on an arm.

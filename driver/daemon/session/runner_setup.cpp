@@ -128,7 +128,7 @@ void Runner::openEventLog() {
   for (const scene::Device& device : scene_.devices) devices.push_back({device.name, device.file.string()});
   event_log_ = std::make_unique<EventLog>(world_->places(), std::move(devices), arms_);
   for (uint32_t place = 0; place < scene_.models.size(); ++place)
-    event_log_->name(place, scene_.models[place].name, scene_.models[place].library.string());
+    event_log_->names().came(place, 0, {scene_.models[place].name, scene_.models[place].library.string()});
 }
 
 }  // namespace hapticd::servo

@@ -91,6 +91,10 @@ def words_of_answers(client, folder):
     values = client.ask(do="get", model="far")["values"]
     check("no parameter that has a default is null", isinstance(values.get("ripples", []), list) and [k for k, v in values.items() if v is None and k in ("center", "inertia", "velocity")] == [], values)
     client.ask(do="remove", model="far")
+    client.ask(do="add", file=write(folder, "next", [("next", 60)]))
+    client.ask(do="remove", model="next")
+    told = [(e["event"], e["model"]) for e in client.ask(do="events")["events"] if e.get("model") in ("far", "next")]
+    check("events name a model that has left, although another one took its place", told == [(what, who) for who in ("far", "next") for what in ("came", "left")], told)
     try:
         client.ask(do="add", file=os.path.join(folder, "ball.yaml"), model="bal")
         told = ""

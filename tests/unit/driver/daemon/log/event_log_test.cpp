@@ -15,7 +15,7 @@ namespace {
 
 class EventWords : public testing::Test {
  protected:
-  EventWords() : log_(2, {{"phantom", "my-arm.yaml"}}, arms_) { log_.name(1, "door", "shapes/door.so"); }
+  EventWords() : log_(2, {{"phantom", "my-arm.yaml"}}, arms_) { log_.names().came(1, 0, {"door", "shapes/door.so"}); }
   EventLog::Message of(uint32_t kind, uint32_t code = 0, double value = 0) const {
     hapticd_event event{};
     event.kind = kind;
@@ -136,9 +136,21 @@ TEST(PusherWords, TellWhoAskedFallsSilentAndDies) {
   EXPECT_EQ(update(log, forces, 4), "");
 }
 
-TEST_F(EventWords, KeepTheNameOfAModelThatHasLeft) {
-  log_.name(1, "", "");
-  EXPECT_EQ(of(HAPTICD_LEFT).who, "door");
+TEST_F(EventWords, KeepTheNameOfAModelWhosePlaceIsTakenAgain) {
+  log_.names().came(1, 500, {"drawer", "shapes/drawer.so"});
+  const auto who = [&](uint32_t kind, uint64_t tick) {
+    hapticd_event event{};
+    event.kind = kind;
+    event.model = 1;
+    event.tick = tick;
+    return log_.messageOf(event).who;
+  };
+  EXPECT_EQ(who(HAPTICD_TOUCH, 499), "door");
+  EXPECT_EQ(who(HAPTICD_LEFT, 500), "door") << "the tick of its release is over only now";
+  EXPECT_EQ(who(HAPTICD_CAME, 500), "drawer");
+  EXPECT_EQ(who(HAPTICD_LEFT, 700), "drawer");
+  for (uint64_t i = 1; i <= 2 * PlaceNames::kMostKept; ++i) log_.names().came(1, 1000 * i, {"leaf", ""});
+  EXPECT_EQ(who(HAPTICD_TOUCH, 499), "leaf") << "as many names are kept as kMostKept says";
 }
 
 TEST_F(EventWords, OfAFaultStandWhereTheArmIsNotThere) {
