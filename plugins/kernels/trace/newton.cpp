@@ -21,6 +21,7 @@ struct Step {
   Vector2d d{0, 0};
   SideMask sides = 0;       ///< sides of the patch on which the step ends
   Vector2d straight{0, 0};  ///< d before it was bent
+  bool leaves = false;      ///< the step leads away from a saddle or maximum: however short, it ends at no foot
 };
 
 double modelValue(const QuadraticModel& m, const Vector2d& d) noexcept {
@@ -84,16 +85,21 @@ Vector2d bent(const spline::SurfacePoint& E, const Vector2d& d, const Vector2d& 
 /// Returns the step from an evaluated point to the minimum in the box. The step is at most twice the distance to the
 /// probe, because the new foot is not farther from the probe than this point. At a saddle with vanishing gradient, the
 /// step leads out of the saddle.
-Step stepFrom(const Patch& patch, const Array2d& uv, const spline::SurfacePoint& E, const Vector3d& r) noexcept {
+Step stepFrom(const Patch& patch, const Array2d& uv, const spline::SurfacePoint& E, const Vector3d& r,
+              double enough) noexcept {
   constexpr double kVanishingGradient = 1e-6;
   const QuadraticModel m = modelOf(E, r);
   const Vector2d lo = patch.lo - uv, hi = patch.hi - uv;
   Step step = boxMinimum(m, lo, hi);
   const double distance = r.norm();
   const double length = (E.Su * step.d[0] + E.Sv * step.d[1]).norm();
-  if (m.saddle && step.sides == 0 && length < kVanishingGradient * distance) {
+  step.leaves = m.saddle && step.sides == 0;
+  if (step.leaves && length < std::max(kVanishingGradient * distance, enough)) {
     const double along = m.g.dot(m.escape) > 0 ? -0.5 : 0.5;
-    step.d = step.straight = (along * distance * m.escape).array().max(lo.array()).min(hi.array());
+    const auto inBox = [&](double way) { return Vector2d((way * m.escape).cwiseMax(lo).cwiseMin(hi)); };
+    step.d = inBox(along * distance);
+    if (step.d == Vector2d(0, 0)) step.d = inBox(-along * distance);  // a side is in the way
+    step.straight = step.d;
     return step;
   }
   if (length > 2 * distance && length > 0) {
@@ -274,7 +280,7 @@ void descend(const Patch& patch, const Vector3d& p, Iterate& at, double toleranc
   Step step;
   double length = 0;
   for (;;) {
-    step = stepFrom(patch, at.uv, at.E, gap.r);
+    step = stepFrom(patch, at.uv, at.E, gap.r, enough);
     length = (at.E.Su * step.d[0] + at.E.Sv * step.d[1]).norm();
     // Newton's method squares the error, so the next step would be about length * (length / last_length)^2, unless the
     // last step led into a pole, where a tangent vanishes and the two lengths cannot be compared.
@@ -282,7 +288,7 @@ void descend(const Patch& patch, const Vector3d& p, Iterate& at, double toleranc
     const Array2d tangents2(at.E.Su.squaredNorm(), at.E.Sv.squaredNorm());
     const bool alike = (kAlike2 * tangents2 > last_tangents2).all();
     last_tangents2 = tangents2;
-    if (length <= enough || (alike && ratio < 0.1 && 10 * length * ratio * ratio <= enough)) {
+    if (!step.leaves && (length <= enough || (alike && ratio < 0.1 && 10 * length * ratio * ratio <= enough))) {
       foot.converged = true;
       break;
     }
