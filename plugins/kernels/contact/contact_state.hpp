@@ -111,7 +111,7 @@ class ContactState {
   bool isLeft(Faces& faces, const ContactRule& rule, Foot& foot) noexcept;
   template <class Faces>
   Foot atNearest(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule) noexcept;
-  bool seemsCrossed(const Foot& nearest, const ContactRule& rule) const noexcept;
+  bool mayHaveCrossed(const Foot& nearest, const Eigen::Vector3d& p, const ContactRule& rule) const noexcept;
   Foot nearestAlways(const Foot& nearest, const Eigen::Vector3d& p, Sides sides) noexcept;
   void beOutside(const Eigen::Vector3d& p, double clearance) noexcept {
     phase_ = Phase::kOutside;
@@ -187,10 +187,12 @@ bool ContactState::begins(Faces& faces, const Eigen::Vector3d& p, const ContactR
   return false;
 }
 
-/// True if the probe seems to have crossed a shell unseen, but the foot is not certain: it may be seen from a wrong
-/// side. The next certain foot decides, with the whole path since from_.
-inline bool ContactState::seemsCrossed(const Foot& nearest, const ContactRule& rule) const noexcept {
-  return rule.sides == Sides::kBoth && nearest.status == FootStatus::kDegraded && side_ * nearest.behind > 0;
+/// True if the probe may have crossed a shell unseen, since the foot is not certain: it may be seen from a wrong side.
+/// The next certain foot decides, with the whole path since from_.
+inline bool ContactState::mayHaveCrossed(const Foot& nearest, const Eigen::Vector3d& p,
+                                         const ContactRule& rule) const noexcept {
+  if (rule.sides != Sides::kBoth || nearest.status != FootStatus::kDegraded) return false;
+  return side_ * nearest.behind > 0 || atLeast(nearest) <= (p - from_).norm();
 }
 
 /// Returns the nearest foot if no contact is held. If the probe is inside, a contact may begin there.
@@ -201,7 +203,8 @@ Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const Conta
     phase_ = Phase::kUnknown;
     return nearest;
   }
-  const bool touching = phase_ == Phase::kOutside && (!(nearest.distance > kTouching) || seemsCrossed(nearest, rule));
+  const bool touching =
+      phase_ == Phase::kOutside && (!(nearest.distance > kTouching) || mayHaveCrossed(nearest, p, rule));
   if (rule.sides == Sides::kBoth && !touching) side_ = nearest.behind > 0 ? -1 : 1;
   Foot foot = seenFrom(nearest, side_);
   if (rule.sides != Sides::kBoth && foot.depth > 0) {
