@@ -43,10 +43,10 @@ class TracedShape : public Shape {
             "sides", &TracedShape::sides_, kSideNames, kAuto,
             "front: the solid is behind the outward normal; back: in front of it; both: a shell that pushes the probe "
             "back to the side from which it came; auto: both for parts that are not closed, front for all others"),
-        F::choice(
-            "method", &TracedShape::method_, kMethodNames, 1,
-            "dpt: the first-order step of Thompson et al.; newton: a safeguarded Newton iteration down to `tolerance`",
-            HSP_P_ACCURACY),
+        F::choice("method", &TracedShape::method_, kMethodNames, 1,
+                  "dpt: the first-order step of Thompson et al., except near a pole; newton: a safeguarded Newton "
+                  "iteration down to `tolerance`",
+                  HSP_P_ACCURACY),
         F::integer("iterations", &TracedShape::iterations_, "", 1, 4, 1, "steps per tick with method: dpt",
                    HSP_P_ACCURACY),
         F::choice("evaluation", &TracedShape::evaluation_, kEvaluationNames, 0,

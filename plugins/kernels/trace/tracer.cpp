@@ -21,6 +21,18 @@ constexpr double kNeighbourReach = 0.15;
   return foot;
 }
 
+/// True if (u, v) is near a pole of the patch. There the first-order steps of direct parametric tracing hardly turn
+/// about the pole, since one tangent vanishes: the foot would lag, and a shell could be felt from the wrong side.
+bool isNearPole(const Patch& patch, const Array2d& uv) noexcept {
+  constexpr double kNear = 0.1;  // share of the range of the parameter
+  const Array2d range = patch.hi - patch.lo, low = (uv - patch.lo) / range, high = (patch.hi - uv) / range;
+  for (int side = 0; side < kSides; ++side) {
+    if (patch.sides[static_cast<std::size_t>(side)].kind != SideKind::kPole) continue;
+    if ((side % 2 == 0 ? low : high)[Patch::axisOf(side)] < kNear) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Tracer::Tracer(const Model& model) : model_(model), tracks_(model) {}
@@ -72,28 +84,27 @@ bool Tracer::active(int surface) const noexcept {
   return false;
 }
 
-/// Computes the foot of a track for this tick.
+/// Computes the foot near `at` on a patch. @param steps of method kDirect
+inline void Tracer::findFoot(const Patch& patch, Iterate& at, const Vector3d& p, const TraceOptions& options, int steps,
+                             LocalFoot& foot) noexcept {
+  if (options.method == Method::kDirect && !isNearPole(patch, at.uv))
+    directFoot(patch, p, at, steps, budget_, foot);
+  else
+    newtonFoot(patch, p, at, std::max(options.tolerance, 0.0), budget_, foot);
+  budget_ -= foot.evaluations;
+}
+
+/// Computes the foot of a track for this tick. For a track that does not have the nearest foot, one step shows how near
+/// it is.
 inline void Tracer::locate(int track, const Vector3d& p, const TraceOptions& options) noexcept {
   Track& t = tracks_[track];
-  if (options.method == Method::kDirect) {
-    // for the other tracks one step shows how near they are
-    const int steps = track == nearest_ ? options.iterations : 1;
-    directFoot(model_.patch(t.patch), p, t.at, steps, budget_, t.foot);
-  } else {
-    newtonFoot(model_.patch(t.patch), p, t.at, std::max(options.tolerance, 0.0), budget_, t.foot);
-  }
-  budget_ -= t.foot.evaluations;
+  findFoot(model_.patch(t.patch), t.at, p, options, track == nearest_ ? options.iterations : 1, t.foot);
 }
 
 /// Computes the foot near `at` on a patch.
 LocalFoot Tracer::footFrom(int patch, Iterate& at, const Vector3d& p, const TraceOptions& options) noexcept {
   LocalFoot foot;
-  if (options.method == Method::kDirect) {
-    directFoot(model_.patch(patch), p, at, options.iterations, budget_, foot);
-  } else {
-    newtonFoot(model_.patch(patch), p, at, std::max(options.tolerance, 0.0), budget_, foot);
-  }
-  budget_ -= foot.evaluations;
+  findFoot(model_.patch(patch), at, p, options, options.iterations, foot);
   return foot;
 }
 

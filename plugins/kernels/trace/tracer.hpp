@@ -13,8 +13,10 @@
 namespace hapticd::trace {
 
 enum class Method : std::uint8_t {
-  kDirect,  ///< direct parametric tracing (Thompson et al. 1999): a fixed number of first-order steps per tick
-  kNewton   ///< safeguarded Newton's method to a tolerance
+  /// direct parametric tracing (Thompson et al. 1999): a fixed number of first-order steps per tick; Newton's method
+  /// near a pole
+  kDirect,
+  kNewton  ///< safeguarded Newton's method to a tolerance
 };
 
 struct TraceOptions {
@@ -88,6 +90,8 @@ class Tracer {
 
   Foot settle(const Eigen::Vector3d& p, const Eigen::Vector3d& last, const TraceOptions& options, int budget) noexcept;
   int nearestOf(int part, int start, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
+  void findFoot(const Patch& patch, Iterate& at, const Eigen::Vector3d& p, const TraceOptions& options, int steps,
+                LocalFoot& foot) noexcept;
   void locate(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   LocalFoot footFrom(int patch, Iterate& at, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   int note(int track) noexcept;

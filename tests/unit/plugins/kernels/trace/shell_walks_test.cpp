@@ -82,6 +82,7 @@ struct Spot {
   const Model& model;
   std::function<double(const Vector3d&)> height;
   Vector3d home, out;  ///< the point, and the direction away from the front
+  Method method = Method::kNewton;
 };
 
 /// Walks in and out of a shell, from outside, within about `reach` of a point of it, where firstCrossing() may not find
@@ -89,6 +90,7 @@ struct Spot {
 Wrong walkAbout(const Spot& spot, double reach, unsigned seed) {
   Hand hand{spot.model};
   hand.options = holding(Sides::kBoth);
+  hand.options.method = spot.method;
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> share(0.1, 1);
   std::normal_distribution<double> normal;
@@ -101,7 +103,8 @@ Wrong walkAbout(const Spot& spot, double reach, unsigned seed) {
       ++wrong.uncertain;
     } else {
       wrong.side += (foot.depth > 0) != (height < 0);
-      wrong.foot += foot.status == FootStatus::kNearest && std::abs(foot.distance - std::abs(height)) > 1e-8;
+      wrong.foot += spot.method == Method::kNewton && foot.status == FootStatus::kNearest &&
+                    std::abs(foot.distance - std::abs(height)) > 1e-8;
     }
     Vector3d step;
     for (double& one : step) one = normal(random);
@@ -167,17 +170,18 @@ TEST(Held, AnOpenShellIsEnteredAtItsFolds) {
   }
 }
 
-/// The upper half of a sphere of 50 mm about the origin, with its pole on the y axis.
-spline::SurfaceData dome() {
-  const double w = std::sqrt(0.5), r = 0.05;
+/// Turns a curve about the y axis. @param profile radius, y and weight of the control points [m]
+spline::SurfaceData turned(const std::vector<std::array<double, 3>>& profile) {
+  const double w = std::sqrt(0.5);
   const std::array<std::array<double, 3>, 9> circle{
       {{1, 0, 1}, {1, 1, w}, {0, 1, 1}, {-1, 1, w}, {-1, 0, 1}, {-1, -1, w}, {0, -1, 1}, {1, -1, w}, {1, 0, 1}}};
-  const std::array<std::array<double, 3>, 3> arc{{{r, 0, 1}, {r, r, w}, {0, r, 1}}};
   spline::SurfaceData data;
-  data.degree = {2, 2};
-  data.knots = {{{0, 0, 0, .25, .25, .5, .5, .75, .75, 1, 1, 1}, {0, 0, 0, 1, 1, 1}}};
+  data.degree = {2, static_cast<int>(profile.size()) - 1};
+  data.knots[0] = {0, 0, 0, .25, .25, .5, .5, .75, .75, 1, 1, 1};
+  data.knots[1].assign(profile.size(), 0);
+  data.knots[1].insert(data.knots[1].end(), profile.size(), 1);
   for (const auto& [z, x, weight] : circle)
-    for (const auto& [radius, y, own] : arc) {
+    for (const auto& [radius, y, own] : profile) {
       data.points.emplace_back(radius * x, y, radius * z);
       data.weights.push_back(weight * own);
     }
@@ -185,8 +189,21 @@ spline::SurfaceData dome() {
 }
 
 TEST(Held, AnOpenShellIsEnteredAtItsPole) {
-  const Model model({dome()});
-  expectRight({model, overSphere, {0, 0.05, 0}, {0, 1, 0}}, "a dome");
+  const double r = 0.05;
+  const Model dome({turned({{r, 0, 1}, {r, r, std::sqrt(0.5)}, {0, r, 1}})});
+  for (const Method method : {Method::kNewton, Method::kDirect})
+    expectRight({dome, overSphere, {0, r, 0}, {0, 1, 0}, method}, "a dome");
+}
+
+/// Inside a cone, the point of the far wall that is nearest to the probe along that wall is a saddle of the distance.
+TEST(Held, AnOpenShellIsEnteredAtItsApex) {
+  const Model cone({turned({{0.05, -0.05, 1}, {0, 0, 1}})});  // of 45 degrees, with its apex at the origin
+  const auto height = [](const Vector3d& p) {
+    const double radius = std::hypot(p.x(), p.z()), over = (radius + p.y()) / std::numbers::sqrt2;
+    return radius > p.y() ? over : p.norm();
+  };
+  for (const Method method : {Method::kNewton, Method::kDirect})
+    expectRight({cone, height, {0, 0, 0}, {0, 1, 0}, method}, "a cone");
 }
 
 /// A path that leads round the end of a sheet enters nothing.
