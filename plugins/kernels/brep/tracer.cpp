@@ -19,8 +19,8 @@ class Tracer::Faces {
 
   contact::Followed follow(double side, Foot& foot) noexcept { return tracer_.follow(side, p_, foot); }
   Foot nearest() noexcept { return tracer_.nearestOnce(p_); }
-  bool enter(const Vector3d& from, contact::Sides sides, double& side) noexcept {
-    return tracer_.enter(from, p_, sides, side);
+  bool enter(const contact::PathStart& from, contact::Sides sides, double& side) noexcept {
+    return tracer_.enter(from.point, p_, sides, side);
   }
   void holdNearest() noexcept { tracer_.held_ = tracer_.nearest_; }
   void release() noexcept { tracer_.held_.place = kNone; }

@@ -32,11 +32,18 @@ enum class Followed : std::uint8_t {
   kLost       ///< the kernel no longer traces the surface
 };
 
+/// Where a path of the probe begins.
+struct PathStart {
+  Eigen::Vector3d point;
+  double clearance;  ///< [m] no face is nearer to the point than this
+};
+
 /// The contact of one probe with one solid. `Faces` gives access to the kernel at the probe's position p of this tick.
 /// It has these functions, all [rt]:
 ///   Followed follow(double side, Foot& foot)  follows the held foot to p, over edges by the rule of atEdge()
 ///   Foot nearest()                            returns the nearest foot of all faces; status kNearest if it is certain
-///   bool enter(from, Sides, double& side)     finds the first face that the path from `from` to p enters through a
+///   bool enter(PathStart from, Sides, double& side)  finds the first face that the path from `from` to p enters
+///   through a
 ///                                             side that is felt; holds this face and sets `side` to that side.
 ///                                             On entry, `side` is the side on which `from` counts if it is almost
 ///                                             on a face
@@ -173,7 +180,8 @@ template <class Faces>
 bool ContactState::begins(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule, Foot& foot) noexcept {
   const double way2 = (p - from_).squaredNorm();
   double side = side_;
-  if (!(way2 > 0) || way2 < clearance_ * clearance_ || !faces.enter(from_, rule.sides, side)) return false;
+  if (!(way2 > 0) || way2 < clearance_ * clearance_ || !faces.enter({from_, clearance_}, rule.sides, side))
+    return false;
   if (faces.follow(side, foot) == Followed::kOn) {
     foot = seenFrom(foot, side);
     if (foot.depth > 0 && !isLeft(faces, rule, foot)) {

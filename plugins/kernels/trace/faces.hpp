@@ -26,14 +26,16 @@ class Tracer::Faces {
   Foot nearest() noexcept {
     if (!known_) nearest_ = tracer_.nearestFoot(part_, p_, options_);
     known_ = true;
-    return nearest_;
+    Foot foot = nearest_;
+    if (tracer_.undecided_ && foot.status == FootStatus::kNearest) foot.status = FootStatus::kDegraded;
+    return foot;
   }
 
-  bool enter(const Eigen::Vector3d& from, contact::Sides sides, double& side) noexcept {
-    const bool closed = sides == contact::Sides::kBoth && tracer_.isClosedAround(p_, (p_ - from).norm());
-    if (closed) nearest();  // it decides on the side, so it comes first, while evaluations are left
-    const Crossing first = tracer_.firstCrossing(part_, from, p_, side, options_);
-    if (first.track < 0) return closed && cameThrough(p_ - from, side);
+  bool enter(const contact::PathStart& from, contact::Sides sides, double& side) noexcept {
+    const Eigen::Vector3d way = p_ - from.point;
+    const int closed = sides == contact::Sides::kBoth ? shellAround(way.norm()) : -1;
+    const Crossing first = tracer_.firstCrossing(part_, {from, side, closed}, p_, options_);
+    if (first.track < 0) return closed >= 0 && cameThrough(way, side);
     side = first.side;
     tracer_.hold(part_, first.track);
     return true;
@@ -43,13 +45,24 @@ class Tracer::Faces {
   void release() noexcept { tracer_.hold(part_, -1); }
 
  private:
-  /// True if the probe has come through a shell without an end near by, because it was on the given side and is now on
-  /// the other. Holds the nearest foot then. This needs no place where the path meets the shell, which firstCrossing()
-  /// may not find near a pole or a crease, or with the evaluations that are left.
+  /// Returns the shell of the nearest foot, if it was that in the last tick too, and does not end within `reach` [m] of
+  /// p: no straight path of that length to p leads round it. Returns -1 if there is no such shell.
+  int shellAround(double reach) noexcept {
+    nearest();  // it decides on the side, so it comes first, while evaluations are left
+    const bool known = shell() >= 0 && shell() == tracer_.last_shell_;
+    return known && tracer_.model_.freeSides().areBeyond(shell(), p_, reach) ? shell() : -1;
+  }
+
+  int shell() const noexcept { return tracer_.shellOf(tracer_.nearestTrack(part_)); }
+
+  /// True if the probe has come through a shell that does not end near by, because it was on the given side and is now
+  /// on the other. Holds the nearest foot then. This needs no place where the path meets the shell, which
+  /// firstCrossing() may not find near a pole or a crease, or with the evaluations that are left.
   bool cameThrough(const Eigen::Vector3d& way, double side) noexcept {
     if (!isBehind(side) || !(contact::atLeast(nearest_) <= way.norm())) return false;
-    // Between the layers of a rolled sheet, the other layer may be nearer now. The probe comes to it from behind.
-    if (!tracer_.isClosedShell() && !(way.dot(p_ - nearest_.point) > 0)) return false;
+    // Another layer of a rolled sheet may be nearer now. The path began on the same side of it.
+    if (!tracer_.model_.closed(shell()) && tracer_.isOnSameSide(tracer_.nearestTrack(part_), p_ - way)) return false;
+    tracer_.undecided_ = false;
     holdNearest();
     return true;
   }
@@ -57,12 +70,15 @@ class Tracer::Faces {
   /// True if the probe is certainly behind its nearest foot, seen from the given side. Beside a free edge it is neither
   /// before nor behind.
   bool isBehind(double side) noexcept {
-    return nearest().status == FootStatus::kNearest && !(nearest_.aside > 0) && side * nearest_.behind > 0;
+    nearest();
+    return nearest_.status == FootStatus::kNearest && !(nearest_.aside > 0) && side * nearest_.behind > 0;
   }
 
   /// The same for a probe that has come out in front of the held face: it may be behind the next one.
   bool isBehindNext(double side) noexcept {
-    return isBehind(side) && (tracer_.isClosedShell() || tracer_.isNextToHeld(part_));
+    if (!isBehind(side)) return false;
+    const bool same = shell() == tracer_.shellOf(tracer_.contactOf(part_).held);
+    return same && (tracer_.model_.closed(shell()) || tracer_.isNextToHeld(part_));
   }
 
   Tracer& tracer_;

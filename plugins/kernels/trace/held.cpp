@@ -177,15 +177,15 @@ int Tracer::slideOn(int track, const Vector3d& p, const TraceOptions& options) n
   return track;
 }
 
-/// Finds the first surface that the straight path from `from` to p enters through a side that is felt. @param touching
-/// the side (1 front, -1 back) on which `from` counts if it lies on a surface
-Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vector3d& p, double touching,
+/// Finds the first surface that a straight path to p enters through a side that is felt.
+Tracer::Crossing Tracer::firstCrossing(int part, const Path& path, const Vector3d& p,
                                        const TraceOptions& options) noexcept {
-  const double length = (p - from).norm();
+  // A face that the path crosses is nearer to its end than this. So the layers of a rolled sheet are told apart.
+  const double within = (p - path.from.point).norm() - path.from.clearance;
   std::array<int, kMostCandidates> near{};
   int count = 0;
   for (const int index : tracks_.active()) {
-    const bool reached = tracks_.atLeast(index) <= length && model_.patch(tracks_[index].patch).atLeast(p) <= length;
+    const bool reached = tracks_.atLeast(index) <= within && model_.patch(tracks_[index].patch).atLeast(p) <= within;
     if (!reached || (part >= 0 && tracks_[index].part != part)) continue;
     int at = std::min(count, kMostCandidates - 1);
     if (count == kMostCandidates && !(tracks_.atLeast(index) < tracks_.atLeast(near.back()))) continue;
@@ -194,31 +194,34 @@ Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vec
     near[static_cast<std::size_t>(at)] = index;
     count = std::min(count + 1, kMostCandidates);
   }
-  const bool closed = options.rule.sides == contact::Sides::kBoth && isClosedAround(p, length);
   Crossing first;
   for (int i = 0; i < count; ++i) {
     int track = near[static_cast<std::size_t>(i)];
     if (tracks_[track].slot < 0) continue;
     if (budget_ > 0) track = slideOn(refine(track, p, options), p, options);
     if (first.track >= 0 && tracks_[first.track].slot < 0) first.track = track;  // the two tracks were merged
-    if (tracks_[track].tick != tracks_.tick() || !(tracks_[track].foot.distance <= length + kMet)) continue;
+    const LocalFoot& foot = tracks_[track].foot;
+    if (tracks_[track].tick != tracks_.tick() || !(foot.distance <= within + kMet)) continue;
     Crossing crossing;
-    crossing.side = touching;
+    crossing.side = path.touching;
     crossing.track = track;
-    if (!crosses(track, from, p, options, crossing) || !(crossing.share < first.share)) continue;
+    const bool of_closed = path.closed >= 0 && shellOf(track) == path.closed, undecided = undecided_;
+    const bool entered = crosses(track, path.from.point, p, options, crossing);
+    if (of_closed) undecided_ = undecided;  // the side of the nearest foot decides there
+    if (!entered || !(crossing.share < first.share)) continue;
     const auto sides = options.rule.sides;
     // A path that seems to begin on the other side of a shell without an end near by has come through it before, at an
     // edge or corner.
-    if (closed && crossing.side != touching) continue;
+    if (of_closed && crossing.side != path.touching) continue;
     if (sides == contact::Sides::kBoth || (sides == contact::Sides::kFront) == (crossing.side > 0)) first = crossing;
   }
   return first;
 }
 
-/// Returns the height [m] of a point over the surface, near a foot of this tick, or 0 if it cannot be computed. The
-/// height over the tangent plane at that foot has another sign if a path grazes the surface: its start is over a
-/// sphere, and under the plane. So has the height over the end of a patch, if the surface goes on beyond it.
-double Tracer::heightOver(int track, const Vector3d& point) noexcept {
+/// Returns the height of a point over the surface, near a foot of this tick. The height over the tangent plane at that
+/// foot has another sign if a path grazes the surface: its start is over a sphere, and under the plane. So has the
+/// height over the end of a patch, if the surface goes on beyond it.
+Tracer::HeightOver Tracer::heightOver(int track, const Vector3d& point) noexcept {
   constexpr double kNear = 1e-6;  // [m] the height changes by the square of an error of the foot
   int patch = tracks_[track].patch;
   Array2d uv = tracks_[track].foot.uv;
@@ -229,17 +232,25 @@ double Tracer::heightOver(int track, const Vector3d& point) noexcept {
     at.uv = uv;
     const LocalFoot foot = newtonFoot(model_.patch(patch), point, at, kNear, budget_);
     budget_ -= foot.evaluations;
-    if (!foot.converged || isAtPole(model_.patch(patch), foot.sides)) return 0;
+    if (!foot.converged || isAtPole(model_.patch(patch), foot.sides)) return {};
     const bool nearer = foot.distance < below.distance;
     if (nearer) below = foot;
     const int side = nearer ? sideBeyond(model_.patch(patch), foot) : -1;
-    if (side < 0) return below.regular ? below.height : 0;
+    if (side < 0) return below.regular ? HeightOver{below.height, below.sides == 0} : HeightOver();
     const Side& edge = model_.patch(patch).sides[static_cast<std::size_t>(side)];
     const double fraction = model_.patch(patch).fractionOn(side, foot.uv);
     patch = edge.patch;
     uv = model_.patch(patch).onSide(edge.side, edge.flipped ? 1 - fraction : fraction);
   }
-  return 0;
+  return {};
+}
+
+/// True if a point is certainly on the side of the surface on which the probe is, near a foot of this tick.
+bool Tracer::isOnSameSide(int track, const Vector3d& point) noexcept {
+  const LocalFoot& foot = tracks_[track].foot;
+  if (!foot.regular || foot.sides != 0) return false;
+  const HeightOver over = heightOver(track, point);
+  return over.inside && over.height * foot.height > 0;
 }
 
 /// True if the nearest foot lies on another patch than the held one, and the two patches are joined.
@@ -269,7 +280,7 @@ bool Tracer::crosses(int track, const Vector3d& from, const Vector3d& p, const T
   // entry.
   const Vector3d n = surfaceNormal(track);
   const bool shell = options.rule.sides == contact::Sides::kBoth;
-  const double before = shell ? heightOver(track, from) : (from - foot.S).dot(n), after = (p - foot.S).dot(n);
+  const double before = shell ? heightOver(track, from).height : (from - foot.S).dot(n), after = (p - foot.S).dot(n);
   if (std::abs(before) > kMet) crossing.side = before > 0 ? 1 : -1;
   if (!(crossing.side * after < 0)) return false;
   PathHit start;
@@ -279,6 +290,10 @@ bool Tracer::crosses(int track, const Vector3d& from, const Vector3d& p, const T
   crossing.share = met.share;
   if (met.found && met.share >= -kBeyond && met.share <= 1 + kBeyond && crossing.side * way.dot(met.normal) < 0)
     return true;
+  if (!met.found && budget_ <= 0) {
+    undecided_ = true;
+    return false;
+  }
   // If the path grazes the surface, it may meet it a second time, and that place was found. There is another one
   // between its ends, unless the path passes beside the surface.
   crossing.share = start.share;

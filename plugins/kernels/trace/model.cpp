@@ -12,7 +12,7 @@ namespace hapticd::trace {
 
 Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOptions& options) {
   if (surfaces.empty()) throw std::invalid_argument("model: there are no surfaces, expected at least one");
-  const std::vector<SideBoxes> sides = split(surfaces, options.form);
+  const std::vector<SidePieces> sides = split(surfaces, options.form);
   tree_.build();
   bounds_ = tree_.bounds();
   constexpr double kMostCoordinate = 1e60;  // [m] products of four larger lengths overflow
@@ -20,7 +20,7 @@ Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOption
         bounds_.max().cwiseAbs().maxCoeff() <= kMostCoordinate))
     throw std::invalid_argument("model: a coordinate is beyond 1e60 m, expected smaller coordinates");
   Sewing(*this, options).run();
-  free_sides_.keep(patches_, sides);
+  free_sides_.keep(patches_, shellCount(), sides);
   bool complete = true;
   part_ = groupShells(*this, complete);
   if (!complete)
@@ -29,8 +29,8 @@ Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOption
   part_count_ = 1 + *std::max_element(part_.begin(), part_.end());
 }
 
-std::vector<SideBoxes> Model::split(const std::vector<spline::SurfaceData>& surfaces, spline::Form form) {
-  std::vector<SideBoxes> sides;
+std::vector<SidePieces> Model::split(const std::vector<spline::SurfaceData>& surfaces, spline::Form form) {
+  std::vector<SidePieces> sides;
   first_patch_.reserve(surfaces.size() + 1);
   patches_.reserve(surfaces.size());
   for (std::size_t source = 0; source < surfaces.size(); ++source) {
@@ -52,7 +52,7 @@ std::vector<SideBoxes> Model::split(const std::vector<spline::SurfaceData>& surf
       patch.sign = surfaces[source].reversed ? -1 : 1;
       patch.source = static_cast<int>(source);
       tree_.add(part, patchCount());
-      sides.push_back(boxesOfSides(part));
+      sides.push_back(piecesOfSides(part));
       patches_.push_back(std::move(patch));
     }
   }

@@ -99,8 +99,8 @@ class Model {
 
  private:
   friend class Sewing;
-  /// Makes the patches. Returns the boxes of their sides.
-  std::vector<SideBoxes> split(const std::vector<spline::SurfaceData>& surfaces, spline::Form form);
+  /// Makes the patches. Returns the pieces of their sides.
+  std::vector<SidePieces> split(const std::vector<spline::SurfaceData>& surfaces, spline::Form form);
 
   std::vector<Patch> patches_;
   std::vector<int> first_patch_;

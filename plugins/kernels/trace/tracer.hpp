@@ -21,9 +21,11 @@ enum class Method : std::uint8_t {
 
 struct TraceOptions {
   Method method = Method::kNewton;
-  int iterations = 1;        ///< steps of kDirect per tick on a surface, 1 to 4
-  double tolerance = 1e-9;   ///< [m] kNewton stops when the estimated error of the foot point is below this
-  int max_evaluations = 12;  ///< most evaluations of surfaces in one tick, over all surfaces
+  int iterations = 1;       ///< steps of kDirect per tick on a surface, 1 to 4
+  double tolerance = 1e-9;  ///< [m] kNewton stops when the estimated error of the foot point is below this
+  /// most evaluations of surfaces in one tick, over all surfaces; twice as many where a shell (Sides::kBoth) may be
+  /// entered, because the side from which it is felt depends on them
+  int max_evaluations = 12;
   /// Which sides of the faces are felt, and the contact hysteresis. By default the probe always feels the front of the
   /// nearest face, and no contact is held.
   contact::ContactRule rule{contact::Sides::kFront, 0};
@@ -80,6 +82,18 @@ class Tracer {
     int track = -1;
   };
 
+  /// What firstCrossing() knows of the path.
+  struct Path {
+    contact::PathStart from;
+    double touching;  ///< the side (1 front, -1 back) on which the start counts if it lies on a surface
+    int closed;       ///< shell that the path cannot lead round, because it does not end near by; -1 if there is none
+  };
+  /// The height of a point over the surface near a foot.
+  struct HeightOver {
+    double height = 0;    ///< [m] 0 if it cannot be computed
+    bool inside = false;  ///< the foot of the point is inside a smooth piece of the surface, not at its end
+  };
+
   /// The last known position of the probe relative to one part. It shows whether the part can be skipped in this tick.
   struct Part {
     int nearest = -1;  ///< track with the nearest foot of the part, or -1
@@ -119,19 +133,14 @@ class Tracer {
   int slideOver(int track, int side, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   int slideOn(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   bool isReleased(int track, int side, double felt, const Eigen::Vector3d& p) const noexcept;
-  Crossing firstCrossing(int part, const Eigen::Vector3d& from, const Eigen::Vector3d& p, double touching,
-                         const TraceOptions& options) noexcept;
+  Crossing firstCrossing(int part, const Path& path, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   Eigen::Vector3d normalBeyond(const Patch& patch, int side, const Eigen::Array2d& uv) const noexcept;
   bool goesOn(const Patch& patch, SideMask sides, const Eigen::Array2d& uv) const noexcept;
-  /// True if the model is one closed shell: then the side of its nearest foot is the side of the probe.
-  bool isClosedShell() const noexcept { return model_.shellCount() == 1 && model_.closed(0); }
-  /// True if the model is one shell without a free side within `reach` [m] of p: no straight path of that length to p
-  /// leads round the shell.
-  bool isClosedAround(const Eigen::Vector3d& p, double reach) const noexcept {
-    return model_.shellCount() == 1 && model_.freeSides().atLeast(p) > reach;
-  }
+  /// The shell on which a track is, or -1 if there is no track.
+  int shellOf(int track) const noexcept { return track < 0 ? -1 : model_.patch(tracks_[track].patch).shell; }
   bool isNextToHeld(int part) const noexcept;
-  double heightOver(int track, const Eigen::Vector3d& point) noexcept;
+  HeightOver heightOver(int track, const Eigen::Vector3d& point) noexcept;
+  bool isOnSameSide(int track, const Eigen::Vector3d& point) noexcept;
   int sideBeyond(const Patch& patch, const LocalFoot& foot) const noexcept;
   bool crosses(int track, const Eigen::Vector3d& from, const Eigen::Vector3d& p, const TraceOptions& options,
                Crossing& crossing) noexcept;
@@ -154,6 +163,8 @@ class Tracer {
   Eigen::Vector3d last_p_{0, 0, 0};
   int nearest_ = -1;         ///< track with the nearest foot point of all surfaces, or -1
   int budget_ = 0;           ///< evaluations left in this tick
+  int last_shell_ = -1;      ///< shell of the nearest foot in the last tick, or -1
+  bool undecided_ = false;   ///< true if the evaluations of this tick did not suffice to tell whether a path enters
   bool unfinished_ = false;  ///< true if a place beyond a side of the foot that is followed remains unseen in this tick
   bool has_last_ = false;
 };

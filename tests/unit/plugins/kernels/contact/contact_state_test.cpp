@@ -16,8 +16,8 @@ struct SaidFeet {
 
   Followed follow(double, Foot&) noexcept { return Followed::kLost; }
   Foot nearest() noexcept { return said; }
-  bool enter(const Vector3d& from, Sides, double&) noexcept {
-    asked_from = from;
+  bool enter(const PathStart& from, Sides, double&) noexcept {
+    asked_from = from.point;
     return false;
   }
   void holdNearest() noexcept {}

@@ -156,17 +156,74 @@ std::vector<spline::SurfaceData> folded(double angle) {
   return {flat(left, {-x, y, 0.05}, fold), flat(fold, along, right)};
 }
 
+/// The distance to such plates, negative behind them.
+double overFold(double angle, const Vector3d& p) {
+  const Vector3d normal(std::cos(angle / 2), std::sin(angle / 2), 0), plate(normal.y(), -normal.x(), 0);
+  const Vector3d q(std::abs(p.x()), p.y(), p.z());
+  const double over = q.dot(normal);
+  return q.dot(plate) > 0 ? over : std::copysign(std::hypot(q.x(), q.y()), over);
+}
+
 TEST(Held, AnOpenShellIsEnteredAtItsFolds) {
   for (const double degrees : {90.0, 150.0, 175.0, 200.0, 270.0}) {
     const double angle = degrees * std::numbers::pi / 180;
-    const Vector3d normal(std::cos(angle / 2), std::sin(angle / 2), 0), plate(normal.y(), -normal.x(), 0);
-    const auto height = [=](const Vector3d& p) {
-      const Vector3d q(std::abs(p.x()), p.y(), p.z());
-      const double over = q.dot(normal);
-      return q.dot(plate) > 0 ? over : std::copysign(std::hypot(q.x(), q.y()), over);
-    };
+    const auto height = [=](const Vector3d& p) { return overFold(angle, p); };
     const Model model(folded(angle));
     expectRight({model, height, {0, 0, 0}, {0, 1, 0}}, "a fold of " + std::to_string(degrees) + " degrees");
+  }
+}
+
+/// Other shells of the model change nothing, nor does it matter how the fold lies in space.
+TEST(Held, AnOpenShellAmongOthersIsEnteredAtItsFolds) {
+  const double angle = 150 * std::numbers::pi / 180;
+  const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d::Ones()).matrix();
+  std::vector<spline::SurfaceData> surfaces = folded(angle);
+  for (spline::SurfaceData& surface : surfaces)
+    for (Vector3d& point : surface.points) point = turn * Vector3d(point.x(), point.y(), 4 * point.z());
+  for (int i = 0; i < 200; ++i) {
+    const Vector3d corner(0.3, 0.3 + 0.02 * i, 0.3);
+    surfaces.push_back(flat(corner, corner + Vector3d(0.01, 0, 0), corner + Vector3d(0, 0.01, 0)));
+  }
+  const Model model(surfaces);
+  const auto height = [&](const Vector3d& p) { return overFold(angle, turn.transpose() * p); };
+  expectRight({model, height, {0, 0, 0}, turn.col(1)}, "a fold among other sheets");
+}
+
+/// A sheet of 1 mm pitch, rolled about the z axis with a radius of 10 mm and more.
+spline::SurfaceData rolled(double pitch) {
+  constexpr int kTurn = 180, kCount = 3 * kTurn + 4;
+  spline::SurfaceData data;
+  data.degree = {3, 1};
+  data.knots[0].assign(4, 0);
+  for (int i = 1; i < kCount - 3; ++i) data.knots[0].push_back(i / (kCount - 3.0));
+  data.knots[0].insert(data.knots[0].end(), 4, 1);
+  data.knots[1] = {0, 0, 1, 1};
+  for (int i = 0; i < kCount; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kTurn, radius = 0.01 + pitch * i / kTurn;
+    for (const double z : {-0.02, 0.02})
+      data.points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+  }
+  return data;
+}
+
+/// A probe between two layers goes by less than their distance a tick, along them and from one to the other.
+TEST(Held, ALayerOfARolledSheetIsNotEnteredBesideIt) {
+  constexpr double kPitch = 1e-3;
+  const Model model({rolled(kPitch)});
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (const double step : {1e-4, 3e-4}) {
+    Hand hand{model};
+    hand.options = holding(Sides::kBoth);
+    double angle = 3 * std::numbers::pi, share = 0.5;
+    int entered = 0;
+    for (int i = 0; i < 5000; ++i) {
+      const double radius = 0.01 + kPitch * (angle / (2 * std::numbers::pi) + share);
+      entered += hand.at({radius * std::cos(angle), radius * std::sin(angle), 0}).depth > 0;
+      angle = std::clamp(angle + std::clamp(normal(random), -2.0, 2.0) * step / radius, 4.0, 11.0);
+      share = std::clamp(share + 0.5 * normal(random) * step / kPitch, 0.15, 0.85);
+    }
+    EXPECT_EQ(entered, 0) << step;
   }
 }
 
@@ -206,7 +263,7 @@ TEST(Held, AnOpenShellIsEnteredAtItsApex) {
     expectRight({cone, height, {0, 0, 0}, {0, 1, 0}, method}, "a cone");
 }
 
-/// A path that leads round the end of a sheet enters nothing.
+/// A path that leads round the end of a sheet enters nothing, wherever the probe was before.
 TEST(Held, AnOpenShellIsNotEnteredRoundItsEnd) {
   const Model plate({flat({0, 0, 0}, {0, 0, 0.1}, {0.1, 0, 0})});  // the front is above
   std::mt19937 random(3);
@@ -218,14 +275,14 @@ TEST(Held, AnOpenShellIsNotEnteredRoundItsEnd) {
   for (int i = 0; i < 6000; ++i) {
     const Vector3d home(0.1, 0, i % 2 == 0 ? 0.05 : 0.1);  // an end and a corner
     const double reach = std::pow(10, -5 + i % 3);
-    const Vector3d from = about(home, reach), to = about(home, reach);
+    const Vector3d from = about(home, reach), to = about(i % 4 < 2 ? from : home, reach);
     const Vector3d met = from + (to - from) * from.y() / (from.y() - to.y());
     if (from.y() * to.y() > 0 || std::max(met.x(), met.z()) < 0.1 + 1e-7) continue;
     for (const Method method : {Method::kNewton, Method::kDirect}) {
       Hand hand{plate};
       hand.options = holding(Sides::kBoth);
       hand.options.method = method;
-      hand.at(from);
+      for (int tick = 0; tick < 8; ++tick) hand.at(from);
       EXPECT_LE(hand.at(to).depth, 0) << from.transpose() << " to " << to.transpose();
     }
     ++around;
