@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "description/scene.hpp"
@@ -43,6 +44,9 @@ struct Walk {
   std::vector<WalkedModel> models;
   std::vector<WalkedArm> arms;
   std::vector<servo::Limiter> limiters;  ///< limiter of each arm at the end of the walk
+  /// What `run` would report about the plugin of each model: why it was silenced, or what is odd in its forces.
+  std::vector<std::vector<std::string>> judged;
+  std::vector<bool> silenced;            ///< for each model: true if it was silenced
 };
 
 /// [main] Runs at most 10 s and 10,000 ticks. Returns nothing if an arm is not simulated or cannot be started. Also

@@ -189,6 +189,20 @@ void reportCut(const scene::Scene& scene, const scene::Device& device, const Han
 
 void checkWalkOfArm(const scene::Scene& scene, uint32_t index, const Walk& walk, const servo::World& world,
                     const std::vector<bool>& strays, bool all_models, document::Problems& warnings) {
+/// Returns true if a run would report something odd about the plugin of a model. Its contacts say nothing about the
+/// scene then.
+bool isOdd(const Walk& walk, size_t model) {
+  return walk.silenced[model] || !walk.judged[model].empty();
+}
+
+/// Gives the warnings with which a run would end. The plugin is to blame, so they stand at the key that names it.
+void reportPlugin(const scene::Scene& scene, size_t index, const Walk& walk, document::Problems& warnings) {
+  const scene::Model& model = scene.models[index];
+  const std::string key = fmt::format("models[{}].plugin", index);
+  for (const std::string& text : walk.judged[index])
+    document::report(warnings, placeOfKey(model.place.file, key).value_or(model.place), key, text);
+}
+
   constexpr double kOften = 0.05;  // share of the ticks with a force
   const auto strayed = [&strays](size_t model) { return model < strays.size() && strays[model]; };
   const WalkedArm& seen = walk.arms[index];
@@ -196,11 +210,12 @@ void checkWalkOfArm(const scene::Scene& scene, uint32_t index, const Walk& walk,
   if (!hand || !hand->moves()) return;
   if (reportLimiterFault(scene.devices[index], walk.limiters[index], warnings)) return;
   if (!seen.touched) {
-    if (all_models && walk.whole && std::isfinite(seen.away) && !strayed(seen.nearest))
+    const bool silent = std::find(walk.silenced.begin(), walk.silenced.end(), true) != walk.silenced.end();
+    if (all_models && !silent && walk.whole && std::isfinite(seen.away) && !strayed(seen.nearest))
       reportAway(scene, index, *hand, seen, world, warnings);
     return;
   }
-  if (strayed(seen.deepest)) return;
+  if (strayed(seen.deepest) || isOdd(walk, seen.deepest)) return;
   const auto ticks = [](uint64_t count) { return static_cast<double>(count); };
   if (ticks(seen.cut) * walk.period > kContactSeconds && ticks(seen.cut) > kOften * ticks(seen.contact))
     reportCut(scene, scene.devices[index], *hand, seen, walk.limiters[index], warnings);
@@ -210,7 +225,8 @@ void checkWalkOfModel(const scene::Scene& scene, size_t index, const Walk& walk,
                       document::Problems& warnings) {
   constexpr double kUnfelt = 0.03;  // [N] less than the friction of an arm
   const WalkedModel& seen = walk.models[index];
-  if (static_cast<double>(seen.touched) * walk.period < kContactSeconds) return;
+  reportPlugin(scene, index, walk, warnings);
+  if (walk.silenced[index] || static_cast<double>(seen.touched) * walk.period < kContactSeconds) return;
   if (reportNoClick(scene.models[index], index, *world.shapes()[index], seen, walk.whole, warnings)) return;
   if (walk.whole && seen.force > 0 && seen.force < kUnfelt) reportUnfelt(scene.models[index], index, seen, warnings);
 }
