@@ -121,6 +121,7 @@ class WalkLog final : public servo::TickLog {
       arm.touched = arm.touched || force > 0 || (contact.traced && contact.world.depth_m > 0);
       if (!contact.traced || !(contact.world.depth_m > 0)) continue;
       inside = true;
+      arm.began_inside = arm.began_inside || ticks_ == 0;
       seen.depth = std::max(seen.depth, contact.world.depth_m);
       if (contact.world.depth_m > arm.depth) arm.depth = contact.world.depth_m, arm.deepest = index;
     }
@@ -147,8 +148,8 @@ class WalkLog final : public servo::TickLog {
     seen.cut += cut;
   }
 
-  double once_, begun_;
   servo::Telemetry telemetry_;
+  double once_, begun_;
   std::vector<std::optional<Eigen::AlignedBox3d>> boxes_;
   std::vector<Vector3d> began_at_;
   std::vector<servo::Clips> clips_;

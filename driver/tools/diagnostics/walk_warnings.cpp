@@ -12,6 +12,7 @@
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/hand_walk.hpp"
 #include "diagnostics/key_place.hpp"
+#include "diagnostics/radius_advice.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -26,18 +27,20 @@ const scene::Value* softSpring(const scene::Device& device) {
   return spring != nullptr && spring->number < kSoft ? spring : nullptr;
 }
 
-/// Returns the advice for a hand that aims at no model: a larger radius, if the model lies in the direction of the
-/// normal; another normal if the hand moves along it, but not to the model.
-std::string adviceOf(const scene::Device& device, const HandScript& hand, const scene::Model& nearest, double away) {
-  constexpr double kWide = 0.2, kTowards = 0.9;  // [m] few arms let a hand move farther from its centre; cosine
-  const double wider = hand.radius + away;
-  if (away <= 0 || wider >= kWide) return "";
+/// Returns the advice for a hand that aims at no model: a larger radius, if the hand meets a model with it; another
+/// normal if the hand moves along it, but not to the model.
+std::string adviceOf(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen) {
+  constexpr double kTowards = 0.9;  // cosine
+  const scene::Device& device = scene.devices[index];
+  const scene::Model& nearest = scene.models[seen.nearest];
+  if (seen.away <= 0) return "";
+  if (const auto radius = radiusOfFarHand(scene, index, hand, seen.away, false))
+    return fmt::format(", or give a hand.radius of {:.4g} m", *radius);
   const bool turns = hand.kind == HandScript::Kind::kStroke || hand.kind == HandScript::Kind::kCircle;
   const Eigen::Vector3d normal = device.mount.orientation * hand.normal.normalized();
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
   const Eigen::Vector3d way = nearest.pose.position - (center + hand.radius * normal);
-  if (turns || way.dot(normal) > kTowards * way.norm())
-    return fmt::format(", or give a hand.radius above {:.3g} m", wider);
+  if (turns || way.dot(normal) > kTowards * way.norm()) return "";
   return fmt::format(
       ", or turn hand.normal: the hand moves along it only, which is [{:.3g}, {:.3g}, {:.3g}] in the "
       "world, so another hand.radius does not lead there",
@@ -69,23 +72,22 @@ void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& han
             fmt::format("a stiffer hand: with {:g} N/m its spring pulls with {:.2g} N where it is 10 mm off its way; "
                         "500 N/m is a firm grip",
                         spring->number, 0.01 * spring->number));
-  if (circlesModel(device, hand, nearest, *world.shapes()[seen.nearest])) {
-    const HandKey key = keyOfHand(scene, device, {"hand.radius", "hand.rise", "hand.script"});
-    return document::report(
-        warnings, key.place, key.id,
-        what + (seen.away > 0
-                    ? fmt::format("a hand.radius that is smaller by more than this distance (it is {:.4g} m now; it is "
-                                  "a radius, not a diameter)",
-                                  hand.radius)
-                    : fmt::format("a hand.radius with which it meets the surface (it is {:.4g} m now)", hand.radius)));
-  }
+  if (circlesModel(device, hand, nearest, *world.shapes()[seen.nearest]))
+    if (const auto radius = radiusOfFarHand(scene, index, hand, seen.away, true)) {
+      const HandKey key = keyOfHand(scene, device, {"hand.radius", "hand.rise", "hand.script"});
+      return document::report(
+          warnings, key.place, key.id,
+          what + fmt::format("a hand.radius of {:.4g} m, with which it touches a model (it is {:.4g} m "
+                             "now{})",
+                             *radius, hand.radius, seen.away > 0 ? "; it is a radius, not a diameter" : ""));
+    }
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
   const std::string at = fmt::format(
       "a hand that moves near a model: its centre (hand.center) is at [{:.3g}, {:.3g}, {:.3g}] in "
       "the world, it moves {:.3g} m from there (hand.radius), and {} is at [{:.3g}, {:.3g}, {:.3g}]; move the arm "
       "(mount.position), hand.center or the model (pose.position){}",
       center.x(), center.y(), center.z(), hand.radius, nearest.name, nearest.pose.position.x(),
-      nearest.pose.position.y(), nearest.pose.position.z(), adviceOf(device, hand, nearest, seen.away));
+      nearest.pose.position.y(), nearest.pose.position.z(), adviceOf(scene, index, hand, seen));
   const std::string in_list = fmt::format("devices[{}].mount.position", index);
   for (const std::string& id : {std::string("device.mount.position"), in_list})
     if (const auto place = placeOfKey(scene.file, id)) return document::report(warnings, *place, id, what + at);
@@ -187,8 +189,6 @@ void reportCut(const scene::Scene& scene, const scene::Device& device, const Han
           100 * static_cast<double>(seen.cut) / static_cast<double>(seen.contact)));
 }
 
-void checkWalkOfArm(const scene::Scene& scene, uint32_t index, const Walk& walk, const servo::World& world,
-                    const std::vector<bool>& strays, bool all_models, document::Problems& warnings) {
 /// Returns true if a run would report something odd about the plugin of a model. Its contacts say nothing about the
 /// scene then.
 bool isOdd(const Walk& walk, size_t model) {
@@ -203,6 +203,8 @@ void reportPlugin(const scene::Scene& scene, size_t index, const Walk& walk, doc
     document::report(warnings, placeOfKey(model.place.file, key).value_or(model.place), key, text);
 }
 
+void checkWalkOfArm(const scene::Scene& scene, uint32_t index, const Walk& walk, const servo::World& world,
+                    const std::vector<bool>& strays, bool all_models, document::Problems& warnings) {
   constexpr double kOften = 0.05;  // share of the ticks with a force
   const auto strayed = [&strays](size_t model) { return model < strays.size() && strays[model]; };
   const WalkedArm& seen = walk.arms[index];
