@@ -32,7 +32,8 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
         while not silenced and time.monotonic() < deadline and run.poll() is None:
             code, out, err = ask("status")
             silenced = json.loads(out)["silenced"] if code == 0 else []
-        check("status names the model and the reason", [s["model"] for s in silenced] == ["bad"] and "not finite" in silenced[0]["why"], silenced)
+        check("status names the model and the reason", [s["model"] for s in silenced] == ["bad"] and "not finite" in silenced[0]["why"]
+              and "find the step with: hapticd plugin check" in silenced[0]["why"], silenced)
         code, out, err = ask("list")
         by_name = {m["name"]: m["silenced"] for m in json.loads(out)["models"]} if code == 0 else {}
         check("list does", by_name.get("good", 1) is None and "not finite" in (by_name.get("bad") or ""), (by_name, err))
