@@ -17,7 +17,7 @@ namespace {
 
 /// Returns a warning about a size or a place that is surely a mistake, or "".
 std::string oddPlace(const Eigen::AlignedBox3d& box, const hsp_pose& pose) {
-  constexpr double kHuge = 10, kTiny = 1e-3, kFar = 2;  // [m] sizes and distances beyond these are unusual
+  constexpr double kHuge = 5, kTiny = 1e-3, kFar = 2;  // [m] sizes and distances beyond these are unusual
   const double size = box.diagonal().norm();
   char text[160];
   if (size > kHuge || size < kTiny) {
