@@ -48,6 +48,11 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
         told = [json.loads(lines.stdout.readline()) for _ in range(3)]
         lines.terminate()
         lines.wait()
+        frames = subprocess.Popen([HAPTICD, "top", "--name", "hush"], env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True)
+        first = frames.stdout.readline()
+        frames.terminate()
+        frames.communicate()
+        check("the first view of top tells the rate so far", "Hz asked, " in first and ", 0 held" not in first, first)
         check("top --json is a stream of lines", told[0]["ticks"] <= told[1]["ticks"] <= told[2]["ticks"] and "held_hz" in told[2], told)
     finally:
         run.terminate()
