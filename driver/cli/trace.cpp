@@ -151,7 +151,8 @@ void addTrace(const Command& app, int& exit_code) {
   command.addOption("scene", options->scene, "scene file (YAML)").required();
   command
       .addOption("--probe", options->probe,
-                 "probe path (CSV) with t,x,y,z[,qw,qx,qy,qz] in s and m, world frame; one row per tick")
+                 "probe path (CSV) with t,x,y,z[,qw,qx,qy,qz] in s and m, world frame; one row per tick; the line with "
+                 "these names may be left out")
       .required();
   command.addOption("--out", options->out, "CSV file to write, one row per tick and model; - for standard output")
       .required();
