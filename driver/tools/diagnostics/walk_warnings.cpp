@@ -47,6 +47,44 @@ std::string adviceOf(const scene::Scene& scene, uint32_t index, const HandScript
       normal.x(), normal.y(), normal.z());
 }
 
+/// Warns at the key of the hand that leads away from the models: its path, its spring or its radius. @param what
+/// beginning of the message @return false if none of them does
+bool reportAstray(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen,
+                  const servo::World& world, const std::string& what, document::Problems& warnings) {
+  const scene::Device& device = scene.devices[index];
+  const scene::Model& nearest = scene.models[seen.nearest];
+  if (hand.kind == HandScript::Kind::kPath) {
+    const HandKey key = keyOfHand(scene, device, {"hand.path"});
+    const Eigen::Vector3d mount = device.mount.position, pose = nearest.pose.position;
+    document::report(
+        warnings, key.place, key.id,
+        what + fmt::format("a path through a model, in m of the device frame; mount.position of {} is [{:.3g}, {:.3g}, "
+                           "{:.3g}], and pose.position of {} is [{:.3g}, {:.3g}, {:.3g}]: is one of them wrong?",
+                           device.name, mount.x(), mount.y(), mount.z(), nearest.name, pose.x(), pose.y(), pose.z()));
+    return true;
+  }
+  if (const scene::Value* spring = softSpring(device)) {
+    document::report(
+        warnings, spring->place, "hand.stiffness",
+        what +
+            fmt::format("a stiffer hand: with {:g} N/m its spring pulls with {:.2g} N where it is 10 mm off its way; "
+                        "500 N/m is a firm grip",
+                        spring->number, 0.01 * spring->number));
+    return true;
+  }
+  if (circlesModel(device, hand, nearest, *world.shapes()[seen.nearest]))
+    if (const auto radius = radiusOfFarHand(scene, index, hand, seen.away, true)) {
+      const HandKey key = keyOfHand(scene, device, {"hand.radius", "hand.rise", "hand.script"});
+      document::report(
+          warnings, key.place, key.id,
+          what + fmt::format("a hand.radius of {:.4g} m, with which it touches a model (it is {:.4g} m "
+                             "now{})",
+                             *radius, hand.radius, seen.away > 0 ? "; it is a radius, not a diameter" : ""));
+      return true;
+    }
+  return false;
+}
+
 void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen,
                 const servo::World& world, document::Problems& warnings) {
   const scene::Device& device = scene.devices[index];
@@ -56,31 +94,7 @@ void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& han
                                               seen.away * 1e3, nearest.name)
                                 : fmt::format("moves where {} is, but touches no surface", nearest.name);
   const std::string what = fmt::format("the hand of {} {}: it feels nothing; expected ", device.name, where);
-  if (hand.kind == HandScript::Kind::kPath) {
-    const HandKey key = keyOfHand(scene, device, {"hand.path"});
-    const Eigen::Vector3d mount = device.mount.position, pose = nearest.pose.position;
-    return document::report(
-        warnings, key.place, key.id,
-        what + fmt::format("a path through a model, in m of the device frame; mount.position of {} is [{:.3g}, {:.3g}, "
-                           "{:.3g}], and pose.position of {} is [{:.3g}, {:.3g}, {:.3g}]: is one of them wrong?",
-                           device.name, mount.x(), mount.y(), mount.z(), nearest.name, pose.x(), pose.y(), pose.z()));
-  }
-  if (const scene::Value* spring = softSpring(device))
-    return document::report(
-        warnings, spring->place, "hand.stiffness",
-        what +
-            fmt::format("a stiffer hand: with {:g} N/m its spring pulls with {:.2g} N where it is 10 mm off its way; "
-                        "500 N/m is a firm grip",
-                        spring->number, 0.01 * spring->number));
-  if (circlesModel(device, hand, nearest, *world.shapes()[seen.nearest]))
-    if (const auto radius = radiusOfFarHand(scene, index, hand, seen.away, true)) {
-      const HandKey key = keyOfHand(scene, device, {"hand.radius", "hand.rise", "hand.script"});
-      return document::report(
-          warnings, key.place, key.id,
-          what + fmt::format("a hand.radius of {:.4g} m, with which it touches a model (it is {:.4g} m "
-                             "now{})",
-                             *radius, hand.radius, seen.away > 0 ? "; it is a radius, not a diameter" : ""));
-    }
+  if (reportAstray(scene, index, hand, seen, world, what, warnings)) return;
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
   const std::string at = fmt::format(
       "a hand that moves near a model: its centre (hand.center) is at [{:.3g}, {:.3g}, {:.3g}] in "

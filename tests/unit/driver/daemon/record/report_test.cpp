@@ -363,16 +363,6 @@ TEST_F(Report, DoubtsADepthThatNoArmReaches) {
       << summary(report);
 }
 
-TEST_F(Report, BlamesTheUnitOfAModelThatIsAsLargeAsTheDepth) {
-  RunReport report = sample();
-  report.models[0].contact.add(true, 30, 1.5, 1e-3, 0);
-  report.models[0].size_m = 75;
-  const std::string text = summary(report);
-  EXPECT_NE(text.find("ball is 75 m large, and the hand was 30 m deep in it"), std::string::npos) << text;
-  EXPECT_NE(text.find("(75 mm is 0.075 m); check the unit of its geometry"), std::string::npos) << text;
-  EXPECT_EQ(text.find("plugin check"), std::string::npos) << text;
-}
-
 TEST_F(Report, MarksWhatHappenedAndWhoseItIs) {
   std::vector<Sample> samples(1000);
   for (size_t i = 0; i < samples.size(); ++i) {
