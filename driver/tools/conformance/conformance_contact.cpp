@@ -35,9 +35,8 @@ Verdict thinnest(const Subject& subject, const Touch& touch) {
 /// Warns of a surface that is so far away from the origin of its own frame that a hand at the model does not reach it.
 Verdict farAway(const Touch& touch) {
   constexpr double kFar = 1;  // [m] farther than the arms reach
-  const auto place = std::min_element(touch.places.begin(), touch.places.end(), [](const Place& a, const Place& b) {
-    return a.foot.norm() < b.foot.norm();
-  });
+  const auto place = std::min_element(touch.places.begin(), touch.places.end(),
+                                      [](const Place& a, const Place& b) { return a.foot.norm() < b.foot.norm(); });
   const double away = place->foot.norm();
   if (away <= kFar) return "";
   return warned(placed("the nearest surface is " + roughly(away) +
