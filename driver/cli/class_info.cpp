@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "cli/command.hpp"
 #include "document/reader.hpp"
 #include "document/suggestion.hpp"
 #include "hapticd/shape.h"
@@ -15,6 +16,11 @@ namespace hapticd::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// Returns true for a parameter of several rows, whose counts are those of all their numbers together.
+bool isOfRows(const host::ParamInfo& p) {
+  return p.columns > 1 && p.max_count > p.columns;
+}
 
 std::string typeText(const host::ParamInfo& p) {
   switch (p.kind) {
@@ -33,17 +39,19 @@ std::string typeText(const host::ParamInfo& p) {
     case HSP_DATA:
       return "any structure";
     case HSP_ARRAY:
-      if (p.columns > 1 && p.max_count > p.columns) return "list of rows of " + std::to_string(p.columns);
-      return "list of numbers";
+      return isOfRows(p) ? "list of rows of " + std::to_string(p.columns) : "list of numbers";
     default:
       return "";
   }
 }
 
 std::string countText(const host::ParamInfo& p) {
-  if (p.min_count == p.max_count) return std::to_string(p.min_count) + " numbers";
-  if (p.max_count == UINT32_MAX) return std::to_string(p.min_count) + " numbers or more";
-  return std::to_string(p.min_count) + " to " + std::to_string(p.max_count) + " numbers";
+  const uint32_t each = isOfRows(p) ? p.columns : 1, least = (p.min_count + each - 1) / each, most = p.max_count / each;
+  const std::string noun = isOfRows(p) ? " rows" : " numbers",
+                    of = isOfRows(p) ? " of " + std::to_string(p.columns) + " numbers each" : "";
+  if (least == most) return std::to_string(least) + noun + of;
+  if (p.max_count == UINT32_MAX) return std::to_string(least) + noun + " or more" + of;
+  return std::to_string(least) + " to " + std::to_string(most) + noun + of;
 }
 
 std::string defaultText(const host::ParamInfo& p) {
@@ -78,9 +86,8 @@ std::string valueText(const host::ParamInfo& p, const scene::Value& value) {
 }
 
 void printParam(const host::ParamInfo& p, const scene::Value* value) {
-  std::string facts = typeText(p);
+  std::string facts = p.kind == HSP_ARRAY ? "list of " + countText(p) : typeText(p);
   const bool ranged = p.kind == HSP_REAL || p.kind == HSP_INT || p.kind == HSP_ARRAY;
-  if (p.kind == HSP_ARRAY) facts += ", " + countText(p);
   if (ranged) facts += ", " + document::expectedOf({p.min, p.max, p.unit.c_str()});
   const bool is_required = (p.flags & HSP_P_REQUIRED) != 0;
   const std::string def = defaultText(p);
@@ -106,6 +113,13 @@ Json paramJson(const host::ParamInfo& p) {
   return json;
 }
 
+/// Returns the file that is used for the name of a class in its place; "" if the class itself is used. The catalogue
+/// decides, because NAME.so comes before a file of another name in an earlier folder.
+std::string hidingFile(const host::ClassInfo& info) {
+  const auto used = info.kind == host::Kind::kShape ? catalog().shape(info.name) : catalog().device(info.name);
+  return !used || (*used)->file == info.file ? "" : (*used)->file.string();
+}
+
 }  // namespace
 
 nlohmann::ordered_json classJson(const host::ClassInfo& info) {
@@ -124,14 +138,13 @@ nlohmann::ordered_json classJson(const host::ClassInfo& info) {
 
 nlohmann::ordered_json classesJson(const std::vector<const host::CatalogFile*>& files, host::Kind kind) {
   auto plugins = Json::array(), unusable = Json::array();
-  std::map<std::string, std::string> first;
   for (const host::CatalogFile* file : files) {
     if (!file->error.empty()) unusable.push_back(file->error);
     for (const host::ClassInfo& info : file->classes) {
       if (info.kind != kind) continue;
-      const auto [winner, is_first] = first.emplace(info.name, file->path.string());
+      const std::string winner = hidingFile(info);
       plugins.push_back(classJson(info));
-      plugins.back()["hidden_by"] = is_first ? Json() : Json(winner->second);
+      plugins.back()["hidden_by"] = winner.empty() ? Json() : Json(winner);
     }
   }
   return {{"plugins", plugins}, {"unusable", unusable}};
@@ -139,12 +152,11 @@ nlohmann::ordered_json classesJson(const std::vector<const host::CatalogFile*>& 
 
 void printClasses(const std::vector<const host::CatalogFile*>& files, host::Kind kind, bool details,
                   const std::map<std::string, std::string>& notes) {
-  std::map<std::string, std::string> first;  // maps each name to the file that is used for it
   for (const host::CatalogFile* file : files) {
     for (const host::ClassInfo& info : file->classes) {
       if (info.kind != kind) continue;
-      const auto [winner, is_first] = first.emplace(info.name, file->path.string());
-      const std::string note = is_first ? "" : " (hidden by " + winner->second + ")";
+      const std::string winner = hidingFile(info);
+      const std::string note = winner.empty() ? "" : " (hidden by " + winner + ")";
       std::printf("%-18s %-8s %s%s\n", info.name.c_str(), info.version.c_str(), info.doc.c_str(), note.c_str());
       if (const auto more = notes.find(info.name); more != notes.end())
         std::printf("%-18s %-8s %s\n", "", "", more->second.c_str());

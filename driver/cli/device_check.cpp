@@ -85,16 +85,21 @@ const char* wayOn(const Outcome& last) {
 
 int sum(const std::vector<Outcome>& outcomes, const ExamineArguments& options, const std::string& module,
         nlohmann::ordered_json& all) {
-  int failed = 0;
+  int failed = 0, skipped = 0;
   for (const Outcome& one : outcomes) {
+    skipped += one.found.verdict == Passed::kSkipped ? 1 : 0;
     failed += one.found.verdict == Passed::kFailed ? 1 : 0;
     const char* result = one.found.verdict == Passed::kFailed ? "fail" : wordFor(one.found.verdict);
     all["tests"].push_back({{"module", module}, {"name", one.name}, {"result", result}, {"what", one.found.what}});
   }
-  const size_t left = device_check::tests().size() - outcomes.size();
-  if (!options.json)
-    std::printf("%zu tests, %d failed%s\n", outcomes.size(), failed,
-                left > 0 ? (", " + std::to_string(left) + " not run: " + wayOn(outcomes.back())).c_str() : "");
+  const size_t run = outcomes.size() - static_cast<size_t>(skipped), all_tests = device_check::tests().size();
+  const bool ended = outcomes.size() < all_tests;
+  std::string rest;
+  if (ended)
+    rest = ", " + std::to_string(all_tests - run) + " not run: " + wayOn(outcomes.back());
+  else if (skipped > 0)
+    rest = ", " + std::to_string(skipped) + " skipped";
+  if (!options.json) std::printf("%zu test%s, %d failed%s\n", run, run == 1 ? "" : "s", failed, rest.c_str());
   return failed;
 }
 

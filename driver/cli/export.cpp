@@ -68,7 +68,7 @@ int toCsv(const record::Recording& recording, const ExportArguments& options) {
   if (one && recording.stream(options.stream) == nullptr)
     return fail(kBadInput, "--stream " + options.stream + ": the recording has no such stream, expected one of " +
                                document::listed(namesOf(recording), 10) +
-                               document::suggestion(options.stream, namesOf(recording)));
+                               document::suggestionOfName(options.stream, namesOf(recording)));
   std::vector<std::pair<const record::RecordedStream*, std::string>> tables;
   for (const record::RecordedStream& stream : recording.streams())
     if (!one || stream.name() == options.stream)

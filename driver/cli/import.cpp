@@ -108,7 +108,7 @@ int writeModel(const BezierModel& model, const std::string& out) {
                 model.patches.size() == 1 ? "" : "s", size.x(), size.y(), size.z(),
                 model.reversed ? ", outward reversed" : "");
   }
-  warnOfSize(out, size.maxCoeff());
+  warnOfSize(out, size.norm());
   return kWorked;
 }
 
@@ -121,7 +121,7 @@ int importPatches(const ImportArguments& options, const Placement& placement) {
   if (!model && std::filesystem::path(options.file).extension() != ".bpt")
     return fail(kBadInput, options.file +
                                ": its name does not say what it holds, and it holds no Bezier patches; expected "
-                               "the ending .bpt, .stl, .obj, .ply, .step, .stp, .iges, .igs, .brep or .brp");
+                               "the ending .bpt, .stl, .obj, .ply, .step, .stp, .iges, .igs, .brep, .brp or .rle");
   if (!model) return fail(kBadInput, model.error());
   placeModel(*model, placement);
   if (options.outward != "auto") model->reversed = options.outward == "reversed";
@@ -219,10 +219,10 @@ void addImport(const Command& app, int& exit_code) {
       "Convert CAD files and triangle meshes into parts, Bezier patches (.bpt) into a model file, or a closed surface "
       "into a soft body.");
   command
-      .addOption(
-          "file", options->file,
-          "Bezier patches (.bpt), triangles (.obj, .stl, .ply) or CAD (.step, .stp, .iges, .igs, .brep, .brp). With "
-          "--medial: .obj, .stl, .ply, or a model file with surfaces")
+      .addOption("file", options->file,
+                 "Bezier patches (.bpt), triangles (.obj, .stl, .ply) or CAD (.step, .stp, .iges, .igs, .brep, .brp, "
+                 ".rle). With "
+                 "--medial: .obj, .stl, .ply, or a model file with surfaces")
       .required();
   command.addOption(
       "-o,--out,out", options->out,

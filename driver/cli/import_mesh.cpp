@@ -14,7 +14,8 @@ namespace hapticd::cli {
 namespace {
 
 constexpr std::size_t kMaxMeshBytes = std::size_t{4} << 30;
-constexpr double kTooLarge = 10;    ///< [m] a part larger than this was probably given in millimetres
+// The limits and the measure, the diagonal of the box, are those of the warnings of `check`.
+constexpr double kTooLarge = 5;     ///< [m] a model larger than this was probably given in millimetres
 constexpr double kTooSmall = 1e-3;  ///< [m] a smaller part was probably scaled twice: no fingertip feels its form
 
 std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
@@ -56,20 +57,23 @@ void print(const importing::MeshReport& r, const std::string& out) {
               r.triangles == 1 ? "" : "s", r.points, r.size.x(), r.size.y(), r.size.z(),
               r.closed ? "closed" : "open: a shell that is felt from both sides unless the scene says sides: front");
   for (const std::string& line : importing::linesOf(r)) std::printf("  %s\n", line.c_str());
-  warnOfSize(out, r.size.maxCoeff());
+  warnOfSize(out, r.size.norm());
 }
 
 }  // namespace
 
-void warnOfSize(const std::string& out, double extent) {
-  if (extent > kTooLarge)
-    std::fprintf(stderr, "warning: %s: %.4g m large; if the imported file counts millimetres, add --scale 0.001\n",
-                 out.c_str(), extent);
-  else if (extent < kTooSmall)
+void warnOfSize(const std::string& out, double size) {
+  if (size > kTooLarge)
+    std::fprintf(
+        stderr,
+        "warning: %s: %.3g m large from corner to corner; if the imported file counts millimetres, add --scale 0.001\n",
+        out.c_str(), size);
+  else if (size < kTooSmall)
     std::fprintf(stderr,
-                 "warning: %s: %.3g mm large, too small to be felt; is --scale (metres per unit of the imported file) "
+                 "warning: %s: %.3g mm large from corner to corner, too small to be felt; is --scale (metres per unit "
+                 "of the imported file) "
                  "right?\n",
-                 out.c_str(), extent * 1e3);
+                 out.c_str(), size * 1e3);
 }
 
 int failLines(int exit_code, const std::string& lines) {

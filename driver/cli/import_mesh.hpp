@@ -17,8 +17,8 @@ struct MeshImport {
 /// [main] Prints each line of an error as an error of its own. @return the given exit code
 int failLines(int exit_code, const std::string& lines);
 
-/// [main] Warns if what was imported is larger or smaller than a hand can feel. @param extent [m] largest extent
-void warnOfSize(const std::string& out, double extent);
+/// [main] Warns if what was imported is larger or smaller than a hand can feel. @param size [m] diagonal of its box
+void warnOfSize(const std::string& out, double size);
 
 /// [main] Converts the mesh and prints the report or the error. @return the exit code
 int importMesh(const MeshImport& options);

@@ -28,7 +28,8 @@ std::string unknownCommand(const hapticd::cli::Command& app, int argc, char** ar
   for (const auto& command : app.subcommands())
     if (command.name() == argv[at]) return unknownCommand(command, argc, argv, at + 1);
   return std::string("there is no subcommand \"") + (at > 1 ? std::string(argv[at - 1]) + " " : "") + argv[at] +
-         "\", expected one of " + hapticd::document::listed(names, 30) + hapticd::document::suggestion(argv[at], names);
+         "\", expected one of " + hapticd::document::listed(names, 30) +
+         hapticd::document::suggestionOfName(argv[at], names);
 }
 
 /// Returns a message about the first option that no command of this line has; "" if there is none. The parser itself
@@ -55,7 +56,7 @@ std::string unknownOption(const hapticd::cli::Command& app, int argc, char** arg
     const std::string name = word.substr(0, word.find('='));
     if (word.rfind("--", 0) != 0 || word == "--" || std::find(names.begin(), names.end(), name) != names.end())
       continue;
-    return "there is no option " + name + hapticd::document::suggestion(name, names) +
+    return "there is no option " + name + hapticd::document::suggestionOfName(name, names) +
            (name == "--unit" ? "; --scale is metres per unit of the file: 0.001 for millimetres" : "") + "; see " +
            words + " --help";
   }

@@ -190,6 +190,12 @@ int printFeature(const std::string& file, const Part& part, std::uint32_t featur
 }
 
 int partInfo(const std::string& file, bool json, std::optional<std::uint32_t> feature) {
+  if (file.ends_with(".yaml") || file.ends_with(".yml"))
+    return fail(kBadInput,
+                file +
+                    ": a YAML file, expected a part (.hpart); a model file needs no import: a scene names it "
+                    "(geometry: " +
+                    file + "), and hapticd check SCENE checks both");
   const auto bytes = readRegular(file, kMaxPartBytes);
   if (!bytes) return fail(kBadInput, file + ": " + bytes.error());
   try {

@@ -87,12 +87,12 @@ Result<void> change(scene::Scene& scene, const std::string& text) {
       std::find_if(scene.models.begin(), scene.models.end(), [&](const auto& m) { return m.name == name; });
   if (model == scene.models.end())
     return Error{"--set " + text + ": the recording has no model \"" + name + "\", expected one of " +
-                 document::listed(modelNames(scene)) + document::suggestion(name, modelNames(scene))};
+                 document::listed(modelNames(scene)) + document::suggestionOfName(name, modelNames(scene))};
   auto found = catalog().shape(model->plugin);
   const int index = found ? (*found)->indexOf(id) : -1;
   if (index < 0)
     return Error{"--set " + text + ": plugin " + model->plugin + " has no parameter \"" + id + "\"" +
-                 (found ? document::suggestion(id, (*found)->paramIds()) : "")};
+                 (found ? document::suggestionOfName(id, (*found)->paramIds()) : "")};
   const host::ParamInfo& param = (*found)->params[static_cast<size_t>(index)];
   const bool is_number = param.kind >= HSP_REAL && param.kind <= HSP_ENUM;
   if (!is_number) return Error{"--set " + text + ": \"" + id + "\" has no number that could be changed"};

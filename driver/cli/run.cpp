@@ -243,7 +243,8 @@ std::string ownProcessor(const std::string& text) {
   const std::string range = last > 0 ? "0 to " + std::to_string(last) : "0";
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
-  if (end == text.c_str() || *end != '\0') return "\"" + text + "\" is not a number, expected " + range;
+  if (end == text.c_str() || *end != '\0' || number != std::floor(number))
+    return "\"" + text + "\" is not a whole number, expected " + range;
   if (number >= 0 && number <= last) return "";
   return "this machine has no processor " + text + ", expected " + range;
 }
@@ -265,9 +266,8 @@ void addTiming(const Command& command, RunArguments& options) {
                   "run as fast as the processor allows, on simulated devices; the same input gives the same bits");
   command.addOption("--rate", options.rate, "servo rate [Hz] instead of the scene's")
       .within(10.0, 20000.0);  // the range of servo.rate
-  command.addOption("--cpu", options.cpu, "processor to pin the servo thread to")
-      .check(ownProcessor)
-      .wholeWithin(0, 1023);
+  command.addOption("--cpu", options.cpu, "processor to pin the servo thread to: 0 to one less than nproc prints")
+      .check(ownProcessor);
   command
       .addOption("--priority", options.priority,
                  "SCHED_FIFO priority of the servo thread; default: the daemon file's, or 80")

@@ -97,6 +97,7 @@ record::RunReport reportOf(const RunOutcome& outcome, servo::Runner& runner, std
     for (const servo::ModelState& state : runner.world().core().models())
       if (state.shape != nullptr && state.shape->name() == model.name) {
         model.moves = state.moves;
+        model.size_m = state.shape->report().size_m;
         model.degraded_ticks = state.degraded_ticks;
         model.coarsest = state.coarsest;
         model.residual_m = state.degraded_residual;

@@ -272,19 +272,24 @@ int endOfDaemon(const TopArguments& options) {
               "the daemon " + options.name + " was killed, or it crashed\n  fix: start it again with hapticd run");
 }
 
+/// Returns the ticks per second between two views.
+double heldSince(const status::TickStatus& before, const status::TickStatus& now) {
+  const double passed = now.t - before.t;
+  return passed > 0 ? static_cast<double>(now.tick - before.tick) / passed : 0;
+}
+
 int watch(const TopArguments& options, const status::Page& page) {
   const RawKeys keys;
   std::string sort = options.sort;
   constexpr size_t kRows = 30;
-  status::TickStatus before = page.now.read().value_or(status::TickStatus{});
+  status::TickStatus before{};  // so the first view shows the mean since the start of the run
   for (char key = 0; key != 'q'; key = keys.wait(options.every)) {
     if (key == 'n') sort = "name";
     if (key == 'f') sort = "force";
     if (key == 'd') sort = "depth";
     if (key == 's') sort = "step";
     View view = readPage(page);
-    const double passed = view.now.t - before.t;
-    view.held = passed > 0 ? static_cast<double>(view.now.tick - before.tick) / passed : 0;
+    view.held = heldSince(before, view.now);
     before = view.now;
     sortModels(view.models, sort);
     std::printf("\033[H\033[J%s\nsort: s step, f force, d depth, n name (now %s); q ends\n", table(view, kRows).c_str(),
@@ -304,8 +309,7 @@ int stream(const TopArguments& options, const status::Page& page) {
   status::TickStatus before{};
   while (!ended(page)) {
     View view = readPage(page);
-    const double passed = view.now.t - before.t;
-    view.held = passed > 0 ? static_cast<double>(view.now.tick - before.tick) / passed : 0;
+    view.held = heldSince(before, view.now);
     before = view.now;
     sortModels(view.models, options.sort);
     if (std::printf("%s\n", toJson(view).dump().c_str()) < 0 || std::fflush(stdout) != 0) return kWorked;

@@ -43,7 +43,7 @@ Result<std::vector<uint32_t>> chosenModels(const scene::Scene& scene, const std:
       std::vector<std::string> names;
       for (const scene::Model& model : scene.models) names.push_back(model.name);
       return Error{"--models: the scene has no model \"" + name + "\"; expected one of " +
-                   document::listed(names, kMostListed) + document::suggestion(name, names)};
+                   document::listed(names, kMostListed) + document::suggestionOfName(name, names)};
     }
     chosen.push_back(static_cast<uint32_t>(it - scene.models.begin()));
   }
@@ -151,7 +151,8 @@ void addTrace(const Command& app, int& exit_code) {
   command.addOption("scene", options->scene, "scene file (YAML)").required();
   command
       .addOption("--probe", options->probe,
-                 "probe path (CSV) with t,x,y,z[,qw,qx,qy,qz] in s and m, world frame; one row per tick")
+                 "probe path (CSV) with t,x,y,z[,qw,qx,qy,qz] in s and m, world frame; one row per tick; the line with "
+                 "these names may be left out")
       .required();
   command.addOption("--out", options->out, "CSV file to write, one row per tick and model; - for standard output")
       .required();

@@ -36,6 +36,8 @@ std::string endingOf(const std::string& file) {
 
 std::string foreignFile(std::string_view text, const std::string& file) {
   const std::string ending = endingOf(file);
+  if (ending == ".ma" && !text.empty())
+    return "a soft body (medial mesh), expected YAML: use it as the geometry of mat_deformable";
   if (ending == ".hpart")
     return "a part, expected YAML: use it as the geometry of nurbs_rigid (for a soft body use a .ma file); to see its "
            "contents, run: hapticd part info " +
@@ -45,10 +47,13 @@ std::string foreignFile(std::string_view text, const std::string& file) {
   };
   const auto* const found = std::find_if(std::begin(kKinds), std::end(kKinds), is);
   if (found == std::end(kKinds)) return "";
-  const std::string part = std::filesystem::path(file).stem().string() + ".hpart";
+  const std::string stem = std::filesystem::path(file).stem().string(), part = stem + ".hpart";
+  const bool mesh = found->name.find("mesh") != found->name.npos;
+  const std::string soft = mesh ? "for a soft body (mat_deformable), convert it with hapticd import --medial " + file
+                                : "a soft body (mat_deformable) needs a closed mesh of it instead: hapticd import "
+                                  "--medial MESH.stl";
   return std::string(found->name) + ", expected YAML: convert it with hapticd import " + file + " -o " + part +
-         " and write geometry: " + part + "; for a soft body, convert a mesh with hapticd import --medial " + file +
-         " -o " + std::filesystem::path(file).stem().string() + ".ma";
+         " and write geometry: " + part + " for nurbs_rigid; " + soft + " -o " + stem + ".ma";
 }
 
 }  // namespace hapticd::document

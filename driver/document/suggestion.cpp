@@ -33,8 +33,12 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
   const std::string_view own = decimal ? word : word.substr(point + 1);
   for (const std::string_view key : {word, own})
     if (const std::string slip = suggestKey(key); !slip.empty()) return slip;
-  std::string meant = nearestWord(word, candidates);
-  if (meant.empty()) meant = onlyWithBeginning(word, candidates);
+  return suggestionOfName(word, candidates);
+}
+
+std::string suggestionOfName(std::string_view name, const std::vector<std::string>& candidates) {
+  std::string meant = nearestWord(name, candidates);
+  if (meant.empty()) meant = onlyWithBeginning(name, candidates);
   return meant.empty() ? "" : " (did you mean \"" + meant + "\"?)";
 }
 

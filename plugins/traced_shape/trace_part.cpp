@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "document/suggestion.hpp"
 #include "kernels/brep/part_file.hpp"
 #include "kernels/brep/part_names.hpp"
 #include "traced_shape.hpp"
@@ -16,7 +17,7 @@ namespace {
 
 /// Returns a warning about a size or a place that is surely a mistake, or "".
 std::string oddPlace(const Eigen::AlignedBox3d& box, const hsp_pose& pose) {
-  constexpr double kHuge = 10, kTiny = 1e-3, kFar = 2;  // [m] sizes and distances beyond these are unusual
+  constexpr double kHuge = 5, kTiny = 1e-3, kFar = 2;  // [m] sizes and distances beyond these are unusual
   const double size = box.diagonal().norm();
   char text[160];
   if (size > kHuge || size < kTiny) {
@@ -65,6 +66,19 @@ std::string lostOf(const brep::Part& part) {
          ", so a solid may feel like an open shell; `hapticd part info` lists everything that was lost";
 }
 
+/// Returns why there is no instance of this name, with the one that was probably meant; "" if there is one, or if no
+/// name is near. Only kernels know instances, but they know nothing of misspelt words.
+std::string unknownInstance(const brep::Part& part, const std::string& wanted) {
+  std::vector<std::string> names;
+  for (uint32_t i = 0; i < part.instances.size(); ++i)
+    for (const std::string& name : {brep::instancePath(part, i), brep::instanceName(part, i)}) names.push_back(name);
+  if (wanted.empty() || std::find(names.begin(), names.end(), wanted) != names.end()) return "";
+  const std::string meant = document::suggestionOfName(wanted, names);
+  return meant.empty() ? ""
+                       : "instance: there is no '" + wanted + "'" + meant +
+                             "; hapticd part info lists the names of all instances";
+}
+
 }  // namespace
 
 /// [main] Returns the name of a feature, as hsp_ext_names requires.
@@ -88,6 +102,8 @@ void TracedShape::loadPart(const std::string& bytes, const hsp_activation& activ
   options.instance = instance_;
   brep::Part part = brep::readPart(std::as_bytes(std::span(bytes)), geometry_);
   const std::string lost = lostOf(part);
+  const std::string wrong = unknownInstance(part, instance_);
+  if (!wrong.empty()) throw std::invalid_argument(wrong);
   part_ = std::make_unique<brep::Model>(std::move(part), options);
   if (host() != nullptr && host()->log != nullptr) {
     if (!lost.empty()) host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + lost).c_str());

@@ -33,6 +33,8 @@ struct ClassInfo {
   /// Returns the index of a parameter, or -1 if there is none.
   int indexOf(const std::string& param) const;
   std::vector<std::string> paramIds() const;
+  /// Returns the unit of a parameter, or "" if there is no such parameter.
+  std::string unitOf(const std::string& param) const;
 };
 
 }  // namespace hapticd::host

@@ -50,11 +50,13 @@ std::string folderLines(const std::vector<fs::path>& dirs) {
 
 }  // namespace
 
-bool shipsName(const std::string& name) {
-  constexpr const char* kShipped[] = {"mat_deformable", "nurbs_rigid", "pendulum", "push_button", "template",
-                                      "simulated",      "usb_hid",     "usb_bulk", "vme",         "template_arm",
-                                      "vendor_dhd",     "vendor_hd"};
-  return std::any_of(std::begin(kShipped), std::end(kShipped), [&](const char* one) { return name == one; });
+bool shipsName(Kind kind, const std::string& name) {
+  constexpr const char* kShapes[] = {"mat_deformable", "nurbs_rigid", "pendulum", "push_button", "template"};
+  constexpr const char* kDevices[] = {"simulated",    "usb_hid",    "usb_bulk", "vme",
+                                      "template_arm", "vendor_dhd", "vendor_hd"};
+  const auto is = [&](const char* one) { return name == one; };
+  return kind == Kind::kShape ? std::any_of(std::begin(kShapes), std::end(kShapes), is)
+                              : std::any_of(std::begin(kDevices), std::end(kDevices), is);
 }
 
 fs::path executableDir() {
@@ -182,14 +184,15 @@ Result<const ClassInfo*> Catalog::find(Kind kind, const std::string& name) {
 std::string Catalog::notFound(Kind kind, const std::string& name, const std::string& reason) {
   const std::vector<std::string> known = names(kind);
   std::string text =
-      std::string("there is no usable ") + noun(kind) + " \"" + name + "\"" + document::suggestion(name, known);
+      std::string("there is no usable ") + noun(kind) + " \"" + name + "\"" + document::suggestionOfName(name, known);
   if (!known.empty()) text += ", expected one of " + document::listed(known);
   text += reason;
   if (reason.empty())
     for (const CatalogFile* file : files(kind))
       if (!file->error.empty()) text += "\n  not usable: " + file->error;
   text += "\n  searched:" + folderLines(dirs(kind)) + "\n  fix: ";
-  if (reason.empty() && shipsName(name))  // happens only in a source checkout, since the packages contain all of them
+  if (!reason.empty()) return text + "correct this file as it says above, or write another name";
+  if (shipsName(kind, name))  // happens only in a source checkout, since the packages contain all of them
     return text + "it is part of hapticd but is not built here: run cmake --build build/release --target modules";
   text += "write an existing name, or add the folder of the missing file to HAPTICD_PLUGIN_PATH";
   if (name.find('/') == name.npos && !name.ends_with(".so")) return text;

@@ -157,6 +157,11 @@ int ClassInfo::indexOf(const std::string& param) const {
   return -1;
 }
 
+std::string ClassInfo::unitOf(const std::string& param) const {
+  const int index = indexOf(param);
+  return index < 0 ? "" : params[static_cast<size_t>(index)].unit;
+}
+
 std::vector<std::string> ClassInfo::paramIds() const {
   std::vector<std::string> ids;
   for (const ParamInfo& param : params) ids.push_back(param.id);

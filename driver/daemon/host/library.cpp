@@ -61,6 +61,17 @@ Result<const Entry*> checkedEntry(const Result<const void*>& symbol_at, const st
   return entry;
 }
 
+/// Returns what to do about a file that the system's loader refuses, judged by what the loader says.
+std::string remedyOf(const std::string& told, const std::filesystem::path& file) {
+  const auto says = [&told](const char* words) { return told.find(words) != std::string::npos; };
+  if (says("undefined symbol")) return "define this symbol in the plugin, or link it with the library that does";
+  if (says("cannot open shared object file"))
+    return "install the library that the loader names, or add its folder to LD_LIBRARY_PATH; ldd " + file.string() +
+           " lists all that it needs";
+  if (says("version `")) return "build it on this machine: it needs a newer system library than this one has";
+  return "build it again, for this machine and as a shared object (-shared -fPIC)";
+}
+
 }  // namespace
 
 Result<std::shared_ptr<Library>> Library::open(const std::filesystem::path& file) {
@@ -76,7 +87,9 @@ Result<std::shared_ptr<Library>> Library::open(const std::filesystem::path& file
 
   const auto stamp = stampOf(real);  // before loading: a file replaced in between is at worst taken for a new one
   const auto handle = loadFile(real);
-  if (!handle) return Error{"cannot load " + real.string() + "\n  the loader says: " + handle.error()};
+  if (!handle)
+    return Error{"cannot load " + real.string() + "\n  the loader says: " + handle.error() +
+                 "\n  fix: " + remedyOf(handle.error(), real)};
   all.first.emplace(real, stamp);
   std::shared_ptr<Library> loaded(new Library(real, *handle));
   slot = loaded;

@@ -3,10 +3,12 @@
 #pragma once
 #include <string>
 
+#include "description/class_info.hpp"
+
 namespace hapticd::host {
 
 /// [any] True for a plugin or module that ships with hapticd, even if this build lacks it (`driver/demo` builds only
 /// two).
-bool shipsName(const std::string& name);
+bool shipsName(Kind kind, const std::string& name);
 
 }  // namespace hapticd::host

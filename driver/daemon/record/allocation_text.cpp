@@ -17,7 +17,7 @@ std::string allocationText(const RunReport& report, const AllocationShare& most)
   return text + ": an allocation may have to wait, and then the tick is late\n  fix: allocate the memory " +
          (most.owner == nullptr ? "before the run"
           : most.owner->device  ? "in start(); read(), write() and the kinematics may not allocate"
-                                : "in activate(); step() may not allocate") +
+                                : "in activate(); step(), which is touch() of a shape in C++, may not allocate") +
          "\n";
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/regular_file.hpp"
+#include "record/contact_warnings.hpp"
 
 namespace hapticd::record {
 
@@ -66,35 +67,16 @@ std::string contactText(const ContactStatistics& c, const RunReport& report, con
   return text;
 }
 
-/// Reports pushes without a contact. They are right for a field, which has no surface, and for a magnet, which pulls
-/// from outside. But if a shape with a surface does not set the flag or the depth, it is felt and the report shows no
-/// contact.
-std::string oddPushesText(const ModelReport& model) {
-  const auto told = [&](const char* word, const Pushes& pushes, const char* how, const char* follows) {
-    if (pushes.ticks == 0) return std::string();
-    return fmt::format("  {:<9} {} pushed in {} ticks {}, with up to {:.2f} N: {}\n", word, model.name, pushes.ticks,
-                       how, pushes.max_force, follows);
-  };
-  const ContactStatistics& c = model.contact;
-  const std::string untraced = told("warning", c.untraced(), "without HSP_OUT_TRACED", "these do not count as contact");
-  const std::string outside =
-      told("outside", c.outside(), "from outside (depth_m below 0)", "only ticks inside count as contact");
-  // There was contact, so the shape sets depth_m. A short push from outside, as by friction, is not reported.
-  if (c.contactTicks() > 0) return untraced + (c.outside().ticks > c.contactTicks() ? outside : "");
-  return untraced + told("warning", c.depthless(), "with depth_m left at 0", "these do not count as contact") + outside;
-}
-
-/// Warns of a force that pulls during most of the contact: its sign is probably wrong. A detent or a magnet pulls only
-/// during a part of a contact.
-std::string pullText(const ModelReport& model) {
-  const Pushes& pulls = model.contact.pulls();
+/// Reports pushes from outside. They are right for a magnet, which pulls from there. A short push from outside, as by
+/// friction, is not reported where there was contact.
+std::string outsideText(const ModelReport& model) {
+  const Pushes& outside = model.contact.outside();
   const uint64_t ticks = model.contact.contactTicks();
-  if (2 * pulls.ticks <= ticks) return "";
+  if (outside.ticks == 0 || (ticks > 0 && outside.ticks <= ticks)) return "";
   return fmt::format(
-      "  warning   {} pulled the hand in during {:.0f} % of its contact, with up to {:.2f} N: its force may have the "
-      "wrong sign; test it with {}\n",
-      model.name, 100 * static_cast<double>(pulls.ticks) / static_cast<double>(ticks), pulls.max_force,
-      checkCommand(model));
+      "  outside   {} pushed in {} ticks from outside (depth_m below 0), with up to {:.2f} N: only ticks inside count "
+      "as contact\n",
+      model.name, outside.ticks, outside.max_force);
 }
 
 /// Returns a length [m] as text in a convenient unit.
@@ -102,36 +84,13 @@ std::string lengthText(double length) {
   return length < 1e-3 ? fmt::format("{:.3g} um", length * 1e6) : fmt::format("{:.3g} mm", length * 1e3);
 }
 
-/// Warns of a depth that no arm reaches: it is probably in mm.
-std::string deepText(const ModelReport& model) {
-  constexpr double kDeep = 0.5;  // [m]
-  const double deepest = model.contact.maxDepth();
-  if (!(deepest > kDeep)) return "";
-  return fmt::format(
-      "  warning   {} reports a depth of {:.3g} m, deeper than an arm reaches: depth_m must be in m (if it is in mm, "
-      "the depth was {:.3g} m); test it with {}\n",
-      model.name, deepest, deepest * 1e-3, checkCommand(model));
-}
-
-/// Warns of a model that does more work on the hand than the hand did on it, and so pushes the hand. Small differences
-/// are not reported: contacts are sampled, and a model may be switched off and on. A hand that was inside at the start
-/// may get the energy that was stored there.
-std::string energyText(const ModelReport& model) {
-  constexpr double kTold = 2e-3, kShare = 0.1;  // [J], and share of the hand's work: less is not reported
-  const double net = model.given_j - model.taken_j - model.began_j;
-  if (model.moves || !(net > std::max(kTold, kShare * model.taken_j))) return "";
-  return fmt::format(
-      "  warning   {} gave the hand {:.3g} mJ more than it took ({:.3g} mJ): a surface must not give "
-      "back more work than was done on it; find the cause with {}\n",
-      model.name, net * 1e3, model.taken_j * 1e3, checkCommand(model));
-}
-
 std::string modelText(const ModelReport& model, const RunReport& report) {
   const ContactStatistics& c = model.contact;
   std::string text = fmt::format("{} ({})\n", model.name, model.plugin);
   if (model.arms.empty()) text += contactText(c, report, "");
   for (const ArmContact& arm : model.arms) text += contactText(arm.contact, report, " by " + arm.device);
-  text += oddPushesText(model) + pullText(model) + energyText(model) + deepText(model);
+  for (const std::string& warning : contactWarnings(model)) text += "  warning   " + warning + "\n";
+  text += outsideText(model);
   if (model.degraded_ticks > 0)
     text +=
         fmt::format("  degraded  {} ticks, down to accuracy level {} of 3, to keep the tick's budget; error up to {}\n",

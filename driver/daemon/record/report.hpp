@@ -28,6 +28,7 @@ struct ModelReport {
   double began_j = 0;               ///< [J] energy stored in it where a hand was inside it from the start, at most
   double given_j = 0, taken_j = 0;  ///< [J] work of its forces on the hands; work of the hands against them
   bool moves = false;  ///< true if its plugin moves it, so that it can give energy to the hand without a fault
+  double size_m = 0;   ///< [m] size that its plugin reports; 0 if it is not known
   std::vector<ArmContact> arms{};  ///< contact of each arm, if there are several arms
   std::string library{};           ///< file of the plugin; empty if it is not known
 };

@@ -170,7 +170,8 @@ const host::ClassInfo* moduleOf(const Node& root, const DeviceText& text, Reader
     unknown = found.error();
   }
   // If hapticd has this module but it is not built here, its parameters cannot be judged; no other module fits them.
-  const std::string meant = host::shipsName(text.module) ? "" : suggestModule(text.module, text.parameters, catalog);
+  const std::string meant =
+      host::shipsName(host::Kind::kDevice, text.module) ? "" : suggestModule(text.module, text.parameters, catalog);
   const std::string as = meant.empty() ? "" : "\n  the parameters are judged as those of " + meant;
   const Node* at = root.find("module");  // nullptr if the key is misspelt
   if (text.module.empty())

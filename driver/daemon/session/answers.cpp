@@ -250,7 +250,7 @@ std::string noSuchParameter(const hsp_class& plugin, const std::string& paramete
     if ((host::paramAt(plugin, i).flags & flags) == flags) names.emplace_back(host::paramAt(plugin, i).id);
   return "parameter \"" + parameter.substr(0, 100) + "\" of " + plugin.name + ": there is no " +
          ((flags & HSP_P_LIVE) != 0 ? "live " : "") + "parameter of that name, expected one of " +
-         document::listed(names) + document::suggestion(parameter.substr(0, 100), names);
+         document::listed(names) + document::suggestionOfName(parameter.substr(0, 100), names);
 }
 
 std::string noSuchDevice(const scene::Scene& scene, const std::string& device) {
@@ -258,7 +258,7 @@ std::string noSuchDevice(const scene::Scene& scene, const std::string& device) {
   for (const scene::Device& one : scene.devices) names.push_back(one.name);
   const std::string wanted = device.substr(0, 100);
   return "there is no device \"" + wanted + "\", expected one of: " + document::listed(names) +
-         document::suggestion(wanted, names);
+         document::suggestionOfName(wanted, names);
 }
 
 Result<std::string> valuesAnswer(const Session& session, uint32_t place, const std::string& parameter) {

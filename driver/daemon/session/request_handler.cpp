@@ -190,7 +190,7 @@ Result<uint32_t> RequestHandler::placeOf(const std::string& model) const {
   }
   return refuse("unknown", "there is no model \"" + model.substr(0, 100) + "\", " +
                                (names.empty() ? "nor any other" : "expected one of " + document::listed(names)) +
-                               document::suggestion(model.substr(0, 100), names));
+                               document::suggestionOfName(model.substr(0, 100), names));
 }
 
 Result<void> RequestHandler::post(const Order& order) {

@@ -70,10 +70,10 @@ std::string silenceReason(const std::string& model, const std::string& file, Sha
     case ShapeFault::kLost:
       return "";
     case ShapeFault::kNotFinite:
-      return who + "gave a force, pose or foot point that is not finite; it was silenced";
+      return who + "gave a force, pose or foot point that is not finite; it was silenced; find the step with: " + check;
     case ShapeFault::kBadStatus:
       return who + "returned status " + std::to_string(failed_status) +
-             ", which a step may not return; it was silenced";
+             ", which a step may not return; it was silenced; find the step with: " + check;
     case ShapeFault::kOverrun:
       return who + "took longer than the budget of a tick, several times; it was silenced; measure it with: " + check;
     case ShapeFault::kJump:
@@ -84,7 +84,7 @@ std::string silenceReason(const std::string& model, const std::string& file, Sha
              "gave torques that jumped by more than its claimed stiffness allows; it was silenced; test it with: " +
              check;
     case ShapeFault::kNotUnit:
-      return who + "gave a pose whose quaternion does not have length 1; it was silenced";
+      return who + "gave a pose whose quaternion does not have length 1; it was silenced; find the step with: " + check;
     case ShapeFault::kPulls:
       return who + "pulled the probe into its surface" + placeOf(pull) + ": " + causeOf(pull) +
              ", although it reports to push only (HSP_R_PUSHES); it was silenced; test it with: " + check +

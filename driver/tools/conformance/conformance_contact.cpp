@@ -12,13 +12,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Warns of the thinnest place, if it is so thin that a hand comes through it with a press of 1 mm.
+/// Warns of the thinnest place, if it is so thin that a hand comes through it: with a press of 1 mm, or with a deeper
+/// one that needs little force.
 Verdict thinnest(const Subject& subject, const Touch& touch) {
-  constexpr double kThin = 1e-3;  // [m]
+  constexpr double kThin = 1e-3, kFewMm = 3e-3, kLight = 3;  // [m], [m], [N]
   const auto place = std::min_element(touch.places.begin(), touch.places.end(),
                                       [](const Place& a, const Place& b) { return a.through < b.through; });
-  if (place->through >= kThin) return "";
   const double stiffness = subject.report().max_stiffness;
+  const bool light = place->through < kFewMm && stiffness * place->through < kLight;
+  if (place->through >= kThin && !light) return "";
   const std::string with =
       stiffness > 0 ? " (" + roughly(stiffness * place->through) + " N at the claimed stiffness)" : "";
   return warned(placed("the shape is thin here: from a depth of about " + roughly(place->through * 1e3) + " mm on" +
@@ -30,12 +32,29 @@ Verdict thinnest(const Subject& subject, const Touch& touch) {
                        place->foot));
 }
 
+/// Warns of a surface that is so far away from the origin of its own frame that a hand at the model does not reach it.
+Verdict farAway(const Touch& touch) {
+  constexpr double kFar = 1;  // [m] farther than the arms reach
+  const auto place = std::min_element(touch.places.begin(), touch.places.end(),
+                                      [](const Place& a, const Place& b) { return a.foot.norm() < b.foot.norm(); });
+  const double away = place->foot.norm();
+  if (away <= kFar) return "";
+  return warned(placed("the nearest surface is " + roughly(away) +
+                           " m away from the origin of the model's frame, where no hand at the model reaches it; "
+                           "expected a surface near the origin (the pose in the scene places it), and lengths in m: " +
+                           roughly(away) + " mm is " + roughly(away * 1e-3) + " m",
+                       place->foot));
+}
+
 /// Fails if no contact was found, because without a contact no test of contacts would test anything.
 Verdict contactFound(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   const Touch touch = recipe.touch.places.empty() ? findTouch(recipe) : recipe.touch;
-  if (!touch.places.empty()) return thinnest(*made.subject, touch);
+  if (!touch.places.empty()) {
+    const Verdict far = farAway(touch);
+    return far.text.empty() ? thinnest(*made.subject, touch) : far;
+  }
   if (touch.traced)
     return "NOT TESTED: its depth is nowhere above 0, not even 1 mm behind the foot points that it names; expected "
            "depth_m above 0 inside: look at the sign of depth_m and at point";

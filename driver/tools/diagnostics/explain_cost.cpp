@@ -11,6 +11,7 @@
 
 #include "base/clock.hpp"
 #include "base/offline_tick.hpp"
+#include "diagnostics/key_place.hpp"
 #include "hapticd/abi.h"
 #include "host/library.hpp"
 #include "servo/loop/lockstep.hpp"
@@ -26,6 +27,11 @@ void quiet(int, const std::string&, const std::string&) {}
 
 std::string where(const document::Place& place, const std::string& key) {
   return place.line > 0 ? fmt::format("{}:{} {}", place.file, place.line, key) : place.file + " " + key;
+}
+
+/// Returns where the scene gives a key of its own, or only its file if it does not.
+std::string where(const scene::Scene& scene, const std::string& key) {
+  return where(placeOfKey(scene.file, key).value_or(document::Place{scene.file.string(), 0, 0}), key);
 }
 
 /// Returns the mean of the times without the longest hundredth of them: those contain interruptions, which are not a
@@ -163,7 +169,7 @@ class Costs {
     for (size_t i = 0; i < scene_.models.size(); ++i) addModel(i, *(*world)->shapes()[i]);
     addEstimator(**world);
     addSearch(**world);
-    add("the host's own work in a tick", scene_.file.string() + " servo", "sums, guards and contact statistics",
+    add("the host's own work in a tick", where(scene_, "servo"), "sums, guards and contact statistics",
         measured_.restingNs(), 0);
     addLibraries();
     return std::move(rows_);
@@ -255,14 +261,14 @@ class Costs {
     for (const CostRow& row : rows_)
       if (row.there() && row.part.find(": velocity") != std::string::npos)
         asked_by += (asked_by.empty() ? "" : ", ") + row.asked_by;
-    if (pushed) asked_by += std::string(asked_by.empty() ? "" : ", ") + scene_.file.string() + " clients";
+    if (pushed) asked_by += std::string(asked_by.empty() ? "" : ", ") + where(scene_, "clients");
     add("velocity estimator", asked_by, scene_.servo.velocity.estimator, each, sizeof *estimator);
   }
 
   void addSearch(servo::World& world) {
     const char* by[] = {"", "in the main thread: one small surface needs no thread", "on its own thread"};
     const auto amount = world.proximity().amount();
-    const std::string asked_by = amount == sim::Searching::kNone ? "" : scene_.file.string() + " models with surfaces";
+    const std::string asked_by = amount == sim::Searching::kNone ? "" : where(scene_, "models") + " with surfaces";
     add("proximity search", asked_by,
         amount == sim::Searching::kNone
             ? "no model has surfaces to search"

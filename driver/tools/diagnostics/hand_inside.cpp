@@ -44,11 +44,11 @@ void reportInside(const scene::Scene& scene, const InsideTip& inside, document::
                   model.name, inside.tip.x(), inside.tip.y(), inside.tip.z(), inside.depth * 1e3);
   if (inside.beyond_box) return reportTurned(scene, inside, where, warnings);
   const scene::Value* radius = givenIn(device.parameters, "hand.radius");
-  if (inside.round && radius != nullptr && radius->place.file == scene.file.string())
+  if (inside.radius && radius != nullptr && radius->place.file == scene.file.string())
     return document::report(warnings, radius->place, "hand.radius",
-                            fmt::format("{}; expected a hand.radius that is greater by more than this depth (it is "
+                            fmt::format("{}; expected a hand.radius of {:.4g} m, with which it starts outside (it is "
                                         "{:.4g} m now), or another place of the model or the arm (mount)",
-                                        where, radius->number));
+                                        where, *inside.radius, radius->number));
   document::report(warnings, model.place, fmt::format("models[{}].pose", inside.model),
                    where + "; expected a start outside: move the model, the arm (mount) or the hand (hand)");
 }

@@ -3,6 +3,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 
 #include "description/scene.hpp"
 #include "diagnostics/hand_script.hpp"
@@ -14,10 +15,11 @@ namespace hapticd::diagnostics {
 /// A tip that is inside a model at the first tick.
 struct InsideTip {
   size_t model = 0, device = 0;
-  Eigen::Vector3d tip;      ///< [m] world
-  double depth = 0;         ///< [m]
-  bool beyond_box = false;  ///< the tip is outside the box round the model's surfaces
-  bool round = false;       ///< the centre of the hand's script is inside that box
+  Eigen::Vector3d tip;             ///< [m] world
+  double depth = 0;                ///< [m]
+  bool beyond_box = false;         ///< the tip is outside the box round the model's surfaces
+  bool round = false;              ///< the centre of the hand's script is inside that box
+  std::optional<double> radius{};  ///< [m] a hand.radius with which the hand starts outside and touches a model
 };
 
 /// Returns true if the centre of the hand's script lies in the box of the model: the hand then moves round the model.
@@ -25,7 +27,7 @@ bool circlesModel(const scene::Device& device, const HandScript& hand, const sce
                   const host::ShapeInstance& shape);
 
 /// [main] Warns of one such tip. The warning is at the surfaces if they face the wrong way, at the radius of the hand
-/// if it is too small, otherwise at the pose of the model.
+/// if another one helps, otherwise at the pose of the model.
 void reportInside(const scene::Scene& scene, const InsideTip& inside, document::Problems& warnings);
 
 }  // namespace hapticd::diagnostics

@@ -156,7 +156,8 @@ std::optional<HandScript> handScriptOf(const scene::Device& device) {
   HandScript hand;
   hand.kind = static_cast<Kind>(number("hand.script"));
   hand.radius = number("hand.radius"), hand.sweep = number("hand.sweep");
-  hand.rise = number("hand.rise"), hand.rate = number("hand.rate"), hand.lead_in = number("hand.lead_in");
+  hand.rise = number("hand.rise"), hand.rate = number("hand.rate"), hand.lead_in = number("hand.lead_in"),
+  hand.approach = number("hand.approach");
   if (const scene::Value* center = givenIn(device.parameters, "hand.center"); center && center->numbers.size() == 3)
     hand.center = Eigen::Map<const Eigen::Vector3d>(center->numbers.data());
   if (const scene::Value* normal = givenIn(device.parameters, "hand.normal"); normal && normal->numbers.size() == 3)

@@ -17,10 +17,11 @@ namespace hapticd::diagnostics {
 struct HandScript {
   enum class Kind { kHold, kStroke, kPress, kTap, kCircle, kPath, kNone, kGuided };  ///< in the module's order
   Kind kind = Kind::kHold;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();          ///< [m] device frame
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();         ///< from the centre to the hand, of any length
-  double radius = 0, sweep = 0, rise = 0, rate = 0;          ///< [m], [rad], [m], [Hz]
-  double lead_in = 0;                                        ///< [s]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< [m] device frame
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< from the centre to the hand, of any length
+  double radius = 0, sweep = 0, rise = 0, rate = 0;   ///< [m], [rad], [m], [Hz]
+  double lead_in = 0;                                 ///< [s]
+  double approach = 0;                                ///< [m] how much farther out than its first aim the hand starts
   double path_end = 0, path_speed = 0, path_fastest_at = 0;  ///< path file: end [s], top speed [m/s], its time [s]
   double path_way = 0;                                       ///< [m] length of that path
   double path_widest = 0;                                    ///< [m] largest coordinate in it

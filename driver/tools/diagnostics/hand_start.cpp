@@ -15,6 +15,7 @@
 #include "diagnostics/key_place.hpp"
 #include "diagnostics/limit_warnings.hpp"
 #include "diagnostics/overlapping_models.hpp"
+#include "diagnostics/radius_advice.hpp"
 #include "diagnostics/unreachable_models.hpp"
 #include "diagnostics/walk_warnings.hpp"
 #include "host/child.hpp"
@@ -92,6 +93,7 @@ std::vector<InsideTip> tipsInside(const scene::Scene& scene, const servo::World&
       constexpr double kAbout = 0.3;  // [m] a hand does not go round a larger model
       inside.round = hand && hand->moves() && hand->radius + inside.depth < kAbout &&
                      hand->kind != HandScript::Kind::kPath && circlesModel(device, *hand, scene.models[model], shape);
+      if (inside.round) inside.radius = radiusOfInnerHand(scene, hands[tip].device, *hand, inside.depth);
       all.push_back(inside);
     }
   return all;

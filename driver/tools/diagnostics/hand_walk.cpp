@@ -8,8 +8,11 @@
 
 #include "base/clock.hpp"
 #include "diagnostics/hand_script.hpp"
+#include "record/contact_warnings.hpp"
 #include "servo/arm/arm.hpp"
 #include "servo/loop/loop.hpp"
+#include "session/silence_reason.hpp"
+#include "session/telemetry.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -18,6 +21,9 @@ using Eigen::Vector3d;
 using servo::Limit;
 
 constexpr double kMostSeconds = 10;
+/// [s] A short motion is repeated for so long: one press of a gentle hand shows too little of the energy that a shape
+/// gives.
+constexpr double kLeastSeconds = 3;
 constexpr uint64_t kMostTicks = 10'000;
 constexpr double kMostProcessor = 3;  ///< [s] of processor time
 
@@ -29,7 +35,11 @@ double processorSeconds() {
 class WalkLog final : public servo::TickLog {
  public:
   WalkLog(const scene::Scene& scene, const servo::World& world, double once)
-      : once_(once), begun_(processorSeconds()), boxes_(scene.models.size()), began_at_(scene.models.size()) {
+      : telemetry_(scene, scene.servo.rate),
+        once_(once),
+        begun_(processorSeconds()),
+        boxes_(scene.models.size()),
+        began_at_(scene.models.size()) {
     walk_.models.resize(scene.models.size());
     walk_.arms.resize(scene.devices.size());
     clips_.resize(scene.devices.size());
@@ -41,30 +51,50 @@ class WalkLog final : public servo::TickLog {
 
   void ends(servo::Loop& loop) { loop_ = &loop; }
   bool spoiled() const { return spoiled_; }
-  Walk take() { return std::move(walk_); }
+
+  /// Returns the walk, with the judgement that a run gives at its end.
+  Walk take(const servo::Core& core) {
+    const record::RunReport report = telemetry_.report({});
+    for (size_t i = 0; i < walk_.models.size(); ++i) judge(core.models()[i], report.models[i]);
+    return std::move(walk_);
+  }
 
   void begin(Nanoseconds, const servo::Arms&) noexcept HSP_RT override {}
   void order(const servo::Order&) noexcept HSP_RT override {}
   void overrun(uint64_t) noexcept HSP_RT override {}
   void finish(uint64_t, Nanoseconds, long, uint64_t) noexcept override {}
 
-  void tick(double t, double, Nanoseconds, const servo::TickDuration&, const servo::Core& core,
+  void tick(double t, double dt, Nanoseconds late, const servo::TickDuration& spent, const servo::Core& core,
             const servo::Arms& arms) noexcept HSP_RT override {
     constexpr uint64_t kLookEvery = 64;  // ticks
     if (ended_) return;
+    telemetry_.tick(t, dt, late, spent, core, arms);
     for (uint32_t i = 0; i < walk_.models.size(); ++i) observeModel(i, core, arms);
     for (uint32_t i = 0; i < arms.size(); ++i) observeArm(i, core, *arms[i]);
-    if (ticks_++ % kLookEvery == 0) spoiled_ = processorSeconds() - begun_ > kMostProcessor;
+    if (ticks_++ % kLookEvery == 0) late_ = processorSeconds() - begun_ > kMostProcessor;
     const bool all =
         std::all_of(walk_.arms.begin(), walk_.arms.end(), [](const WalkedArm& arm) { return arm.touched; });
     walk_.whole = t >= once_ || walk_.whole;
+    spoiled_ = late_ && !walk_.whole;
     // A model that moves by itself may still come to a hand that waits for it.
-    if (!spoiled_ && !(walk_.whole && (all || !moves_))) return;
+    if (!late_ && !(walk_.whole && (all || !moves_) && t >= kLeastSeconds)) return;
     ended_ = true;
     loop_->stop();
   }
 
  private:
+  /// Judges a plugin as a run does. A step that took too long is left out, because that depends on the machine.
+  void judge(const servo::ModelState& state, record::ModelReport report) {
+    // A soft body that is stroked gives and takes energy in every round; one or two rounds do not tell which prevails.
+    report.moves = state.moves || (state.shape->description().flags & HSP_C_DEFORMS) != 0;
+    report.size_m = state.shape->report().size_m;
+    const bool slow = state.guard.fault() == servo::ShapeFault::kOverrun;
+    const std::string fault = slow ? "" : servo::silenceReason(state);
+    walk_.silenced.push_back(state.guard.quarantined());
+    walk_.judged.push_back(record::contactWarnings(report));
+    if (!fault.empty()) walk_.judged.back().push_back(fault);
+  }
+
   void observeModel(uint32_t index, const servo::Core& core, const servo::Arms& arms) noexcept HSP_RT {
     const servo::ModelState& state = core.models()[index];
     WalkedModel& seen = walk_.models[index];
@@ -91,6 +121,7 @@ class WalkLog final : public servo::TickLog {
       arm.touched = arm.touched || force > 0 || (contact.traced && contact.world.depth_m > 0);
       if (!contact.traced || !(contact.world.depth_m > 0)) continue;
       inside = true;
+      arm.began_inside = arm.began_inside || ticks_ == 0;
       seen.depth = std::max(seen.depth, contact.world.depth_m);
       if (contact.world.depth_m > arm.depth) arm.depth = contact.world.depth_m, arm.deepest = index;
     }
@@ -117,13 +148,14 @@ class WalkLog final : public servo::TickLog {
     seen.cut += cut;
   }
 
+  servo::Telemetry telemetry_;
   double once_, begun_;
   std::vector<std::optional<Eigen::AlignedBox3d>> boxes_;
   std::vector<Vector3d> began_at_;
   std::vector<servo::Clips> clips_;
   servo::Loop* loop_ = nullptr;
   uint64_t ticks_ = 0;
-  bool moves_ = false, ended_ = false, spoiled_ = false;
+  bool moves_ = false, ended_ = false, late_ = false, spoiled_ = false;
   Walk walk_;
 };
 
@@ -151,7 +183,7 @@ std::optional<Walk> walkHands(const scene::Scene& scene, servo::World& world) {
   log.ends(loop);
   loop.run();
   if (log.spoiled()) return std::nullopt;
-  Walk walk = log.take();
+  Walk walk = log.take(world.core());
   walk.period = 1 / scene.servo.rate;
   for (const auto& arm : arms) {
     walk.limiters.push_back(arm->limiter());

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "description/scene.hpp"
@@ -33,8 +34,9 @@ struct WalkedArm {
   double depth = 0;      ///< [m] greatest depth in any model
   uint32_t deepest = 0;  ///< index of the model with the greatest depth
   bool touched = false;
-  double away = HUGE_VAL;  ///< [m] least distance from any model, or from a box around it
-  uint32_t nearest = 0;    ///< index of the model at the least distance
+  bool began_inside = false;  ///< the tip was inside a model at the first tick
+  double away = HUGE_VAL;     ///< [m] least distance from any model, or from a box around it
+  uint32_t nearest = 0;       ///< index of the model at the least distance
 };
 
 struct Walk {
@@ -42,6 +44,9 @@ struct Walk {
   double period = 0;   ///< [s] period of a tick
   std::vector<WalkedModel> models;
   std::vector<WalkedArm> arms;
+  /// What `run` would report about the plugin of each model: why it was silenced, or what is odd in its forces.
+  std::vector<std::vector<std::string>> judged;
+  std::vector<bool> silenced;            ///< for each model: true if it was silenced
   std::vector<servo::Limiter> limiters;  ///< limiter of each arm at the end of the walk
 };
 

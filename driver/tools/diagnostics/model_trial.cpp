@@ -200,7 +200,11 @@ TrialResult tryWithout(const scene::Scene& scene, uint32_t index, double max_for
     std::set<std::string> named;
     for (const Objection& one : objectionsIn(rest, error))
       if (one.value != nullptr) named.insert(one.value->id);
-    if (named.empty()) break;
+    // Without its file a model has no surfaces, so any further objection would only follow from that.
+    const bool of_file =
+        std::any_of(rest.parameters.begin(), rest.parameters.end(),
+                    [&named](const scene::Value& value) { return value.kind == HSP_PATH && named.contains(value.id); });
+    if (named.empty() || of_file) break;
     left_out.insert(left_out.end(), named.begin(), named.end());
     std::erase_if(rest.parameters, [&named](const scene::Value& value) { return named.contains(value.id); });
     tried = tryOne(scene, rest, index, max_force, log, trail);

@@ -163,7 +163,8 @@ void checkStop(const GivenModel& given, const scene::Value& value) {
 /// Warns of a further stiffness (other than the surface's) that is too small to feel, because it was given in N/mm as
 /// in data sheets.
 void checkSpring(const GivenModel& given, const scene::Value& value) {
-  constexpr double kUnfelt = 5;  // [N/m] 10 mm give 0.05 N, less than the friction of most arms
+  constexpr double kUnfelt = 5;                          // [N/m] 10 mm give 0.05 N, less than the friction of most arms
+  if (given.plugin().unitOf(value.id) != "N/m") return;  // such as a spring of turns, in N m/rad
   if (value.id != "stiffness" && value.id.ends_with("stiffness") && value.number < kUnfelt)
     given.warn({value.id},
                fmt::format("{:g} N/m cannot be felt: 1 mm gives {:g} N; the value must be in N/m (1 N/mm is 1000 N/m)",

@@ -12,6 +12,7 @@
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/hand_walk.hpp"
 #include "diagnostics/key_place.hpp"
+#include "diagnostics/radius_advice.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -26,22 +27,62 @@ const scene::Value* softSpring(const scene::Device& device) {
   return spring != nullptr && spring->number < kSoft ? spring : nullptr;
 }
 
-/// Returns the advice for a hand that aims at no model: a larger radius, if the model lies in the direction of the
-/// normal; another normal if the hand moves along it, but not to the model.
-std::string adviceOf(const scene::Device& device, const HandScript& hand, const scene::Model& nearest, double away) {
-  constexpr double kWide = 0.2, kTowards = 0.9;  // [m] few arms let a hand move farther from its centre; cosine
-  const double wider = hand.radius + away;
-  if (away <= 0 || wider >= kWide) return "";
+/// Returns the advice for a hand that aims at no model: a larger radius, if the hand meets a model with it; another
+/// normal if the hand moves along it, but not to the model.
+std::string adviceOf(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen) {
+  constexpr double kTowards = 0.9;  // cosine
+  const scene::Device& device = scene.devices[index];
+  const scene::Model& nearest = scene.models[seen.nearest];
+  if (seen.away <= 0) return "";
+  if (const auto radius = radiusOfFarHand(scene, index, hand, seen.away, false))
+    return fmt::format(", or give a hand.radius of {:.4g} m", *radius);
   const bool turns = hand.kind == HandScript::Kind::kStroke || hand.kind == HandScript::Kind::kCircle;
   const Eigen::Vector3d normal = device.mount.orientation * hand.normal.normalized();
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
   const Eigen::Vector3d way = nearest.pose.position - (center + hand.radius * normal);
-  if (turns || way.dot(normal) > kTowards * way.norm())
-    return fmt::format(", or give a hand.radius above {:.3g} m", wider);
+  if (turns || way.dot(normal) > kTowards * way.norm()) return "";
   return fmt::format(
       ", or turn hand.normal: the hand moves along it only, which is [{:.3g}, {:.3g}, {:.3g}] in the "
       "world, so another hand.radius does not lead there",
       normal.x(), normal.y(), normal.z());
+}
+
+/// Warns at the key of the hand that leads away from the models: its path, its spring or its radius. @param what
+/// beginning of the message @return false if none of them does
+bool reportAstray(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen,
+                  const servo::World& world, const std::string& what, document::Problems& warnings) {
+  const scene::Device& device = scene.devices[index];
+  const scene::Model& nearest = scene.models[seen.nearest];
+  if (hand.kind == HandScript::Kind::kPath) {
+    const HandKey key = keyOfHand(scene, device, {"hand.path"});
+    const Eigen::Vector3d mount = device.mount.position, pose = nearest.pose.position;
+    document::report(
+        warnings, key.place, key.id,
+        what + fmt::format("a path through a model, in m of the device frame; mount.position of {} is [{:.3g}, {:.3g}, "
+                           "{:.3g}], and pose.position of {} is [{:.3g}, {:.3g}, {:.3g}]: is one of them wrong?",
+                           device.name, mount.x(), mount.y(), mount.z(), nearest.name, pose.x(), pose.y(), pose.z()));
+    return true;
+  }
+  if (const scene::Value* spring = softSpring(device)) {
+    document::report(
+        warnings, spring->place, "hand.stiffness",
+        what +
+            fmt::format("a stiffer hand: with {:g} N/m its spring pulls with {:.2g} N where it is 10 mm off its way; "
+                        "500 N/m is a firm grip",
+                        spring->number, 0.01 * spring->number));
+    return true;
+  }
+  if (circlesModel(device, hand, nearest, *world.shapes()[seen.nearest]))
+    if (const auto radius = radiusOfFarHand(scene, index, hand, seen.away, true)) {
+      const HandKey key = keyOfHand(scene, device, {"hand.radius", "hand.rise", "hand.script"});
+      document::report(
+          warnings, key.place, key.id,
+          what + fmt::format("a hand.radius of {:.4g} m, with which it touches a model (it is {:.4g} m "
+                             "now{})",
+                             *radius, hand.radius, seen.away > 0 ? "; it is a radius, not a diameter" : ""));
+      return true;
+    }
+  return false;
 }
 
 void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen,
@@ -53,39 +94,14 @@ void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& han
                                               seen.away * 1e3, nearest.name)
                                 : fmt::format("moves where {} is, but touches no surface", nearest.name);
   const std::string what = fmt::format("the hand of {} {}: it feels nothing; expected ", device.name, where);
-  if (hand.kind == HandScript::Kind::kPath) {
-    const HandKey key = keyOfHand(scene, device, {"hand.path"});
-    const Eigen::Vector3d mount = device.mount.position, pose = nearest.pose.position;
-    return document::report(
-        warnings, key.place, key.id,
-        what + fmt::format("a path through a model, in m of the device frame; mount.position of {} is [{:.3g}, {:.3g}, "
-                           "{:.3g}], and pose.position of {} is [{:.3g}, {:.3g}, {:.3g}]: is one of them wrong?",
-                           device.name, mount.x(), mount.y(), mount.z(), nearest.name, pose.x(), pose.y(), pose.z()));
-  }
-  if (const scene::Value* spring = softSpring(device))
-    return document::report(
-        warnings, spring->place, "hand.stiffness",
-        what +
-            fmt::format("a stiffer hand: with {:g} N/m its spring pulls with {:.2g} N where it is 10 mm off its way; "
-                        "500 N/m is a firm grip",
-                        spring->number, 0.01 * spring->number));
-  if (circlesModel(device, hand, nearest, *world.shapes()[seen.nearest])) {
-    const HandKey key = keyOfHand(scene, device, {"hand.radius", "hand.rise", "hand.script"});
-    return document::report(
-        warnings, key.place, key.id,
-        what + (seen.away > 0
-                    ? fmt::format("a hand.radius that is smaller by more than this distance (it is {:.4g} m now; it is "
-                                  "a radius, not a diameter)",
-                                  hand.radius)
-                    : fmt::format("a hand.radius with which it meets the surface (it is {:.4g} m now)", hand.radius)));
-  }
+  if (reportAstray(scene, index, hand, seen, world, what, warnings)) return;
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
   const std::string at = fmt::format(
       "a hand that moves near a model: its centre (hand.center) is at [{:.3g}, {:.3g}, {:.3g}] in "
       "the world, it moves {:.3g} m from there (hand.radius), and {} is at [{:.3g}, {:.3g}, {:.3g}]; move the arm "
       "(mount.position), hand.center or the model (pose.position){}",
       center.x(), center.y(), center.z(), hand.radius, nearest.name, nearest.pose.position.x(),
-      nearest.pose.position.y(), nearest.pose.position.z(), adviceOf(device, hand, nearest, seen.away));
+      nearest.pose.position.y(), nearest.pose.position.z(), adviceOf(scene, index, hand, seen));
   const std::string in_list = fmt::format("devices[{}].mount.position", index);
   for (const std::string& id : {std::string("device.mount.position"), in_list})
     if (const auto place = placeOfKey(scene.file, id)) return document::report(warnings, *place, id, what + at);
@@ -187,6 +203,20 @@ void reportCut(const scene::Scene& scene, const scene::Device& device, const Han
           100 * static_cast<double>(seen.cut) / static_cast<double>(seen.contact)));
 }
 
+/// Returns true if a run would report something odd about the plugin of a model. Its contacts say nothing about the
+/// scene then.
+bool isOdd(const Walk& walk, size_t model) {
+  return walk.silenced[model] || !walk.judged[model].empty();
+}
+
+/// Gives the warnings with which a run would end. The plugin is to blame, so they stand at the key that names it.
+void reportPlugin(const scene::Scene& scene, size_t index, const Walk& walk, document::Problems& warnings) {
+  const scene::Model& model = scene.models[index];
+  const std::string key = fmt::format("models[{}].plugin", index);
+  for (const std::string& text : walk.judged[index])
+    document::report(warnings, placeOfKey(model.place.file, key).value_or(model.place), key, text);
+}
+
 void checkWalkOfArm(const scene::Scene& scene, uint32_t index, const Walk& walk, const servo::World& world,
                     const std::vector<bool>& strays, bool all_models, document::Problems& warnings) {
   constexpr double kOften = 0.05;  // share of the ticks with a force
@@ -196,11 +226,12 @@ void checkWalkOfArm(const scene::Scene& scene, uint32_t index, const Walk& walk,
   if (!hand || !hand->moves()) return;
   if (reportLimiterFault(scene.devices[index], walk.limiters[index], warnings)) return;
   if (!seen.touched) {
-    if (all_models && walk.whole && std::isfinite(seen.away) && !strayed(seen.nearest))
+    const bool silent = std::find(walk.silenced.begin(), walk.silenced.end(), true) != walk.silenced.end();
+    if (all_models && !silent && walk.whole && std::isfinite(seen.away) && !strayed(seen.nearest))
       reportAway(scene, index, *hand, seen, world, warnings);
     return;
   }
-  if (strayed(seen.deepest)) return;
+  if (strayed(seen.deepest) || isOdd(walk, seen.deepest)) return;
   const auto ticks = [](uint64_t count) { return static_cast<double>(count); };
   if (ticks(seen.cut) * walk.period > kContactSeconds && ticks(seen.cut) > kOften * ticks(seen.contact))
     reportCut(scene, scene.devices[index], *hand, seen, walk.limiters[index], warnings);
@@ -210,7 +241,8 @@ void checkWalkOfModel(const scene::Scene& scene, size_t index, const Walk& walk,
                       document::Problems& warnings) {
   constexpr double kUnfelt = 0.03;  // [N] less than the friction of an arm
   const WalkedModel& seen = walk.models[index];
-  if (static_cast<double>(seen.touched) * walk.period < kContactSeconds) return;
+  reportPlugin(scene, index, walk, warnings);
+  if (walk.silenced[index] || static_cast<double>(seen.touched) * walk.period < kContactSeconds) return;
   if (reportNoClick(scene.models[index], index, *world.shapes()[index], seen, walk.whole, warnings)) return;
   if (walk.whole && seen.force > 0 && seen.force < kUnfelt) reportUnfelt(scene.models[index], index, seen, warnings);
 }

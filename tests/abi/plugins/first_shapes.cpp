@@ -105,9 +105,9 @@ struct Ball : hapticd::Shape {
   }
 };
 
-/// A plate about the plane y = 0 whose nearest side is felt. @tparam kThickUm its thickness [um] @tparam kTwists gives
-/// a torque about the model's origin, a mistake
-template <class Derived, int kThickUm, bool kTwists = false>
+/// A plate about the plane y = kAt whose nearest side is felt. @tparam kThickUm its thickness [um] @tparam kTwists
+/// gives a torque about the model's origin, a mistake @tparam kAt its height [m]
+template <class Derived, int kThickUm, bool kTwists = false, int kAt = 0>
 struct Plate : hapticd::Shape {
   static constexpr double kThick = 1e-6 * kThickUm;
   double number = 0;
@@ -117,11 +117,11 @@ struct Plate : hapticd::Shape {
   void activate(const hsp_activation&, hsp_report& report) { report.max_stiffness = kSpring; }
   hsp_status touch(const hsp_probe& in, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
     if ((in.flags & HSP_IN_INVALID) != 0) return HSP_OK;
-    const double y = in.position[1], side = y < 0 ? -1 : 1;
+    const double y = in.position[1] - kAt, side = y < 0 ? -1 : 1;
     out.flags = HSP_OUT_TRACED;
     out.depth_m = kThick / 2 - std::abs(y);
     out.normal[1] = side;
-    out.point[0] = in.position[0], out.point[1] = side * kThick / 2, out.point[2] = in.position[2];
+    out.point[0] = in.position[0], out.point[1] = kAt + side * kThick / 2, out.point[2] = in.position[2];
     if (out.depth_m <= 0) return HSP_OK;
     out.flags |= HSP_OUT_CONTACT;
     out.force[1] = side * kSpring * out.depth_m;
@@ -149,8 +149,10 @@ SHAPE("no_doc", NoDoc, Ball<NoDoc, Slip::kNoDoc>)
 SHAPE("turns", Turns, Ball<Turns, Slip::kTurns>)
 SHAPE("diameter", Diameter, Ball<Diameter, Slip::kDiameter>)
 SHAPE("thin_plate", ThinPlate, Plate<ThinPlate, 500>)
+SHAPE("slab", Slab, Plate<Slab, 4000>)
+SHAPE("far_plate", FarPlate, Plate<FarPlate, 50000, false, -5>)
 
 }  // namespace
 
 HAPTICD_SHAPES(Right, PushesAndRubs, DampsOdd, EmptyReset, LongNormal, OriginTorque, AtOnce, NoCentre, Clock, GivesMore,
-               NoDoc, Turns, Diameter, ThinPlate)
+               NoDoc, Turns, Diameter, ThinPlate, Slab, FarPlate)

@@ -89,6 +89,11 @@ def alone():
     from hapticd import FAULTS
     words = re.findall(r'"([^"]*)"', words)
     check("faults have the words of the pictures", [w.replace("stopped", "held or stopped") for w in words] == list(FAULTS) and len(words) == 13, (words, FAULTS))
+    for name in ("button.py", "move_door.py", "plot_live.py", "record_to_pandas.py", "spring.py"):
+        ended = subprocess.run([sys.executable, os.path.join(CLIENT, "examples", name), "--name", "nobody", *(["door"] if name == "move_door.py" else [])],
+                               env=dict(os.environ, PYTHONPATH=CLIENT), capture_output=True, text=True, timeout=120)
+        check(f"{name} without a daemon says so, with no traceback", ended.returncode == 1 and "error: no daemon named nobody runs" in ended.stderr
+              and "Traceback" not in ended.stderr, ended.stderr)
     check("without numpy rows have names, and what the daemon would refuse raises", done.returncode == 0, done.stderr)
 
 

@@ -62,6 +62,8 @@ TEST_F(Commands, AProcessorThatIsNotThereIsRefused) {
   const Outcome outcome = run("run " + put("scene.yaml", kScene) + " --for 0.1 --cpu 1023");
   EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
   EXPECT_TRUE(has(outcome.text, "this machine has no processor 1023, expected 0")) << outcome.text;
+  EXPECT_TRUE(has(run("run " + put("scene.yaml", kScene) + " --cpu 0.5").text, "\"0.5\" is not a whole number"));
+  EXPECT_FALSE(has(run("run --help").text, "1023"));
 }
 
 TEST_F(Commands, VersionIsOneLine) {
@@ -197,6 +199,7 @@ TEST_F(Commands, ExplainNamesWhatMovesAKinematicModel) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
   EXPECT_TRUE(has(outcome.text, "it follows the 2 points of its path")) << outcome.text;
   EXPECT_TRUE(has(outcome.text, "models[0].path")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "scene.yaml:3 models with surfaces")) << outcome.text;
   EXPECT_FALSE(has(outcome.text, "it is static")) << outcome.text;
 }
 

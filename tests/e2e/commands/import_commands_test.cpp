@@ -22,7 +22,13 @@ TEST_F(ImportCommands, ImportScalesCentresAndKeepsTheCredit) {
             "    points: [[-1, 0, -0.5], [-1, 0, 0.5],\n             [1, 0, -0.5], [1, 0, 0.5]]\n");
   EXPECT_TRUE(has(outcome.text, "model.yaml: 1 surface, 2 x 0 x 1 m")) << outcome.text;
   const Outcome large = run("import " + patch + " --scale 5 -o " + (dir_ / "large.yaml").string());
-  EXPECT_TRUE(has(large.text, "large.yaml: 20 m large; if the imported file counts millimetres, add --scale 0.001"));
+  EXPECT_TRUE(has(large.text,
+                  "large.yaml: 22.4 m large from corner to corner; if the imported file counts millimetres, "
+                  "add --scale 0.001"))
+      << large.text;
+  // check warns of the same model, by the same measure and with the same limit.
+  const Outcome limit = run("import " + patch + " --scale 1.2 -o " + (dir_ / "limit.yaml").string());
+  EXPECT_TRUE(has(limit.text, "limit.yaml: 5.37 m large from corner to corner")) << limit.text;
   EXPECT_EQ(run("import " + patch + " -o /nowhere/at/all.yaml").exit_code, 1);
   const Outcome part = run("import " + patch + " -o " + (dir_ / "patch.hpart").string());
   EXPECT_EQ(part.exit_code, 2);

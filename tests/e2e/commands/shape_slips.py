@@ -109,6 +109,22 @@ def hands(folder, ask):
         check(f"a press of {rise} m comes out behind the ball", code == 0 and "comes out behind" in out, out)
     code, out, _ = told("script: press, center: [0, 0, -0.09], radius: 0.05, rise: 0.003, rate: 1")
     check("one of 3 mm does not", code == 0 and "warning" not in out, out)
+    for hand in ("radius: 0.1", "radius: 0.02", "radius: 0.1, script: press, rise: 0.005, rate: 1", "radius: 0.01, script: tap, rise: 0.004"):
+        code, out, _ = told(hand)
+        radius = re.search(r"hand.radius of (\S+) m", out)
+        check(f"a hand with {hand} is told a radius", code == 0 and radius, out)
+        if radius:
+            code, out, _ = told(re.sub(r"radius: [^,]*", f"radius: {radius[1]}", hand))
+            check("and the warning goes away with it", code == 0 and "warning" not in out, out)
+    code, out, _ = told("radius: 0.01, center: [0, 0.1, 0]")
+    check("a hand that no radius leads to the ball is told none", "feels nothing" in out and "give a hand.radius" not in out, out)
+    huge = re.sub(r"^      - \[(.*)\]$", lambda m: "      - [" + ", ".join(str(30 * float(x)) for x in m[1].split(",")) + "]",
+                  open(f"{SOURCE}/config/models/sphere.yaml").read(), flags=re.M)
+    write(folder, "huge.yaml", huge)
+    write(folder, "huge-scene.yaml", "hapticd: 1\nhand: {radius: 0.046}\nmodels:\n  - {name: ball, plugin: nurbs_rigid, "
+          "pose: {position: [0, 0, -1.4]}, parameters: {geometry: huge.yaml, stiffness: 800}}\n")
+    code, out, _ = ask("check", os.path.join(folder, "huge-scene.yaml"))
+    check("a model that is too large is told, and that the hand starts inside, too", "m large; a hand feels" in out and "the hand starts inside ball" in out, out)
     both = f"device: {{file: {SOURCE}/config/devices/simulated-premium15.yaml, hand: {{script: hold, radius: 0.04}}}}\n"
     code, out, _ = told("script: press, radius: 0.05, rise: 0.003, rate: 1", both)
     check("two hands are told, and which holds", code == 0 and "device.hand: warning" in out and "these here hold: script, radius" in out, out)

@@ -88,7 +88,7 @@ SCENES = [
      "clients.answer_time", "a quarter of its period"),
     ("a model felt from its back", scene(model("stiffness: 800, sides: |back"), top=f"device: {ARM}\nhand: {{radius: 0.046}}\n"), P + "sides", "from their other side"),
     ("a hand that begins inside", scene(model("stiffness: 800"), top=f"device: {ARM}\nhand: {{script: tap, radius: |0.02, rise: 0.005}}\n"), "hand.radius",
-     "greater by more than"),
+     "a hand.radius of 0.046 m, with which it starts outside"),
     ("far away", scene(model("stiffness: 800", name="two") + "    pose: {position: |[40, 2, 30]}\n"), "models[0].pose.position", "50.04 m from"),
     ("a damper too strong for a strong arm", scene(model("stiffness: 800, damping: |900"), top=f"device: {SARCOS}\nhand: {{script: none}}\n"), P + "damping",
      "0.1 m/s with 90 N"),

@@ -32,7 +32,8 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
         while not silenced and time.monotonic() < deadline and run.poll() is None:
             code, out, err = ask("status")
             silenced = json.loads(out)["silenced"] if code == 0 else []
-        check("status names the model and the reason", [s["model"] for s in silenced] == ["bad"] and "not finite" in silenced[0]["why"], silenced)
+        check("status names the model and the reason", [s["model"] for s in silenced] == ["bad"] and "not finite" in silenced[0]["why"]
+              and "find the step with: hapticd plugin check" in silenced[0]["why"], silenced)
         code, out, err = ask("list")
         by_name = {m["name"]: m["silenced"] for m in json.loads(out)["models"]} if code == 0 else {}
         check("list does", by_name.get("good", 1) is None and "not finite" in (by_name.get("bad") or ""), (by_name, err))
@@ -47,6 +48,11 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
         told = [json.loads(lines.stdout.readline()) for _ in range(3)]
         lines.terminate()
         lines.wait()
+        frames = subprocess.Popen([HAPTICD, "top", "--name", "hush"], env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True)
+        first = frames.stdout.readline()
+        frames.terminate()
+        frames.communicate()
+        check("the first view of top tells the rate so far", "Hz asked, " in first and ", 0 held" not in first, first)
         check("top --json is a stream of lines", told[0]["ticks"] <= told[1]["ticks"] <= told[2]["ticks"] and "held_hz" in told[2], told)
     finally:
         run.terminate()

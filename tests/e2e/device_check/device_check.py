@@ -136,6 +136,11 @@ check("a read() that stalls is told of its module", "its module did not return" 
 code, text = run("check", arm("inverse_mirrored"))
 check("check warns of a wrong inverse", code == 0 and "warning" in text and "the module cannot tell which joint positions" in text and "inverse()" in text, (code, text))
 
+# Tests that were skipped were not run.
+code, text = run("device", "check", f"{SOURCE}/config/devices/sarcos.yaml")
+if "skip  open" in text:  # no machine of ours has this arm
+    check("what was skipped counts as not run", "1 test, 0 failed, 7 not run: they need the arm" in text, (code, text))
+
 # A module alone; the modules that ship.
 code, text = run("device", "check", os.path.join(MODULES, "slips_arm.so"))
 check("a module file is tried with its defaults", code == 0 and "8 tests, 0 failed" in text, (code, text))

@@ -46,6 +46,7 @@ def own_shape(folder):
     report = os.path.join(folder, "report.json")
     code, said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", "--report", report, environment=environment)
     touched = os.path.exists(report) and json.load(open(report))["models"]["ground"]["contact_ticks"]
+    check("check has nothing against it", "warning" not in run(HAPTICD, "check", file, environment=environment)[1])
     check("and it is felt in the README's scene", code == 0 and touched and touched > 100, (touched, said))
     wrong = open(os.path.join(folder, "floor.cpp")).read().replace("stiffness * out.depth_m", "-stiffness * out.depth_m")
     open(os.path.join(folder, "floor.cpp"), "w").write(wrong)
@@ -55,10 +56,21 @@ def own_shape(folder):
     code, said = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", "--report", report, environment=environment)
     pulled = json.load(open(report))["models"]["ground"]["force_n"]["max"]
     check("and the run silences it before it pulls with 2 N", "wrong sign" in said and pulled < 2, (pulled, said))
+    code, told = run(HAPTICD, "check", file, environment=environment)
+    check("and check warns in the same words before any run", code == 0 and "models[0].plugin: warning: model ground: its plugin pulled the probe" in told
+          and "its force has the wrong sign, although it reports to push only" in told, told)
     open(os.path.join(folder, "floor.cpp"), "w").write(wrong.replace("report.flags |= HSP_R_PUSHES;", ""))
     subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
     code, unclaimed = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", environment=environment)
     check("one that claims nothing pulls, and the run says so", re.search(r"warning   ground pulled the hand in during \d+ % of its contact", unclaimed), unclaimed)
+    code, told = run(HAPTICD, "check", file, environment=environment)
+    check("and check, too, without a word about the limits that such a pull meets", code == 0 and "cuts the force" not in told
+          and re.search(r"models\[0\].plugin: warning: ground pulled the hand in during \d+ % of its contact", told), told)
+    driving = re.sub(r"stiffness \* out\.depth_m", "stiffness * out.depth_m + 5 * probe.velocity[1]", code_of_floor())
+    open(os.path.join(folder, "floor.cpp"), "w").write(driving.replace("report.flags |= HSP_R_PUSHES;", "report.flags |= HSP_R_VELOCITY;"))
+    subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
+    code, told = run(HAPTICD, "check", file, environment=environment)
+    check("a damper that drives is told by check", code == 0 and re.search(r"ground gave the hand \S+ mJ more than it took", told), told)
     check("and says when, with what force and how deep", re.search(r"at \d+\.\d+ s with [\d.]+ N at a depth of [\d.]+ mm", said), said)
     open(os.path.join(folder, "floor.cpp"), "w").write(code_of_floor().replace("out.flags = HSP_OUT_TRACED;", ""))
     subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)

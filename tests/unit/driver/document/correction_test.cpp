@@ -70,6 +70,8 @@ TEST(Meant, FindsTheValueInsideAKey) {
   EXPECT_EQ(suggestion("rate:1000", {"rate"}), " (no blank after the colon, expected \"rate: 1000\")");
   EXPECT_EQ(suggestion("\u00a0rate", {"rate"}), " (it contains a no-break space, expected ordinary blanks)");
   EXPECT_EQ(suggestion("5", {"rate"}), " (there is a comma before it: write decimals with a point, such as 0.5)");
+  EXPECT_EQ(suggestionOfName("5", {"rate"}), "") << "a word of a command follows no comma";
+  EXPECT_EQ(suggestionOfName("rte", {"rate"}), " (did you mean \"rate\"?)");
   EXPECT_EQ(suggestion("poke", {"none", "press"}), "");
 }
 

@@ -25,7 +25,12 @@ def push(state):
     return [0, FORCE if state.t - last < SECONDS else 0, 0]
 
 
-with hapticd.connect(options.name) as h, h.push(h.devices[0], push):
+try:
+    h = hapticd.connect(options.name)
+except hapticd.HapticdError as error:  # mostly because no daemon runs; its text says what to do
+    raise SystemExit(f"error: {error}")
+
+with h, h.push(h.devices[0], push):
     for event in h.events():
         if event["event"] == "click":
             print(f"{event['t']:.3f} s: {event['model']} snapped {event.get('snapped', '?')}", flush=True)

@@ -20,7 +20,12 @@ parser.add_argument("--travel", type=float, default=0.02, help="how far the mode
 parser.add_argument("--seconds", type=float, default=10, help="duration of the motion [s]")
 options = parser.parse_args()
 
-with hapticd.connect(options.name) as h:
+try:
+    h = hapticd.connect(options.name)
+except hapticd.HapticdError as error:  # mostly because no daemon runs; its text says what to do
+    raise SystemExit(f"error: {error}")
+
+with h:
     x, y, z = h.models[options.model].position
     orientation = h.models[options.model].orientation
     with h.lead_model(options.model) as door:

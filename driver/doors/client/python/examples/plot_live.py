@@ -19,7 +19,12 @@ parser.add_argument("--save", metavar="FILE", help="write one picture instead of
 parser.add_argument("--list", action="store_true", help="print the columns of the ticks, with unit and meaning")
 options = parser.parse_args()
 
-with hapticd.connect(options.name) as h:
+try:
+    h = hapticd.connect(options.name)
+except hapticd.HapticdError as error:  # mostly because no daemon runs; its text says what to do
+    raise SystemExit(f"error: {error}")
+
+with h:
     ticks = h.streams["ticks"]
     units = {column.name: column.unit for column in ticks.columns}
     if options.list:

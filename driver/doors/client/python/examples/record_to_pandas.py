@@ -22,7 +22,12 @@ parser.add_argument("--seconds", type=float, default=2, help="how much of the ru
 parser.add_argument("--csv", metavar="FILE", help="write all ticks to this CSV file")
 options = parser.parse_args()
 
-with hapticd.connect(options.name) as h:
+try:
+    h = hapticd.connect(options.name)
+except hapticd.HapticdError as error:  # mostly because no daemon runs; its text says what to do
+    raise SystemExit(f"error: {error}")
+
+with h:
     parts, end = [], time.monotonic() + options.seconds
     for rows in h.follow("ticks", timeout=1):
         parts.append(rows)

@@ -20,7 +20,12 @@ parser.add_argument("--damping", type=float, default=1, help="damping of the spr
 parser.add_argument("--seconds", type=float, default=10)
 options = parser.parse_args()
 
-with hapticd.connect(options.name) as h:
+try:
+    h = hapticd.connect(options.name)
+except hapticd.HapticdError as error:  # mostly because no daemon runs; its text says what to do
+    raise SystemExit(f"error: {error}")
+
+with h:
     arm = h.devices[0]
     rest = h.state(arm).position
 

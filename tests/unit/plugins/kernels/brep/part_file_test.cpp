@@ -69,7 +69,9 @@ TEST(PartFile, SaysWhatIsWrongWithOtherFiles) {
   const auto error = [](const std::string& bytes) {
     return errorOf([&] { readPart(std::as_bytes(std::span(bytes)), "x.hpart"); });
   };
-  EXPECT_EQ(error(""), "x.hpart: not a part file of format hapticd-part/1; expected one that hapticd import wrote");
+  EXPECT_EQ(error(""),
+            "x.hpart: not a part file (.hpart, format hapticd-part/1), expected one that hapticd import wrote: hapticd "
+            "import FILE -o PART.hpart");
   EXPECT_NE(error(file.substr(0, 30)).find("the header is cut off"), std::string::npos);
   EXPECT_NE(error(file.substr(0, file.size() - 8)).find("may be incomplete"), std::string::npos);
   std::string damaged = file;
