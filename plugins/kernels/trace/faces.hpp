@@ -44,7 +44,14 @@ class Tracer::Faces {
   void holdNearest() noexcept { tracer_.hold(part_, tracer_.nearestTrack(part_)); }
   void release() noexcept { tracer_.hold(part_, -1); }
 
+  int granted() const noexcept { return granted_; }  ///< evaluations that this tick got on top of its budget
+
  private:
+  void grant(int evaluations) noexcept {
+    tracer_.budget_ += evaluations;
+    granted_ += evaluations;
+  }
+
   /// Returns the shell of the nearest foot, if it was that in the last tick too, and does not end within `reach` [m] of
   /// p: no straight path of that length to p leads round it. Returns -1 if there is no such shell.
   int shellAround(double reach) noexcept {
@@ -61,6 +68,7 @@ class Tracer::Faces {
   bool cameThrough(const Eigen::Vector3d& way, double side) noexcept {
     if (!isBehind(side) || !(contact::atLeast(nearest_) <= way.norm())) return false;
     // Another layer of a rolled sheet may be nearer now. The path began on the same side of it.
+    if (!tracer_.model_.closed(shell())) grant(TraceOptions::kForSide);
     if (!tracer_.model_.closed(shell()) && tracer_.isOnSameSide(tracer_.nearestTrack(part_), p_ - way)) return false;
     tracer_.undecided_ = false;
     holdNearest();
@@ -87,6 +95,7 @@ class Tracer::Faces {
   const TraceOptions& options_;
   Foot nearest_;  ///< nearest foot of this tick, if known_
   bool known_ = false;
+  int granted_ = 0;
 };
 
 }  // namespace hapticd::trace

@@ -250,7 +250,7 @@ bool Tracer::isOnSameSide(int track, const Vector3d& point) noexcept {
   const LocalFoot& foot = tracks_[track].foot;
   if (!foot.regular || foot.sides != 0) return false;
   const HeightOver over = heightOver(track, point);
-  return over.inside && over.height * foot.height > 0;
+  return over.inside && std::abs(over.height) > kMet && over.height * foot.height > 0;
 }
 
 /// True if the nearest foot lies on another patch than the held one, and the two patches are joined.

@@ -186,9 +186,9 @@ Foot Tracer::settle(const Vector3d& p, const Vector3d& last, const TraceOptions&
   } else {
     last_shell_ = shellOf(nearest_);
     undecided_ = false;
-    if (options.rule.sides == contact::Sides::kBoth) budget_ += budget, budget += budget;
     Faces faces(*this, -1, p, options);
     foot = contacts_[0].state.step(faces, last, p, options.rule);
+    budget += faces.granted();
   }
   if (contact::found(foot)) foot.evaluations = budget - budget_;
   return foot;

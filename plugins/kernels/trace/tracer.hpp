@@ -23,8 +23,9 @@ struct TraceOptions {
   Method method = Method::kNewton;
   int iterations = 1;       ///< steps of kDirect per tick on a surface, 1 to 4
   double tolerance = 1e-9;  ///< [m] kNewton stops when the estimated error of the foot point is below this
-  /// most evaluations of surfaces in one tick, over all surfaces; twice as many where a shell (Sides::kBoth) may be
-  /// entered, because the side from which it is felt depends on them
+  static constexpr int kForSide = 6;
+  /// most evaluations of surfaces in one tick, over all surfaces; kForSide more where a probe seems to have come
+  /// through an open shell, since the side from which the shell is felt depends on them
   int max_evaluations = 12;
   /// Which sides of the faces are felt, and the contact hysteresis. By default the probe always feels the front of the
   /// nearest face, and no contact is held.
