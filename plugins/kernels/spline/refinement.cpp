@@ -2,8 +2,12 @@
 #include "kernels/spline/refinement.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <iterator>
+#include <set>
 #include <stdexcept>
 
+#include "kernels/spline/cusp.hpp"
 #include "kernels/spline/line_set.hpp"
 #include "kernels/spline/surface.hpp"
 
@@ -73,7 +77,7 @@ bool creasedAlong(const Surface& left, const Surface& right, int axis, double kn
 std::vector<double> partingKnots(const SurfaceData& data, int axis, double smooth_angle) {
   const LineSet lines(data, axis);
   const std::vector<double> breaks = lines.breaks();
-  std::vector<double> result{breaks.front()};
+  std::set<double> result{breaks.front(), breaks.back()};
   for (std::size_t i = 1; i + 1 < breaks.size(); ++i) {
     const int multiplicity = lines.multiplicity(breaks[i]);
     if (multiplicity < lines.degree()) continue;
@@ -83,10 +87,15 @@ std::vector<double> partingKnots(const SurfaceData& data, int axis, double smoot
       const Surface right(lines.part(breaks[i], breaks[i + 1]).surface(data, axis), Form::kNet);
       parted = creasedAlong(left, right, axis, breaks[i], smooth_angle);
     }
-    if (parted) result.push_back(breaks[i]);
+    if (parted) result.insert(breaks[i]);
   }
-  result.push_back(breaks.back());
-  return result;
+  for (const double cusp : cuspKnots(data, axis)) {  // and the spans beside it
+    const auto at = std::lower_bound(breaks.begin(), breaks.end(), cusp);
+    if (at != breaks.begin()) result.insert(*std::prev(at));
+    if (at != breaks.end()) result.insert(*at);
+    if (at != breaks.end() && std::next(at) != breaks.end()) result.insert(*std::next(at));
+  }
+  return {result.begin(), result.end()};
 }
 
 }  // namespace
@@ -141,12 +150,15 @@ std::vector<SurfaceData> splitAtCreases(const SurfaceData& surface, double smoot
   if (us.size() == 2 && vs.size() == 2) return {surface};
   std::vector<SurfaceData> result;
   for (std::size_t i = 0; i + 1 < us.size(); ++i) {
-    const SurfaceData strip = LineSet(surface, 0).part(us[i], us[i + 1]).surface(surface, 0);
+    SurfaceData strip = LineSet(surface, 0).part(us[i], us[i + 1]).surface(surface, 0);
+    straighten(strip, 0);
     for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
-      result.push_back(LineSet(strip, 1).part(vs[j], vs[j + 1]).surface(strip, 1));
+      SurfaceData part = LineSet(strip, 1).part(vs[j], vs[j + 1]).surface(strip, 1);
+      straighten(part, 1);
+      if (!isOnlyALine(part, 0) && !isOnlyALine(part, 1)) result.push_back(std::move(part));
     }
   }
-  return result;
+  return result.empty() ? std::vector<SurfaceData>{surface} : result;
 }
 
 }  // namespace hapticd::spline

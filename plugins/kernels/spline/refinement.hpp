@@ -30,10 +30,11 @@ SurfaceData cut(const SurfaceData& surface, int axis, double lo, double hi);
 std::vector<CurveData> bezierPieces(const CurveData& curve);
 std::vector<SurfaceData> bezierPieces(const SurfaceData& surface);
 
-/// [main] Splits a surface at its gaps (knots of multiplicity degree + 1) and at its creases. A crease is a knot of
-/// multiplicity `degree` where somewhere the normals of both sides differ by more than `smooth_angle` [rad] or the
-/// surface folds back. Each part keeps its parameters, so its domain() is its range in the whole surface. The parts are
-/// in u-major order.
+/// [main] Splits a surface at its gaps (knots of multiplicity degree + 1), at its creases, and at its cusps and one
+/// span beside them (see cusp.hpp). A crease is a knot of multiplicity `degree` where somewhere the normals of both
+/// sides differ by more than `smooth_angle` [rad] or the surface folds back. Each part keeps its parameters, so its
+/// domain() is its range in the whole surface, but in a span beside a cusp they may run otherwise. Parts that are only
+/// lines are left out. The parts are in u-major order.
 std::vector<SurfaceData> splitAtCreases(const SurfaceData& surface, double smooth_angle = kSmoothAngle);
 
 }  // namespace hapticd::spline

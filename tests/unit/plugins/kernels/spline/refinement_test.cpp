@@ -157,5 +157,44 @@ TEST(SplitAtCreases, SeesASurfaceThatFoldsBack) {
   EXPECT_EQ(splitAtCreases(data).size(), 2u);
 }
 
+/// A roof of cubic splines with simple knots, of which three rows of control points coincide at the ridge.
+SurfaceData tripled(bool rational) {
+  SurfaceData data;
+  data.degree = {3, 1};
+  data.knots = {std::vector<double>{0, 0, 0, 0, .25, .5, .75, 1, 1, 1, 1}, std::vector<double>{0, 0, 1, 1}};
+  for (const double x : {-1.0, -0.6, 0.0, 0.0, 0.0, 0.6, 1.0})
+    for (const double y : {0.0, 1.0}) {
+      data.points.emplace_back(x, y, -std::abs(x));
+      if (rational) data.weights.push_back((1 + 0.5 * x) * (1 + y));
+    }
+  return data;
+}
+
+TEST(SplitAtCreases, PartsAtACuspAndLeavesNoPartWithoutATangent) {
+  for (const bool rational : {false, true}) {
+    const auto parts = splitAtCreases(tripled(rational));
+    ASSERT_EQ(parts.size(), 4u) << "two spans beside the ridge, and the rest on either side";
+    for (const SurfaceData& part : parts) {
+      const Surface surface(part, Form::kNet);
+      const auto u = part.domain(0);
+      for (const double share : {0.0, 0.3, 0.7, 1.0})
+        for (const double v : {0.0, 0.4, 1.0}) {
+          SurfacePoint E;
+          surface.evaluate1(std::lerp(u[0], u[1], share), v, E);
+          EXPECT_NEAR(E.S.z(), -std::abs(E.S.x()), 1e-15);
+          EXPECT_NEAR(E.S.y(), v, 1e-15 + (rational ? 1 : 0)) << "weights move the points along the ridge";
+          EXPECT_GT(E.Su.norm(), 0.05) << share;
+        }
+    }
+  }
+}
+
+TEST(SplitAtCreases, LeavesOutARowThatIsOnlyALine) {
+  SurfaceData data = tripled(false);
+  data.knots[0] = {0, 0, 0, 0, .2, .4, .6, .8, 1, 1, 1, 1};
+  data.points.insert(data.points.begin() + 4, {{0, 0, 0}, {0, 1, 0}});  // four rows: a span is no more than the ridge
+  EXPECT_EQ(splitAtCreases(data).size(), 4u);
+}
+
 }  // namespace
 }  // namespace hapticd::spline

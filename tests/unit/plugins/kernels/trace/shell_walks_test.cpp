@@ -173,6 +173,33 @@ TEST(Held, AnOpenShellIsEnteredAtItsFolds) {
   }
 }
 
+/// Such plates as one cubic surface with simple knots: three rows of its control points coincide at the fold.
+spline::SurfaceData foldedByACusp(double angle) {
+  const double x = 0.05 * std::sin(angle / 2), y = -0.05 * std::cos(angle / 2);
+  spline::SurfaceData data;
+  data.degree = {3, 1};
+  data.knots = {{{0, 0, 0, 0, .25, .5, .75, 1, 1, 1, 1}, {0, 0, 1, 1}}};
+  for (const double share : {-1.0, -0.6, 0.0, 0.0, 0.0, 0.6, 1.0})
+    for (const double z : {0.05, -0.05}) data.points.emplace_back(x * share, y * std::abs(share), z);
+  return data;
+}
+
+TEST(Held, AFoldWithinASurfaceIsFeltLikeOneOfTwo) {
+  for (const double degrees : {60.0, 90.0, 150.0, 200.0, 270.0}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    const auto height = [=](const Vector3d& p) { return overFold(angle, p); };
+    const Model model({foldedByACusp(angle)});
+    if (degrees > 60) expectRight({model, height, {0, 0, 0}, {0, 1, 0}}, "a cusp of " + std::to_string(degrees));
+    for (const double aside : {-3e-4, 0.0, 1e-5}) {
+      Hand hand{model};
+      hand.walk({aside, 0.02, 1e-3}, {aside, -0.001, 1e-3}, 1e-4, [&](const Foot& foot, const Vector3d& p) {
+        ASSERT_EQ(foot.status, FootStatus::kNearest) << degrees << ' ' << p.transpose();
+        ASSERT_NEAR(foot.depth, -height(p), 1e-8) << degrees << ' ' << p.transpose();
+      });
+    }
+  }
+}
+
 /// Other shells of the model change nothing, nor does it matter how the fold lies in space.
 TEST(Held, AnOpenShellAmongOthersIsEnteredAtItsFolds) {
   const double angle = 150 * std::numbers::pi / 180;
