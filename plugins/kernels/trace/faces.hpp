@@ -15,12 +15,11 @@ class Tracer::Faces {
 
   contact::Followed follow(double side, Foot& foot) noexcept {
     const contact::Followed how = tracer_.follow(part_, side, p_, options_, foot);
-    const bool came_out = how == contact::Followed::kOn && !(side * foot.depth > 0);
-    if (came_out && options_.rule.sides == contact::Sides::kBoth && isBehindNext(side)) {
-      holdNearest();
-      foot = nearest();
-    }
-    return how;
+    const bool on = how == contact::Followed::kOn && side * foot.depth > 0;
+    if (on || options_.rule.sides != contact::Sides::kBoth || !isBehindNext(side)) return how;
+    holdNearest();
+    foot = nearest();
+    return contact::Followed::kOn;
   }
 
   Foot nearest() noexcept {

@@ -82,6 +82,8 @@ void Tracer::hold(int part, int track) noexcept {
   if (track >= 0) tracks_[track].held = true;
 }
 
+/// In a corner, the foot first goes on over a smooth side: there, the probe may have passed the plane of a face that
+/// begins only beyond the corner, and is in front of no face.
 Followed Tracer::follow(int part, double side, const Vector3d& p, const TraceOptions& options, Foot& foot) noexcept {
   if (contactOf(part).held < 0) return Followed::kLost;
   const int before = tracks_[contactOf(part).held].patch;
@@ -89,8 +91,8 @@ Followed Tracer::follow(int part, double side, const Vector3d& p, const TraceOpt
   unfinished_ = false;
   for (int i = 0; i < kMaxCrossings && tracks_[track].foot.sides != 0; ++i) {
     const SideMask sides = tracks_[track].foot.sides;
-    int next = -1;
-    for (int at = 0; at < kSides; ++at)
+    int next = slideSmoothly(track, p, options);
+    for (int at = 0; at < kSides && next < 0; ++at)
       if ((sides & bit(at)) && isReleased(track, at, side, p)) return Followed::kReleased;
     for (int at = 0; at < kSides && next < 0; ++at)
       if (sides & bit(at)) next = slideOver(track, at, p, options);
@@ -163,14 +165,20 @@ int Tracer::slideOver(int track, int side, const Vector3d& p, const TraceOptions
   return track;
 }
 
+/// Moves a foot over a side beyond which the surface goes on without an edge. Returns its track, or -1 if it stays.
+int Tracer::slideSmoothly(int track, const Vector3d& p, const TraceOptions& options) noexcept {
+  const LocalFoot foot = tracks_[track].foot;
+  const Patch& patch = model_.patch(tracks_[track].patch);
+  int next = -1;
+  for (int at = 0; at < kSides && next < 0; ++at)
+    if ((foot.sides & bit(at)) && goesOn(patch, bit(at), foot.uv)) next = slideOver(track, at, p, options);
+  return next;
+}
+
 /// Moves a foot of this tick on over sides beyond which the surface goes on without an edge. Returns its track.
 int Tracer::slideOn(int track, const Vector3d& p, const TraceOptions& options) noexcept {
   for (int i = 0; i < kMaxCrossings && tracks_[track].foot.sides != 0; ++i) {
-    const LocalFoot foot = tracks_[track].foot;
-    const Patch& patch = model_.patch(tracks_[track].patch);
-    int next = -1;
-    for (int at = 0; at < kSides && next < 0; ++at)
-      if ((foot.sides & bit(at)) && goesOn(patch, bit(at), foot.uv)) next = slideOver(track, at, p, options);
+    const int next = slideSmoothly(track, p, options);
     if (next < 0) break;
     track = next;
   }

@@ -132,6 +132,7 @@ class Tracer {
   contact::Followed follow(int part, double side, const Eigen::Vector3d& p, const TraceOptions& options,
                            Foot& foot) noexcept;
   int slideOver(int track, int side, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
+  int slideSmoothly(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   int slideOn(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   bool isReleased(int track, int side, double felt, const Eigen::Vector3d& p) const noexcept;
   Crossing firstCrossing(int part, const Path& path, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;

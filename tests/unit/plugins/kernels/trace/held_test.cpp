@@ -121,6 +121,39 @@ std::vector<spline::SurfaceData> stair() {
   return {flat({0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}), flat({0, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1})};
 }
 
+/// Three cubes of 20 mm side by side in an L, whose inner corner is at (0.02, 0.02).
+std::vector<spline::SurfaceData> block() {
+  const double a = 0.02;
+  const auto isCube = [](int i, int j) { return (i == 0 || j == 0) && i >= 0 && j >= 0 && i + j < 2; };
+  std::vector<spline::SurfaceData> faces;
+  for (const auto& [i, j] : {std::pair(0, 0), std::pair(1, 0), std::pair(0, 1)}) {
+    const auto cube = box({a * i, a * j, 0}, {a, a, a});
+    const bool joined[6] = {false, false, isCube(i + 1, j), isCube(i - 1, j), isCube(i, j + 1), isCube(i, j - 1)};
+    for (std::size_t face = 0; face < 6; ++face)
+      if (!joined[face]) faces.push_back(cube[face]);
+  }
+  return faces;
+}
+
+/// A foot passes an inner corner within one step: over the middle cube, beyond the planes of both inner walls.
+TEST(Held, IsNotReleasedAtAnInnerCornerOfItsFace) {
+  const Model model(block());
+  const Vector3d along = Vector3d(1, -1, 0).normalized(), inward = Vector3d(-1, -1, 0).normalized();
+  for (const Sides sides : {Sides::kFront, Sides::kBoth})
+    for (int i = 0; i < 60; ++i) {
+      const double step = 1e-4, depth = i % 3 == 0 ? 1e-5 : 2e-3;
+      const Vector3d over = Vector3d(0.02, 0.02, 0.02) + inward * (step * (0.01 + 0.01 * i));
+      Hand hand{model};
+      hand.options = holding(sides);
+      const Vector3d start = over - along * (step * (20.3 + 0.01 * i)) - depth * Vector3d::UnitZ();
+      hand.walk(start + 2 * depth * Vector3d::UnitZ(), start, step, [](const Foot&, const Vector3d&) {});
+      hand.walk(start, start + 40 * step * along, step, [&](const Foot& foot, const Vector3d& p) {
+        ASSERT_NEAR(foot.depth, depth, 1e-12) << i << ' ' << p.transpose();
+        ASSERT_NEAR(foot.normal.z(), 1, 1e-12) << i << ' ' << p.transpose();
+      });
+    }
+}
+
 TEST(Held, RestsAgainstBothFacesOfAConcaveEdge) {
   const Model model(stair());
   Hand hand{model};
