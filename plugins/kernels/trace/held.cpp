@@ -261,14 +261,14 @@ bool Tracer::isOnSameSide(int track, const Vector3d& point) noexcept {
   return over.inside && std::abs(over.height) > kMet && over.height * foot.height > 0;
 }
 
-/// True if the nearest foot lies on another patch than the held one, and the two patches are joined.
+/// True if the nearest foot lies on another patch than the held one, and the two patches have a corner in common.
 bool Tracer::isNextToHeld(int part) const noexcept {
   const int held = tracks_[contacts_[static_cast<std::size_t>(std::max(part, 0))].held].patch;
   const int next = tracks_[nearestTrack(part)].patch;
-  const auto& sides = model_.patch(held).sides;
-  return next != held && std::any_of(sides.begin(), sides.end(), [next](const Side& side) {
-           return side.kind == SideKind::kJoined && side.patch == next;
-         });
+  const auto& corners = model_.patch(held).corners;
+  const auto& others = model_.patch(next).corners;
+  return next != held &&
+         std::find_first_of(corners.begin(), corners.end(), others.begin(), others.end()) != corners.end();
 }
 
 /// Returns the side on which a foot lies and beyond which the surface goes on without an edge, or -1.

@@ -173,7 +173,82 @@ TEST(Held, AnOpenShellIsEnteredAtItsFolds) {
   }
 }
 
-/// Such plates as one cubic surface with simple knots: three rows of its control points coincide at the fold.
+/// Parallelograms round the origin, between rays of 50 mm.
+struct Corner {
+  std::vector<Vector3d> rays;
+
+  std::vector<spline::SurfaceData> surfaces() const {
+    std::vector<spline::SurfaceData> all;
+    for (std::size_t i = 0; i < rays.size(); ++i) all.push_back(flat({0, 0, 0}, rays[(i + 1) % rays.size()], rays[i]));
+    return all;
+  }
+  /// How often the way from a to b crosses the parallelograms; -1 if it comes nearer than 10 nm to one of their rays.
+  int crossings(const Vector3d& a, const Vector3d& b) const {
+    int count = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      Eigen::Matrix3d frame;
+      frame << rays[i], rays[(i + 1) % rays.size()], a - b;
+      const Vector3d at = frame.partialPivLu().solve(a);
+      if (!(at.z() > 0 && at.z() < 1)) continue;
+      const double nearest = std::min(at.x(), at.y()) * 0.05;
+      if (std::abs(nearest) < 1e-8) return -1;
+      count += nearest > 0;
+    }
+    return count;
+  }
+  double distance(const Vector3d& p) const {
+    double least = p.norm();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Vector3d &u = rays[i], &v = rays[(i + 1) % rays.size()], n = u.cross(v).normalized();
+      least = std::min(least, (p - std::max(0.0, p.dot(u) / u.squaredNorm()) * u).norm());
+      if (u.cross(p).dot(n) > 0 && p.cross(v).dot(n) > 0) least = std::min(least, std::abs(p.dot(n)));
+    }
+    return least;
+  }
+};
+
+/// Walks in and out near a corner by steps that cross at most one of the parallelograms.
+int ticksOnTheWrongSide(const Corner& corner, const Vector3d& out, unsigned seed) {
+  const Model model(corner.surfaces());
+  Hand hand{model};
+  hand.options = holding(Sides::kBoth);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  const double reach = std::pow(10, -5 + 0.1 * seed);
+  Vector3d p = 1.5 * reach * out;
+  bool behind = false;
+  int wrong = 0;
+  for (int tick = 0; tick < 500; ++tick) {
+    const Foot foot = hand.at(p);
+    wrong += foot.status != FootStatus::kDegraded && (foot.depth > 0) != behind;
+    Vector3d next = 0.7 * p;
+    for (double& one : next) one += 0.5 * reach * normal(random);
+    const int crossings = corner.crossings(p, next);
+    if (crossings < 0 || crossings > 1 || corner.distance(next) < 1e-8) continue;
+    behind = behind != (crossings == 1);
+    p = next;
+  }
+  return wrong;
+}
+
+TEST(Held, AnOpenShellIsEnteredAtItsCorners) {
+  const auto star = [](int count, double rise, double turn) {
+    Corner corner;
+    for (int i = 0; i < count; ++i) {
+      const double angle = 2 * std::numbers::pi * i / count;
+      corner.rays.push_back(0.05 * Vector3d(std::cos(angle), i % 2 == 0 ? rise : turn * rise, -std::sin(angle)));
+    }
+    return corner;
+  };
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    EXPECT_EQ(ticksOnTheWrongSide(star(4, -0.5, 1), {0, 1, 0}, seed), 0) << "pyramid " << seed;
+    EXPECT_EQ(ticksOnTheWrongSide(star(4, 0.5, -1), {0, 1, 0}, seed), 0) << "saddle " << seed;
+    EXPECT_EQ(ticksOnTheWrongSide(star(4, 0.1, -1), {0, 1, 0}, seed), 0) << "flat saddle " << seed;
+    EXPECT_EQ(ticksOnTheWrongSide(star(6, 0.3, -1), {0, 1, 0}, seed), 0) << "monkey saddle " << seed;
+  }
+}
+
+/// The plates of folded() as one cubic surface with simple knots: three rows of its control points coincide at the fold.
 spline::SurfaceData foldedByACusp(double angle) {
   const double x = 0.05 * std::sin(angle / 2), y = -0.05 * std::cos(angle / 2);
   spline::SurfaceData data;
