@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "kernels/brep/topology.hpp"
+#include "kernels/contact/edge_rule.hpp"
 
 namespace hapticd::brep {
 namespace {
@@ -71,6 +72,15 @@ Vector3d triangleNormal(const Part& part, const Triangle& t) noexcept {
   const Vector3d n = (vec(part.points[t.corner[1]]) - a).cross(vec(part.points[t.corner[2]]) - a);
   const double length = n.norm();
   return length > 0 ? Vector3d(n / length) : Vector3d::Zero();
+}
+
+bool isFlatOver(const Part& part, std::uint32_t triangle, std::uint32_t k) noexcept {
+  const std::uint32_t code = part.triangles[triangle].across[k];
+  if (code == kNone) return false;
+  const Triangle& other = part.triangles[code / 4];
+  if (other.across[code % 4] != 4 * triangle + k) return false;
+  const Vector3d here = triangleNormal(part, part.triangles[triangle]), there = triangleNormal(part, other);
+  return here.dot(there) > 0 && here.cross(there).squaredNorm() < contact::kSmoothEdge * contact::kSmoothEdge;
 }
 
 std::vector<CornerNormal> pointNormals(const Part& part) {

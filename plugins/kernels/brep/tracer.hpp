@@ -50,6 +50,7 @@ class Tracer {
 
   contact::Followed follow(double side, const Eigen::Vector3d& p, contact::Foot& foot) noexcept;
   contact::Followed followFace(double side, const Eigen::Vector3d& p) noexcept;
+  bool goStraight(const Eigen::Vector3d& p) noexcept;
   contact::Followed followTriangles(double side, const Eigen::Vector3d& p) noexcept;
   contact::Followed slideOver(std::uint32_t edge, double t, double side, const Eigen::Vector3d& p, Held& next) noexcept;
   bool enter(const Eigen::Vector3d& from, const Eigen::Vector3d& p, contact::Sides sides, double& side) noexcept;
