@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/brep/next_faces.hpp"
 #include "kernels/brep/topology.hpp"
 #include "kernels/brep/tracer.hpp"
 #include "kernels/brep/triangle_foot.hpp"
@@ -160,28 +161,50 @@ Followed Tracer::followFace(double side, const Vector3d& p) noexcept {
     }
     if (!nearestOn(held_.face, p, held_.hit)) return Followed::kLost;
     if (!isEdge(held_.hit)) return Followed::kOn;
-    const std::uint32_t index = held_.hit.element.index();
-    const std::uint32_t edge = held_.hit.element.kind() == ElementKind::kPiece ? model().piece(index).edge : index;
-    const Edge& record = model().part().edges[edge];
     Held next;
     next.hit.d2 = held_.hit.d2 * kNearer;
-    const auto region = static_cast<EdgeRegion>(held_.hit.region);
-    const bool pole = held_.hit.element.kind() == ElementKind::kPole;
-    const std::uint32_t vertex = region == EdgeRegion::kLast ? record.last_vertex : record.first_vertex;
-    if ((region == EdgeRegion::kInside && !pole) || vertex == kNone) {
-      if (slideOver(edge, held_.hit.u, side, p, next) == Followed::kReleased) return Followed::kReleased;
-    } else {
-      for (const std::uint32_t e : model().edgesAt(vertex)) {
-        const Edge& other = model().part().edges[e];
-        if (other.curve == kNone) continue;
-        const double t = other.first_vertex == vertex ? other.t0 : other.t1;
-        if (slideOver(e, t, side, p, next) == Followed::kReleased) return Followed::kReleased;
-      }
-    }
+    if (slideOn(side, p, next) == Followed::kReleased) return Followed::kReleased;
     if (next.place == kNone) return Followed::kOn;
     held_ = next;
   }
   return Followed::kOn;
+}
+
+/// Examines the faces beyond the edge or vertex on which the held foot lies. `next` becomes the foot on the nearest of
+/// these faces, if that foot is nearer.
+Followed Tracer::slideOn(double side, const Vector3d& p, Held& next) noexcept {
+  const std::uint32_t index = held_.hit.element.index();
+  const std::uint32_t edge = held_.hit.element.kind() == ElementKind::kPiece ? model().piece(index).edge : index;
+  const Edge& record = model().part().edges[edge];
+  const auto region = static_cast<EdgeRegion>(held_.hit.region);
+  const bool pole = held_.hit.element.kind() == ElementKind::kPole;
+  const std::uint32_t vertex = region == EdgeRegion::kLast ? record.last_vertex : record.first_vertex;
+  if ((region == EdgeRegion::kInside && !pole) || vertex == kNone) return slideOver(edge, held_.hit.u, side, p, next);
+  slideAround(vertex, p, next);
+  if (next.place != kNone) return Followed::kOn;
+  for (const std::uint32_t e : model().edgesAt(vertex)) {
+    const Edge& other = model().part().edges[e];
+    if (other.curve == kNone) continue;
+    const double t = other.first_vertex == vertex ? other.t0 : other.t1;
+    if (slideOver(e, t, side, p, next) == Followed::kReleased) return Followed::kReleased;
+  }
+  return Followed::kOn;
+}
+
+/// Examines the faces around a vertex that the held foot reaches over smooth edges. Together they are one face, whose
+/// walls must not catch or release a foot that passes beside them.
+void Tracer::slideAround(std::uint32_t vertex, const Vector3d& p, Held& next) noexcept {
+  FaceSet faces(held_.face);
+  for (std::size_t i = 0; i < faces.count(); ++i)
+    for (const std::uint32_t edge : model().edgesAt(vertex))
+      if (const std::uint32_t face = smoothlyBeyond(model().part(), edge, faces[i]); faces.add(face))
+        tryFace(face, p, next);
+}
+
+/// Makes `next` the foot on a face of the held body, if it is nearer.
+void Tracer::tryFace(std::uint32_t face, const Vector3d& p, Held& next) noexcept {
+  Hit hit;
+  if (nearestOn(face, p, hit) && hit.d2 < next.hit.d2) next = {held_.place, face, hit};
 }
 
 /// Examines the faces beyond an edge of the held face. `next` becomes the foot on the nearest of these faces, if that
@@ -202,8 +225,7 @@ Followed Tracer::slideOver(std::uint32_t edge, double t, double side, const Vect
     const Vector3d there = side * coedgeNormal(geometry, beyond, t);
     const contact::EdgeKind kind = contact::edgeKind(side * here, there, out);
     if (contact::atEdge(kind, there, r) == AtEdge::kRelease) return Followed::kReleased;
-    Hit hit;
-    if (nearestOn(beyond.face, p, hit) && hit.d2 < next.hit.d2) next = {held_.place, beyond.face, hit};
+    tryFace(beyond.face, p, next);
   }
   return Followed::kOn;
 }

@@ -52,8 +52,11 @@ class Tracer {
   contact::Followed followFace(double side, const Eigen::Vector3d& p) noexcept;
   bool goStraight(const Eigen::Vector3d& p) noexcept;
   contact::Followed followTriangles(double side, const Eigen::Vector3d& p) noexcept;
+  contact::Followed slideOn(double side, const Eigen::Vector3d& p, Held& next) noexcept;
+  void slideAround(std::uint32_t vertex, const Eigen::Vector3d& p, Held& next) noexcept;
   contact::Followed slideOver(std::uint32_t edge, double t, double side, const Eigen::Vector3d& p, Held& next) noexcept;
   bool enter(const Eigen::Vector3d& from, const Eigen::Vector3d& p, contact::Sides sides, double& side) noexcept;
+  void tryFace(std::uint32_t face, const Eigen::Vector3d& p, Held& next) noexcept;
   bool nearestOn(std::uint32_t face, const Eigen::Vector3d& p, Hit& hit) noexcept;
   contact::Foot nearestFelt(const Eigen::Vector3d& p) noexcept;
   /// Returns nearestFelt() of this tick's probe, which is found when it is first asked for.

@@ -42,6 +42,13 @@ std::vector<Polygon> ell() {
   return prismOver({{w, o, n, w + n}, {w + s, s, o, w}, {s, s + e, e, o}}, {w + n, w, w + s, s, s + e, e, o, n});
 }
 
+Part partOf(const std::vector<Polygon>& faces, BodyKind kind = BodyKind::kSolid) {
+  samples::Polyhedron made;
+  for (const Polygon& face : faces) made.addPolygon({face});
+  samples::endBody(made.part, kind, kind == BodyKind::kSolid ? kClosed : 0);
+  return made.part;
+}
+
 /// Returns a mesh of the same faces, each a fan of triangles about its corner `pivot`.
 Part meshOf(const std::vector<Polygon>& faces, std::size_t pivot) {
   Part part;
@@ -123,6 +130,10 @@ TEST(FlatFace, OfTrianglesIsNotLeftAtAReentrantCorner) {
     expectStrokesPastTheCorner(Model(meshOf(ell(), pivot)), 0.7);
     expectStrokesPastTheCorner(Model(meshOf(notched(), pivot)), 0.9);
   }
+}
+
+TEST(FlatFace, OfFacesIsNotLeftAtAReentrantCorner) {
+  expectStrokesPastTheCorner(Model(partOf(ell())), 0.7);
 }
 
 }  // namespace

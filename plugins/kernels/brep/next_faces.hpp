@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// Which faces are next to a face, for a held contact whose foot comes to an edge or a vertex.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "kernels/brep/model.hpp"
+
+namespace hapticd::brep {
+
+/// A few faces that a tick has come to, in the order in which it has.
+class FaceSet {
+ public:
+  explicit FaceSet(std::uint32_t first) noexcept : faces_{first} {}
+  /// [rt] Adds a face. Returns false if it is kNone or known, or if the set is full.
+  bool add(std::uint32_t face) noexcept {
+    const auto end = faces_.begin() + static_cast<std::ptrdiff_t>(count_);
+    if (face == kNone || count_ == kMost || std::find(faces_.begin(), end, face) != end) return false;
+    faces_[count_++] = face;
+    return true;
+  }
+  std::uint32_t operator[](std::size_t i) const noexcept { return faces_[i]; }
+  std::size_t count() const noexcept { return count_; }
+
+ private:
+  static constexpr std::size_t kMost = 16;  ///< a tick has no time to search more faces
+  std::array<std::uint32_t, kMost> faces_;
+  std::size_t count_ = 1;
+};
+
+/// [rt] Returns the face beyond an edge of a face if the edge is smooth, else kNone.
+std::uint32_t smoothlyBeyond(const Part& part, std::uint32_t edge, std::uint32_t face) noexcept;
+
+}  // namespace hapticd::brep
