@@ -29,7 +29,22 @@ class FaceSet {
   std::size_t count_ = 1;
 };
 
+/// [rt] Calls see(edge) for the edges of a face, at most `most` of them. Returns how many these were.
+template <class See>
+int eachEdgeOf(const Part& part, std::uint32_t face, int most, const See& see) noexcept {
+  int count = 0;
+  for (std::uint32_t i = 0; i < part.faces[face].loop_count; ++i) {
+    const Loop& loop = part.loops[part.faces[face].first_loop + i];
+    for (std::uint32_t c = loop.first; c < loop.first + loop.count && count < most; ++c, ++count)
+      see(part.coedges[c].edge);
+  }
+  return count;
+}
+
 /// [rt] Returns the face beyond an edge of a face if the edge is smooth, else kNone.
 std::uint32_t smoothlyBeyond(const Part& part, std::uint32_t edge, std::uint32_t face) noexcept;
+
+/// [rt] True if two faces (for a mesh, two triangles) of one body are the same or have a common vertex.
+bool areTogether(const Model& model, const Body& body, std::uint32_t face, std::uint32_t other) noexcept;
 
 }  // namespace hapticd::brep

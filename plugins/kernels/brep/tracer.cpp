@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/brep/tracer.hpp"
 
+#include "kernels/brep/next_faces.hpp"
+
 namespace hapticd::brep {
 
 using contact::Foot;
@@ -17,7 +19,15 @@ class Tracer::Faces {
  public:
   Faces(Tracer& tracer, const Vector3d& p) : tracer_(tracer), p_(p) {}
 
-  contact::Followed follow(double side, Foot& foot) noexcept { return tracer_.follow(side, p_, foot); }
+  contact::Followed follow(double side, Foot& foot) noexcept {
+    const contact::Followed how = tracer_.follow(side, p_, foot);
+    const bool on = how == contact::Followed::kOn && contact::seenFrom(foot, side).depth > 0;
+    if (on || how == contact::Followed::kLost || !isBehindNext(side)) return how;
+    holdNearest();
+    foot = nearest();
+    foot.begins = true;
+    return contact::Followed::kOn;
+  }
   Foot nearest() noexcept { return tracer_.nearestOnce(p_); }
   bool enter(const contact::PathStart& from, contact::Sides sides, double& side) noexcept {
     return tracer_.enter(from.point, p_, sides, side);
@@ -26,6 +36,20 @@ class Tracer::Faces {
   void release() noexcept { tracer_.held_.place = kNone; }
 
  private:
+  /// True if the probe, which has come out in front of the held face or over an edge of it, is certainly behind its
+  /// nearest foot on the same shell, seen from the given side: beside a sharp edge or a re-entrant corner, it may be in
+  /// front of the held face and behind the next one. Beside a free edge it is neither in front nor behind.
+  bool isBehindNext(double side) noexcept {
+    const Foot& foot = tracer_.nearestOnce(p_);
+    if (foot.status != FootStatus::kNearest || foot.aside > 0 || !(side * foot.behind > 0)) return false;
+    const Held &held = tracer_.held_, &next = tracer_.nearest_;
+    if (next.place != held.place) return false;
+    // Another layer of a rolled sheet may be nearer. The probe was not in front of that one.
+    const Placement& place = tracer_.model().placements()[held.place];
+    const Body& body = tracer_.model().part().bodies[place.body];
+    return place.solid || areTogether(tracer_.model(), body, held.face, next.face);
+  }
+
   Tracer& tracer_;
   const Vector3d& p_;
 };

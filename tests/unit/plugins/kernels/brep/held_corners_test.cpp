@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Held contacts at corners of a flat face that is made of several faces or triangles: it must be felt as one face.
+/// Held contacts at corners: on a flat face that is made of several faces or triangles, which must be felt as one face,
+/// and in corners that are sharper than 90 degrees.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -134,6 +135,70 @@ TEST(FlatFace, OfTrianglesIsNotLeftAtAReentrantCorner) {
 
 TEST(FlatFace, OfFacesIsNotLeftAtAReentrantCorner) {
   expectStrokesPastTheCorner(Model(partOf(ell())), 0.7);
+}
+
+/// A wedge about +x, of which the sharp edge is the z axis. @param angle [rad] between its two faces
+std::vector<Polygon> wedge(double angle) {
+  const Vector3d a(20 * std::cos(angle / 2), 20 * std::sin(angle / 2), 0);
+  const Polygon triangle{{0, 0, 0}, {a.x(), -a.y(), 0}, a};
+  return prismOver({triangle}, triangle);
+}
+
+/// The two faces of the wedge that meet at the edge.
+std::vector<Polygon> fold(double angle) {
+  const std::vector<Polygon> all = wedge(angle);
+  return {all[2], all[4]};
+}
+
+/// True if the way from b to c meets a face of the wedge.
+bool meetsWedge(double angle, const Vector3d& b, const Vector3d& c) {
+  for (const double sign : {1.0, -1.0}) {
+    const Vector3d along(std::cos(angle / 2), sign * std::sin(angle / 2), 0), n(-along.y(), along.x(), 0);
+    const double before = n.dot(b), after = n.dot(c);
+    if (before * after < 0 && along.dot(b + (c - b) * before / (before - after)) > 0) return true;
+  }
+  return false;
+}
+
+/// Presses from inside the wedge out of it, and goes on outside. The faces are felt from both sides, so the contact
+/// must stay. @param model the wedge, with its edge on the z axis
+void expectHeldOutside(const Model& model, double angle) {
+  constexpr double kReach = 1e-4;
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  const auto near = [&](const Vector3d& p) {
+    return Vector3d(p + kReach * Vector3d(normal(random), normal(random), normal(random)));
+  };
+  const auto height = [&](const Vector3d& p) {  // over the nearer face of the wedge, if p is beside it
+    return std::abs(p.y()) * std::cos(angle / 2) - p.x() * std::sin(angle / 2);
+  };
+  const contact::ContactRule both{contact::Sides::kBoth};
+  Tracer tracer(model);
+  for (int steps = 0; steps < 5000;) {
+    const Vector3d a = near({0, 0, -0.01}), b = near(a), c = near(b);
+    if (!(height(a) < -1e-6 && height(b) > 1e-6 && height(c) > 1e-6) || meetsWedge(angle, b, c)) continue;
+    ++steps;
+    tracer.reset();
+    tracer.step(a, both);
+    ASSERT_GT(tracer.step(b, both).depth, 0) << a.transpose() << " to " << b.transpose();
+    ASSERT_GT(tracer.step(c, both).depth, 0) << a.transpose() << " to " << b.transpose() << " to " << c.transpose();
+  }
+}
+
+TEST(AcuteCorner, OfASolidHoldsAContactThatGoesOnBehindTheOtherFace) {
+  for (const double degrees : {20, 40, 60, 80, 120}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    expectHeldOutside(Model(partOf(wedge(angle))), angle);
+    expectHeldOutside(Model(meshOf(wedge(angle), 0)), angle);
+  }
+}
+
+TEST(AcuteCorner, OfASheetHoldsAContactThatGoesOnBehindTheOtherFace) {
+  for (const double degrees : {20, 40, 60, 80, 120}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    expectHeldOutside(Model(partOf(fold(angle), BodyKind::kShell)), angle);
+    for (const std::size_t pivot : {0, 1}) expectHeldOutside(Model(meshOf(fold(angle), pivot)), angle);
+  }
 }
 
 }  // namespace
