@@ -207,6 +207,28 @@ void Tracer::tryFace(std::uint32_t face, const Vector3d& p, Held& next) noexcept
   if (nearestOn(face, p, hit) && hit.d2 < next.hit.d2) next = {held_.place, face, hit};
 }
 
+/// Moves the foot of a contact, which seems to have ended at an edge, to the nearest of the faces that the held face
+/// reaches over smooth edges. A probe that passes a sharp re-entrant corner of a flat face of several faces may come
+/// nearer to the wall beside the corner than to the edge between two of them. Returns false if it is behind no face.
+bool Tracer::slideAside(double side, const Vector3d& p, Foot& foot) noexcept {
+  if (held_.hit.element.kind() == ElementKind::kTriangle) return false;  // goStraight() has passed the corner
+  const Part& part = model().part();
+  constexpr int kMostEdges = 256, kMostFaces = 8;
+  int edges = 0;
+  FaceSet faces(held_.face, kMostFaces);
+  Held next;
+  for (std::size_t i = 0; i < faces.count() && edges < kMostEdges; ++i)
+    edges += eachEdgeOf(part, faces[i], kMostEdges - edges, [&](std::uint32_t edge) {
+      if (const std::uint32_t face = smoothlyBeyond(part, edge, faces[i]); faces.add(face)) tryFace(face, p, next);
+    });
+  if (next.place == kNone) return false;
+  const Foot found = describe(model(), next.place, next.hit, next.face, p);
+  if (found.on_edge || !(contact::seenFrom(found, side).depth > 0)) return false;
+  held_ = next;
+  foot = found;
+  return true;
+}
+
 /// Examines the faces beyond an edge of the held face. `next` becomes the foot on the nearest of these faces, if that
 /// foot is nearer.
 Followed Tracer::slideOver(std::uint32_t edge, double t, double side, const Vector3d& p, Held& next) noexcept {

@@ -12,11 +12,14 @@ namespace hapticd::brep {
 /// A few faces that a tick has come to, in the order in which it has.
 class FaceSet {
  public:
-  explicit FaceSet(std::uint32_t first) noexcept : faces_{first} {}
+  static constexpr std::size_t kMost = 16;
+
+  /// [rt] @param most faces that the set takes: a tick has no time to search many
+  explicit FaceSet(std::uint32_t first, std::size_t most = kMost) noexcept : faces_{first}, most_(most) {}
   /// [rt] Adds a face. Returns false if it is kNone or known, or if the set is full.
   bool add(std::uint32_t face) noexcept {
     const auto end = faces_.begin() + static_cast<std::ptrdiff_t>(count_);
-    if (face == kNone || count_ == kMost || std::find(faces_.begin(), end, face) != end) return false;
+    if (face == kNone || count_ == most_ || std::find(faces_.begin(), end, face) != end) return false;
     faces_[count_++] = face;
     return true;
   }
@@ -24,9 +27,8 @@ class FaceSet {
   std::size_t count() const noexcept { return count_; }
 
  private:
-  static constexpr std::size_t kMost = 16;  ///< a tick has no time to search more faces
   std::array<std::uint32_t, kMost> faces_;
-  std::size_t count_ = 1;
+  std::size_t count_ = 1, most_;
 };
 
 /// [rt] Calls see(edge) for the edges of a face, at most `most` of them. Returns how many these were.

@@ -23,8 +23,10 @@ class Tracer::Faces {
     const contact::Followed how = tracer_.follow(side, p_, foot);
     const bool on = how == contact::Followed::kOn && contact::seenFrom(foot, side).depth > 0;
     if (on || how == contact::Followed::kLost || !isBehindNext(side)) return how;
-    holdNearest();
-    foot = nearest();
+    if (!tracer_.slideAside(side, p_, foot)) {
+      holdNearest();
+      foot = nearest();
+    }
     foot.begins = true;
     return contact::Followed::kOn;
   }

@@ -54,6 +54,7 @@ class Tracer {
   contact::Followed followTriangles(double side, const Eigen::Vector3d& p) noexcept;
   contact::Followed slideOn(double side, const Eigen::Vector3d& p, Held& next) noexcept;
   void slideAround(std::uint32_t vertex, const Eigen::Vector3d& p, Held& next) noexcept;
+  bool slideAside(double side, const Eigen::Vector3d& p, contact::Foot& foot) noexcept;
   contact::Followed slideOver(std::uint32_t edge, double t, double side, const Eigen::Vector3d& p, Held& next) noexcept;
   bool enter(const Eigen::Vector3d& from, const Eigen::Vector3d& p, contact::Sides sides, double& side) noexcept;
   void tryFace(std::uint32_t face, const Eigen::Vector3d& p, Held& next) noexcept;

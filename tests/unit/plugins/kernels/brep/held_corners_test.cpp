@@ -135,6 +135,7 @@ TEST(FlatFace, OfTrianglesIsNotLeftAtAReentrantCorner) {
 
 TEST(FlatFace, OfFacesIsNotLeftAtAReentrantCorner) {
   expectStrokesPastTheCorner(Model(partOf(ell())), 0.7);
+  expectStrokesPastTheCorner(Model(partOf(notched())), 0.9);
 }
 
 /// A wedge about +x, of which the sharp edge is the z axis. @param angle [rad] between its two faces
