@@ -254,24 +254,23 @@ Followed Tracer::slideOver(std::uint32_t edge, double t, double side, const Vect
 
 /// Moves the foot straight to the probe over a flat face of many triangles. A descent from triangle to triangle would
 /// end at a re-entrant corner of this face, if the probe passes it from one tick to the next. Returns false, and leaves
-/// the foot, if the way meets an edge over which the surface bends.
+/// the foot, if the way meets an edge over which the surface bends, or ends in the held triangle.
 bool Tracer::goStraight(const Vector3d& p) noexcept {
   const Part& part = model().part();
   std::uint32_t triangle = held_.face, entered = kNone;
   Vector3d from = held_.hit.point;
   for (int n = 0; n < kMaxTriangles; ++n) {
-    const Hit hit = footOn(part, triangle, p);
-    if (static_cast<TriangleRegion>(hit.region) == TriangleRegion::kInside) {
-      held_.hit = hit;
-      held_.face = triangle;
-      return true;
-    }
     const Exit exit = exitOf(part, triangle, entered, from, p);
     if (exit.edge == kNone || !isFlatOver(part, triangle, exit.edge)) return false;
     const std::uint32_t code = part.triangles[triangle].across[exit.edge];
     triangle = code / 4;
     entered = code % 4;
     from = exit.point;
+    const Hit hit = footOn(part, triangle, p);
+    if (static_cast<TriangleRegion>(hit.region) != TriangleRegion::kInside) continue;
+    held_.hit = hit;
+    held_.face = triangle;
+    return true;
   }
   return false;
 }
@@ -280,9 +279,14 @@ bool Tracer::goStraight(const Vector3d& p) noexcept {
 /// nearer.
 Followed Tracer::followTriangles(double side, const Vector3d& p_model) noexcept {
   const Vector3d p = model().placements()[held_.place].toBody(p_model);
-  if (goStraight(p)) return Followed::kOn;
   const Part& part = model().part();
-  held_.hit = footOn(part, held_.face, p);
+  const Hit hit = footOn(part, held_.face, p);
+  if (static_cast<TriangleRegion>(hit.region) == TriangleRegion::kInside) {
+    held_.hit = hit;
+    return Followed::kOn;
+  }
+  if (goStraight(p)) return Followed::kOn;
+  held_.hit = hit;
   for (int n = 0; n < kMaxTriangles; ++n) {
     const auto region = static_cast<TriangleRegion>(held_.hit.region);
     if (region == TriangleRegion::kInside) return Followed::kOn;

@@ -21,14 +21,10 @@ class Tracer::Faces {
 
   contact::Followed follow(double side, Foot& foot) noexcept {
     const contact::Followed how = tracer_.follow(side, p_, foot);
-    const bool on = how == contact::Followed::kOn && contact::seenFrom(foot, side).depth > 0;
-    if (on || how == contact::Followed::kLost || !isBehindNext(side)) return how;
-    if (!tracer_.slideAside(side, p_, foot)) {
-      holdNearest();
-      foot = nearest();
-    }
-    foot.begins = true;
-    return contact::Followed::kOn;
+    const bool on = how == contact::Followed::kOn && side * foot.behind > foot.aside;
+    if (on || how == contact::Followed::kLost) [[likely]]
+      return how;
+    return goOnBehindNext(side, foot) ? contact::Followed::kOn : how;
   }
   Foot nearest() noexcept { return tracer_.nearestOnce(p_); }
   bool enter(const contact::PathStart& from, contact::Sides sides, double& side) noexcept {
@@ -38,6 +34,17 @@ class Tracer::Faces {
   void release() noexcept { tracer_.held_.place = kNone; }
 
  private:
+  /// Moves a held foot on to the next face if the probe is behind that one. Else returns false: the contact has ended.
+  [[gnu::cold, gnu::noinline]] bool goOnBehindNext(double side, Foot& foot) noexcept {
+    if (!isBehindNext(side)) return false;
+    if (!tracer_.slideAside(side, p_, foot)) {
+      holdNearest();
+      foot = nearest();
+    }
+    foot.begins = true;
+    return true;
+  }
+
   /// True if the probe, which has come out in front of the held face or over an edge of it, is certainly behind its
   /// nearest foot on the same shell, seen from the given side: beside a sharp edge or a re-entrant corner, it may be in
   /// front of the held face and behind the next one. Beside a free edge it is neither in front nor behind.
