@@ -62,6 +62,7 @@ class Tracer {
   contact::Foot nearestFelt(const Eigen::Vector3d& p) noexcept;
   /// Returns nearestFelt() of this tick's probe, which is found when it is first asked for.
   const contact::Foot& nearestOnce(const Eigen::Vector3d& p) noexcept;
+  bool mayBeThroughGap(double way) const noexcept;
   Held heldAt(const Nearest& nearest) const noexcept;
   void count(const contact::Foot& foot) noexcept;
 
@@ -71,6 +72,7 @@ class Tracer {
   Held nearest_;        ///< result of nearestFelt() in this tick
   contact::Foot felt_;  ///< result of nearestOnce() in this tick
   bool has_felt_ = false;
+  std::uint32_t last_place_ = kNone;  ///< placement of nearest_ in the last tick; kNone if that was not certain
   SearchBudget budget_;
   Eigen::Vector3d last_p_{0, 0, 0};
   bool has_last_ = false;

@@ -202,5 +202,40 @@ TEST(AcuteCorner, OfASheetHoldsAContactThatGoesOnBehindTheOtherFace) {
   }
 }
 
+/// A file may trim a face a little before its edge, within its tolerance.
+TEST(GapAtAnEdge, DoesNotLetAContactThrough) {
+  Part part = partOf(ell());
+  part.tolerance = 4e-6;
+  for (Coedge& c : part.coedges) {  // on the top face of x, y < 0, the edge to the next square along y
+    const Curve2& line = part.curves2[c.pcurve];
+    const Edge& edge = part.edges[c.edge];
+    const Vector a = part.vertices[edge.first_vertex].point, b = part.vertices[edge.last_vertex].point;
+    const bool on_top = a[2] == 0 && b[2] == 0 && a[1] == 0 && b[1] == 0 && a[0] + b[0] < 0;
+    if (on_top && c.face == 1) part.curves2[c.pcurve].o[1] = line.o[1] - 0.004;
+  }
+  const Model model(std::move(part));
+  const contact::ContactRule both{contact::Sides::kBoth};
+  for (const double step : {1e-6, 1e-5, 3e-4}) {
+    Tracer tracer(model);
+    int felt = 0, inside = 0;
+    for (double z = 1e-3; z > -2e-3; z -= step) {  // 1 um beside the edge
+      const bool presses = tracer.step({-0.005, -1e-6, z}, both).depth > 0;
+      felt += presses;
+      inside += z < -2e-6;
+    }
+    EXPECT_NEAR(felt, inside, 2) << step;
+  }
+}
+
+/// A probe that was pressed through a thin plate, and popped through, is outside again.
+TEST(GapAtAnEdge, IsNotTakenForTheWayThroughAThinPlate) {
+  const Model model(samples::prism({{0, 0}, {30, 0}, {30, 20}, {0, 20}}, 1));
+  const contact::ContactRule both{contact::Sides::kBoth};
+  Tracer tracer(model);
+  for (double z = 1.5e-3; z > -2e-5; z -= 1e-5) tracer.step({0.015, 0.01, z}, both);
+  tracer.popThrough();
+  for (int i = 0; i < 5; ++i) EXPECT_LT(tracer.step({0.0151 + 1e-4 * i, 0.01, -3e-5}, both).depth, 0) << i;
+}
+
 }  // namespace
 }  // namespace hapticd::brep
