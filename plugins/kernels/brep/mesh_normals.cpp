@@ -6,11 +6,18 @@
 #include <numeric>
 
 #include "kernels/brep/topology.hpp"
+#include "kernels/contact/edge_rule.hpp"
 
 namespace hapticd::brep {
 namespace {
 
 using Eigen::Vector3d;
+
+/// A vector along the normal of a triangle. Its length [m^2] is twice the area.
+Vector3d acrossOf(const Part& part, const Triangle& t) {
+  const Vector3d a = vec(part.points[t.corner[0]]);
+  return (vec(part.points[t.corner[1]]) - a).cross(vec(part.points[t.corner[2]]) - a);
+}
 
 /// The angle of a triangle at a corner [rad].
 double angleAt(const Part& part, const Triangle& t, std::size_t corner) {
@@ -67,10 +74,19 @@ void joinOverFlatEdges(const Part& part, const std::vector<float>& angles, Group
 }  // namespace
 
 Vector3d triangleNormal(const Part& part, const Triangle& t) noexcept {
-  const Vector3d a = vec(part.points[t.corner[0]]);
-  const Vector3d n = (vec(part.points[t.corner[1]]) - a).cross(vec(part.points[t.corner[2]]) - a);
+  const Vector3d n = acrossOf(part, t);
   const double length = n.norm();
   return length > 0 ? Vector3d(n / length) : Vector3d::Zero();
+}
+
+bool isFlatOver(const Part& part, std::uint32_t triangle, std::uint32_t k) noexcept {
+  const std::uint32_t code = part.triangles[triangle].across[k];
+  if (code == kNone) return false;
+  const Triangle& other = part.triangles[code / 4];
+  if (other.across[code % 4] != 4 * triangle + k) return false;
+  const Vector3d here = acrossOf(part, part.triangles[triangle]), there = acrossOf(part, other);
+  const double most = contact::kSmoothEdge * contact::kSmoothEdge * here.squaredNorm() * there.squaredNorm();
+  return here.dot(there) > 0 && here.cross(there).squaredNorm() < most;
 }
 
 std::vector<CornerNormal> pointNormals(const Part& part) {

@@ -26,6 +26,10 @@ void smoothNormals(const Part& part, std::vector<std::uint32_t>& of_corner, std:
 /// [any] Outward unit normal of a coedge's face at parameter t of the coedge.
 Eigen::Vector3d coedgeNormal(const Geometry& geometry, const Coedge& coedge, double t) noexcept;
 
+/// [any] True if a triangle and the one beyond its edge k are one flat face: their normals agree, and no third triangle
+/// has this edge.
+bool isFlatOver(const Part& part, std::uint32_t triangle, std::uint32_t k) noexcept;
+
 /// [any] Unit normal of a triangle, or 0 if the triangle has no area.
 Eigen::Vector3d triangleNormal(const Part& part, const Triangle& triangle) noexcept;
 

@@ -50,13 +50,19 @@ class Tracer {
 
   contact::Followed follow(double side, const Eigen::Vector3d& p, contact::Foot& foot) noexcept;
   contact::Followed followFace(double side, const Eigen::Vector3d& p) noexcept;
+  bool goStraight(const Eigen::Vector3d& p) noexcept;
   contact::Followed followTriangles(double side, const Eigen::Vector3d& p) noexcept;
+  contact::Followed slideOn(double side, const Eigen::Vector3d& p, Held& next) noexcept;
+  void slideAround(std::uint32_t vertex, const Eigen::Vector3d& p, Held& next) noexcept;
+  bool slideAside(double side, const Eigen::Vector3d& p, contact::Foot& foot) noexcept;
   contact::Followed slideOver(std::uint32_t edge, double t, double side, const Eigen::Vector3d& p, Held& next) noexcept;
   bool enter(const Eigen::Vector3d& from, const Eigen::Vector3d& p, contact::Sides sides, double& side) noexcept;
+  void tryFace(std::uint32_t face, const Eigen::Vector3d& p, Held& next) noexcept;
   bool nearestOn(std::uint32_t face, const Eigen::Vector3d& p, Hit& hit) noexcept;
   contact::Foot nearestFelt(const Eigen::Vector3d& p) noexcept;
   /// Returns nearestFelt() of this tick's probe, which is found when it is first asked for.
   const contact::Foot& nearestOnce(const Eigen::Vector3d& p) noexcept;
+  bool mayBeThroughGap(double way) const noexcept;
   Held heldAt(const Nearest& nearest) const noexcept;
   void count(const contact::Foot& foot) noexcept;
 
@@ -66,6 +72,7 @@ class Tracer {
   Held nearest_;        ///< result of nearestFelt() in this tick
   contact::Foot felt_;  ///< result of nearestOnce() in this tick
   bool has_felt_ = false;
+  std::uint32_t last_place_ = kNone;  ///< placement of nearest_ in the last tick; kNone if that was not certain
   SearchBudget budget_;
   Eigen::Vector3d last_p_{0, 0, 0};
   bool has_last_ = false;
