@@ -150,8 +150,8 @@ void printHardware(host::DeviceInstance& device) {
               info.damping, info.buttons);
   printCapabilities(info.capabilities);
   for (uint32_t i = 0; i < info.joint_count; ++i)
-    std::printf("  joint %u: %g to %g, its motor up to %g (rad and N m, or m and N)\n", i + 1, info.position_min[i], info.position_max[i],
-                info.max_torque[i]);
+    std::printf("  joint %u: %g to %g, its motor up to %g (rad and N m, or m and N)\n", i + 1, info.position_min[i],
+                info.position_max[i], info.max_torque[i]);
   printReach(device);
 }
 

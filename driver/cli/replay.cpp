@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -81,7 +82,7 @@ std::vector<std::string> modelNames(const scene::Scene& scene) {
 Result<void> change(scene::Scene& scene, const std::string& text) {
   if (const std::string wrong = wrongForm(scene, text); !wrong.empty()) return Error{"--set " + text + ": " + wrong};
   const size_t equals = text.find('='), dot = text.find('.');
-  const auto number = document::toNumber(text.substr(equals + 1));
+  const double number = document::toNumber(text.substr(equals + 1)).value_or(NAN);  // wrongForm() has checked it
   const std::string name = text.substr(0, dot), id = text.substr(dot + 1, equals - dot - 1);
   const auto model =
       std::find_if(scene.models.begin(), scene.models.end(), [&](const auto& m) { return m.name == name; });
@@ -96,8 +97,8 @@ Result<void> change(scene::Scene& scene, const std::string& text) {
   const host::ParamInfo& param = (*found)->params[static_cast<size_t>(index)];
   const bool is_number = param.kind >= HSP_REAL && param.kind <= HSP_ENUM;
   if (!is_number) return Error{"--set " + text + ": \"" + id + "\" has no number that could be changed"};
-  if (!(*number >= param.min && *number <= param.max))
-    return Error{fmt::format("--set {}: {:g} is out of range, expected {:g} to {:g} {}", text, *number, param.min,
+  if (!(number >= param.min && number <= param.max))
+    return Error{fmt::format("--set {}: {:g} is out of range, expected {:g} to {:g} {}", text, number, param.min,
                              param.max, param.unit)};
   const auto same = [&](const scene::Value& v) { return v.index == static_cast<uint32_t>(index); };
   auto value = std::find_if(model->parameters.begin(), model->parameters.end(), same);
@@ -105,7 +106,7 @@ Result<void> change(scene::Scene& scene, const std::string& text) {
   value->id = id;
   value->index = static_cast<uint32_t>(index);
   value->kind = param.kind;
-  value->number = *number;
+  value->number = number;
   return {};
 }
 

@@ -279,7 +279,7 @@ Verdict noStep(const Recipe& recipe, uint64_t) {
       const bool entered = known && !inside && c.depth_m > 0;
       const double jump = (Vector3d(c.force) - force).norm(), way = (step.p - at).norm();
       const double explained = servo::Claim::kMargin * stiffness * way + jumps;
-      const std::string turned = entered ? torqueAtOnce(torque, Vector3d(c.torque), explained) : std::string();
+      std::string turned = entered ? torqueAtOnce(torque, Vector3d(c.torque), explained) : std::string();
       known = true, inside = c.depth_m > 0, force = Vector3d(c.force), torque = Vector3d(c.torque), at = step.p;
       if (!turned.empty()) return turned;
       if (!entered || jump <= explained + kRoom) return std::string();

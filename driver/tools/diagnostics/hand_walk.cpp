@@ -109,8 +109,8 @@ class WalkLog final : public servo::TickLog {
       double away = HUGE_VAL;
       if (contact.traced)
         away = -contact.world.depth_m;
-      else if (boxes_[index])
-        away = boxes_[index]->exteriorDistance(state.frame.pointToModel(tip));
+      else if (const auto& box = boxes_[index])
+        away = box->exteriorDistance(state.frame.pointToModel(tip));
       if (away < arm.away) arm.away = away, arm.nearest = index;
       const double force = Vector3d(contact.world.force).norm();
       seen.clicked = seen.clicked || (contact.world.flags & HSP_OUT_EVENT) != 0;
@@ -169,7 +169,7 @@ std::optional<Walk> walkHands(const scene::Scene& scene, servo::World& world) {
     auto arm = hand ? servo::Arm::open(device, scene.servo,
                                        {scene.servo.rate, world.needsVelocity(), nullptr, scene.clients}, nullptr)
                     : Result<std::unique_ptr<servo::Arm>>(Error{"not simulated"});
-    if (!arm || !(*arm)->start(0, scene.servo.gravity)) return std::nullopt;  // refusedArms() reports why
+    if (!hand || !arm || !(*arm)->start(0, scene.servo.gravity)) return std::nullopt;  // refusedArms() reports why
     arms.push_back(std::move(*arm));
     once = std::max(once, hand->cycleTime());
   }

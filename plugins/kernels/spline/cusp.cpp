@@ -91,7 +91,8 @@ void straighten(SurfaceData& piece, int axis) {
   };
   if (!coincide(0, degree - 1) && !coincide(1, degree)) return;
   for (int line = 0; line < lines.lines(); ++line) {
-    const Vector3d from = lines.point(0, line), way = lines.point(degree, line) - from;
+    const Vector3d& from = lines.point(0, line);
+    const Vector3d way = lines.point(degree, line) - from;
     for (int row = 1; row < degree; ++row) piece.points[lines.at(row, line)] = from + way * row / degree;
     if (piece.weights.empty()) continue;
     for (int row = 1; row <= degree; ++row) piece.weights[lines.at(row, line)] = piece.weights[lines.at(0, line)];

@@ -25,7 +25,7 @@ using hapticd::extremes::Answer;
 using hapticd::extremes::Case;
 namespace fs = std::filesystem;
 
-constexpr double kRecovery = 0.005;  // [s] time that a tracer may need after the true nearest point has jumped
+constexpr double kRecovery = 0.005;       // [s] time that a tracer may need after the true nearest point has jumped
 constexpr int kMostEvaluations = 12 + 6;  // TraceOptions: max_evaluations, and kForSide at an open shell
 constexpr int kDefaultRandomTicks = 50'000;
 const int kMotions = hapticd::support::kLong ? 12 : 1;

@@ -248,7 +248,8 @@ TEST(Held, AnOpenShellIsEnteredAtItsCorners) {
   }
 }
 
-/// The plates of folded() as one cubic surface with simple knots: three rows of its control points coincide at the fold.
+/// The plates of folded() as one cubic surface with simple knots: three rows of its control points coincide at the
+/// fold.
 spline::SurfaceData foldedByACusp(double angle) {
   const double x = 0.05 * std::sin(angle / 2), y = -0.05 * std::cos(angle / 2);
   spline::SurfaceData data;
