@@ -16,7 +16,13 @@ constexpr double kSame = 1e-9;  ///< share of a line's length: control points th
 class Lines {
  public:
   Lines(const SurfaceData& data, int axis)
-      : data_(data), axis_(axis), rows_(data.count(axis)), lines_(data.count(1 - axis)) {}
+      : data_(data), axis_(axis), rows_(data.count(axis)), lines_(data.count(1 - axis)) {
+    for (int line = 0; line < lines_; ++line) {
+      double length = 0;
+      for (int row = 1; row < rows_; ++row) length += (point(row, line) - point(row - 1, line)).norm();
+      lengths_.push_back(length);
+    }
+  }
 
   int rows() const { return rows_; }
   int lines() const { return lines_; }
@@ -27,8 +33,8 @@ class Lines {
 
   /// True if rows `first` to `last` coincide on a line that is longer than a point.
   bool coincideOn(int line, int first, int last) const {
-    double length = 0, apart = 0;
-    for (int row = 1; row < rows_; ++row) length += (point(row, line) - point(row - 1, line)).norm();
+    const double length = lengths_[static_cast<std::size_t>(line)];
+    double apart = 0;
     for (int row = first + 1; row <= last; ++row)
       apart = std::max(apart, (point(row, line) - point(first, line)).norm());
     return length > 0 && apart <= kSame * length;
@@ -42,6 +48,7 @@ class Lines {
  private:
   const SurfaceData& data_;
   int axis_, rows_, lines_;
+  std::vector<double> lengths_;
 };
 
 /// True if the weights of each row are the same multiple of those of the first row, or there are none.
