@@ -132,11 +132,9 @@ void MatDeformable::deactivate() {
 
 void MatDeformable::reset() noexcept HSP_RT {
   for (Track& track : tracks_) {
-    track.known = track.offered = track.met = track.counted = track.near = false;
-    track.side = 0;
-    track.apart = 0;
-    track.pushed.setZero();
-    track.friction.reset();
+    const bool active = track.active;
+    track = Track{};
+    track.active = active;
   }
   body_->nodes().reset();
   if (medial::FeltSurface* const surface = body_->feltSurface(); surface != nullptr) surface->reset();

@@ -343,6 +343,8 @@ void FeltSurface::reset() noexcept {
   if (!branch_.empty())
     for (const uint32_t i : nodes_->awake_) branch_[i].setZero();
   nodes_->clear();
+  std::fill(touched_.begin(), touched_.end(), 0);  // the search for sleepers begins anew
+  tick_ = 0;
 }
 
 double FeltSurface::energy(std::span<const FeltContact> contacts) const noexcept {

@@ -158,6 +158,22 @@ TEST(FeltBody, GoesOnFromWhereItWasSavedWithWhatHasRelaxed) {
   }
 }
 
+/// Whatever was felt before a reset, down to which tick looks for nodes that have come to rest.
+TEST(FeltBody, IsAfterAResetAsOneThatIsNew) {
+  const auto at = [](int i) {  // away for ever shorter times, until the surface has not yet come to rest
+    return Vector3d(.004 * std::sin(.02 * i), 0, .0172 + .004 * std::cos(.012 * i + 2e-7 * i * i));
+  };
+  for (const int before : {1, 503, 1004}) {
+    FeltBody used("pebble.yaml"), fresh("pebble.yaml");
+    for (int i = 0; i < before; ++i) used.touch(at(i));
+    hsp_shape* const shape = used.handle();
+    hsp_plugin_entry.classes[0]->reset(shape);
+    used.search(at(0));
+    for (int i = 0; i < 20'000; ++i)
+      ASSERT_EQ(forceOf(used.touch(at(i))), forceOf(fresh.touch(at(i)))) << before << " " << i;
+  }
+}
+
 /// Work done on the body by a probe that wanders and comes back out, with the mean of the forces at both ends of each
 /// step: it never gives more than it got.
 TEST(FeltBody, RandomMotionsInAndAlongTheSurfaceMakeNoEnergy) {
