@@ -189,7 +189,8 @@ int Tracer::slideOn(int track, const Vector3d& p, const TraceOptions& options) n
 Tracer::Crossing Tracer::firstCrossing(int part, const Path& path, const Vector3d& p,
                                        const TraceOptions& options) noexcept {
   // A face that the path crosses is nearer to its end than this. So the layers of a rolled sheet are told apart.
-  const double within = (p - path.from.point).norm() - path.from.clearance;
+  const bool shell = options.rule.sides == contact::Sides::kBoth;
+  const double within = (p - path.from.point).norm() - (shell ? path.from.clearance : 0);
   std::array<int, kMostCandidates> near{};
   int count = 0;
   for (const int index : tracks_.active()) {
@@ -298,7 +299,7 @@ bool Tracer::crosses(int track, const Vector3d& from, const Vector3d& p, const T
   crossing.share = met.share;
   if (met.found && met.share >= -kBeyond && met.share <= 1 + kBeyond && crossing.side * way.dot(met.normal) < 0)
     return true;
-  if (!met.found && budget_ <= 0) {
+  if (shell && !met.found && budget_ <= 0) {
     undecided_ = true;
     return false;
   }
