@@ -42,11 +42,9 @@ struct PathStart {
 /// It has these functions, all [rt]:
 ///   Followed follow(double side, Foot& foot)  follows the held foot to p, over edges by the rule of atEdge()
 ///   Foot nearest()                            returns the nearest foot of all faces; status kNearest if it is certain
-///   bool enter(PathStart from, Sides, double& side)  finds the first face that the path from `from` to p enters
-///   through a
-///                                             side that is felt; holds this face and sets `side` to that side.
-///                                             On entry, `side` is the side on which `from` counts if it is almost
-///                                             on a face
+///   bool enter(PathStart, Sides, double& side)  finds the first face that the path to p enters through a side that
+///                                             is felt; holds this face and sets `side` to that side. On entry,
+///                                             `side` is the side on which the start counts if it is almost on a face
 ///   void holdNearest()                        holds the nearest foot from now on
 ///   void release()                            ends the held contact
 /// The feet from these functions have outward normals. This class turns them to the side that is felt.

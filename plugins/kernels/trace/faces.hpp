@@ -66,9 +66,11 @@ class Tracer::Faces {
   /// firstCrossing() may not find near a pole or a crease, or with the evaluations that are left.
   bool cameThrough(const Eigen::Vector3d& way, double side) noexcept {
     if (!isBehind(side) || !(contact::atLeast(nearest_) <= way.norm())) return false;
-    // Another layer of a rolled sheet may be nearer now. The path began on the same side of it.
-    if (!tracer_.model_.closed(shell())) grant(TraceOptions::kForSide);
-    if (!tracer_.model_.closed(shell()) && tracer_.isOnSameSide(tracer_.nearestTrack(part_), p_ - way)) return false;
+    if (!tracer_.model_.closed(shell())) {
+      // Another layer of a rolled sheet may be nearer now. The path began on the same side of it.
+      grant(TraceOptions::kForSide);
+      if (tracer_.isOnSameSide(tracer_.nearestTrack(part_), p_ - way)) return false;
+    }
     tracer_.undecided_ = false;
     holdNearest();
     return true;

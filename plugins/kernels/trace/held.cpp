@@ -15,7 +15,9 @@ using contact::Followed;
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
-constexpr double kMet = 1e-8;       ///< [m] a point that is nearer to a surface than this counts as on it
+constexpr double kMet = 1e-8;  ///< [m] a point that is nearer to a surface than this counts as on it
+/// A budget of fewer evaluations may never decide whether a path enters; then it does where it cannot lead round.
+constexpr int kToDecide = 6;
 constexpr int kMostCandidates = 8;  ///< most surfaces that are tested for a crossing
 /// Share of the path: a crossing that lies before its start or beyond its end by less than this still counts.
 constexpr double kBeyond = 1e-9;
@@ -215,14 +217,14 @@ Tracer::Crossing Tracer::firstCrossing(int part, const Path& path, const Vector3
     crossing.side = path.touching;
     crossing.track = track;
     const bool of_closed = path.closed >= 0 && shellOf(track) == path.closed, undecided = undecided_;
+    crossing.sure = of_closed && (model_.closed(path.closed) || options.max_evaluations < kToDecide);
     const bool entered = crosses(track, path.from.point, p, options, crossing);
     if (of_closed) undecided_ = undecided;  // the side of the nearest foot decides there
     if (!entered || !(crossing.share < first.share)) continue;
-    const auto sides = options.rule.sides;
     // A path that seems to begin on the other side of a shell without an end near by has come through it before, at an
     // edge or corner.
     if (of_closed && crossing.side != path.touching) continue;
-    if (sides == contact::Sides::kBoth || (sides == contact::Sides::kFront) == (crossing.side > 0)) first = crossing;
+    if (shell || (options.rule.sides == contact::Sides::kFront) == (crossing.side > 0)) first = crossing;
   }
   return first;
 }
@@ -299,7 +301,7 @@ bool Tracer::crosses(int track, const Vector3d& from, const Vector3d& p, const T
   crossing.share = met.share;
   if (met.found && met.share >= -kBeyond && met.share <= 1 + kBeyond && crossing.side * way.dot(met.normal) < 0)
     return true;
-  if (shell && !met.found && budget_ <= 0) {
+  if (shell && !met.found && budget_ <= 0 && !crossing.sure) {
     undecided_ = true;
     return false;
   }

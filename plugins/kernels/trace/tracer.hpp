@@ -21,9 +21,9 @@ enum class Method : std::uint8_t {
 
 struct TraceOptions {
   Method method = Method::kNewton;
-  int iterations = 1;       ///< steps of kDirect per tick on a surface, 1 to 4
-  double tolerance = 1e-9;  ///< [m] kNewton stops when the estimated error of the foot point is below this
-  static constexpr int kForSide = 6;
+  int iterations = 1;                 ///< steps of kDirect per tick on a surface, 1 to 4
+  double tolerance = 1e-9;            ///< [m] kNewton stops when the estimated error of the foot point is below this
+  static constexpr int kForSide = 6;  ///< evaluations that tell on which side of an open shell a path began
   /// most evaluations of surfaces in one tick, over all surfaces; kForSide more where a probe seems to have come
   /// through an open shell, since the side from which the shell is felt depends on them
   int max_evaluations = 12;
@@ -81,6 +81,7 @@ class Tracer {
     double share = 2;  ///< fraction of the probe's path at which it crosses the face, 0 to 1; 2 if there is no crossing
     double side = 1;   ///< side of the face through which the probe enters: 1 front, -1 back
     int track = -1;
+    bool sure = false;  ///< a path that ends beyond the surface has crossed it, since it cannot lead round its shell
   };
 
   /// What firstCrossing() knows of the path.
