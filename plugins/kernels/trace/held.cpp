@@ -15,9 +15,7 @@ using contact::Followed;
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
-constexpr double kMet = 1e-8;  ///< [m] a point that is nearer to a surface than this counts as on it
-/// A budget of fewer evaluations may never decide whether a path enters; then it does where it cannot lead round.
-constexpr int kToDecide = 6;
+constexpr double kMet = 1e-8;       ///< [m] a point that is nearer to a surface than this counts as on it
 constexpr int kMostCandidates = 8;  ///< most surfaces that are tested for a crossing
 /// Share of the path: a crossing that lies before its start or beyond its end by less than this still counts.
 constexpr double kBeyond = 1e-9;
@@ -217,7 +215,7 @@ Tracer::Crossing Tracer::firstCrossing(int part, const Path& path, const Vector3
     crossing.side = path.touching;
     crossing.track = track;
     const bool of_closed = path.closed >= 0 && shellOf(track) == path.closed, undecided = undecided_;
-    crossing.sure = of_closed && (model_.closed(path.closed) || options.max_evaluations < kToDecide);
+    crossing.sure = of_closed && model_.closed(path.closed);
     const bool entered = crosses(track, path.from.point, p, options, crossing);
     if (of_closed) undecided_ = undecided;  // the side of the nearest foot decides there
     if (!entered || !(crossing.share < first.share)) continue;

@@ -150,7 +150,8 @@ Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
     forgetContact();
     return nothing(FootStatus::kInvalid);
   }
-  const int budget = std::max(options.max_evaluations, 1);
+  const bool shell = options.rule.sides == contact::Sides::kBoth;
+  const int budget = std::max(options.max_evaluations, shell ? TraceOptions::kForShell : 1);
   budget_ = budget;
   if (nearest_ >= 0) [[likely]]
     // This takes longest and depends on nothing below. It comes first, so that the processor does the rest in parallel.

@@ -24,6 +24,9 @@ struct TraceOptions {
   int iterations = 1;                 ///< steps of kDirect per tick on a surface, 1 to 4
   double tolerance = 1e-9;            ///< [m] kNewton stops when the estimated error of the foot point is below this
   static constexpr int kForSide = 6;  ///< evaluations that tell on which side of an open shell a path began
+  /// evaluations that a tick has at least where both sides are felt: with fewer, a press at a pole, seam or fold may
+  /// fall through
+  static constexpr int kForShell = 6;
   /// most evaluations of surfaces in one tick, over all surfaces; kForSide more where a probe seems to have come
   /// through an open shell, since the side from which the shell is felt depends on them
   int max_evaluations = 12;

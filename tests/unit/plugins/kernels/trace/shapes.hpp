@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// Models of config/models and their closed forms, and random patches.
 #pragma once
+#include <array>
 #include <cmath>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "kernels/trace/model.hpp"
 #include "traced_shape/model_file.hpp"
@@ -28,6 +30,24 @@ inline double signedDistance(const std::string& name, const Eigen::Vector3d& p) 
   }
   const double aside = r - 0.04, above = std::abs(p.y()) - 0.05;  // cylinder
   return std::hypot(std::max(aside, 0.0), std::max(above, 0.0)) + std::min(std::max(aside, above), 0.0);
+}
+
+/// Turns a curve about the y axis. @param profile radius, y and weight of the control points [m]
+inline spline::SurfaceData turned(const std::vector<std::array<double, 3>>& profile) {
+  const double w = std::sqrt(0.5);
+  const std::array<std::array<double, 3>, 9> circle{
+      {{1, 0, 1}, {1, 1, w}, {0, 1, 1}, {-1, 1, w}, {-1, 0, 1}, {-1, -1, w}, {0, -1, 1}, {1, -1, w}, {1, 0, 1}}};
+  spline::SurfaceData data;
+  data.degree = {2, static_cast<int>(profile.size()) - 1};
+  data.knots[0] = {0, 0, 0, .25, .25, .5, .5, .75, .75, 1, 1, 1};
+  data.knots[1].assign(profile.size(), 0);
+  data.knots[1].insert(data.knots[1].end(), profile.size(), 1);
+  for (const auto& [z, x, weight] : circle)
+    for (const auto& [radius, y, own] : profile) {
+      data.points.emplace_back(radius * x, y, radius * z);
+      data.weights.push_back(weight * own);
+    }
+  return data;
 }
 
 /// A bicubic patch of 100 mm with random bumps, on a random knot vector.

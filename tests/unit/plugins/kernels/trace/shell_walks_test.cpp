@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hand.hpp"
+#include "shapes.hpp"
 #include "traced_shape/model_file.hpp"
 
 namespace hapticd::trace {
@@ -328,24 +329,6 @@ TEST(Held, ALayerOfARolledSheetIsNotEnteredBesideIt) {
     }
     EXPECT_EQ(entered, 0) << step;
   }
-}
-
-/// Turns a curve about the y axis. @param profile radius, y and weight of the control points [m]
-spline::SurfaceData turned(const std::vector<std::array<double, 3>>& profile) {
-  const double w = std::sqrt(0.5);
-  const std::array<std::array<double, 3>, 9> circle{
-      {{1, 0, 1}, {1, 1, w}, {0, 1, 1}, {-1, 1, w}, {-1, 0, 1}, {-1, -1, w}, {0, -1, 1}, {1, -1, w}, {1, 0, 1}}};
-  spline::SurfaceData data;
-  data.degree = {2, static_cast<int>(profile.size()) - 1};
-  data.knots[0] = {0, 0, 0, .25, .25, .5, .5, .75, .75, 1, 1, 1};
-  data.knots[1].assign(profile.size(), 0);
-  data.knots[1].insert(data.knots[1].end(), profile.size(), 1);
-  for (const auto& [z, x, weight] : circle)
-    for (const auto& [radius, y, own] : profile) {
-      data.points.emplace_back(radius * x, y, radius * z);
-      data.weights.push_back(weight * own);
-    }
-  return data;
 }
 
 TEST(Held, AnOpenShellIsEnteredAtItsPole) {
