@@ -30,7 +30,7 @@ constexpr Foreign kForeign[] = {
 
 /// Returns the first part of a unit that is known not to be SI, such as "mm" in "N/mm"; nullptr if there is none.
 const Foreign* foreignPart(std::string_view unit) {
-  const auto letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '%' || c < 0; };
+  const auto letter = [](unsigned char c) { return std::isalpha(c) != 0 || c == '%' || c >= 0x80; };
   for (size_t i = 0; i < unit.size();) {
     size_t end = i;
     while (end < unit.size() && letter(unit[end])) ++end;
