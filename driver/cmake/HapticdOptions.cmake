@@ -30,6 +30,9 @@ endif()
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 set(HAPTICD_MODULE_DIR lib/hapticd) # plugins/ and devices/ below it
 
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+  set(HAPTICD_ARM64 ON)
+endif()
 add_library(hapticd_options INTERFACE)
 target_compile_options(hapticd_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow $<$<BOOL:${HAPTICD_WERROR}>:-Werror>
@@ -42,7 +45,10 @@ target_compile_options(hapticd_options INTERFACE
   # g++ collects garbage from 512 MB on, not from 128: a sixth of its time was that
   $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288>
   # errno and traps are never read from mathematics here; both keep sqrt and fma out of line.
-  -fno-math-errno -fno-trapping-math)
+  -fno-math-errno -fno-trapping-math
+  # The same bits on every machine: no product is fused with a sum, unless a source asks for it. On arm64 Eigen would fuse by
+  # intrinsics where it sees this macro.
+  -ffp-contract=off $<$<BOOL:${HAPTICD_ARM64}>:-U__ARM_FEATURE_FMA>)
 # Where headers are precompiled, g++ 12 says of std::string what it otherwise knows to be untrue; other presets keep these.
 set(HAPTICD_PRECOMPILED_WARNINGS -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
 if(HAPTICD_SANITIZE)

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "kernels/double_double/double_double.hpp"
 #include "kernels/medial/oscillator.hpp"
 
 namespace hapticd::medial {
@@ -13,7 +14,7 @@ namespace {
 constexpr int kSize = 4;    ///< size of the matrix: x, v, y and the force
 constexpr int kTerms = 20;  ///< terms of the exponential series of a matrix of norm 1/2; the error is below 1e-24
 
-using Matrix = std::array<std::array<long double, kSize>, kSize>;
+using Matrix = std::array<std::array<DoubleDouble, kSize>, kSize>;
 
 Matrix product(const Matrix& a, const Matrix& b) noexcept {
   Matrix c{};
@@ -32,20 +33,20 @@ Matrix identity() noexcept {
 /// Returns exp(a) by scaling and squaring: halves `a` repeatedly, sums the series, and squares the result (Golub & Van
 /// Loan, Matrix Computations, 9.3.1).
 Matrix exponential(Matrix a) noexcept {
-  long double norm = 0;
+  DoubleDouble norm = 0;
   for (const auto& row : a) {
-    long double sum = 0;
-    for (const long double x : row) sum += std::fabs(x);
+    DoubleDouble sum = 0;
+    for (const DoubleDouble& x : row) sum += abs(x);
     norm = std::max(norm, sum);
   }
-  const int halvings = norm > 0.5L ? std::max(0, std::ilogb(norm) + 2) : 0;
+  const int halvings = norm > 0.5 ? std::max(0, std::ilogb(norm.high) + 2) : 0;
   for (auto& row : a)
-    for (long double& x : row) x = std::ldexp(x, -halvings);
+    for (DoubleDouble& x : row) x = ldexp(x, -halvings);
   Matrix sum = identity(), term = identity();
   for (int k = 1; k <= kTerms; ++k) {
     term = product(term, a);
     for (auto& row : term)
-      for (long double& x : row) x /= k;
+      for (DoubleDouble& x : row) x /= k;
     for (std::size_t i = 0; i < kSize; ++i)
       for (std::size_t j = 0; j < kSize; ++j) sum[i][j] += term[i][j];
   }
@@ -72,7 +73,7 @@ ViscoelasticStep oscillate(const SurfaceElement& e, double dt) noexcept {
 /// follows from the other states.
 ViscoelasticStep relax(const SurfaceElement& e, double dt) noexcept {
   Matrix a{};
-  const long double k = static_cast<long double>(e.stiffness) + e.branch, k1 = e.branch, b = e.damping, m = e.mass;
+  const DoubleDouble k = DoubleDouble(e.stiffness) + e.branch, k1 = e.branch, b = e.damping, m = e.mass;
   const bool heavy = e.mass > 0;
   if (heavy) {
     a[0][1] = 1;
@@ -80,9 +81,10 @@ ViscoelasticStep relax(const SurfaceElement& e, double dt) noexcept {
   } else {
     a[0] = {-k / b, 0, k1 / b, 1 / b};
   }
-  a[2] = {1 / static_cast<long double>(e.branch_time), 0, -1 / static_cast<long double>(e.branch_time), 0};
+  const DoubleDouble rate = DoubleDouble(1) / e.branch_time;
+  a[2] = {rate, 0, -rate, 0};
   for (auto& row : a)
-    for (long double& x : row) x *= dt;
+    for (DoubleDouble& x : row) x *= dt;
   const Matrix s = exponential(a);
   const auto at = [&s](std::size_t i, std::size_t j) { return static_cast<double>(s[i][j]); };
   ViscoelasticStep step{at(0, 0), at(0, 1), at(0, 2), at(0, 3), at(1, 0), at(1, 1),

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "kernels/double_double/double_double.hpp"
 #include "kernels/spline/surface_data.hpp"
 
 namespace hapticd::spline {
@@ -13,7 +14,7 @@ namespace {
 /// bounds.
 constexpr double kLeastPower = 1e-60, kMostPower = 1e60;
 
-using Real = long double;  // the table is made only once, and its coefficients should be right to the last bit
+using Real = DoubleDouble;  // the table is made only once, and its coefficients should be right to the last bit
 using Taylor = std::array<std::array<Real, kMaxDegree + 1>, kMaxDegree + 1>;
 
 /// Returns in row k the k-th Taylor coefficients of the span's basis functions at the cell's origin. They come from the
@@ -21,7 +22,7 @@ using Taylor = std::array<std::array<Real, kMaxDegree + 1>, kMaxDegree + 1>;
 Taylor taylorCoefficients(const Axis& axis, const Cell& cell) {
   const int p = axis.degree();
   const double* knots = axis.knots().data() + cell.knot;
-  const auto width = [knots](int r, int j) { return static_cast<Real>(knots[r + 1]) - knots[r + 1 - j]; };
+  const auto width = [knots](int r, int j) { return Real(knots[r + 1]) - knots[r + 1 - j]; };
   Taylor result{};
   for (int k = 0; k <= p; ++k) {
     auto& N = result[static_cast<std::size_t>(k)];
@@ -32,8 +33,8 @@ Taylor taylorCoefficients(const Axis& axis, const Cell& cell) {
         auto& value = N[static_cast<std::size_t>(r)];
         const Real part = value / width(r, j);
         const bool differ = j > p - k;
-        const Real falls = differ ? -part * j / (j - (p - k)) : (knots[r + 1] - static_cast<Real>(cell.origin)) * part;
-        const Real rises = differ ? -falls : (static_cast<Real>(cell.origin) - knots[r + 1 - j]) * part;
+        const Real falls = differ ? -part * j / (j - (p - k)) : (knots[r + 1] - Real(cell.origin)) * part;
+        const Real rises = differ ? -falls : (Real(cell.origin) - knots[r + 1 - j]) * part;
         value = saved + falls;
         saved = rises;
       }
@@ -45,7 +46,7 @@ Taylor taylorCoefficients(const Axis& axis, const Cell& cell) {
 
 struct Term {
   Real x = 0, y = 0, z = 0, w = 0;
-  void add(Real factor, const Term& term) {
+  void add(const Real& factor, const Term& term) {
     x += factor * term.x, y += factor * term.y, z += factor * term.z, w += factor * term.w;
   }
 };
@@ -79,11 +80,11 @@ Window windowOf(const Net& net, const Axis& u, const Axis& v, const Cell& cu, co
       const auto at = (cu.knot - u.degree() + i) * v.count() + cv.knot - v.degree() + j;
       const Quad& point = net.points[static_cast<std::size_t>(at)];
       const Real weight = net.rational() ? point.w : 1;
-      const Real x = static_cast<Real>(point.x) - window.origin.x, y = static_cast<Real>(point.y) - window.origin.y,
-                 z = static_cast<Real>(point.z) - window.origin.z;
+      const Real x = Real(point.x) - window.origin.x, y = Real(point.y) - window.origin.y,
+                 z = Real(point.z) - window.origin.z;
       window.terms[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = {x * weight, y * weight, z * weight,
                                                                                 net.rational() ? weight : 0};
-      const double extent = static_cast<double>(std::max({std::abs(x), std::abs(y), std::abs(z)}));
+      const double extent = static_cast<double>(std::max({abs(x), abs(y), abs(z)}));
       window.extent = std::max(window.extent, extent);
       if (net.rational()) window.least_weight = std::min(window.least_weight, point.w);
     }
@@ -93,24 +94,24 @@ Window windowOf(const Net& net, const Axis& u, const Axis& v, const Cell& cu, co
 
 /// Sums of the magnitudes of a cell's terms at its far corner.
 struct Growth {
-  Real position = 0, weight = 0;
-  void add(const Term& term, Real power) {
+  double position = 0, weight = 0;
+  void add(const Quad& term, double power) {
     position += std::max({std::abs(term.x), std::abs(term.y), std::abs(term.z)}) * power;
     weight += std::abs(term.w) * power;
   }
   bool acceptable(const Window& window) const {
-    const Real bound = static_cast<Real>(kMaxTableGrowth) * window.least_weight;
+    const double bound = kMaxTableGrowth * window.least_weight;
     return position <= bound * window.extent && weight <= bound;
   }
 };
 
-Real farthest(const Cell& cell) {
+double farthest(const Cell& cell) {
   return std::max(cell.end - cell.origin, cell.origin - cell.lo);
 }
 
 bool powersFit(const Axis& axis) {
   for (const Cell& cell : axis.cells()) {
-    const Real power = std::pow(farthest(cell), axis.degree());
+    const double power = std::pow(farthest(cell), axis.degree());
     if (!(power > kLeastPower && power < kMostPower)) return false;
   }
   return true;
@@ -122,29 +123,35 @@ void append(const Quad& quad, bool rational, Table& table) {
   if (rational) table.cells.push_back(quad.w);
 }
 
+/// Sums over the control points along v: row l holds the l-th Taylor coefficient of each column of the window.
+using Columns = std::array<std::array<Term, kMaxDegree + 1>, kMaxDegree + 1>;
+
+Columns columnsOf(const Window& window, const Taylor& tv, std::array<int, 2> degree) {
+  Columns columns;
+  for (std::size_t l = 0; l <= static_cast<std::size_t>(degree[1]); ++l)
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(degree[0]); ++i)
+      for (std::size_t j = 0; j <= static_cast<std::size_t>(degree[1]); ++j)
+        columns[l][i].add(tv[l][j], window.terms[i][j]);
+  return columns;
+}
+
 /// Appends one cell to the table. Returns false if the cell would lose digits.
-bool appendCell(const Window& window, const Taylor& tu, const Taylor& tv, std::array<Real, 2> reach,
+bool appendCell(const Window& window, const Taylor& tu, const Taylor& tv, std::array<double, 2> reach,
                 std::array<int, 2> degree, bool rational, Table& table) {
+  const Columns columns = columnsOf(window, tv, degree);
   Growth growth;
   append(window.origin, rational, table);
-  Real power_u = 1;
+  double power_u = 1;
   for (int k = 0; k < table.size_u; ++k, power_u *= reach[0]) {
-    Real power = power_u;
+    double power = power_u;
     for (int l = 0; l < table.size_v; ++l, power *= reach[1]) {
       Term sum;
-      for (int i = 0; k <= degree[0] && i <= degree[0]; ++i) {
-        const auto a = static_cast<std::size_t>(i);
-        Term row;
-        for (int j = 0; l <= degree[1] && j <= degree[1]; ++j) {
-          const auto b = static_cast<std::size_t>(j);
-          row.add(tv[static_cast<std::size_t>(l)][b], window.terms[a][b]);
-        }
-        sum.add(tu[static_cast<std::size_t>(k)][a], row);
-      }
-      growth.add(sum, power);
-      append({static_cast<double>(sum.x), static_cast<double>(sum.y), static_cast<double>(sum.z),
-              static_cast<double>(sum.w)},
-             rational, table);
+      for (std::size_t i = 0; k <= degree[0] && l <= degree[1] && i <= static_cast<std::size_t>(degree[0]); ++i)
+        sum.add(tu[static_cast<std::size_t>(k)][i], columns[static_cast<std::size_t>(l)][i]);
+      const Quad rounded{static_cast<double>(sum.x), static_cast<double>(sum.y), static_cast<double>(sum.z),
+                         static_cast<double>(sum.w)};
+      growth.add(rounded, power);
+      append(rounded, rational, table);
     }
   }
   return growth.acceptable(window);
