@@ -337,7 +337,11 @@ int makeNew(const Command& command, NewDeviceArguments options) {
   if (const std::string wrong = wrongIn(options); !wrong.empty()) return fail(kBadInput, wrong);
   std::ofstream out(file);
   out << textOf(options) << std::flush;
-  if (!out) return fail(kFailed, file.string() + " is not writable");
+  if (!out) {
+    if (out.is_open()) fs::remove(file, error);  // a file that is not complete
+    return fail(kFailed,
+                file.string() + ": cannot be written, expected a disk with room and a folder that you may write to");
+  }
   document::Problems problems = scene::loadDevice(file, catalog()).problems;
   if (problems.empty()) problems = diagnostics::tryDevice(file, catalog());
   printProblems(problems, stderr);

@@ -52,7 +52,10 @@ int makeTwin(const std::string& file, const std::string& wanted) {
   if (fs::exists(out, error)) return fail(kBadInput, out + " exists already, expected the name of a new file");
   std::ofstream stream(out);
   stream << *text << std::flush;
-  if (!stream) return fail(kFailed, out + " is not writable");
+  if (!stream) {
+    if (stream.is_open()) fs::remove(out, error);  // a file that is not complete
+    return fail(kFailed, out + ": cannot be written, expected a disk with room and a folder that you may write to");
+  }
   if (const int wrong = checkTwinFile(file, out); wrong != kWorked) return wrong;
   if (const std::string borrowed = diagnostics::borrowedByTwin(*root); !borrowed.empty())
     std::fprintf(stderr, "warning: %s: %s\n", file.c_str(), borrowed.c_str());

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd`: one program, with one file per subcommand.
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 #include <string>
 #include <string_view>
@@ -63,6 +69,19 @@ std::string unknownOption(const hapticd::cli::Command& app, int argc, char** arg
   return "";
 }
 
+/// Returns the exit code of the program. It is kFailed if a file that standard output was sent to is not complete. A
+/// pipe is not judged, because its reader may end when it has read enough.
+int codeOf(int code) {
+  using namespace hapticd::cli;
+  errno = 0;
+  const bool whole = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  struct stat file{};
+  const bool pipe = fstat(STDOUT_FILENO, &file) != 0 || S_ISFIFO(file.st_mode) || S_ISSOCK(file.st_mode);
+  if (whole || pipe || code != kWorked) return code;
+  return fail(kFailed, std::string("standard output cannot be written") +
+                           (errno != 0 ? std::string(": ") + std::strerror(errno) : "") + "; it is not complete");
+}
+
 }  // namespace
 
 // NOLINTNEXTLINE(bugprone-exception-escape): an exception from a wrong table of commands ends the program with a
@@ -88,11 +107,11 @@ int main(int argc, char** argv) {
   if (const std::string wrong = unknownCommand(app, argc, argv); !wrong.empty()) return fail(kBadInput, wrong);
   if (const std::string wrong = unknownOption(app, argc, argv); !wrong.empty()) return fail(kBadInput, wrong);
   try {
-    if (const auto ended = app.parse(argc, argv)) return *ended;
+    if (const auto ended = app.parse(argc, argv)) return codeOf(*ended);
   } catch (const BadDaemonFile& error) {
     return fail(kBadInput, error.what());
   } catch (const std::exception& error) {
     return fail(kFailed, error.what());
   }
-  return exit_code;
+  return codeOf(exit_code);
 }

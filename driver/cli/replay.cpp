@@ -184,10 +184,11 @@ int replay(const ReplayArguments& options) {
   const GuardedCommand guarded;
   const TickWatch watched;
   const SetupErrors once;
-  auto again = servo::Replay::prepare(**recording, *run, logToTerminal);
-  if (!again) return fail(kBadInput, options.file + ": " + again.error());
-  servo::ReplayOutcome outcome = (*again)->run();
   const std::string& damage = (*recording)->damage();
+  auto again = servo::Replay::prepare(**recording, *run, logToTerminal);
+  if (!again)
+    return fail(kBadInput, options.file + ": " + again.error() + (damage.empty() ? "" : ", because " + damage));
+  servo::ReplayOutcome outcome = (*again)->run();
   if (!damage.empty()) outcome.note += (outcome.note.empty() ? "" : "; ") + damage;
   const int code = options.json ? printJson(outcome) : print(outcome);
   return code == kWorked && !damage.empty() ? kPartly : code;

@@ -24,6 +24,27 @@ std::string onlyWithBeginning(std::string_view word, const std::vector<std::stri
   return only;
 }
 
+/// Returns the words of a name that "_" separates, in alphabetical order.
+std::vector<std::string> partsOf(std::string_view name) {
+  std::vector<std::string> words(1);
+  for (const char letter : name) {
+    if (letter == '_')
+      words.emplace_back();
+    else
+      words.back() += letter;
+  }
+  std::sort(words.begin(), words.end());
+  return words;
+}
+
+/// Returns the candidate with the same words in another order; "" if there is none.
+std::string withSameWords(std::string_view name, const std::vector<std::string>& candidates) {
+  const std::vector<std::string> words = partsOf(name);
+  const auto same = [&words](const std::string& candidate) { return partsOf(candidate) == words; };
+  const auto found = std::find_if(candidates.begin(), candidates.end(), same);
+  return words.size() > 1 && found != candidates.end() ? *found : "";
+}
+
 }  // namespace
 
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
@@ -37,7 +58,8 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
 }
 
 std::string suggestionOfName(std::string_view name, const std::vector<std::string>& candidates) {
-  std::string meant = nearestWord(name, candidates);
+  std::string meant = withSameWords(name, candidates);
+  if (meant.empty()) meant = nearestWord(name, candidates);
   if (meant.empty()) meant = onlyWithBeginning(name, candidates);
   return meant.empty() ? "" : " (did you mean \"" + meant + "\"?)";
 }

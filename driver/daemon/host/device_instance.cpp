@@ -5,8 +5,10 @@
 #include <cstring>
 #include <utility>
 
+#include "base/owner_file.hpp"
 #include "host/call_trail.hpp"
 #include "host/class_table.hpp"
+#include "host/file_stamp.hpp"
 #include "host/kinematics_check.hpp"
 
 namespace hapticd::host {
@@ -82,6 +84,7 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
                  " lacks a required function; expected all functions of version 1.0 of the interface"};
 
   setCodeOwner(reinterpret_cast<const void*>(found->create), instance->owner_);
+  setFileOfOwner(instance->owner_, {device.library.string(), identityLoaded(device.library), false});
   const OwnerScope calling(instance->owner_);
   instance->class_ = found;
   noteCall("create");

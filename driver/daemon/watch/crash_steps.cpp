@@ -129,10 +129,11 @@ void printForeign(Line& line) noexcept {
   line.add("\n  ");
 }
 
-/// Adds the command that tests the file of a plugin.
+/// Adds the command that tests the file of a plugin or a device module.
 Line& addCheck(Line& line, const Owner* owner) noexcept {
   const char* path = pathOf(owner);
-  return line.add("hapticd plugin check ").add(*path != '\0' ? path : "FILE.so");
+  line.add(owner->device ? "hapticd device check " : "hapticd plugin check ");
+  return line.add(*path != '\0' ? path : "FILE.so");
 }
 
 void printRemedy(Line& line, bool drives) noexcept {
@@ -145,8 +146,9 @@ void printRemedy(Line& line, bool drives) noexcept {
     const char* why = strerrordesc_np(crash_steps.not_remembered);
     line.add("it could not be put in quarantine, so the next start loads it again: ").add(crash_steps.dir);
     line.add(": ").add(why != nullptr ? why : "not written").add("\n  fix: remove it from the scene\n");
-  } else if (crash_steps.culprit != nullptr && !crash_steps.culprit->device) {
-    line.add(drives ? "the run" : "the command").add(" has ended\n  fix: repair the plugin; ");
+  } else if (crash_steps.culprit != nullptr) {
+    line.add(drives ? "the run" : "the command").add(" has ended\n  fix: repair the ");
+    line.add(crash_steps.culprit->device ? "module; " : "plugin; ");
     addCheck(line, crash_steps.culprit).add(" looks for the cause\n");
   } else if (crash_steps.suspicion != Suspicion::kNone && foreignOwner(0) != nullptr) {
     addCheck(line.add("the program has ended\n  fix: test that code first ("), foreignOwner(0))

@@ -35,11 +35,13 @@ std::string SampleCheck::look(const Reading& reading) {
   if ((sample.flags & HDV_S_FAULT) != 0) return "samples carry HDV_S_FAULT" + at + ": the arm would get no force";
   if (const std::string name = wrongNumbers(sample); !name.empty())
     return "sample." + name + " is not a finite number" + at + ": a run would end the force there";
-  constexpr uint64_t kAhead = 100'000'000;  // [ns]
-  fresh_ += reads_ == 1 || sample.sequence != last_ ? 1 : 0;
+  constexpr uint64_t kFar = 100'000'000;  // [ns]
+  const bool fresh = reads_ == 1 || sample.sequence != last_;
+  fresh_ += fresh ? 1 : 0;
   last_ = sample.sequence;
   timeless_ += sample.time_ns == 0 ? 1 : 0;
-  ahead_ += sample.time_ns > reading.now_ns + kAhead ? 1 : 0;
+  ahead_ += sample.time_ns > reading.now_ns + kFar ? 1 : 0;
+  behind_ += fresh && sample.time_ns != 0 && sample.time_ns + kFar < reading.now_ns ? 1 : 0;
   flags_ |= sample.flags, buttons_ |= sample.buttons;
   for (uint32_t i = 0; i < info_.joint_count && beyond_ < 0; ++i) {
     const double way = info_.position_max[i] - info_.position_min[i];
@@ -67,6 +69,10 @@ Finding SampleCheck::sum() const {
     return Finding::warned(
         "hdv_sample.time_ns is more than 0.1 s ahead of now_ns; expected the time of the measurement, on the "
         "clock of now_ns");
+  if (2 * behind_ > fresh_)
+    return Finding::warned(
+        "hdv_sample.time_ns is more than 0.1 s behind now_ns in new samples; expected the time of the measurement, in "
+        "ns on the clock of now_ns");
   if (beyond_ >= 0) {
     std::snprintf(
         text, sizeof text,

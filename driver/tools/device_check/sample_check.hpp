@@ -19,7 +19,7 @@ class SampleCheck {
  private:
   std::string wrongNumbers(const hdv_sample& sample) const;
   const hdv_info& info_;
-  uint64_t reads_ = 0, fresh_ = 0, last_ = 0, timeless_ = 0, ahead_ = 0, lost_ = 0;
+  uint64_t reads_ = 0, fresh_ = 0, last_ = 0, timeless_ = 0, ahead_ = 0, behind_ = 0, lost_ = 0;
   uint32_t flags_ = 0, buttons_ = 0;
   int beyond_ = -1;  ///< index of a joint that was far beyond its stops; -1 if none was
   double beyond_at_ = 0;

@@ -34,7 +34,8 @@ Finding ok(std::string name, std::string state) {
 
 /// The command if hapticd was built from its sources; the packages do the same.
 constexpr const char* kInstallLimits =
-    "sudo install -m 644 config/systemd/70-hapticd.limits /etc/security/limits.d/70-hapticd.conf";
+    "in the folder of hapticd's sources: sudo install -m 644 config/systemd/70-hapticd.limits "
+    "/etc/security/limits.d/70-hapticd.conf";
 
 /// Checks real-time rights by asking for them, not by reading limits.
 Finding checkScheduler() {

@@ -17,6 +17,7 @@
 #include "diagnostics/overlapping_models.hpp"
 #include "diagnostics/radius_advice.hpp"
 #include "diagnostics/unreachable_models.hpp"
+#include "diagnostics/walk_end.hpp"
 #include "diagnostics/walk_warnings.hpp"
 #include "host/child.hpp"
 #include "host/device_instance.hpp"
@@ -203,6 +204,7 @@ std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<
   servo::Core& core = (*world)->core();
   servo::Lockstep lockstep = (*world)->lockstep();
   if (!tips.empty()) {
+    const StepWatch watch;
     core.publish(0, tips);
     lockstep.before(0);
     core.tick(0, 0, tips);
@@ -339,8 +341,16 @@ document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool
   if (scene.models.empty() || scene.models.size() > kMostModels) return warnings;
   if (known) warnings = fastHands(scene);
   const bool may_walk = known && moveAsMeant(scene, warnings);
-  const auto told = host::runInChild([&] { return tryTips(scene, may_walk, strays, all_models); }, kHandLimitMs);
-  if (!told) return warnings;  // the trial of the models reports a model that crashes
+  host::ChildProgress trail;
+  const auto work = [&] {
+    noteEnd(scene, trail);
+    return tryTips(scene, may_walk, strays, all_models);
+  };
+  const auto told = host::runInChild(work, kHandLimitMs);
+  if (!told) {
+    reportWalkEnd(scene, told.error(), trail, warnings);
+    return warnings;
+  }
   host::Unpacker in(*told);
   const uint32_t far = in.count();
   const std::string far_arms = in.text();

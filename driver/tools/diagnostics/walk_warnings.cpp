@@ -13,6 +13,7 @@
 #include "diagnostics/hand_walk.hpp"
 #include "diagnostics/key_place.hpp"
 #include "diagnostics/radius_advice.hpp"
+#include "diagnostics/walk_end.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -252,7 +253,10 @@ void checkWalkOfModel(const scene::Scene& scene, size_t index, const Walk& walk,
 document::Problems warnOfWalk(const scene::Scene& scene, servo::World& world, const std::vector<bool>& strays,
                               bool all_models) {
   document::Problems warnings;
-  const auto walk = walkHands(scene, world);
+  const auto walk = [&] {
+    const StepWatch watch;
+    return walkHands(scene, world);
+  }();
   if (!walk) return warnings;
   for (size_t i = 0; i < scene.models.size(); ++i) checkWalkOfModel(scene, i, *walk, world, warnings);
   for (uint32_t i = 0; i < scene.devices.size(); ++i)

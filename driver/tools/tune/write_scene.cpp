@@ -45,7 +45,8 @@ Result<void> writeScene(const Findings& findings, const std::string& from, const
        << ".\n# Chosen: " << nameOf(findings, chosen) << ":\n# " << reason(findings) << ".\n"
        << out.c_str() << "\n"
        << std::flush;
-  if (!file) return Error{to + ": the file cannot be written; expected a name in a folder that you may write to"};
+  if (!file)
+    return Error{to + ": the file cannot be written; expected a disk with room and a folder that you may write to"};
   return {};
 }
 

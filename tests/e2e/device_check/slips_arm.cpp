@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
@@ -48,7 +49,7 @@ struct SlipsArm : hapticd::Device {
     room_.assign(4, 0.0);
   }
   hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
-    sample.time_ns = now_ns;
+    sample.time_ns = is("read_microseconds") ? now_ns / 1000 : now_ns;
     sample.sequence = is("sequence") ? 1 : ++sequence_;
     sample.flags = HDV_S_CALIBRATED;
     const bool later = now_ns > start_ns_ + 1'000'000'000;
@@ -64,6 +65,7 @@ struct SlipsArm : hapticd::Device {
     if (is("read_sleeps")) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (is("read_stalls") && stalls_-- == 100) std::this_thread::sleep_for(std::chrono::seconds(1));
     if (is("read_hangs")) std::this_thread::sleep_for(std::chrono::seconds(100));
+    if (is("read_crashes")) std::raise(SIGSEGV);
     if (is("read_status")) return HSP_E_IO;
     return HSP_OK;
   }

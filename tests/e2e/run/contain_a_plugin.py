@@ -35,6 +35,9 @@ def sceneOf(folder, how):
 def crash(folder, environment, how, reasons):
     """`reasons`: any of them; a step that does not end meets the watchdog or the kernel's limit first."""
     scene = sceneOf(folder, how)
+    code, out, err = hapticd(environment, "check", scene)
+    check(f"{how}: check warns of it before a run, at the name of the plugin",
+          code == 0 and ":4:" in out and "model bad: when the hand was moved, its plugin " in out and f"plugin check {folder}" in out, (code, out, err))
     code, _, err = hapticd(environment, "run", scene, "--for", "1")
     check(f"{how}: exit code 1", code == 1, (code, err))
     check(f"{how}: the message names plugin, model, reason and cure",

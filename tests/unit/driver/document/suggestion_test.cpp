@@ -12,6 +12,12 @@ TEST(Suggestion, IsTheOnlyNameThatBeginsLikeTheWord) {
   EXPECT_EQ(suggestion("nur", {"nurbs_rigid"}), "");
 }
 
+TEST(Suggestion, IsTheNameWithTheSameWordsInAnotherOrder) {
+  EXPECT_EQ(suggestion("static_friction", {"friction_dynamic", "friction_static"}),
+            " (did you mean \"friction_static\"?)");
+  EXPECT_EQ(suggestion("static_drag", {"friction_static"}), "");
+}
+
 TEST(Listed, ShortensLongLists) {
   EXPECT_EQ(listed({"a", "b", "c"}, 3), "a, b, c");
   EXPECT_EQ(listed({"a", "b", "c"}, 2), "a, b, ... (3 in all)");
