@@ -45,8 +45,8 @@ DoubleDouble sqrt(const DoubleDouble& a) noexcept {
 }
 
 DoubleDouble exp(const DoubleDouble& a) noexcept {
-  constexpr double kLeast = -667;  // exp(-667) is 2e-290
-  if (a.high < kLeast) return 0.0;
+  constexpr double kMost = 667;  // exp(667) is 5e289
+  if (!(std::abs(a.high) < kMost)) return std::exp(a.high);
   const double powers = std::nearbyint(a.high / kLn2.high);
   const DoubleDouble rest = a - kLn2 * powers - kLn2Rest * powers;
   return ldexp(smallExpm1(rest) + 1.0, static_cast<int>(powers));
@@ -57,6 +57,11 @@ DoubleDouble expm1(const DoubleDouble& a) noexcept {
 }
 
 void sincos(const DoubleDouble& angle, DoubleDouble& sine, DoubleDouble& cosine) noexcept {
+  if (!(std::abs(angle.high) < 1e9)) {
+    sine = std::sin(angle.high);
+    cosine = std::cos(angle.high);
+    return;
+  }
   const double turns = std::nearbyint(angle.high / kHalfPi.high);
   const DoubleDouble rest =
       angle - exactProduct(kHalfPi.high, turns) - exactProduct(kHalfPi.low, turns) - kHalfPiRest * turns;

@@ -3,9 +3,9 @@
 /// available precision", 1971; Hida, Li & Bailey, "Algorithms for quad-double precision floating point arithmetic",
 /// 2001). They are for setting up: what a tick reads is rounded to double. A long double would be faster on x86, but it
 /// has 64 bits there and 113 on arm64, so its results would differ in the last bit of a double; these are the same
-/// everywhere. Errors are relative to the result: below 4e-32 for sums, products, quotients and roots, below 1e-29 for
-/// the functions (of sine and cosine relative to 1, and below 1e-29 times the argument). Overflow and NaN are not
-/// handled: numbers must stay between 1e-290 and 1e290.
+/// everywhere. Errors are below 1e-31 times the result for sums, products, quotients and roots, and below 1e-29 times
+/// the result (sine, cosine: 1) and the argument, if that is above 1, for functions. Sums, products, quotients and
+/// roots need numbers between 1e-290 and 1e290.
 #pragma once
 #include <cmath>
 
@@ -90,9 +90,9 @@ inline DoubleDouble ldexp(const DoubleDouble& a, int exponent) noexcept {
 }
 
 DoubleDouble sqrt(const DoubleDouble& a) noexcept;   ///< [any] of a >= 0
-DoubleDouble exp(const DoubleDouble& a) noexcept;    ///< [any] 0 if the result would be below 1e-290
+DoubleDouble exp(const DoubleDouble& a) noexcept;    ///< [any] with 53 bits beyond 1e-290 and 1e290
 DoubleDouble expm1(const DoubleDouble& a) noexcept;  ///< [any] exp(a) - 1, accurate near 0
-/// [any] Sets the sine and cosine of an angle [rad], for angles below 1e9.
+/// [any] Sets the sine and cosine of an angle [rad]; with the precision of a double from 1e9 on.
 void sincos(const DoubleDouble& angle, DoubleDouble& sine, DoubleDouble& cosine) noexcept;
 
 }  // namespace hapticd

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace hapticd {
@@ -58,6 +59,19 @@ TEST(DoubleDouble, TheFunctionsKeepTheirIdentities) {
     EXPECT_LT(error(s2, s * c * 2.0, 1), 1e6 * kFunction) << angle.high;
     EXPECT_LT(error(c2, c * c - s * s, 1), 1e6 * kFunction) << angle.high;
   }
+}
+
+TEST(DoubleDouble, TheFunctionsTakeWhatHasNoSuchNumber) {
+  const double infinity = std::numeric_limits<double>::infinity(), none = std::numeric_limits<double>::quiet_NaN();
+  DoubleDouble s, c;
+  EXPECT_EQ(exp(-1e6).high, 0);
+  EXPECT_EQ(exp(-infinity).high, 0);
+  EXPECT_EQ(exp(1e6).high, infinity);
+  EXPECT_TRUE(std::isnan(exp(none).high));
+  sincos(infinity, s, c);
+  EXPECT_TRUE(std::isnan(s.high) && std::isnan(c.high));
+  sincos(1e12, s, c);
+  EXPECT_NEAR(s.high, std::sin(1e12), 1e-15);
 }
 
 /// Compared with functions of the C library in the greatest precision that this machine has.
