@@ -161,17 +161,19 @@ inline bool inside(V2 uv, const spline::TableCell& cell) {
   return all((uv > get2(cell.lo)) & (uv < get2(cell.end)));
 }
 
-/// Returns 1 / |n|. @param near 1 / |n| at a point close by
+/// Returns 1 / |n|, or 0 if n has nearly vanished on the way, as it does toward a cusp. @param near 1 / |n| at a point
+/// close by
 inline double shrinkTo(V4 n, double near) {
-  constexpr double kLittle = 1e-4;  // the error of the series below is less than the cube of this
+  constexpr double kLittle = 1e-4;     // the error of the series below is less than the cube of this
+  constexpr double kVanished2 = 1e-8;  // squared ratio of the lengths
   const double n2 = dots(n, n, n)[0], e = 1 - n2 * (near * near);
   if (!(e * e < kLittle * kLittle)) [[unlikely]]
-    return 1 / __builtin_sqrt(n2);
+    return n2 * (near * near) > kVanished2 ? 1 / __builtin_sqrt(n2) : 0;
   return near + near * e * (0.5 + 0.375 * e);
 }
 
-/// Writes the foot at uv + d, by Taylor expansion about the point.
-inline void finish(const double* E, const double* p, const WarmStepState& state, double shrink, V2 d, V2 uv,
+/// Writes the foot at uv + d, by Taylor expansion about the point. Returns false if the tangents span no plane there.
+inline bool finish(const double* E, const double* p, const WarmStepState& state, double shrink, V2 d, V2 uv,
                    double residual2, double* foot) {
   const V4 du = splat(d[0]), dv = splat(d[1]), half = splat(0.5);
   const V4 Su = get(E + kSu), Sv = get(E + kSv), Suv = get(E + kSuv);
@@ -187,6 +189,7 @@ inline void finish(const double* E, const double* p, const WarmStepState& state,
   lengths[0] = __builtin_sqrt(of_r[0]);
   lengths[1] = __builtin_sqrt(residual2);
   lengths[2] = of_r[1] * to_unit;
+  return to_unit != 0;
 }
 
 WarmStepResult warmStep(const double* p, double tolerance2, double* uv, double* E, WarmStepState& state,
@@ -205,8 +208,8 @@ WarmStepResult warmStep(const double* p, double tolerance2, double* uv, double* 
   const spline::TableCell& cell = state.cell;
   const bool here = inside(target, cell);
   if (here & (step.length2 <= tolerance2)) [[unlikely]] {
-    finish(E, p, state, state.shrink, step.d, target, step.length2, foot);
-    return WarmStepResult::kSameFoot;
+    const bool regular = finish(E, p, state, state.shrink, step.d, target, step.length2, foot);
+    return regular ? WarmStepResult::kSameFoot : WarmStepResult::kNoStep;
   }
   if (here && cell.kernel != nullptr) [[likely]] {
     cell.kernel(cell.coefficients, cell.size[0], cell.size[1], target[0] - cell.origin[0], target[1] - cell.origin[1],
@@ -233,8 +236,8 @@ WarmStepResult warmStep(const double* p, double tolerance2, double* uv, double* 
   const bool converged =
       (now <= enough) | (alike & (now < 0.01 * last) & (100 * (now + bend2) * now * now <= enough * last * last));
   if (!(converged & next.good & inside(there, cell))) return WarmStepResult::kNearer;
-  finish(E, p, state, F.shrink, next.d, there, now < enough ? now : enough, foot);
-  return WarmStepResult::kFoot;
+  const bool regular = finish(E, p, state, F.shrink, next.d, there, now < enough ? now : enough, foot);
+  return regular ? WarmStepResult::kFoot : WarmStepResult::kNearer;
 }
 
 void formsOf(const double* E, WarmStepState& forms) noexcept {

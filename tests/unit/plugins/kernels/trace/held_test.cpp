@@ -271,5 +271,24 @@ TEST(Held, InAThickSolidIsTheNearestPoint) {
   }
 }
 
+/// A valley of two planes, with three coinciding rows of control points. One weight is no multiple of the others, so
+/// the spans stay as they are: their tangent vanishes at the rows, and a step of Newton's method may end at that very
+/// place.
+TEST(Held, AFootAtACuspIsANumber) {
+  spline::SurfaceData data;
+  data.degree = {3, 1};
+  data.knots = {{{0, 0, 0, 0, 0.5, 1, 1, 1, 1}, {0, 0, 1, 1}}};
+  for (const double x : {-0.03, 0.0, 0.0, 0.0, 0.03})
+    for (const double y : {-0.03, 0.03}) data.points.emplace_back(x, y, std::abs(x));
+  data.weights.assign(data.points.size(), 1.0);
+  data.weights.front() = 1.5;
+  const Model model({data});
+  Hand hand{model};
+  for (int tick = 0; tick < 12; ++tick) {
+    const Foot foot = hand.at({-1.7144066653108014e-05, 0.002240123946138025, -0.0017811736213684706});
+    EXPECT_TRUE(foot.point.allFinite() && foot.normal.allFinite() && std::isfinite(foot.depth)) << tick;
+  }
+}
+
 }  // namespace
 }  // namespace hapticd::trace

@@ -50,6 +50,18 @@ inline spline::SurfaceData turned(const std::vector<std::array<double, 3>>& prof
   return data;
 }
 
+/// Two plates of 50 mm that meet on the z axis at an angle [rad], as one cubic surface with simple knots: three rows of
+/// its control points coincide at the fold.
+inline spline::SurfaceData foldedByACusp(double angle) {
+  const double x = 0.05 * std::sin(angle / 2), y = -0.05 * std::cos(angle / 2);
+  spline::SurfaceData data;
+  data.degree = {3, 1};
+  data.knots = {{{0, 0, 0, 0, .25, .5, .75, 1, 1, 1, 1}, {0, 0, 1, 1}}};
+  for (const double share : {-1.0, -0.6, 0.0, 0.0, 0.0, 0.6, 1.0})
+    for (const double z : {0.05, -0.05}) data.points.emplace_back(x * share, y * std::abs(share), z);
+  return data;
+}
+
 /// A bicubic patch of 100 mm with random bumps, on a random knot vector.
 inline spline::SurfaceData randomPatch(std::mt19937& random, int count = 8, bool rational = false) {
   std::uniform_real_distribution<double> bump(-0.008, 0.008), span(0.5, 1.5), weight(0.5, 2);

@@ -127,7 +127,7 @@ void expectRight(const Spot& spot, const std::string& name) {
   }
   EXPECT_EQ(sum.side, 0) << name << ' ' << spot.home.transpose();
   EXPECT_EQ(sum.foot, 0) << name << ' ' << spot.home.transpose();
-  EXPECT_LE(sum.uncertain, 300) << name << ' ' << spot.home.transpose();  // a corner takes many evaluations
+  EXPECT_LE(sum.uncertain, 600) << name << ' ' << spot.home.transpose();  // a corner takes many evaluations
 }
 
 void expectRightIn(const std::string& file, Height height, const Vector3d& home, const Vector3d& out) {
@@ -247,18 +247,6 @@ TEST(Held, AnOpenShellIsEnteredAtItsCorners) {
     EXPECT_EQ(ticksOnTheWrongSide(star(4, 0.1, -1), {0, 1, 0}, seed), 0) << "flat saddle " << seed;
     EXPECT_EQ(ticksOnTheWrongSide(star(6, 0.3, -1), {0, 1, 0}, seed), 0) << "monkey saddle " << seed;
   }
-}
-
-/// The plates of folded() as one cubic surface with simple knots: three rows of its control points coincide at the
-/// fold.
-spline::SurfaceData foldedByACusp(double angle) {
-  const double x = 0.05 * std::sin(angle / 2), y = -0.05 * std::cos(angle / 2);
-  spline::SurfaceData data;
-  data.degree = {3, 1};
-  data.knots = {{{0, 0, 0, 0, .25, .5, .75, 1, 1, 1, 1}, {0, 0, 1, 1}}};
-  for (const double share : {-1.0, -0.6, 0.0, 0.0, 0.0, 0.6, 1.0})
-    for (const double z : {0.05, -0.05}) data.points.emplace_back(x * share, y * std::abs(share), z);
-  return data;
 }
 
 TEST(Held, AFoldWithinASurfaceIsFeltLikeOneOfTwo) {
