@@ -208,7 +208,8 @@ Tracer::Crossing Tracer::firstCrossing(int part, const Path& path, const Vector3
     int track = near[static_cast<std::size_t>(i)];
     if (tracks_[track].slot < 0) continue;
     if (budget_ > 0) track = slideOn(refine(track, p, options), p, options);
-    if (first.track >= 0 && tracks_[first.track].slot < 0) first.track = track;  // the two tracks were merged
+    const bool merged = first.track >= 0 && tracks_[first.track].tick != tracks_.tick();
+    if (merged) first.track = track;
     const LocalFoot& foot = tracks_[track].foot;
     if (tracks_[track].tick != tracks_.tick() || !(foot.distance <= within + kMet)) continue;
     Crossing crossing;

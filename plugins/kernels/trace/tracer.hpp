@@ -24,9 +24,9 @@ struct TraceOptions {
   int iterations = 1;                 ///< steps of kDirect per tick on a surface, 1 to 4
   double tolerance = 1e-9;            ///< [m] kNewton stops when the estimated error of the foot point is below this
   static constexpr int kForSide = 6;  ///< evaluations that tell on which side of an open shell a path began
-  /// evaluations that a tick has at least where both sides are felt: with fewer, a press at a pole, seam or fold may
-  /// fall through
-  static constexpr int kForShell = 6;
+  /// evaluations that a tick has at least where both sides are felt: with fewer, a press at a pole, seam or fold falls
+  /// through or is felt late
+  static constexpr int kForShell = 12;
   /// most evaluations of surfaces in one tick, over all surfaces; kForSide more where a probe seems to have come
   /// through an open shell, since the side from which the shell is felt depends on them
   int max_evaluations = 12;
@@ -109,6 +109,7 @@ class Tracer {
 
   Foot settle(const Eigen::Vector3d& p, const Eigen::Vector3d& last, const TraceOptions& options, int budget) noexcept;
   int nearestOf(int part, int start, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
+  bool mayBeNearer(int nearest, int part, const Eigen::Vector3d& p) const noexcept;
   void findFoot(const Patch& patch, Iterate& at, const Eigen::Vector3d& p, const TraceOptions& options, int steps,
                 LocalFoot& foot) noexcept;
   void locate(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;

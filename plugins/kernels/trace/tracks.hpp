@@ -77,11 +77,12 @@ class Tracks {
     return way_;
   }  ///< [rt] [m] length of the probe's path since it was last reset to 0
   /// [rt] Sets the bound of a foot point that was refined in this tick: its distance less its residual, because the
-  /// true foot point may be nearer by the residual.
+  /// true foot point may be nearer by the residual. Where evaluations ended before, the true foot may be anywhere.
   void refined(int index) noexcept {
     Track& t = (*this)[index];
     t.tick = t.touched = tick_;
-    key_[static_cast<std::size_t>(t.slot)] = t.foot.distance - (t.foot.residual > 0 ? t.foot.residual : 0) + way_;
+    const double bound = t.foot.distance - (t.foot.residual > 0 ? t.foot.residual : 0);
+    key_[static_cast<std::size_t>(t.slot)] = (t.foot.converged ? bound : 0) + way_;
   }
   /// [rt] Sets the bound of a foot point that cannot be nearer than `distance` [m].
   void farther(int index, double distance) noexcept {
