@@ -8,7 +8,6 @@
 
 #include "hapticd/device_pace.h"
 #include "kinematics/extension.hpp"
-#include "kinematics/statics.hpp"
 #include "simulated/nearest_place.hpp"
 #include "simulated/parameter_table.hpp"
 

@@ -15,7 +15,6 @@
 #include <string>
 #include <vector>
 
-#include "base/clock.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
 #include "status/page_file.hpp"

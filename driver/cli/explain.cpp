@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "base/clock.hpp"
 #include "base/offline_tick.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"

@@ -33,7 +33,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/driver/doors/client/c/examples/button.c
               ${PROJECT_SOURCE_DIR}/driver/doors/client/c/examples/spring.c
               ${PROJECT_SOURCE_DIR}/driver/doors/client/c/examples/lead_model.c DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 
-# What each Debian package says of its licences.
+# Each Debian package must contain its licences.
 install(FILES ${PROJECT_SOURCE_DIR}/driver/package/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/hapticd)
 install(FILES ${PROJECT_SOURCE_DIR}/driver/package/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/hapticd-dev COMPONENT dev)
 if(TARGET hapticd-import)
@@ -44,8 +44,8 @@ endif()
 configure_file(${PROJECT_SOURCE_DIR}/config/systemd/hapticd.service.in ${PROJECT_BINARY_DIR}/hapticd.service @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/hapticd.service DESTINATION lib/systemd/system)
 install(FILES ${PROJECT_SOURCE_DIR}/config/systemd/hapticd.sysusers DESTINATION lib/sysusers.d RENAME hapticd.conf)
-# PAM reads one folder only, /etc/security/limits.d, wherever the rest goes; an install into a folder of one's own keeps it
-# there, since nothing of a system may be touched then. Which it is, --prefix may say as late as at the installation.
+# PAM reads only /etc/security/limits.d. An installation into a private folder must not change the system, so it puts the file
+# into that folder instead. The prefix is known only at the installation, because `cmake --install --prefix` can change it.
 install(CODE [[
   if(CMAKE_INSTALL_PREFIX MATCHES "^/(usr|usr/local|opt/.*)$")
     set(limits_dir /etc/security/limits.d)

@@ -36,11 +36,11 @@ endif()
 add_library(hapticd_options INTERFACE)
 target_compile_options(hapticd_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow $<$<BOOL:${HAPTICD_WERROR}>:-Werror>
-  # std::stable_sort of libstdc++ 12 calls a deprecated function of its own, and clang 22 says so at each use; g++ still
-  # tells of deprecated calls of our own
+  # std::stable_sort of libstdc++ 12 calls a deprecated function of its own, and clang 22 warns of it at each use; g++ still
+  # warns of deprecated calls in our code
   $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-deprecated-declarations>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # g++ 12 sees overlaps in std::string operator+ that are not there (GCC 105651)
-  # in a unity build every file is included: its anonymous namespace is none of a header
+  # a unity build includes sources; g++ takes them for headers and warns of types in their anonymous namespaces
   $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<COMPILE_LANG_AND_ID:CXX,GNU>>:-Wno-subobject-linkage>
   # g++ collects garbage from 512 MB on, not from 128: a sixth of its time was that
   $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288>
@@ -49,7 +49,7 @@ target_compile_options(hapticd_options INTERFACE
   # The same bits on every machine: no product is fused with a sum, unless a source asks for it. On arm64 Eigen would fuse by
   # intrinsics where it sees this macro.
   -ffp-contract=off $<$<BOOL:${HAPTICD_ARM64}>:-U__ARM_FEATURE_FMA>)
-# Where headers are precompiled, g++ 12 says of std::string what it otherwise knows to be untrue; other presets keep these.
+# With precompiled headers g++ 12 gives false warnings about std::string. The other presets keep these warnings.
 set(HAPTICD_PRECOMPILED_WARNINGS -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
 if(HAPTICD_SANITIZE)
   add_compile_options(-fsanitize=${HAPTICD_SANITIZE} -fno-omit-frame-pointer)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # `cpack` in the build folder makes two Debian packages: hapticd (the daemon, its plugins and modules) and hapticd-dev
-# (headers and CMake package for plugins of one's own). Where Open CASCADE is there, a third: hapticd-import (CAD files).
-# Licences of what is linked: see dpkg's own records.
+# (headers and CMake package, to build plugins). If Open CASCADE is installed, it makes a third: hapticd-import (CAD files).
+# The licences of the linked libraries are in the packages of these libraries.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME hapticd)
 set(CPACK_PACKAGE_CONTACT "hapticd developers <hapticd@example.org>")

@@ -10,7 +10,7 @@ function(_hapticd_name_module name)
   target_compile_features(${name} PRIVATE cxx_std_20)
 endfunction()
 
-# Sets file to the source among those given that has the entry, HAPTICD_SHAPES or HAPTICD_DEVICES; empty: none has it.
+# Sets `file` to the given source that contains the entry, HAPTICD_SHAPES or HAPTICD_DEVICES; to "" if none contains it.
 function(_hapticd_entry_file file folder)
   set(${file} "" PARENT_SCOPE)
   foreach(source IN LISTS ARGN)
@@ -62,8 +62,8 @@ function(hapticd_add_device name)
   _hapticd_add_module(${name} devices ${ARGN})
 endfunction()
 
-# Links plugins and device modules of this tree into a program, which holds no file to load then. Several fit into one
-# program because each gets an entry of its own name, hsp_entry_NAME or hdv_entry_NAME, by a definition: the ABI stays.
+# Links plugins and device modules of this tree into a program, so that it need not load files. A definition renames the entry
+# of each to hsp_entry_NAME or hdv_entry_NAME, so that one program can contain several; the ABI stays the same.
 # Only the file with the entry is compiled once more. The program calls hapticd::host::takeBuiltIns() and links the rooms
 # it needs; host/platform_none.cpp and base/thread_usage_none.cpp replace what would call the operating system.
 function(hapticd_link_modules program)

@@ -349,10 +349,6 @@ void readTime(const Tree& tree, Field& field) {
 
 }  // namespace
 
-std::span<const char* const> fieldKeys() {
-  return kKeys;
-}
-
 ReadField readField(const Tree& tree, const Report& report, size_t joints, bool input) {
   ReadField read;
   Field& field = read.field;

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// Reads one field of a report from a device file.
 #pragma once
-#include <span>
-
 #include "codec/report.hpp"
 #include "codec/tree.hpp"
 #include "codec/wire_overlap.hpp"
 
 namespace hapticd::codec {
-
-/// Every key that a field may have.
-std::span<const char* const> fieldKeys();
 
 /// A field that was read. Some of its values may be missing because of problems in the file, and have their defaults.
 struct ReadField {

@@ -53,7 +53,7 @@ Services::Services(std::string who, Log log) : who_(std::move(who)), log_(std::m
   abi_.alloc = [](const hsp_host* host, size_t bytes, size_t align) { return of(host).allocate(bytes, align); };
   abi_.release = [](const hsp_host* host, void* block) { of(host).release(block); };
   abi_.is_rt_thread = [](const hsp_host*) -> int32_t { return t_servo_thread ? 1 : 0; };
-  abi_.request_restart = [](const hsp_host* host) { of(host).restart_.store(true, std::memory_order_relaxed); };
+  abi_.request_restart = [](const hsp_host*) {};  // a host may ignore it
   abi_.extension = [](const hsp_host*, const char*) -> const void* { return nullptr; };
 }
 

@@ -2,7 +2,6 @@
 /// The services of the host for plugins and modules (hsp_host): logging, locked memory, and a ring of trace events,
 /// which may lose events.
 #pragma once
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -44,8 +43,6 @@ class Services {
 
   /// [any] Takes the next event of the servo thread. Returns false if there is none. There must be only one reader.
   bool takeEvent(TraceEvent& event) noexcept { return events_.pop(event); }
-  /// [any] Returns true once after the instance has asked to be activated again (request_restart).
-  bool takeRestartRequest() noexcept { return restart_.exchange(false, std::memory_order_relaxed); }
 
   /// [main] Marks the calling thread as the servo thread, for is_rt_thread(). Messages that instances log in this
   /// thread are kept in a ring without a lock until passOn() is called.
@@ -73,7 +70,6 @@ class Services {
   std::unordered_map<void*, Block> blocks_;
   size_t locked_bytes_ = 0;
   SpscRing<TraceEvent> events_{kEvents};
-  std::atomic<bool> restart_{false};
 };
 
 }  // namespace hapticd::host

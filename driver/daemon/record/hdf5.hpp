@@ -14,7 +14,6 @@
 namespace hapticd::record::hdf5 {
 
 constexpr uint64_t kNowhere = UINT64_MAX;  ///< HDF5's undefined address
-constexpr uint32_t kSuperblockBytes = 48;
 
 /// [any] Returns the checksum that HDF5 uses for its metadata: Jenkins' lookup3.
 uint32_t checksum(const std::string& bytes);

@@ -134,5 +134,5 @@ for number, event, wrong, said in ThreadPool(2).imap_unordered(play, range(COUNT
     counts[event] += 1
     if wrong:
         check(f"schedule {number} of seed {SEED} ({event}): {wrong}", False, said[-600:])
-check(f"{COUNT} schedules: {dict(sorted(counts.items()))}", True)
+print(f"{COUNT} schedules: {dict(sorted(counts.items()))}")
 finish()

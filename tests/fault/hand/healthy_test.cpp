@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What ships is never silenced for what it is: steep laws under taps, edges, snaps.
+/// The plugins that ship are never silenced because of steep laws under taps, edges or snaps.
 #include <cmath>
 
 #include "scenario.hpp"

@@ -13,7 +13,7 @@ OPENED, STARTED, COMMAND, CUT, STOPPED, CLOSED = range(6)
 LOST, HARDWARE_FAULT, UNCALIBRATED, SILENT, HANG_IN_READ, HANG_IN_WRITE, HANG_IN_WAIT, WRITE_FAILS = (1 << i for i in range(8))
 
 HEADER, ENTRY, CAPACITY = 160, struct.Struct("<QQII3d"), 1 << 18
-COUNT, MOTORS_ON, TORQUE, POSITION, WEIGHT, STAMP, FAULTS, BUTTONS = 16, 32, 40, 64, 120, 144, 152, 156
+COUNT, MOTORS_ON, TORQUE, POSITION, STAMP, FAULTS, BUTTONS = 16, 32, 40, 64, 144, 152, 156
 
 
 class Entry:
@@ -93,9 +93,6 @@ class Rig:
 
     def move(self, x, y, z):
         struct.pack_into("<3d", self.page(), POSITION, x, y, z)
-
-    def weigh(self, x, y, z):
-        struct.pack_into("<3d", self.page(), WEIGHT, x, y, z)
 
     def wish(self, faults):
         struct.pack_into("<I", self.page(), FAULTS, faults)

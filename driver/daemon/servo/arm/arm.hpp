@@ -131,7 +131,6 @@ class Arm {
   const Eigen::Matrix3d& mount() const noexcept { return R_world_device_; }
   /// [m] origin of the device frame, world frame
   const Eigen::Vector3d& origin() const noexcept { return origin_world_; }
-  bool estimatesVelocity() const { return velocity_.has_value(); }
   bool simulated() const noexcept { return (device_->info().capabilities & HDV_C_SIMULATED) != 0; }
   double rampOut() const noexcept { return limiter_.rampOut(); }  ///< [s] time from full force to none
 

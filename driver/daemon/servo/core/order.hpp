@@ -42,7 +42,6 @@ struct Order {
   Kind kind = Kind::kNone;
   uint32_t target = 0;  ///< index of the model or the arm
   uint32_t param = 0;   ///< kSet: the parameter; leads: Led; kEnable: kOnceFree, or 0 in older recordings
-  uint32_t ticket = 0;  ///< number of the request, for the answer
   uint32_t place = 0;   ///< kLead and kUnlead of a force: place of the program in ClientForces::clients()
   double value = 0;  ///< kSet: new value; kAccuracy: level; kCut: 1 if found before the tick's read, 0 if at its write
   double seconds = 0;  ///< kMove: shortest duration, 0: the servo chooses; kCut: how long the servo was stuck

@@ -36,7 +36,6 @@ class Module {
 
   hsp_status set(const std::string& id, double number) { return assign(id, number, nullptr, {}); }
   hsp_status set(const std::string& id, const std::vector<double>& numbers) { return assign(id, 0, nullptr, numbers); }
-  hsp_status setText(const std::string& id, const std::string& text) { return assign(id, 0, text.c_str(), {}); }
 
   hsp_status start(double gravity = 9.81) {
     info.struct_size = sizeof info;

@@ -5,10 +5,10 @@
 #include <functional>
 
 #include "emulators/wire_file.hpp"
+#include "played_link_test.hpp"
 #include "played_usb.hpp"
 #include "usb_bulk/bulk_transport.hpp"
 #include "wire_arm/falcon_loader.hpp"
-#include "wire_arm/link.hpp"
 
 namespace hapticd::wire_arm {
 namespace {
@@ -19,14 +19,8 @@ using emulator::UsbArm;
 
 constexpr const char* kFile = HAPTICD_SOURCE_DIR "/config/devices/premium15-bulk.yaml";
 
-class BulkTest : public ::testing::Test {
+class BulkTest : public PlayedLinkTest {
  protected:
-  BulkTest() : testbed(umockdev_testbed_new()) {}
-  ~BulkTest() override { g_object_unref(testbed); }
-  void SetUp() override {
-    if (umockdev_in_mock_environment() == FALSE) GTEST_SKIP() << "umockdev's preload library is not in this process";
-  }
-
   std::unique_ptr<Link> make(const std::string& serial = "") {
     LinkSettings s;
     s.address.vendor = 0x1209, s.address.product = 0x0006, s.address.serial = serial;
@@ -34,21 +28,6 @@ class BulkTest : public ::testing::Test {
     s.session.health.least_rate = 0;  // a busy machine may well be slow
     s.log = [](int, const std::string&) {};
     return std::make_unique<Link>(makeBulkTransport(), wire, std::move(s));
-  }
-
-  /// Pushes at 1 kHz until `done`, or five seconds.
-  static bool pushUntil(Link& link, const std::function<bool(const Sample&)>& done) {
-    RealClock clock(0);
-    Sample sample;
-    ArmCommand wanted;
-    for (int i = 0; i < 5000; ++i) {
-      link.read(sample);
-      wanted.time = clock.now(), ++wanted.sequence, wanted.on = true, wanted.torque = {0.1, 0, 0};
-      link.write(wanted);
-      if (done(sample)) return true;
-      clock.waitUntil(clock.now() + 1'000'000);
-    }
-    return false;
   }
 
   /// The motors go off, the trouble has this name, and once `mend` was called the arm pushes again.
@@ -70,7 +49,6 @@ class BulkTest : public ::testing::Test {
     EXPECT_FALSE(device.pushed()) << "motors are off at the end";
   }
 
-  UMockdevTestbed* testbed;
   codec::Wire wire = codec::readWire(emulator::wireOf(kFile), 3);
   UsbArm left{"premium15-bulk", emulator::defaultHand("premium15-bulk"), "A1"};
   UsbArm right{"premium15-bulk", emulator::defaultHand("premium15-bulk"), "B2"};

@@ -6,20 +6,14 @@
 
 #include "emulators/wire_file.hpp"
 #include "played_hidraw.hpp"
+#include "played_link_test.hpp"
 #include "usb_hid/hid_transport.hpp"
-#include "wire_arm/link.hpp"
 
 namespace hapticd::wire_arm {
 namespace {
 
-class HidrawTest : public ::testing::Test {
+class HidrawTest : public PlayedLinkTest {
  protected:
-  HidrawTest() : testbed(umockdev_testbed_new()) {}
-  ~HidrawTest() override { g_object_unref(testbed); }
-  void SetUp() override {
-    if (umockdev_in_mock_environment() == FALSE) GTEST_SKIP() << "umockdev's preload library is not in this process";
-  }
-
   std::unique_ptr<Link> make(const std::string& serial) {
     LinkSettings s;
     s.address.vendor = 0x1234, s.address.product = 0x0006, s.address.serial = serial;
@@ -29,22 +23,6 @@ class HidrawTest : public ::testing::Test {
     return std::make_unique<Link>(makeHidTransport(), wire, std::move(s));
   }
 
-  /// Pushes at 1 kHz until `done`, or five seconds.
-  static bool pushUntil(Link& link, const std::function<bool(const Sample&)>& done) {
-    RealClock clock(0);
-    Sample sample;
-    ArmCommand wanted;
-    for (int i = 0; i < 5000; ++i) {
-      link.read(sample);
-      wanted.time = clock.now(), ++wanted.sequence, wanted.on = true, wanted.torque = {0.1, 0, 0};
-      link.write(wanted);
-      if (done(sample)) return true;
-      clock.waitUntil(clock.now() + 1'000'000);
-    }
-    return false;
-  }
-
-  UMockdevTestbed* testbed;
   codec::Wire wire = codec::readWire(emulator::wireOf(HAPTICD_SOURCE_DIR "/config/devices/woodenhaptics.yaml"), 3);
   emulator::EmulatedArm left{"woodenhaptics", emulator::defaultHand("woodenhaptics")};
   emulator::EmulatedArm right{"woodenhaptics", emulator::defaultHand("woodenhaptics")};

@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <linux/hidraw.h>
-#include <pty.h>
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
@@ -49,20 +48,6 @@ void PlayedHidraw::add(const std::string& text) {
   if (!umockdev_testbed_add_from_string(testbed_, text.c_str(), &error)) throw std::runtime_error(error->message);
 }
 
-void PlayedHidraw::makeTerminal() {
-  char name[64];
-  termios how{};
-  if (openpty(&master_, &slave_, name, nullptr, nullptr) != 0) throw std::runtime_error("no pseudo-terminal");
-  tcgetattr(slave_, &how);
-  cfmakeraw(&how);
-  tcsetattr(slave_, TCSANOW, &how);
-  char* root = umockdev_testbed_get_root_dir(testbed_);
-  const std::string path = root + node_;
-  g_free(root);
-  ::unlink(path.c_str());
-  if (::symlink(name, path.c_str()) != 0) throw std::runtime_error("no link to the pseudo-terminal");
-}
-
 void PlayedHidraw::plug() {
   const std::lock_guard lock(mutex_);
   reports_.clear();
@@ -85,7 +70,7 @@ void PlayedHidraw::plug() {
       "E: SUBSYSTEM=hidraw\nE: DEVNAME=" + node_ +
       format("\nE: MAJOR=244\nE: MINOR=%d\nA: dev=244:%d\\n\n", number_, number_) + "L: device=../../../" + hid_name_ +
       "\n\n");
-  makeTerminal();
+  terminal_.open(testbed_, node_);
   gone_ = false;
 }
 
@@ -93,9 +78,7 @@ void PlayedHidraw::unplug() {
   {
     const std::lock_guard lock(mutex_);
     gone_ = true;
-    ::close(master_);
-    ::close(slave_);
-    master_ = slave_ = -1;
+    terminal_.close();
   }
   const std::string usb = "/sys" + usb_, interface = usb + format("/2-%d:1.0", number_ + 1, 0);
   const std::string hid = interface + "/" + hid_name_, raw = hid + format("/hidraw/hidraw%d", number_, 0);
@@ -112,11 +95,11 @@ void PlayedHidraw::unplug() {
 }
 
 void PlayedHidraw::showWaiting() {
-  if (slave_ < 0) return;
+  if (terminal_.slave < 0) return;
   int waiting = 0;
-  ioctl(slave_, FIONREAD, &waiting);
-  if (reports_.empty() && waiting > 0) tcflush(slave_, TCIFLUSH);
-  if (!reports_.empty() && waiting == 0 && ::write(master_, "x", 1) != 1) std::perror("pseudo-terminal");
+  ioctl(terminal_.slave, FIONREAD, &waiting);
+  if (reports_.empty() && waiting > 0) tcflush(terminal_.slave, TCIFLUSH);
+  if (!reports_.empty() && waiting == 0 && ::write(terminal_.master, "x", 1) != 1) std::perror("pseudo-terminal");
 }
 
 gboolean PlayedHidraw::onRead(UMockdevIoctlBase*, Client* client, gpointer pointer) {

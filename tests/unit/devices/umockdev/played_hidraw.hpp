@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "emulators/emulated_arm.hpp"
+#include "played_terminal.hpp"
 
 namespace hapticd::emulator {
 
@@ -33,14 +34,14 @@ class PlayedHidraw {
   static gboolean onRead(UMockdevIoctlBase*, Client*, gpointer);
   static gboolean onWrite(UMockdevIoctlBase*, Client*, gpointer);
   void showWaiting();
-  void makeTerminal();
   void add(const std::string& text);
 
   UMockdevTestbed* testbed_;
   UMockdevIoctlBase* handler_;
   EmulatedArm& arm_;
   std::string node_, serial_, usb_, hid_name_;
-  int number_, master_ = -1, slave_ = -1, plugged_ = 0;
+  PlayedTerminal terminal_;
+  int number_, plugged_ = 0;
   std::recursive_mutex mutex_;
   bool gone_ = true;
   std::deque<std::vector<uint8_t>> reports_;

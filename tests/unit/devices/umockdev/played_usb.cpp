@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "played_usb.hpp"
 
-#include <pty.h>
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
@@ -58,20 +57,6 @@ void PlayedUsb::run() {
   }
 }
 
-void PlayedUsb::makeTerminal() {
-  char name[64];
-  termios how{};
-  if (openpty(&master_, &slave_, name, nullptr, nullptr) != 0) throw std::runtime_error("no pseudo-terminal");
-  tcgetattr(slave_, &how);
-  cfmakeraw(&how);
-  tcsetattr(slave_, TCSANOW, &how);
-  char* root = umockdev_testbed_get_root_dir(testbed_);
-  const std::string path = root + node_;
-  g_free(root);
-  ::unlink(path.c_str());
-  if (::symlink(name, path.c_str()) != 0) throw std::runtime_error("no link to the pseudo-terminal");
-}
-
 void PlayedUsb::plug() {
   const std::lock_guard lock(mutex_);
   const About& about = arm_.about();
@@ -88,7 +73,7 @@ void PlayedUsb::plug() {
       "\\n\nA: idProduct=" + format("%04x", about.product) + "\\n\nH: descriptors=" + hex(descriptors) + "\n\n";
   GError* error = nullptr;
   if (!umockdev_testbed_add_from_string(testbed_, text.c_str(), &error)) throw std::runtime_error(error->message);
-  makeTerminal();
+  terminal_.open(testbed_, node_);
   gone_ = false;
   showDone();
 }
@@ -99,9 +84,7 @@ void PlayedUsb::unplug() {
     gone_ = true;
     for (usbdevfs_urb* urb : waiting_) finish(urb, -ESHUTDOWN);  // as a host controller flushes them
     waiting_.clear();
-    ::close(master_);
-    ::close(slave_);
-    master_ = slave_ = -1;
+    terminal_.close();
   }
   umockdev_testbed_uevent(testbed_, sys_.c_str(), "remove");
   umockdev_testbed_detach_ioctl(testbed_, node_.c_str(), nullptr);
@@ -130,7 +113,7 @@ uint64_t PlayedUsb::commands() {
 }
 
 void PlayedUsb::showDone() {
-  if (slave_ >= 0) tcflow(slave_, done_.empty() ? TCOOFF : TCOON);
+  if (terminal_.slave >= 0) tcflow(terminal_.slave, done_.empty() ? TCOOFF : TCOON);
 }
 
 void PlayedUsb::finish(usbdevfs_urb* urb, int status) {

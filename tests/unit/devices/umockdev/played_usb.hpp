@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "emulators/usb_arm.hpp"
+#include "played_terminal.hpp"
 
 namespace hapticd::emulator {
 
@@ -41,14 +42,14 @@ class PlayedUsb {
   void feed();
   void finish(usbdevfs_urb* urb, int status);
   void showDone();
-  void makeTerminal();
   void run();
 
   UMockdevTestbed* testbed_;
   UMockdevIoctlBase* handler_;
   UsbArm& arm_;
   std::string node_, sys_;
-  int number_, master_ = -1, slave_ = -1;
+  PlayedTerminal terminal_;
+  int number_;
   std::recursive_mutex mutex_;
   bool gone_ = true;
   std::deque<usbdevfs_urb*> waiting_, done_;

@@ -2,7 +2,6 @@
 /// A hand that strokes a cylinder through the board: the host's side uses the shipped device file alone, so a wrong
 /// sign, scale, offset or kinematic length anywhere lets the hand through or throws it off. The same loop around the
 /// simulated arm itself is the measure.
-#include "kinematics/statics.hpp"
 #include "rig.hpp"
 
 namespace hapticd::vme {
@@ -41,7 +40,7 @@ kinematics::JointVector torques(const kinematics::Arm& arm, const kinematics::Jo
   EXPECT_TRUE(arm.gravity(q, Vector3d(0, -9.81, 0), weight));
   kinematics::Wrench W = kinematics::Wrench::Zero();
   W.head<3>() = force;
-  return kinematics::jointTorques(J, W) + weight;
+  return J.transpose() * W + weight;
 }
 
 Contact throughTheBoard(double seconds) {

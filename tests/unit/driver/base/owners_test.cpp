@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What is kept of the owners of a scene's models, of which there may be thousands.
+/// Tests what is kept about the owners of models. A scene may have thousands of models.
 #include <gtest/gtest.h>
 
 #include <ctime>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a program reads from its command line, and what it says of it.
+/// Tests what a program reads from its command line, and its messages about mistakes there.
 #include "command_line/command_line.hpp"
 
 #include <gtest/gtest.h>

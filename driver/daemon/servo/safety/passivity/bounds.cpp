@@ -62,11 +62,6 @@ WindowCoefficient windowCoefficient(int n) noexcept {
   return {(1 - dirichlet(n, theta)) / (2 * n), theta};
 }
 
-double requiredDamping(double stiffness, double damping, int n, double period) noexcept {
-  const double share = damping >= 0 ? windowCoefficient(n).value * damping : -damping;
-  return stiffness * period / 2 + share;
-}
-
 double maxStiffness(double b, double damping, int n, int delay, double period) noexcept {
   const Wall wall{b, damping, n, delay, period};
   const int points = 512 * (delay + n + 1);

@@ -17,10 +17,6 @@ struct WindowCoefficient {
 /// [any] Returns the worst frequency of a velocity window, and its coefficient. @param n samples of the window, >= 1
 WindowCoefficient windowCoefficient(int n) noexcept;
 
-/// [any] Returns the damping [N s/m] that the device must have for a wall without delay: K T/2 + c_n B, or K T/2 + |B|
-/// if B < 0.
-double requiredDamping(double stiffness, double damping, int n, double period) noexcept;
-
 /// [any] Returns the largest passive stiffness [N/m] for a device with damping `b` [N s/m]; 0 if no wall is passive.
 /// @param damping B of the wall [N s/m]  @param n samples of the velocity window  @param delay d [samples]
 /// @param period T [s]

@@ -47,10 +47,6 @@ double largestStiffness(double b, int n) noexcept {
 
 }  // namespace
 
-bool stableAlone(double mass, double stiffness, double damping, int n, double period) noexcept {
-  return comesToRest(stiffness * period * period / mass, damping * period / mass, std::clamp(n, 1, kLongestWindow));
-}
-
 double maxStiffnessAlone(double mass, int n, double period) noexcept {
   const int window = std::clamp(n, 1, kLongestWindow);
   constexpr double kGolden = 0.6180339887498949;

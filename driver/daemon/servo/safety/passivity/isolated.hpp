@@ -4,12 +4,9 @@
 
 namespace hapticd::passivity {
 
-/// [any] True if a mass [kg] on a sampled wall of stiffness K [N/m] and damping B [N s/m] comes to rest. The damping
-/// uses the velocity window of n samples (Eq. 5 of Thompson et al. 1999). The force is held between samples.
-bool stableAlone(double mass, double stiffness, double damping, int n, double period) noexcept;
-
 /// [any] Returns the largest stiffness [N/m] that is stable without friction and without a hand, with the best damping.
-/// A stiffer wall needs friction or a hand to be stable.
+/// A stiffer wall needs friction or a hand to be stable. The damping uses the velocity window of n samples (Eq. 5 of
+/// Thompson et al. 1999). @param mass [kg] that the hand would feel  @param period T of the servo [s]
 double maxStiffnessAlone(double mass, int n, double period) noexcept;
 
 }  // namespace hapticd::passivity

@@ -6,7 +6,6 @@
 #include "example_chain.hpp"
 #include "kinematics/chain_dynamics.hpp"
 #include "kinematics/phantom_dynamics.hpp"
-#include "kinematics/statics.hpp"
 #include "numeric.hpp"
 
 namespace hapticd::kinematics {

@@ -6,7 +6,6 @@
 #include "example_chain.hpp"
 #include "kinematics/delta.hpp"
 #include "kinematics/phantom.hpp"
-#include "kinematics/statics.hpp"
 #include "numeric.hpp"
 
 namespace hapticd::kinematics {
@@ -74,20 +73,6 @@ TEST_P(EveryArm, SaysWhenAPointIsOutOfReachAndKeepsTheJoints) {
   EXPECT_EQ(q, arm_->neutral());
 }
 
-TEST_P(EveryArm, DoesTheSameWorkInItsJointsAsAtItsTip) {
-  for (int n = 0; n < kPoses; ++n) {
-    const JointVector q = random_.next();
-    JointVector rate(q.size());
-    for (int i = 0; i < q.size(); ++i) rate[i] = random_.uniform(-1, 1);
-    Jacobian J;
-    ASSERT_TRUE(arm_->jacobian(q, J));
-    Wrench W;
-    W << random_.vector(5), random_.vector(1);
-    const double at_tip = W.dot(Wrench(J * rate)), in_joints = jointTorques(J, W).dot(rate);
-    EXPECT_NEAR(at_tip, in_joints, 1e-12 * std::max(1.0, W.norm() * J.norm() * rate.norm()));
-  }
-}
-
 TEST_P(EveryArm, HoldsItselfAgainstGravityFromAnyDirection) {
   // Holding torques are the slope of the potential energy, so their path integral round a loop is zero and turning
   // gravity about changes only its sign. (Energies are checked against mass matrices where the arm has them.)
@@ -110,23 +95,6 @@ TEST_P(EveryArm, HoldsItselfAgainstGravityFromAnyDirection) {
       size += std::abs(tau.dot(rate));
     }
     EXPECT_LT(std::abs(round), 1e-9 * std::max(size, 1e-3)) << a.transpose();
-  }
-}
-
-TEST_P(EveryArm, FindsTheWrenchBehindJointTorques) {
-  for (int n = 0; n < kPoses; ++n) {
-    Jacobian J;
-    ASSERT_TRUE(arm_->jacobian(random_.next(), J));
-    Wrench W;
-    W << random_.vector(5), random_.vector(0.5);
-    const bool position_only = J.bottomRows<3>().isZero();
-    if (position_only) W.tail<3>().setZero();
-    const auto state = conditioning(J, 0.1, position_only);
-    if (state.inverse_condition < 1e-3) continue;
-    const WrenchEstimate found = wrenchFromTorques(J, jointTorques(J, W));
-    EXPECT_EQ(found.rank, position_only ? 3 : 6);
-    EXPECT_LT((found.W - W).norm(), 1e-10);
-    EXPECT_LT(found.residual, 1e-12);
   }
 }
 

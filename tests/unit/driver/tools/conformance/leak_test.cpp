@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Memory in use after each life of a shape, made up, and what of it is called a leak.
+/// Tests which growth of memory counts as a leak, with made-up numbers of bytes in use after each life of a shape.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <random>
 
-#include "kinematics/statics.hpp"
-
 namespace hapticd::servo {
 namespace {
 

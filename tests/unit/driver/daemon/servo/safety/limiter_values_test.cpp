@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The numbers that the limiter promises, each at a place where a slip of one operator or constant shows: found missing
-/// by tests/mutation.
+/// Tests the numbers of the limiter where a single wrong operator or constant changes them. tests/mutation showed that
+/// no other test noticed these changes.
 #include <gtest/gtest.h>
 
 #include <limits>

@@ -131,7 +131,7 @@ TEST_F(NotNeeded, NoRationalArithmeticForPolynomialPatches) {
   EXPECT_FALSE(rational.ran("nurbs_rigid.so", ", false, 1>") || rational.ran("nurbs_rigid.so", ", false, 2>"));
 }
 
-TEST_F(NotNeeded, NoTorqueForAnArmOfThreeJoints) {  // what that leaves out: CoreServes in servo_test
+TEST_F(NotNeeded, NoTorqueForAnArmOfThreeJoints) {  // see Core.ServesNoTorqueToArmsThatOnlyPush
   Running pushes("sphere.yaml", "", 1), turns("sphere.yaml", "simulated-sarcos.yaml", 1);
   EXPECT_FALSE(usesOf(pushes.arms).torque);
   EXPECT_TRUE(usesOf(turns.arms).torque);
