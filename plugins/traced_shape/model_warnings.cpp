@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "corner_slips.hpp"
+#include "cusp_warnings.hpp"
 #include "document.hpp"
 #include "kernels/trace/side_curve.hpp"
 
@@ -299,6 +300,7 @@ void warnOfSurface(const SurfaceData& surface, std::size_t index, Problems& odd)
   warnOfOrder(surface, index, odd);
   warnOfSpikes(surface, index, odd);
   if (!surface.weights.empty()) warnOfWeights(surface, index, odd);
+  warnOfCusps(surface, index, odd);
 }
 
 }  // namespace

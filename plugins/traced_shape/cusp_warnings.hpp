@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+/// Finds folds within a surface at which the tracer cannot be sure of its foot points.
+#pragma once
+#include <cstddef>
+
+#include "document.hpp"
+#include "kernels/spline/surface_data.hpp"
+
+namespace hapticd {
+
+/// [main] Warns if as many rows of control points as the degree nearly coincide, and the surface therefore folds there,
+/// but the kernel cannot make the spans beside the fold regular (kernels/spline/cusp.hpp): the rows are not equal to
+/// the last digit, or their weights are no multiples of one another.
+void warnOfCusps(const spline::SurfaceData& surface, std::size_t index, Problems& odd);
+
+}  // namespace hapticd
