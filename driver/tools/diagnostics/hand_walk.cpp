@@ -25,7 +25,6 @@ constexpr double kMostSeconds = 10;
 /// gives.
 constexpr double kLeastSeconds = 3;
 constexpr uint64_t kMostTicks = 10'000;
-constexpr double kMostProcessor = 3;  ///< [s] of processor time
 
 double processorSeconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
@@ -50,7 +49,6 @@ class WalkLog final : public servo::TickLog {
   }
 
   void ends(servo::Loop& loop) { loop_ = &loop; }
-  bool spoiled() const { return spoiled_; }
 
   /// Returns the walk, with the judgement that a run gives at its end.
   Walk take(const servo::Core& core) {
@@ -72,10 +70,11 @@ class WalkLog final : public servo::TickLog {
     for (uint32_t i = 0; i < walk_.models.size(); ++i) observeModel(i, core, arms);
     for (uint32_t i = 0; i < arms.size(); ++i) observeArm(i, core, *arms[i]);
     if (ticks_++ % kLookEvery == 0) late_ = processorSeconds() - begun_ > kMostProcessor;
+    walk_.ticks = ticks_;
     const bool all =
         std::all_of(walk_.arms.begin(), walk_.arms.end(), [](const WalkedArm& arm) { return arm.touched; });
     walk_.whole = t >= once_ || walk_.whole;
-    spoiled_ = late_ && !walk_.whole;
+    walk_.late = late_ && !walk_.whole;
     // A model that moves by itself may still come to a hand that waits for it.
     if (!late_ && !(walk_.whole && (all || !moves_) && t >= kLeastSeconds)) return;
     ended_ = true;
@@ -100,6 +99,7 @@ class WalkLog final : public servo::TickLog {
     WalkedModel& seen = walk_.models[index];
     if (ticks_ == 0) began_at_[index] = state.frame.origin_world;
     moves_ = moves_ || state.moves;
+    seen.seconds += static_cast<double>(state.step_ns) * 1e-9;
     seen.travel = std::max(seen.travel, (state.frame.origin_world - began_at_[index]).norm());
     bool inside = false;
     for (uint32_t probe = 0; probe < arms.size(); ++probe) {
@@ -155,7 +155,7 @@ class WalkLog final : public servo::TickLog {
   std::vector<servo::Clips> clips_;
   servo::Loop* loop_ = nullptr;
   uint64_t ticks_ = 0;
-  bool moves_ = false, ended_ = false, late_ = false, spoiled_ = false;
+  bool moves_ = false, ended_ = false, late_ = false;
   Walk walk_;
 };
 
@@ -182,7 +182,6 @@ std::optional<Walk> walkHands(const scene::Scene& scene, servo::World& world) {
   servo::Loop loop(world.core(), world.lockstep(), arms, clock, settings, log);
   log.ends(loop);
   loop.run();
-  if (log.spoiled()) return std::nullopt;
   Walk walk = log.take(world.core());
   walk.period = 1 / scene.servo.rate;
   for (const auto& arm : arms) {

@@ -248,6 +248,30 @@ void checkWalkOfModel(const scene::Scene& scene, size_t index, const Walk& walk,
   if (walk.whole && seen.force > 0 && seen.force < kUnfelt) reportUnfelt(scene.models[index], index, seen, warnings);
 }
 
+/// Warns that a walk was ended before the hands had done their motion, at the model that took most of the time.
+void reportLate(const scene::Scene& scene, const Walk& walk, document::Problems& warnings) {
+  const auto slowest = static_cast<size_t>(
+      std::max_element(walk.models.begin(), walk.models.end(),
+                       [](const WalkedModel& a, const WalkedModel& b) { return a.seconds < b.seconds; }) -
+      walk.models.begin());
+  const double ticks = static_cast<double>(walk.ticks), step = walk.models[slowest].seconds / ticks;
+  const std::string what = fmt::format(
+      "the hand was not moved to the end, so what it meets was not judged: {:.2g} s of its motion took {:g} s of "
+      "processor time",
+      ticks * walk.period, kMostProcessor);
+  constexpr double kMost = 0.5;  // share of the time
+  if (walk.models[slowest].seconds < kMost * kMostProcessor)
+    return document::report(warnings, scene.file.string(), 1, 1, "models", what);
+  const scene::Model& model = scene.models[slowest];
+  const std::string key = fmt::format("models[{}].plugin", slowest);
+  document::report(
+      warnings, placeOfKey(model.place.file, key).value_or(model.place), key,
+      fmt::format("{}, because a step of {} takes {:.2g} ms (a tick lasts {:.2g} ms{}); hapticd plugin check {} "
+                  "measures it",
+                  what, model.name, step * 1e3, walk.period * 1e3,
+                  step > walk.period ? ", and a run silences a plugin that needs more" : "", model.library.string()));
+}
+
 }  // namespace
 
 document::Problems warnOfWalk(const scene::Scene& scene, servo::World& world, const std::vector<bool>& strays,
@@ -258,6 +282,10 @@ document::Problems warnOfWalk(const scene::Scene& scene, servo::World& world, co
     return walkHands(scene, world);
   }();
   if (!walk) return warnings;
+  if (walk->late) {
+    reportLate(scene, *walk, warnings);
+    return warnings;
+  }
   for (size_t i = 0; i < scene.models.size(); ++i) checkWalkOfModel(scene, i, *walk, world, warnings);
   for (uint32_t i = 0; i < scene.devices.size(); ++i)
     checkWalkOfArm(scene, i, *walk, world, strays, all_models, warnings);
