@@ -29,18 +29,18 @@ const scene::Value* softSpring(const scene::Device& device) {
 }
 
 /// Returns the advice for a hand that aims at no model: a larger radius, if the hand meets a model with it; another
-/// normal if the hand moves along it, but not to the model.
-std::string adviceOf(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen) {
+/// normal if the hand moves along it, but not to the model. @param middle of the nearest model, in the world
+std::string adviceOf(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen,
+                     const Eigen::Vector3d& middle) {
   constexpr double kTowards = 0.9;  // cosine
   const scene::Device& device = scene.devices[index];
-  const scene::Model& nearest = scene.models[seen.nearest];
   if (seen.away <= 0) return "";
   if (const auto radius = radiusOfFarHand(scene, index, hand, seen.away, false))
     return fmt::format(", or give a hand.radius of {:.4g} m", *radius);
   const bool turns = hand.kind == HandScript::Kind::kStroke || hand.kind == HandScript::Kind::kCircle;
   const Eigen::Vector3d normal = device.mount.orientation * hand.normal.normalized();
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
-  const Eigen::Vector3d way = nearest.pose.position - (center + hand.radius * normal);
+  const Eigen::Vector3d way = middle - (center + hand.radius * normal);
   if (turns || way.dot(normal) > kTowards * way.norm()) return "";
   return fmt::format(
       ", or turn hand.normal: the hand moves along it only, which is [{:.3g}, {:.3g}, {:.3g}] in the "
@@ -73,7 +73,8 @@ bool reportAstray(const scene::Scene& scene, uint32_t index, const HandScript& h
                         spring->number, 0.01 * spring->number));
     return true;
   }
-  if (circlesModel(device, hand, nearest, *world.shapes()[seen.nearest]))
+  const host::ShapeInstance& shape = *world.shapes()[seen.nearest];
+  if (circlesModel(device, hand, nearest, shape) || passesAround(device, hand, nearest, shape))
     if (const auto radius = radiusOfFarHand(scene, index, hand, seen.away, true)) {
       const HandKey key = keyOfHand(scene, device, {"hand.radius", "hand.rise", "hand.script"});
       document::report(
@@ -84,6 +85,13 @@ bool reportAstray(const scene::Scene& scene, uint32_t index, const HandScript& h
       return true;
     }
   return false;
+}
+
+/// Returns the middle of a model in the world, or its position if its plugin reports no box.
+Eigen::Vector3d middleOf(const scene::Model& model, const host::ShapeInstance& shape) {
+  Eigen::AlignedBox3d box;
+  if (!shape.bounds(box.min().data(), box.max().data())) return model.pose.position;
+  return model.pose.position + model.pose.orientation * box.center();
 }
 
 void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen,
@@ -97,12 +105,14 @@ void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& han
   const std::string what = fmt::format("the hand of {} {}: it feels nothing; expected ", device.name, where);
   if (reportAstray(scene, index, hand, seen, world, what, warnings)) return;
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
+  const Eigen::Vector3d middle = middleOf(nearest, *world.shapes()[seen.nearest]);
   const std::string at = fmt::format(
       "a hand that moves near a model: its centre (hand.center) is at [{:.3g}, {:.3g}, {:.3g}] in "
-      "the world, it moves {:.3g} m from there (hand.radius), and {} is at [{:.3g}, {:.3g}, {:.3g}]; move the arm "
-      "(mount.position), hand.center or the model (pose.position){}",
-      center.x(), center.y(), center.z(), hand.radius, nearest.name, nearest.pose.position.x(),
-      nearest.pose.position.y(), nearest.pose.position.z(), adviceOf(scene, index, hand, seen));
+      "the world, it moves {:.3g} m from there (hand.radius), and the middle of {} is at [{:.3g}, {:.3g}, {:.3g}]; "
+      "move "
+      "the arm (mount.position), hand.center or the model (pose.position){}",
+      center.x(), center.y(), center.z(), hand.radius, nearest.name, middle.x(), middle.y(), middle.z(),
+      adviceOf(scene, index, hand, seen, middle));
   const std::string in_list = fmt::format("devices[{}].mount.position", index);
   for (const std::string& id : {std::string("device.mount.position"), in_list})
     if (const auto place = placeOfKey(scene.file, id)) return document::report(warnings, *place, id, what + at);
