@@ -205,6 +205,9 @@ def numbers(folder, ask):
     check("a stiffness in N/mm is warned of", code == 0 and "0.8 N/m cannot be felt" in out and "1 N/mm is 1000 N/m" in out, out)
     code, out, _ = ask("check", scene(folder, clients="{mode: add, max_force: 40}"))
     check("so is a bound beyond the arm's", code == 0 and "clients.max_force" in out and "8.5 N at most" in out, out)
+    code, out, _ = ask("check", scene(folder, stiffness="800, friction: 0.5"))
+    check("a friction is told of which it may be, and where all parameters are", code == 2 and '(did you mean "friction_dynamic" or "friction_static"?)' in out
+          and "; see hapticd plugin info nurbs_rigid" in out, out)
     code, out, _ = ask("check", scene(folder))
     check("a good scene is not", code == 0 and "warning" not in out, out)
 

@@ -38,7 +38,7 @@ def words(ask):
                                       ("loud", "maybe", "expected true or false"), ("push", "abc", "\"abc\" is not a number, expected a number from 0 to 3 N"),
                                       ("push", "7", "7 is out of range, expected a number from 0 to 3 N"), ("whole", "1.5", "expected a whole number from 0 to 9"),
                                       ("fixed", "abc", "cannot change while the model runs"), ("file", "x.csv", "cannot change while the model runs"),
-                                      ("lw", "hertz", "did you mean \"law\"?")):
+                                      ("lw", "hertz", "did you mean \"law\"?"), ("fixd", "1", "not live change in the scene, then: hapticd ctl reload")):
         code, out, err = ask("set", "donut", parameter, word)
         check(f"{parameter} {word} is refused in words", code == 1 and expected in err and "Could not" not in err, (code, out, err))
     live = {p["id"]: p for p in json.loads(ask("list")[1])["models"][0]["live_parameters"]}
