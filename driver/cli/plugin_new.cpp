@@ -80,6 +80,22 @@ void printNextSteps(const std::string& folder, const std::string& name) {
               at);
 }
 
+/// Copies the template to a new folder, file by file, and prints their names.
+Result<void> copyTemplate(const fs::path& source, const fs::path& target, const std::string& name) {
+  for (const auto& entry : fs::directory_iterator(source)) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream in(entry.path(), std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    const fs::path file = target / renamed(entry.path().filename().string(), name);
+    std::ofstream out(file, std::ios::binary);
+    out << renamed(text, name) << std::flush;
+    if (!out)
+      return Error{file.string() + ": cannot be written, expected a disk with room and a folder that you may write to"};
+    std::printf("%s\n", file.c_str());
+  }
+  return {};
+}
+
 int makeNew(const NewPluginArguments& options) {
   if (!usablePluginName(options.name))
     return fail(kBadInput, "\"" + options.name +
@@ -94,17 +110,9 @@ int makeNew(const NewPluginArguments& options) {
     return fail(kFailed, "the template is not installed; expected it in share/hapticd/template beside this program");
   if (!fs::create_directories(target, error))
     return fail(kFailed, target.string() + " cannot be created: " + error.message());
-  for (const auto& entry : fs::directory_iterator(*source)) {
-    if (!entry.is_regular_file()) continue;
-    std::ifstream in(entry.path(), std::ios::binary);
-    const std::string text(std::istreambuf_iterator<char>(in), {});
-    const fs::path file = target / renamed(entry.path().filename().string(), options.name);
-    std::ofstream out(file, std::ios::binary);
-    out << renamed(text, options.name) << std::flush;
-    if (!out)
-      return fail(kFailed,
-                  file.string() + ": cannot be written, expected a disk with room and a folder that you may write to");
-    std::printf("%s\n", file.c_str());
+  if (const auto copied = copyTemplate(*source, target, options.name); !copied) {
+    fs::remove_all(target, error);  // a folder that is not complete would block the next try
+    return fail(kFailed, copied.error() + "; the new folder was removed");
   }
   printNextSteps(target.string(), options.name);
   if (const auto same = catalog().shape(options.name))
