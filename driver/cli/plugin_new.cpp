@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd plugin new`: creates a plugin to start from, as a copy of the template under another name.
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -25,6 +26,17 @@ bool usablePluginName(const std::string& name) {
     if (!std::islower(static_cast<unsigned char>(c)) && !std::isdigit(static_cast<unsigned char>(c)) && c != '_')
       return false;
   return name != "template";
+}
+
+/// Returns a usable name that is like the given one, such as "my_ball" for "My-Ball".
+std::string usableLike(const std::string& name) {
+  std::string usable;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    usable += std::isalnum(byte) ? static_cast<char>(std::tolower(byte)) : '_';
+  }
+  usable.erase(0, std::min(usable.find_first_of("abcdefghijklmnopqrstuvwxyz"), usable.size()));
+  return usablePluginName(usable) ? usable : "my_shape";
 }
 
 /// Turns "push_button" into "PushButton".
@@ -100,7 +112,8 @@ int makeNew(const NewPluginArguments& options) {
   if (!usablePluginName(options.name))
     return fail(kBadInput, "\"" + options.name +
                                "\" is not a valid name of a plugin, expected lower-case letters, digits and _, "
-                               "beginning with a letter: my_shape");
+                               "beginning with a letter: " +
+                               usableLike(options.name));
   const fs::path target = options.folder.empty() ? fs::path(options.name) : fs::path(options.folder);
   std::error_code error;
   if (fs::exists(target, error))
