@@ -140,7 +140,8 @@ int importModel(const ImportArguments& options) {
   const bool from_cad = isCadFile(options.file) && !options.medial;
   if (const std::string wrong = misplaced(options, from_cad); !wrong.empty())
     return fail(kBadInput, options.file + ": " + wrong);
-  if (const std::string wrong = whyKept(options); !wrong.empty()) return fail(kBadInput, wrong);
+  for (const std::string& wrong : {whyKept(options), options.out == "-" ? "" : whyNotWritable(options.out)})
+    if (!wrong.empty()) return fail(kBadInput, wrong);
   if (from_cad) return importCadFile(options);
   if (options.medial) return importSoftBody(options);
   if (!options.answers.empty()) {

@@ -122,7 +122,8 @@ int makeNew(const NewPluginArguments& options) {
   if (!source)
     return fail(kFailed, "the template is not installed; expected it in share/hapticd/template beside this program");
   if (!fs::create_directories(target, error))
-    return fail(kFailed, target.string() + " cannot be created: " + error.message());
+    return fail(kBadInput, target.string() + " cannot be created: " + error.message() +
+                               ", expected a name in a folder that you may write to");
   if (const auto copied = copyTemplate(*source, target, options.name); !copied) {
     fs::remove_all(target, error);  // a folder that is not complete would block the next try
     return fail(kFailed, copied.error() + "; the new folder was removed");

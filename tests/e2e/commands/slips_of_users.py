@@ -111,6 +111,7 @@ def outputs(folder, ask):
           and not os.path.exists(os.path.join(folder, "t.csv")), (code, out, err))
     others(folder, ask, recording, path, file)
     of_a_recording(folder, ask, recording)
+    where_nothing_can_be_written(folder, ask, recording)
     on_a_full_disk(folder, recording, path, file)
     code, out, err = ask("trace", file, "--probe", path, "--out", os.path.join(folder, "feet.csv"))
     check("a path in mm is warned of", code == 0 and "row 2 is 30 m from the world's origin" in err, err)
@@ -123,6 +124,15 @@ def outputs(folder, ask):
         check(f"{name}: a damaged recording is not the same to the last bit", code != 0 and ("lost" in err or "difference" in out), (code, out, err))
         ask_plot = ask("plot", os.path.join(folder, name), "--out", os.path.join(folder, "x.svg"))
         check(f"{name}: nor is it drawn without a word", name != "cut.h5" or "it ends at byte" in ask_plot[2] and "are lost" in ask_plot[2], ask_plot)
+
+
+def where_nothing_can_be_written(folder, ask, recording):
+    """Is bad input to each command, as to run, and told before the work begins."""
+    mesh = write(folder, "cube.stl", stl(cube((0, 0, 0))))
+    for words in (("plot", recording, "--out", "/nonexist/x.svg"), ("import", mesh, "-o", "/nonexist/x.hpart"), ("device", "new", "x", "--out", "/nonexist/x.yaml"),
+                  ("plugin", "new", "x", "--dir", "/dev/null/x"), ("trace", scene(folder), "--probe", os.path.join(folder, "p.csv"), "--out", "/nonexist/x.csv")):
+        code, out, err = ask(*words)
+        check(f"{words[0]} {words[1]} where nothing can be written is bad input", code == 2 and words[-1] in err and " cannot be " in err, (code, out, err))
 
 
 def on_a_full_disk(folder, recording, path, file):
