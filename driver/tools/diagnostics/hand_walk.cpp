@@ -6,8 +6,10 @@
 #include <ctime>
 #include <memory>
 
+#include "base/allocation_owner.hpp"
 #include "base/clock.hpp"
 #include "diagnostics/hand_script.hpp"
+#include "record/allocation_text.hpp"
 #include "record/contact_warnings.hpp"
 #include "servo/arm/arm.hpp"
 #include "servo/loop/loop.hpp"
@@ -53,6 +55,9 @@ class WalkLog final : public servo::TickLog {
   /// Returns the walk, with the judgement that a run gives at its end.
   Walk take(const servo::Core& core) {
     const record::RunReport report = telemetry_.report({});
+    const AllocationShare most = mostAllocations();
+    if (most.owner != nullptr && !most.owner->device && !record::allocationText(report, most).empty())
+      walk_.allocates = most.owner->name;
     for (size_t i = 0; i < walk_.models.size(); ++i) judge(core.models()[i], report.models[i]);
     return std::move(walk_);
   }
@@ -60,7 +65,9 @@ class WalkLog final : public servo::TickLog {
   void begin(Nanoseconds, const servo::Arms&) noexcept HSP_RT override {}
   void order(const servo::Order&) noexcept HSP_RT override {}
   void overrun(uint64_t) noexcept HSP_RT override {}
-  void finish(uint64_t, Nanoseconds, long, uint64_t) noexcept override {}
+  void finish(uint64_t ticks, Nanoseconds elapsed, long page_faults, uint64_t allocations) noexcept override {
+    telemetry_.finish(ticks, elapsed, page_faults, allocations);
+  }
 
   void tick(double t, double dt, Nanoseconds late, const servo::TickDuration& spent, const servo::Core& core,
             const servo::Arms& arms) noexcept HSP_RT override {

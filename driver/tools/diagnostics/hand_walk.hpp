@@ -52,6 +52,7 @@ struct Walk {
   /// What `run` would report about the plugin of each model: why it was silenced, or what is odd in its forces.
   std::vector<std::vector<std::string>> judged;
   std::vector<bool> silenced;            ///< for each model: true if it was silenced
+  std::string allocates;                 ///< model whose steps allocate memory, as `run` would report; "" if none does
   std::vector<servo::Limiter> limiters;  ///< limiter of each arm at the end of the walk
 };
 

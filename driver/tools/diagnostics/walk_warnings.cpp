@@ -258,6 +258,20 @@ void checkWalkOfModel(const scene::Scene& scene, size_t index, const Walk& walk,
   if (walk.whole && seen.force > 0 && seen.force < kUnfelt) reportUnfelt(scene.models[index], index, seen, warnings);
 }
 
+/// Warns of a plugin whose steps allocate memory, as the end of a run does.
+void reportAllocations(const scene::Scene& scene, const Walk& walk, document::Problems& warnings) {
+  for (size_t i = 0; i < scene.models.size() && !walk.allocates.empty(); ++i) {
+    const scene::Model& model = scene.models[i];
+    if (model.name != walk.allocates) continue;
+    const std::string key = fmt::format("models[{}].plugin", i);
+    document::report(
+        warnings, placeOfKey(model.place.file, key).value_or(model.place), key,
+        fmt::format("steps of {} allocate memory, which may have to wait, and then the tick is late; allocate it in "
+                    "activate(): step(), which is touch() of a shape in C++, may not",
+                    model.name));
+  }
+}
+
 /// Warns that a walk was ended before the hands had done their motion, at the model that took most of the time.
 void reportLate(const scene::Scene& scene, const Walk& walk, document::Problems& warnings) {
   const auto slowest = static_cast<size_t>(
@@ -292,6 +306,7 @@ document::Problems warnOfWalk(const scene::Scene& scene, servo::World& world, co
     return walkHands(scene, world);
   }();
   if (!walk) return warnings;
+  reportAllocations(scene, *walk, warnings);
   if (walk->late) {
     reportLate(scene, *walk, warnings);
     return warnings;

@@ -93,6 +93,10 @@ def places(folder, hapticd):
 
 
 def memory(folder, hapticd):
+    code, out, err = hapticd("check", scene(folder, "allocates: 2"))
+    check("check warns of a plugin that allocates in a step", code == 0 and "models[0].plugin: warning: steps of donut allocate memory" in out, (out, err))
+    code, out, err = hapticd("check", scene(folder, ""))
+    check("and of no other", "allocate" not in out, (out, err))
     code, out, err = hapticd("run", scene(folder, "allocates: 2"), "--virtual-time", "--for", "1")
     check("steps that ask for memory name their model", "mostly in the plugin wordy (donut)" in out + err, (code, out, err))
     code, out, err = hapticd("run", scene(folder, ""), "--virtual-time", "--for", "1")
