@@ -21,6 +21,9 @@ Result<int> openRegular(const std::string& file);
 /// is an error too.
 Result<std::string> readRegular(const std::string& file, size_t max_bytes);
 
+/// [main] Removes a file whose writing failed, if it is regular: not a device, a pipe or a link.
+void removeIncomplete(const std::string& file) noexcept;
+
 /// [main] Writes a file completely or not at all. A device, a pipe or a link is written directly, so it may be left
 /// incomplete. The error begins with the file's name.
 Result<void> writeWhole(const std::string& file, const std::string& text);

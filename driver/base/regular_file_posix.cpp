@@ -87,6 +87,11 @@ Result<std::string> readRegular(const std::string& file, size_t max_bytes) {
   return text;
 }
 
+void removeIncomplete(const std::string& file) noexcept {
+  struct stat info{};
+  if (lstat(file.c_str(), &info) == 0 && S_ISREG(info.st_mode)) unlink(file.c_str());
+}
+
 Result<void> writeWhole(const std::string& file, const std::string& text) {
   struct stat info{};
   const bool special = lstat(file.c_str(), &info) == 0 && !S_ISREG(info.st_mode);

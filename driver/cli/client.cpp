@@ -45,6 +45,20 @@ std::string pathWith(const std::string& folder) {
   return others != nullptr && *others != '\0' ? folder + ":" + others : folder;
 }
 
+/// Returns why the program cannot be started; "" if it can, as execvp() looks for it.
+std::string whyNotStarted(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  const bool placed = program.find('/') != std::string::npos;
+  if (!placed && path == nullptr) return "";
+  for (const std::string& folder : placed ? std::vector<std::string>{""} : command_line::split(path, ':')) {
+    const fs::path file = fs::path(folder) / program;
+    std::error_code error;
+    if (access(file.c_str(), X_OK) == 0 && !fs::is_directory(file, error)) return "";
+  }
+  return program + ": there is no such program that you may start, expected " +
+         (placed ? "the path of a program" : "a program in a folder of $PATH, or its path, such as ./" + program);
+}
+
 bool isRunning(const std::string& name) {
   const std::string file = "/" + name + ".sock";
   return control::connectTo(status::runtimeFolder(false) + file) || control::connectTo("/run/hapticd" + file);
@@ -139,6 +153,7 @@ int client(const ClientArguments& options, const std::vector<std::string>& words
     return fail(kBadInput, words.front() +
                                ": unknown option; expected --name, --scene or --env before PROGRAM (the options of "
                                "PROGRAM come after it)");
+  if (const std::string wrong = whyNotStarted(words.front()); !wrong.empty()) return fail(kBadInput, wrong);
   setenv("LD_LIBRARY_PATH", path.c_str(), 1);
   setenv("HAPTICD_NAME", options.name.c_str(), 1);
   if (!isRunning(options.name)) return runWithDaemon(options, words);

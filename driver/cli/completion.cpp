@@ -34,7 +34,7 @@ bool isFile(const Option& argument) {
   return std::find(kFiles.begin(), kFiles.end(), argument.positionalName()) != kFiles.end();
 }
 
-/// Returns the words of a validator such as "TEXT:{scene,device}"; returns an empty list for other validators.
+/// Returns the words of a value such as "{scene,device}"; returns an empty list for other values.
 std::vector<std::string> choicesOf(const Option& option) {
   const std::string type = option.valueName();
   const size_t begin = type.find('{'), end = type.find('}');

@@ -338,8 +338,9 @@ int makeNew(const Command& command, NewDeviceArguments options) {
   std::ofstream out(file);
   out << textOf(options) << std::flush;
   if (!out) {
-    if (out.is_open()) fs::remove(file, error);  // a file that is not complete
-    return fail(kFailed,
+    const bool begun = out.is_open();
+    if (begun) fs::remove(file, error);  // a file that is not complete
+    return fail(begun ? kFailed : kBadInput,
                 file.string() + ": cannot be written, expected a disk with room and a folder that you may write to");
   }
   document::Problems problems = scene::loadDevice(file, catalog()).problems;

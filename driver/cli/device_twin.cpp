@@ -53,8 +53,10 @@ int makeTwin(const std::string& file, const std::string& wanted) {
   std::ofstream stream(out);
   stream << *text << std::flush;
   if (!stream) {
-    if (stream.is_open()) fs::remove(out, error);  // a file that is not complete
-    return fail(kFailed, out + ": cannot be written, expected a disk with room and a folder that you may write to");
+    const bool begun = stream.is_open();
+    if (begun) fs::remove(out, error);  // a file that is not complete
+    return fail(begun ? kFailed : kBadInput,
+                out + ": cannot be written, expected a disk with room and a folder that you may write to");
   }
   if (const int wrong = checkTwinFile(file, out); wrong != kWorked) return wrong;
   if (const std::string borrowed = diagnostics::borrowedByTwin(*root); !borrowed.empty())

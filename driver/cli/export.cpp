@@ -87,7 +87,10 @@ int toCsv(const record::Recording& recording, const ExportArguments& options) {
                              ", expected a folder in a folder that you may write to");
   for (const auto& [stream, file] : tables) {
     auto done = record::exportCsv(*stream, file);
-    if (!done) return fail(kFailed, done.error());
+    if (!done) {
+      if (!one) std::filesystem::remove(options.csv, error);  // if it is empty
+      return fail(kFailed, done.error());
+    }
     printExport(file, *done);
   }
   return kWorked;

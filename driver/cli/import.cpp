@@ -34,10 +34,15 @@ struct ImportArguments {
   bool json = false;
 };
 
-/// Returns how to convert a file of a common format that hapticd does not read, or "" for any other file.
-std::string otherWay(const std::string& file) {
+std::string lowerEnding(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+/// Returns how to convert a file of a common format that hapticd does not read, or "" for any other file.
+std::string otherWay(const std::string& file) {
+  const std::string ending = lowerEnding(file);
   const auto is = [&](std::initializer_list<const char*> endings) {
     return std::any_of(endings.begin(), endings.end(), [&](const char* one) { return ending == one; });
   };
@@ -50,12 +55,22 @@ std::string otherWay(const std::string& file) {
   return "";
 }
 
+/// Returns true for BREP files of Open CASCADE, the only CAD files without a unit.
+bool statesNoUnit(const std::string& file) {
+  const std::string ending = lowerEnding(file);
+  return ending == ".brep" || ending == ".brp" || ending == ".rle";
+}
+
 /// Returns a message about options that have no effect with this format, or "".
 std::string misplaced(const ImportArguments& options, bool cad) {
   const bool turned = options.placement.fit > 0 || options.placement.center || options.up != "y";
   if (cad && (turned || options.placement.scale != 1))
-    return "--scale, --fit, --center and --up have no effect with CAD files, which state their unit: place the part by "
-           "`pose` in the scene";
+    return statesNoUnit(options.file)
+               ? "--scale, --fit, --center and --up have no effect with CAD files: place the part by `pose` in the "
+                 "scene. This format states no unit and is read in mm; if it is in another unit, save the part as "
+                 "STEP in a CAD program, which states it"
+               : "--scale, --fit, --center and --up have no effect with CAD files, which state their unit: place the "
+                 "part by `pose` in the scene";
   if (options.medial && turned)
     return "--fit, --center and --up have no effect with --medial, expected only --scale (metres per unit of the file)";
   if (options.outward != "auto" && (cad || options.medial || isMeshFile(options.file)))
@@ -140,7 +155,8 @@ int importModel(const ImportArguments& options) {
   const bool from_cad = isCadFile(options.file) && !options.medial;
   if (const std::string wrong = misplaced(options, from_cad); !wrong.empty())
     return fail(kBadInput, options.file + ": " + wrong);
-  if (const std::string wrong = whyKept(options); !wrong.empty()) return fail(kBadInput, wrong);
+  for (const std::string& wrong : {whyKept(options), options.out == "-" ? "" : whyNotWritable(options.out)})
+    if (!wrong.empty()) return fail(kBadInput, wrong);
   if (from_cad) return importCadFile(options);
   if (options.medial) return importSoftBody(options);
   if (!options.answers.empty()) {

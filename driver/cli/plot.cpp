@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -190,8 +189,7 @@ int plot(const PlotArguments& options) {
   if (samples.empty() && ticks->rows() > 0)
     return fail(kBadInput, fmt::format("{}: has no tick between --from and --to; the recording covers {:g} to {:g} s",
                                        options.file, first, last));
-  if (!std::ofstream(out, std::ios::app))
-    return fail(kBadInput, out + ": cannot be written, expected a file in a folder that you may write to");
+  if (const std::string wrong = whyNotWritable(out); !wrong.empty()) return fail(kBadInput, wrong);
   record::RunReport report = reportOf(titleOf(options.file, **recording), samples);
   const record::RunNotes notes = notesOf(**recording, options.arm, report.virtual_time);
   if (const record::Column* tick = ticks->find("tick"); tick != nullptr && !notes.arm.empty())

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd plugin new`: creates a plugin to start from, as a copy of the template under another name.
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -25,6 +26,17 @@ bool usablePluginName(const std::string& name) {
     if (!std::islower(static_cast<unsigned char>(c)) && !std::isdigit(static_cast<unsigned char>(c)) && c != '_')
       return false;
   return name != "template";
+}
+
+/// Returns a usable name that is like the given one, such as "my_ball" for "My-Ball".
+std::string usableLike(const std::string& name) {
+  std::string usable;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    usable += std::isalnum(byte) ? static_cast<char>(std::tolower(byte)) : '_';
+  }
+  usable.erase(0, std::min(usable.find_first_of("abcdefghijklmnopqrstuvwxyz"), usable.size()));
+  return usablePluginName(usable) ? usable : "my_shape";
 }
 
 /// Turns "push_button" into "PushButton".
@@ -80,11 +92,28 @@ void printNextSteps(const std::string& folder, const std::string& name) {
               at);
 }
 
+/// Copies the template to a new folder, file by file, and prints their names.
+Result<void> copyTemplate(const fs::path& source, const fs::path& target, const std::string& name) {
+  for (const auto& entry : fs::directory_iterator(source)) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream in(entry.path(), std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    const fs::path file = target / renamed(entry.path().filename().string(), name);
+    std::ofstream out(file, std::ios::binary);
+    out << renamed(text, name) << std::flush;
+    if (!out)
+      return Error{file.string() + ": cannot be written, expected a disk with room and a folder that you may write to"};
+    std::printf("%s\n", file.c_str());
+  }
+  return {};
+}
+
 int makeNew(const NewPluginArguments& options) {
   if (!usablePluginName(options.name))
     return fail(kBadInput, "\"" + options.name +
                                "\" is not a valid name of a plugin, expected lower-case letters, digits and _, "
-                               "beginning with a letter: my_shape");
+                               "beginning with a letter: " +
+                               usableLike(options.name));
   const fs::path target = options.folder.empty() ? fs::path(options.name) : fs::path(options.folder);
   std::error_code error;
   if (fs::exists(target, error))
@@ -93,18 +122,11 @@ int makeNew(const NewPluginArguments& options) {
   if (!source)
     return fail(kFailed, "the template is not installed; expected it in share/hapticd/template beside this program");
   if (!fs::create_directories(target, error))
-    return fail(kFailed, target.string() + " cannot be created: " + error.message());
-  for (const auto& entry : fs::directory_iterator(*source)) {
-    if (!entry.is_regular_file()) continue;
-    std::ifstream in(entry.path(), std::ios::binary);
-    const std::string text(std::istreambuf_iterator<char>(in), {});
-    const fs::path file = target / renamed(entry.path().filename().string(), options.name);
-    std::ofstream out(file, std::ios::binary);
-    out << renamed(text, options.name) << std::flush;
-    if (!out)
-      return fail(kFailed,
-                  file.string() + ": cannot be written, expected a disk with room and a folder that you may write to");
-    std::printf("%s\n", file.c_str());
+    return fail(kBadInput, target.string() + " cannot be created: " + error.message() +
+                               ", expected a name in a folder that you may write to");
+  if (const auto copied = copyTemplate(*source, target, options.name); !copied) {
+    fs::remove_all(target, error);  // a folder that is not complete would block the next try
+    return fail(kFailed, copied.error() + "; the new folder was removed");
   }
   printNextSteps(target.string(), options.name);
   if (const auto same = catalog().shape(options.name))

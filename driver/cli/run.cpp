@@ -286,7 +286,9 @@ void addOutputs(const Command& command, RunArguments& options) {
                            std::string::npos;
         return plain && name.size() <= 32 ? std::string() : "expected up to 32 letters, digits, - and _";
       });
-  command.addOption("--record", options.record, "record every tick (HDF5), for replay, plot, Python and MATLAB");
+  command.addOption("--record", options.record,
+                    "record every tick (HDF5), for replay, plot, Python and MATLAB; on a full disk the run goes on, "
+                    "and its exit code is 1");
   command.addFlag("--view", options.view,
                   "show the run in a browser page; on a simulated arm the mouse replaces the hand's script");
   command.addFlag("--no-open", options.no_open, "with --view: print the address of the page, but start no browser")

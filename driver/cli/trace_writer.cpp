@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "base/regular_file.hpp"
+
 namespace hapticd::cli {
 
 namespace {
@@ -50,7 +52,9 @@ long statusOf(const servo::ModelState& model, const hsp_contact& contact, bool p
 }  // namespace
 
 TraceWriter::~TraceWriter() {
-  if (out_ != nullptr && out_ != stdout) std::fclose(out_);
+  if (out_ == nullptr || out_ == stdout) return;
+  std::fclose(out_);
+  removeIncomplete(file_);
 }
 
 void TraceWriter::number(double value) {
@@ -105,8 +109,10 @@ Result<void> TraceWriter::close() {
   std::FILE* out = out_;
   out_ = nullptr;
   const bool failed = std::fflush(out) != 0 || std::ferror(out) != 0 || (out != stdout && std::fclose(out) != 0);
-  if (failed) return Error{file_ + ": cannot be written: " + std::strerror(errno)};
-  return {};
+  if (!failed) return {};
+  const int code = errno;
+  removeIncomplete(file_);
+  return Error{file_ + ": cannot be written: " + std::strerror(code)};
 }
 
 }  // namespace hapticd::cli

@@ -6,12 +6,12 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 
 #include "base/clock.hpp"
 #include "base/os.hpp"
+#include "base/regular_file.hpp"
 #include "cli/command.hpp"
 #include "cli/guarded_command.hpp"
 #include "cli/open_end.hpp"
@@ -128,10 +128,9 @@ bool showProgress(const tune::Progress& progress) {
 
 bool save(const std::string& file, const std::string& text) {
   if (file.empty()) return true;
-  std::ofstream out(file);
-  out << text << std::flush;
-  if (!out) fail(kFailed, file + ": cannot be written");
-  return static_cast<bool>(out);
+  const auto written = writeWhole(file, text);
+  if (!written) fail(kFailed, written.error());
+  return static_cast<bool>(written);
 }
 
 std::string tunedName(const std::string& scene) {

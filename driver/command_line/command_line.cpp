@@ -10,26 +10,10 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "command_line/meant.hpp"
 #include "command_line/option_texts.hpp"
 
 namespace hapticd::command_line {
-namespace {
-
-Suggest& suggest() {
-  static Suggest function;
-  return function;
-}
-
-/// Returns a text such as " (did you mean \"run\"?)", or "".
-std::string meant(const std::string& word, const std::vector<std::string>& known) {
-  return suggest() ? suggest()(word, known) : "";
-}
-
-}  // namespace
-
-void suggestBy(const Suggest& function) {
-  suggest() = function;
-}
 
 Option Option::required() const {
   return Option(option_->required());
@@ -56,14 +40,14 @@ Option Option::within(double low, double high) const {
   const auto refuse = [low, high, unit = unitOf(description())](const std::string& text) {
     return notWithin(text, low, high, unit);
   };
-  return Option(option_->check(CLI::Validator(refuse, fmt::format("FLOAT in [{} - {}]", low, high))));
+  return Option(option_->check(CLI::Validator(refuse, fmt::format("({:g} to {:g})", low, high))));
 }
 
 Option Option::wholeWithin(int low, int high) const {
   const auto refuse = [low, high, unit = unitOf(description())](const std::string& text) {
     return notWithin(text, low, high, unit);
   };
-  return Option(option_->check(CLI::Validator(refuse, fmt::format("INT in [{} - {}]", low, high))));
+  return Option(option_->check(CLI::Validator(refuse, fmt::format("({} to {})", low, high))));
 }
 
 Option Option::oneOf(const std::vector<std::string>& words) const {
@@ -138,7 +122,7 @@ std::vector<std::string> Option::longNames() const {
 }
 
 std::string Option::valueName() const {
-  return option_->get_type_name();
+  return readableType(option_->get_type_name());
 }
 
 template <class Value>
@@ -224,7 +208,23 @@ std::vector<Option> Command::options() const {
   return all;
 }
 
-Program::Program(const std::string& description, const std::string& name) : Command(new CLI::App(description, name)) {}
+namespace {
+
+/// Writes the help with readable placeholders of values.
+class HelpFormatter final : public CLI::Formatter {
+ public:
+  // NOLINTNEXTLINE(readability-identifier-naming): the library calls it so
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const std::string type = option->get_type_name();
+    return replaced(Formatter::make_option_opts(option), type, readableType(type));
+  }
+};
+
+}  // namespace
+
+Program::Program(const std::string& description, const std::string& name) : Command(new CLI::App(description, name)) {
+  app_->formatter(std::make_shared<HelpFormatter>());  // subcommands take it from their program
+}
 
 Program::~Program() {
   delete app_;
@@ -344,11 +344,6 @@ std::string unreadable(const CLI::App& app, const std::string& told) {
 std::string wrongCount(const CLI::App& app, const std::string& told) {
   const auto option = named(app, told.substr(0, told.find(": ")));
   return option ? wrongCount(*option, told) : told;
-}
-
-std::string replaced(const std::string& text, std::string_view what, std::string_view with) {
-  const size_t at = text.find(what);
-  return at == std::string::npos ? text : text.substr(0, at) + std::string(with) + text.substr(at + what.size());
 }
 
 /// Returns what is wrong with the command line, in the form of all other messages.

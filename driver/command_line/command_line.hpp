@@ -59,7 +59,7 @@ class Option {
   std::string positionalName() const;          ///< such as "scene"
   std::string allNames() const;                ///< such as "-o,--out"
   std::vector<std::string> longNames() const;  ///< such as "out"
-  std::string valueName() const;  ///< placeholder of the value in the help, such as "TEXT:{x,y,z}"; "" for a flag
+  std::string valueName() const;  ///< placeholder of the value in the help, such as "{x,y,z}"; "" for a flag
 
  private:
   friend class Command;

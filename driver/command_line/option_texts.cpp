@@ -44,6 +44,19 @@ std::string expectedCount(const OptionFacts& option) {
 
 }  // namespace
 
+std::string replaced(const std::string& text, std::string_view what, std::string_view with) {
+  const size_t at = text.find(what);
+  return at == std::string::npos ? text : text.substr(0, at) + std::string(with) + text.substr(at + what.size());
+}
+
+std::string readableType(const std::string& type) {
+  const size_t colon = type.find(':');
+  const std::string kind = type.substr(0, colon), rule = colon == std::string::npos ? "" : type.substr(colon + 1);
+  std::string name = kind == "FLOAT" ? "NUMBER" : kind == "INT" || kind == "UINT" ? "INTEGER" : kind;
+  if (rule.empty()) return name;
+  return name == "TEXT" ? rule : name + " " + rule;
+}
+
 std::string unitOf(const std::string& description) {
   const size_t open = description.find('['), close = description.find(']', open);
   if (open == std::string::npos || close == std::string::npos) return "";
@@ -82,7 +95,8 @@ std::string wrongCount(const OptionFacts& option, const std::string& told) {
   if (end != std::string::npos && option.least == 1) {
     const size_t from = type + std::string_view(" required ").size();
     const std::string count = told.substr(colon + 2, type - colon - 2), kind = told.substr(from, end - from);
-    return fmt::format("{}: {} more value{} expected ({})", option.name, count, count == "1" ? "" : "s", kind);
+    return fmt::format("{}: {} more value{} expected: {}", option.name, count, count == "1" ? "" : "s",
+                       readableType(kind));
   }
   return expectedCount(option);
 }

@@ -2,6 +2,7 @@
 /// Texts about one option: what its values should have been, its unit, and the words that stand for its values.
 #pragma once
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hapticd::command_line {
@@ -15,6 +16,13 @@ struct OptionFacts {
   std::vector<std::string> given;
 };
 
+/// Returns the text with the first `what` in it replaced.
+std::string replaced(const std::string& text, std::string_view what, std::string_view with);
+
+/// Returns the placeholder of a value that the help shows for a type of CLI11, such as "NUMBER (0.5 to 2)" for
+/// "FLOAT:(0.5 to 2)", or "FILE" for "TEXT:FILE".
+std::string readableType(const std::string& type);
+
 /// Returns the unit that a description has in brackets, with a space before it, such as " Hz"; "" if it has none.
 std::string unitOf(const std::string& description);
 
@@ -26,7 +34,7 @@ std::string notWithin(const std::string& word, double low, double high, const st
 std::string notWithin(const std::string& word, int low, int high, const std::string& unit);
 
 /// Describes a number of values that is too small or too large. Gives CLI11's "--for: At least 3 required but received
-/// 2" and "--for: 1 required FLOAT:FLOAT in [0 - 1] missing" the form of the other messages.
+/// 2" and "--for: 1 required FLOAT:(0 to 1) missing" the form of the other messages.
 std::string wrongCount(const OptionFacts& option, const std::string& told);
 
 /// Returns "; did you mean "ball stiffness"?" if the word given to this option is such as "ball.stiffness", or "". It

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 
 #include "base/nearest_word.hpp"
 #include "document/correction.hpp"
@@ -11,17 +12,18 @@ namespace hapticd::document {
 
 namespace {
 
-/// Returns the only candidate that begins with a word of at least four letters; "" if there is none, or several.
-std::string onlyWithBeginning(std::string_view word, const std::vector<std::string>& candidates) {
-  constexpr size_t kShortest = 4;
+/// Returns the candidates that begin with a word of at least four letters, as "a" or "a" or "b"; "" if there is none,
+/// or if there are many.
+std::string withBeginning(std::string_view word, const std::vector<std::string>& candidates) {
+  constexpr size_t kShortest = 4, kMost = 3;
   if (word.size() < kShortest) return "";
-  std::string only;
-  for (const std::string& candidate : candidates) {
-    if (!candidate.starts_with(word)) continue;
-    if (!only.empty()) return "";
-    only = candidate;
-  }
-  return only;
+  std::set<std::string> all;
+  for (const std::string& candidate : candidates)
+    if (candidate.starts_with(word)) all.insert(candidate);
+  if (all.size() > kMost) return "";
+  std::string text;
+  for (const std::string& one : all) text += (text.empty() ? "" : " or ") + ('"' + one + '"');
+  return text;
 }
 
 /// Returns the words of a name that "_" separates, in alphabetical order.
@@ -60,8 +62,8 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
 std::string suggestionOfName(std::string_view name, const std::vector<std::string>& candidates) {
   std::string meant = withSameWords(name, candidates);
   if (meant.empty()) meant = nearestWord(name, candidates);
-  if (meant.empty()) meant = onlyWithBeginning(name, candidates);
-  return meant.empty() ? "" : " (did you mean \"" + meant + "\"?)";
+  meant = meant.empty() ? withBeginning(name, candidates) : '"' + meant + '"';
+  return meant.empty() ? "" : " (did you mean " + meant + "?)";
 }
 
 std::string listed(const std::vector<std::string>& names, size_t most) {

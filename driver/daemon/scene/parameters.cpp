@@ -152,6 +152,7 @@ void ParameterReader::unknown(const Node& around, const Entry& entry, const std:
                         "unknown parameter of " + info_.name +
                             "; expected one key for both numbers: id: \"VENDOR:PRODUCT\", in hexadecimal, such as "
                             "\"16c0:0486\"");
+  constexpr size_t kMostListed = 24;
   // Within a group only names of this group are suggested, because names of other groups are not valid here.
   const std::string group = id.substr(0, id.find('.') == id.npos ? 0 : id.rfind('.'));
   if (!group.empty()) std::erase_if(ids, [&](const std::string& one) { return one.rfind(group + ".", 0) != 0; });
@@ -159,10 +160,13 @@ void ParameterReader::unknown(const Node& around, const Entry& entry, const std:
   if (group.empty()) ids.insert(ids.begin(), names.begin(), names.end());
   const std::string inside = group.empty() ? idEndingWith(id, ids) : "";
   const std::string meant = inside.empty() ? nearestWord(id, ids) : inside;
-  in_->problem(entry.key, key,
-               "unknown parameter of " + info_.name + ", expected one of " + document::listed(names, 24) +
-                   (inside.empty() ? document::suggestion(id, ids) : " (did you mean \"" + inside + "\"?)"),
-               meant.empty() || entry.value.isNull() ? ProblemKind::kUnknownKey : ProblemKind::kMisspeltKey);
+  in_->problem(
+      entry.key, key,
+      "unknown parameter of " + info_.name + ", expected one of " + document::listed(names, kMostListed) +
+          (inside.empty() ? document::suggestion(id, ids) : " (did you mean \"" + inside + "\"?)") +
+          (names.size() > kMostListed && info_.kind == host::Kind::kShape ? "; see hapticd plugin info " + info_.name
+                                                                          : ""),
+      meant.empty() || entry.value.isNull() ? ProblemKind::kUnknownKey : ProblemKind::kMisspeltKey);
   if (!meant.empty() && around.find(meant.substr(meant.rfind('.') + 1)) == nullptr) judgeAs(meant, entry, key);
 }
 

@@ -245,12 +245,16 @@ std::string snapshotAnswer(const Session& session) {
 }
 
 std::string noSuchParameter(const hsp_class& plugin, const std::string& parameter, uint32_t flags) {
-  std::vector<std::string> names;
+  std::vector<std::string> names, others;
   for (uint32_t i = 0; i < plugin.param_count; ++i)
-    if ((host::paramAt(plugin, i).flags & flags) == flags) names.emplace_back(host::paramAt(plugin, i).id);
-  return "parameter \"" + parameter.substr(0, 100) + "\" of " + plugin.name + ": there is no " +
+    ((host::paramAt(plugin, i).flags & flags) == flags ? names : others).emplace_back(host::paramAt(plugin, i).id);
+  const std::string word = parameter.substr(0, 100);
+  const std::string meant = document::suggestionOfName(word, names),
+                    other = meant.empty() ? document::suggestionOfName(word, others) : "";
+  return "parameter \"" + word + "\" of " + plugin.name + ": there is no " +
          ((flags & HSP_P_LIVE) != 0 ? "live " : "") + "parameter of that name, expected one of " +
-         document::listed(names) + document::suggestionOfName(parameter.substr(0, 100), names);
+         document::listed(names) + meant + other +
+         (other.empty() ? "" : "\n  fix: parameters that are not live change in the scene, then: hapticd ctl reload");
 }
 
 std::string noSuchDevice(const scene::Scene& scene, const std::string& device) {

@@ -69,8 +69,8 @@ void onStop(int signal, siginfo_t* info, void* context) {
   const Owner* keeps = watchedHere() != nullptr ? currentOwner() : nullptr;
   if (keeps != nullptr) {
     Line line;
-    addOwner(line.add("\nwarning: the program was ended by ").add(signalName(signal).text()).add(" while "), *keeps)
-        .add(" was");
+    line.add("\nended as asked (SIG").add(sigabbrev_np(signal)).add("), while ");  // nobody is to blame
+    addOwner(line, *keeps).add(" was");
     addCall(line, *keeps, callNameHere()).add("\n");
     line.write(STDERR_FILENO);
   }

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/file.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <boost/asio/signal_set.hpp>
@@ -33,20 +34,44 @@ bool daemonLives(const std::string& lock_file) {
   return !free;
 }
 
-/// Starts the user's browser without waiting for its end.
-void openBrowser(const std::string& url) {
-  pid_t child = 0;
-  std::string program = "xdg-open", address = url;
-  char* arguments[] = {program.data(), address.data(), nullptr};
-  if (posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ) != 0)
-    std::fputs("no browser could be started (xdg-open is missing): open the address above yourself\n", stderr);
-}
+/// The user's browser, which xdg-open starts. What that prints is dropped, because it names each browser that it did
+/// not find; one line replaces it.
+class Browser {
+ public:
+  void open(const std::string& url) {
+    std::string program = "xdg-open", address = url;
+    char* arguments[] = {program.data(), address.data(), nullptr};
+    posix_spawn_file_actions_t silent;
+    posix_spawn_file_actions_init(&silent);
+    for (const int output : {STDOUT_FILENO, STDERR_FILENO})
+      posix_spawn_file_actions_addopen(&silent, output, "/dev/null", O_WRONLY, 0);
+    const bool started = posix_spawnp(&child_, program.c_str(), &silent, nullptr, arguments, environ) == 0;
+    posix_spawn_file_actions_destroy(&silent);
+    if (!started) tell("xdg-open is missing"), child_ = 0;
+  }
 
-/// Calls onTick() of every conversation 60 times per second, and checks whether the daemon has ended.
+  /// Tells once if xdg-open has ended and found no browser.
+  void look() {
+    int status = 0;
+    if (child_ <= 0 || waitpid(child_, &status, WNOHANG) != child_) return;
+    child_ = 0;
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) tell("xdg-open found none");
+  }
+
+ private:
+  static void tell(const char* why) {
+    std::fprintf(stderr, "no browser could be started (%s): open the address above yourself\n", why);
+  }
+
+  pid_t child_ = 0;
+};
+
+/// Calls onTick() of every conversation 60 times per second, and checks whether the daemon has ended, and the start of
+/// the browser.
 class Heartbeat {
  public:
-  Heartbeat(boost::asio::io_context& io, Stage& stage, Server& server, std::string lock_file)
-      : io_(io), timer_(io), stage_(stage), server_(server), lock_file_(std::move(lock_file)) {}
+  Heartbeat(boost::asio::io_context& io, Stage& stage, Server& server, Browser& browser, std::string lock_file)
+      : io_(io), timer_(io), stage_(stage), server_(server), browser_(browser), lock_file_(std::move(lock_file)) {}
 
   void scheduleNext() {
     timer_.expires_after(kTick);
@@ -56,18 +81,21 @@ class Heartbeat {
         stage_.tick();
         server_.tick();
       }
-      if (!lock_file_.empty() && ++beats_ % kLook == 0 && !daemonLives(lock_file_)) return io_.stop();
+      const bool looks = ++beats_ % kLook == 0;
+      if (looks) browser_.look();
+      if (looks && !lock_file_.empty() && !daemonLives(lock_file_)) return io_.stop();
       scheduleNext();
     });
   }
 
  private:
-  /// Number of ticks between two checks whether the daemon has ended: about one second.
+  /// Number of ticks between two checks of the daemon and the browser: about one second.
   static constexpr unsigned kLook = 64;
   boost::asio::io_context& io_;
   boost::asio::steady_timer timer_;
   Stage& stage_;
   Server& server_;
+  Browser& browser_;
   std::string lock_file_;
   unsigned beats_ = 0;
 };
@@ -100,10 +128,11 @@ int serve(const ServeOptions& options) {
   }
   std::printf("%s\n", (*server)->url().c_str());
   std::fflush(stdout);
-  if (options.open) openBrowser((*server)->url());
+  Browser browser;
+  if (options.open) browser.open((*server)->url());
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   signals.async_wait([&](const auto&, int) { io.stop(); });
-  Heartbeat heartbeat(io, stage, **server, lock_file);
+  Heartbeat heartbeat(io, stage, **server, browser, lock_file);
   heartbeat.scheduleNext();
   io.run();
   return 0;

@@ -74,10 +74,10 @@ Finding SampleCheck::sum() const {
         "hdv_sample.time_ns is more than 0.1 s behind now_ns in new samples; expected the time of the measurement, in "
         "ns on the clock of now_ns");
   if (beyond_ >= 0) {
-    std::snprintf(
-        text, sizeof text,
-        "position[%d] is %.4g, but open() says that this joint goes from %.4g to %.4g; positions must be in rad (or m)",
-        beyond_, beyond_at_, info_.position_min[beyond_], info_.position_max[beyond_]);
+    std::snprintf(text, sizeof text,
+                  "position[%d] is %.4g, but open() says that this joint goes from %.4g to %.4g; positions must be in "
+                  "rad, or in m if the joint slides",
+                  beyond_, beyond_at_, info_.position_min[beyond_], info_.position_max[beyond_]);
     return Finding::warned(text);
   }
   if (info_.buttons < 32 && (buttons_ >> info_.buttons) != 0)

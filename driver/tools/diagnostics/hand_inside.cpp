@@ -26,14 +26,27 @@ void reportTurned(const scene::Scene& scene, const InsideTip& inside, const std:
                                                   "points, in the file, or sides: both"));
 }
 
+/// Returns the centre of the hand's script in the frame of the model.
+Eigen::Vector3d centerInModel(const scene::Device& device, const HandScript& hand, const scene::Model& model) {
+  const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
+  return model.pose.orientation.conjugate() * (center - model.pose.position);
+}
+
 }  // namespace
 
 bool circlesModel(const scene::Device& device, const HandScript& hand, const scene::Model& model,
                   const host::ShapeInstance& shape) {
   Eigen::AlignedBox3d box;
   if (!shape.bounds(box.min().data(), box.max().data())) return false;
-  const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
-  return box.contains(Eigen::Vector3d(model.pose.orientation.conjugate() * (center - model.pose.position)));
+  return box.contains(centerInModel(device, hand, model));
+}
+
+bool passesAround(const scene::Device& device, const HandScript& hand, const scene::Model& model,
+                  const host::ShapeInstance& shape) {
+  Eigen::AlignedBox3d box;
+  if (!shape.bounds(box.min().data(), box.max().data())) return false;
+  const Eigen::Vector3d center = centerInModel(device, hand, model);
+  return (box.min() - center).cwiseAbs().cwiseMax((box.max() - center).cwiseAbs()).norm() < hand.radius;
 }
 
 void reportInside(const scene::Scene& scene, const InsideTip& inside, document::Problems& warnings) {

@@ -26,6 +26,11 @@ struct InsideTip {
 bool circlesModel(const scene::Device& device, const HandScript& hand, const scene::Model& model,
                   const host::ShapeInstance& shape);
 
+/// Returns true if the whole box of the model lies nearer to the centre of the hand's script than the radius on which
+/// the hand moves: the hand passes around it.
+bool passesAround(const scene::Device& device, const HandScript& hand, const scene::Model& model,
+                  const host::ShapeInstance& shape);
+
 /// [main] Warns of one such tip. The warning is at the surfaces if they face the wrong way, at the radius of the hand
 /// if another one helps, otherwise at the pose of the model.
 void reportInside(const scene::Scene& scene, const InsideTip& inside, document::Problems& warnings);

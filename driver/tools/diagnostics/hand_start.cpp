@@ -197,6 +197,7 @@ std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<
   host::Packer found;
   const servo::WorldOptions options{.rate = scene.servo.rate,
                                     .probe_count = std::max<uint32_t>(static_cast<uint32_t>(tips.size()), 1),
+                                    .measure = true,
                                     .max_force = servo::maxForceOf(scene)};
   auto world = servo::World::build(scene, options, [](int, const std::string&, const std::string&) {});
   if (!world) return found.take();

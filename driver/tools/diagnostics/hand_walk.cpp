@@ -6,8 +6,10 @@
 #include <ctime>
 #include <memory>
 
+#include "base/allocation_owner.hpp"
 #include "base/clock.hpp"
 #include "diagnostics/hand_script.hpp"
+#include "record/allocation_text.hpp"
 #include "record/contact_warnings.hpp"
 #include "servo/arm/arm.hpp"
 #include "servo/loop/loop.hpp"
@@ -25,7 +27,6 @@ constexpr double kMostSeconds = 10;
 /// gives.
 constexpr double kLeastSeconds = 3;
 constexpr uint64_t kMostTicks = 10'000;
-constexpr double kMostProcessor = 3;  ///< [s] of processor time
 
 double processorSeconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
@@ -50,11 +51,13 @@ class WalkLog final : public servo::TickLog {
   }
 
   void ends(servo::Loop& loop) { loop_ = &loop; }
-  bool spoiled() const { return spoiled_; }
 
   /// Returns the walk, with the judgement that a run gives at its end.
   Walk take(const servo::Core& core) {
     const record::RunReport report = telemetry_.report({});
+    const AllocationShare most = mostAllocations();
+    if (most.owner != nullptr && !most.owner->device && !record::allocationText(report, most).empty())
+      walk_.allocates = most.owner->name;
     for (size_t i = 0; i < walk_.models.size(); ++i) judge(core.models()[i], report.models[i]);
     return std::move(walk_);
   }
@@ -62,7 +65,9 @@ class WalkLog final : public servo::TickLog {
   void begin(Nanoseconds, const servo::Arms&) noexcept HSP_RT override {}
   void order(const servo::Order&) noexcept HSP_RT override {}
   void overrun(uint64_t) noexcept HSP_RT override {}
-  void finish(uint64_t, Nanoseconds, long, uint64_t) noexcept override {}
+  void finish(uint64_t ticks, Nanoseconds elapsed, long page_faults, uint64_t allocations) noexcept override {
+    telemetry_.finish(ticks, elapsed, page_faults, allocations);
+  }
 
   void tick(double t, double dt, Nanoseconds late, const servo::TickDuration& spent, const servo::Core& core,
             const servo::Arms& arms) noexcept HSP_RT override {
@@ -72,10 +77,11 @@ class WalkLog final : public servo::TickLog {
     for (uint32_t i = 0; i < walk_.models.size(); ++i) observeModel(i, core, arms);
     for (uint32_t i = 0; i < arms.size(); ++i) observeArm(i, core, *arms[i]);
     if (ticks_++ % kLookEvery == 0) late_ = processorSeconds() - begun_ > kMostProcessor;
+    walk_.ticks = ticks_;
     const bool all =
         std::all_of(walk_.arms.begin(), walk_.arms.end(), [](const WalkedArm& arm) { return arm.touched; });
     walk_.whole = t >= once_ || walk_.whole;
-    spoiled_ = late_ && !walk_.whole;
+    walk_.late = late_ && !walk_.whole;
     // A model that moves by itself may still come to a hand that waits for it.
     if (!late_ && !(walk_.whole && (all || !moves_) && t >= kLeastSeconds)) return;
     ended_ = true;
@@ -100,6 +106,7 @@ class WalkLog final : public servo::TickLog {
     WalkedModel& seen = walk_.models[index];
     if (ticks_ == 0) began_at_[index] = state.frame.origin_world;
     moves_ = moves_ || state.moves;
+    seen.seconds += static_cast<double>(state.step_ns) * 1e-9;
     seen.travel = std::max(seen.travel, (state.frame.origin_world - began_at_[index]).norm());
     bool inside = false;
     for (uint32_t probe = 0; probe < arms.size(); ++probe) {
@@ -155,7 +162,7 @@ class WalkLog final : public servo::TickLog {
   std::vector<servo::Clips> clips_;
   servo::Loop* loop_ = nullptr;
   uint64_t ticks_ = 0;
-  bool moves_ = false, ended_ = false, late_ = false, spoiled_ = false;
+  bool moves_ = false, ended_ = false, late_ = false;
   Walk walk_;
 };
 
@@ -182,7 +189,6 @@ std::optional<Walk> walkHands(const scene::Scene& scene, servo::World& world) {
   servo::Loop loop(world.core(), world.lockstep(), arms, clock, settings, log);
   log.ends(loop);
   loop.run();
-  if (log.spoiled()) return std::nullopt;
   Walk walk = log.take(world.core());
   walk.period = 1 / scene.servo.rate;
   for (const auto& arm : arms) {

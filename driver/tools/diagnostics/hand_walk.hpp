@@ -20,6 +20,7 @@ namespace hapticd::diagnostics {
 struct WalkedModel {
   uint64_t touched = 0;                            ///< ticks in which a tip was inside
   double depth = 0, force = 0;                     ///< greatest depth [m], greatest force [N]
+  double seconds = 0;                              ///< [s] time of all its steps; 0 if the world does not measure
   double travel = 0;                               ///< [m] farthest distance of the model from where it began
   Eigen::Vector3d push = Eigen::Vector3d::Zero();  ///< unit vector in the model frame: direction in which the tip
                                                    ///< pressed at the greatest force
@@ -41,17 +42,24 @@ struct WalkedArm {
 
 struct Walk {
   bool whole = false;  ///< true if every hand has done its whole motion once
+  /// true if it took so much processor time that it was ended before that; then nothing else is to be judged, because
+  /// the result would depend on the speed of the machine
+  bool late = false;
+  uint64_t ticks = 0;  ///< ticks that were run
   double period = 0;   ///< [s] period of a tick
   std::vector<WalkedModel> models;
   std::vector<WalkedArm> arms;
   /// What `run` would report about the plugin of each model: why it was silenced, or what is odd in its forces.
   std::vector<std::vector<std::string>> judged;
   std::vector<bool> silenced;            ///< for each model: true if it was silenced
+  std::string allocates;                 ///< model whose steps allocate memory, as `run` would report; "" if none does
   std::vector<servo::Limiter> limiters;  ///< limiter of each arm at the end of the walk
 };
 
-/// [main] Runs at most 10 s and 10,000 ticks. Returns nothing if an arm is not simulated or cannot be started. Also
-/// returns nothing after 3 s of processor time, because the result would then depend on the speed of the machine.
+constexpr double kMostProcessor = 3;  ///< [s] of processor time, after which a walk is ended
+
+/// [main] Runs at most 10 s and 10,000 ticks, and kMostProcessor. Returns nothing if an arm is not simulated or cannot
+/// be started.
 /// @param world world of the scene, built for as many probes as the scene has arms
 std::optional<Walk> walkHands(const scene::Scene& scene, servo::World& world);
 

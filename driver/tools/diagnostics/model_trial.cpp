@@ -76,6 +76,16 @@ std::vector<Objection> objectionsIn(const scene::Model& model, const std::string
   return all;
 }
 
+/// Returns the parameter whose file a message names; nullptr if it names none.
+const scene::Value* fileIn(const scene::Model& model, const std::string& text) {
+  const auto named = [&text](const scene::Value& value) {
+    return value.kind == HSP_PATH && value.place.line > 0 && !value.text.empty() &&
+           text.find(value.text) != std::string::npos;
+  };
+  const auto found = std::find_if(model.parameters.begin(), model.parameters.end(), named);
+  return found != model.parameters.end() ? &*found : nullptr;
+}
+
 /// Texts about models, each with the number of its model, packed so that they can come from the child.
 class PackedTexts {
  public:
@@ -99,7 +109,11 @@ class PackedTexts {
       const std::string key = "models[" + std::to_string(index) + "]";
       for (const Objection& one : objectionsIn(model, text)) {
         if (one.value == nullptr) {
-          document::report(problems, model.place, key, one.what);
+          const scene::Value* file = fileIn(model, one.what);
+          if (file != nullptr)
+            document::report(problems, file->place, key + ".parameters." + file->id, one.what);
+          else
+            document::report(problems, model.place, key, one.what);
           continue;
         }
         const std::string of_row = key + ".parameters." + one.value->id + one.row;

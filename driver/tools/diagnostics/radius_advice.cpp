@@ -45,7 +45,7 @@ bool touches(const scene::Scene& scene, uint32_t device) {
                                     .max_force = servo::maxForceOf(scene)};
   const auto world = servo::World::build(scene, options, [](int, const std::string&, const std::string&) {});
   const auto walk = world ? walkHands(scene, **world) : std::nullopt;
-  return walk && walk->arms[device].touched && !walk->arms[device].began_inside;
+  return walk && !walk->late && walk->arms[device].touched && !walk->arms[device].began_inside;
 }
 
 }  // namespace

@@ -29,18 +29,18 @@ const scene::Value* softSpring(const scene::Device& device) {
 }
 
 /// Returns the advice for a hand that aims at no model: a larger radius, if the hand meets a model with it; another
-/// normal if the hand moves along it, but not to the model.
-std::string adviceOf(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen) {
+/// normal if the hand moves along it, but not to the model. @param middle of the nearest model, in the world
+std::string adviceOf(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen,
+                     const Eigen::Vector3d& middle) {
   constexpr double kTowards = 0.9;  // cosine
   const scene::Device& device = scene.devices[index];
-  const scene::Model& nearest = scene.models[seen.nearest];
   if (seen.away <= 0) return "";
   if (const auto radius = radiusOfFarHand(scene, index, hand, seen.away, false))
     return fmt::format(", or give a hand.radius of {:.4g} m", *radius);
   const bool turns = hand.kind == HandScript::Kind::kStroke || hand.kind == HandScript::Kind::kCircle;
   const Eigen::Vector3d normal = device.mount.orientation * hand.normal.normalized();
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
-  const Eigen::Vector3d way = nearest.pose.position - (center + hand.radius * normal);
+  const Eigen::Vector3d way = middle - (center + hand.radius * normal);
   if (turns || way.dot(normal) > kTowards * way.norm()) return "";
   return fmt::format(
       ", or turn hand.normal: the hand moves along it only, which is [{:.3g}, {:.3g}, {:.3g}] in the "
@@ -73,7 +73,8 @@ bool reportAstray(const scene::Scene& scene, uint32_t index, const HandScript& h
                         spring->number, 0.01 * spring->number));
     return true;
   }
-  if (circlesModel(device, hand, nearest, *world.shapes()[seen.nearest]))
+  const host::ShapeInstance& shape = *world.shapes()[seen.nearest];
+  if (circlesModel(device, hand, nearest, shape) || passesAround(device, hand, nearest, shape))
     if (const auto radius = radiusOfFarHand(scene, index, hand, seen.away, true)) {
       const HandKey key = keyOfHand(scene, device, {"hand.radius", "hand.rise", "hand.script"});
       document::report(
@@ -84,6 +85,13 @@ bool reportAstray(const scene::Scene& scene, uint32_t index, const HandScript& h
       return true;
     }
   return false;
+}
+
+/// Returns the middle of a model in the world, or its position if its plugin reports no box.
+Eigen::Vector3d middleOf(const scene::Model& model, const host::ShapeInstance& shape) {
+  Eigen::AlignedBox3d box;
+  if (!shape.bounds(box.min().data(), box.max().data())) return model.pose.position;
+  return model.pose.position + model.pose.orientation * box.center();
 }
 
 void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen,
@@ -97,12 +105,14 @@ void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& han
   const std::string what = fmt::format("the hand of {} {}: it feels nothing; expected ", device.name, where);
   if (reportAstray(scene, index, hand, seen, world, what, warnings)) return;
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
+  const Eigen::Vector3d middle = middleOf(nearest, *world.shapes()[seen.nearest]);
   const std::string at = fmt::format(
       "a hand that moves near a model: its centre (hand.center) is at [{:.3g}, {:.3g}, {:.3g}] in "
-      "the world, it moves {:.3g} m from there (hand.radius), and {} is at [{:.3g}, {:.3g}, {:.3g}]; move the arm "
-      "(mount.position), hand.center or the model (pose.position){}",
-      center.x(), center.y(), center.z(), hand.radius, nearest.name, nearest.pose.position.x(),
-      nearest.pose.position.y(), nearest.pose.position.z(), adviceOf(scene, index, hand, seen));
+      "the world, it moves {:.3g} m from there (hand.radius), and the middle of {} is at [{:.3g}, {:.3g}, {:.3g}]; "
+      "move "
+      "the arm (mount.position), hand.center or the model (pose.position){}",
+      center.x(), center.y(), center.z(), hand.radius, nearest.name, middle.x(), middle.y(), middle.z(),
+      adviceOf(scene, index, hand, seen, middle));
   const std::string in_list = fmt::format("devices[{}].mount.position", index);
   for (const std::string& id : {std::string("device.mount.position"), in_list})
     if (const auto place = placeOfKey(scene.file, id)) return document::report(warnings, *place, id, what + at);
@@ -248,6 +258,44 @@ void checkWalkOfModel(const scene::Scene& scene, size_t index, const Walk& walk,
   if (walk.whole && seen.force > 0 && seen.force < kUnfelt) reportUnfelt(scene.models[index], index, seen, warnings);
 }
 
+/// Warns of a plugin whose steps allocate memory, as the end of a run does.
+void reportAllocations(const scene::Scene& scene, const Walk& walk, document::Problems& warnings) {
+  for (size_t i = 0; i < scene.models.size() && !walk.allocates.empty(); ++i) {
+    const scene::Model& model = scene.models[i];
+    if (model.name != walk.allocates) continue;
+    const std::string key = fmt::format("models[{}].plugin", i);
+    document::report(
+        warnings, placeOfKey(model.place.file, key).value_or(model.place), key,
+        fmt::format("steps of {} allocate memory, which may have to wait, and then the tick is late; allocate it in "
+                    "activate(): step(), which is touch() of a shape in C++, may not",
+                    model.name));
+  }
+}
+
+/// Warns that a walk was ended before the hands had done their motion, at the model that took most of the time.
+void reportLate(const scene::Scene& scene, const Walk& walk, document::Problems& warnings) {
+  const auto slowest = static_cast<size_t>(
+      std::max_element(walk.models.begin(), walk.models.end(),
+                       [](const WalkedModel& a, const WalkedModel& b) { return a.seconds < b.seconds; }) -
+      walk.models.begin());
+  const double ticks = static_cast<double>(walk.ticks), step = walk.models[slowest].seconds / ticks;
+  const std::string what = fmt::format(
+      "the hand was not moved to the end, so what it meets was not judged: {:.2g} s of its motion took {:g} s of "
+      "processor time",
+      ticks * walk.period, kMostProcessor);
+  constexpr double kMost = 0.5;  // share of the time
+  if (walk.models[slowest].seconds < kMost * kMostProcessor)
+    return document::report(warnings, scene.file.string(), 1, 1, "models", what);
+  const scene::Model& model = scene.models[slowest];
+  const std::string key = fmt::format("models[{}].plugin", slowest);
+  document::report(
+      warnings, placeOfKey(model.place.file, key).value_or(model.place), key,
+      fmt::format("{}, because a step of {} takes {:.2g} ms (a tick lasts {:.2g} ms{}); hapticd plugin check {} "
+                  "measures it",
+                  what, model.name, step * 1e3, walk.period * 1e3,
+                  step > walk.period ? ", and a run silences a plugin that needs more" : "", model.library.string()));
+}
+
 }  // namespace
 
 document::Problems warnOfWalk(const scene::Scene& scene, servo::World& world, const std::vector<bool>& strays,
@@ -258,6 +306,11 @@ document::Problems warnOfWalk(const scene::Scene& scene, servo::World& world, co
     return walkHands(scene, world);
   }();
   if (!walk) return warnings;
+  reportAllocations(scene, *walk, warnings);
+  if (walk->late) {
+    reportLate(scene, *walk, warnings);
+    return warnings;
+  }
   for (size_t i = 0; i < scene.models.size(); ++i) checkWalkOfModel(scene, i, *walk, world, warnings);
   for (uint32_t i = 0; i < scene.devices.size(); ++i)
     checkWalkOfArm(scene, i, *walk, world, strays, all_models, warnings);

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "base/regular_file.hpp"
 #include "export/mcap.hpp"
 #include "export/ros_message.hpp"
 
@@ -107,7 +108,7 @@ Result<Exported> exportMcap(const Recording& recording, const std::string& file)
 }
 
 Result<Exported> exportCsv(const RecordedStream& stream, const std::string& file) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(file.c_str(), "wbe"), std::fclose);
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(file.c_str(), "wbe"), std::fclose);
   if (!out) return Error{file + ": cannot be written: " + std::strerror(errno)};
   Exported done;
   std::string line;
@@ -128,9 +129,11 @@ Result<Exported> exportCsv(const RecordedStream& stream, const std::string& file
     line += "\n";
     if (line.size() > (1u << 16)) good = flush();
   }
-  if (!good || !flush() || std::fflush(out.get()) != 0)
-    return Error{file + ": could not be written completely: " + std::strerror(errno)};
-  return done;
+  if (good && flush() && std::fflush(out.get()) == 0) return done;
+  const int code = errno;
+  out.reset();
+  removeIncomplete(file);
+  return Error{file + ": could not be written completely, so it was removed: " + std::strerror(code)};
 }
 
 }  // namespace hapticd::record

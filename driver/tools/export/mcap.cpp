@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/regular_file.hpp"
+
 namespace hapticd::record {
 
 namespace {
@@ -100,7 +102,9 @@ Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::string& file) 
 }
 
 McapWriter::~McapWriter() {
-  if (out_ != nullptr) std::fclose(out_);
+  if (out_ == nullptr) return;
+  std::fclose(out_);
+  removeIncomplete(file_);
 }
 
 void McapWriter::write(std::string_view bytes) {
@@ -216,8 +220,9 @@ Result<void> McapWriter::close() {
   summary();
   write(kMagic);
   if (std::fclose(std::exchange(out_, nullptr)) != 0 && error_ == 0) error_ = errno;
-  if (error_ != 0) return Error{file_ + ": could not be written completely: " + std::strerror(error_)};
-  return {};
+  if (error_ == 0) return {};
+  removeIncomplete(file_);
+  return Error{file_ + ": could not be written completely, so it was removed: " + std::strerror(error_)};
 }
 
 }  // namespace hapticd::record

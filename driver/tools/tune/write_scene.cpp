@@ -3,8 +3,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <fstream>
-
+#include "base/regular_file.hpp"
 #include "hapticd/abi.h"
 
 namespace hapticd::tune {
@@ -40,14 +39,9 @@ Result<void> writeScene(const Findings& findings, const std::string& from, const
   } catch (const YAML::Exception& e) {
     return Error{from + ": " + e.what()};
   }
-  std::ofstream file(to);
-  file << "# Made by `hapticd tune` from " << findings.scene << ", measured over " << findings.motion
-       << ".\n# Chosen: " << nameOf(findings, chosen) << ":\n# " << reason(findings) << ".\n"
-       << out.c_str() << "\n"
-       << std::flush;
-  if (!file)
-    return Error{to + ": the file cannot be written; expected a disk with room and a folder that you may write to"};
-  return {};
+  return writeWhole(to, "# Made by `hapticd tune` from " + findings.scene + ", measured over " + findings.motion +
+                            ".\n# Chosen: " + nameOf(findings, chosen) + ":\n# " + reason(findings) + ".\n" +
+                            out.c_str() + "\n");
 }
 
 }  // namespace hapticd::tune

@@ -103,6 +103,19 @@ TEST_F(Commands, CheckTellsWhatOnlyThePluginKnows) {
   EXPECT_EQ(run("check --files-only " + scene).exit_code, 0);
 }
 
+TEST_F(Commands, CheckTellsAWrongFileWhereItIsNamed) {
+  const std::string file = put("bad.yaml", "format: hapticd-model/1\nsurfaces: 3\n");
+  const std::string scene =
+      put("scene.yaml",
+          "hapticd: 1\nmodels:\n  - {name: a, plugin: nurbs_rigid, parameters: {geometry: bad.yaml}}\n"
+          "  - {name: b, plugin: nurbs_rigid, parameters: {geometry: none.yaml}}\n");
+  const Outcome outcome = run("check " + scene);
+  EXPECT_EQ(outcome.exit_code, 2);
+  const std::string wrong = ":3:59: models[0].parameters.geometry: model 'a': cannot be set up: " + file + ":2:11: ";
+  EXPECT_TRUE(has(outcome.text, scene + wrong)) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, scene + ":4:59: models[1].parameters.geometry: there is no file")) << outcome.text;
+}
+
 TEST_F(Commands, CheckPassesOnWhatAPluginWarnsOf) {
   const std::string scene = put("shell.yaml",
                                 "hapticd: 1\nmodels:\n  - {name: a, plugin: nurbs_rigid, parameters: {pop_through: 2, "

@@ -29,7 +29,7 @@ TEST_F(ImportCommands, ImportScalesCentresAndKeepsTheCredit) {
   // check warns of the same model, by the same measure and with the same limit.
   const Outcome limit = run("import " + patch + " --scale 1.2 -o " + (dir_ / "limit.yaml").string());
   EXPECT_TRUE(has(limit.text, "limit.yaml: 5.37 m large from corner to corner")) << limit.text;
-  EXPECT_EQ(run("import " + patch + " -o /nowhere/at/all.yaml").exit_code, 1);
+  EXPECT_EQ(run("import " + patch + " -o /nowhere/at/all.yaml").exit_code, 2) << "as to run";
   const Outcome part = run("import " + patch + " -o " + (dir_ / "patch.hpart").string());
   EXPECT_EQ(part.exit_code, 2);
   EXPECT_TRUE(has(part.text, "Bezier patches become a model file, expected a name that ends in .yaml or .json"));

@@ -42,6 +42,9 @@ def hidden(folder, ask):
     check("a new plugin with the name of another is warned of", code == 0 and 'there is a plugin "nurbs_rigid" already' in err and shipped in err, err)
     code, out, err = ask("plugin", "new", "my_own_shape", "--dir", os.path.join(folder, "own"))
     check("one with a name of its own is not", code == 0 and err == "", err)
+    for name, like in (("my-ball", "my_ball"), ("2ndBall", "ndball"), ("template", "my_shape"), ("\u00e4", "my_shape")):
+        code, out, err = ask("plugin", "new", name)
+        check(f"{name} is refused with a name that can be used", code == 2 and f"beginning with a letter: {like}\n" in err, err)
     code, out, _ = ask("plugin", "info", "push_button")
     check("a list of rows tells its rows", "list of 1 to 64 rows of 2 numbers each" in out, out)
     check("and one of numbers its numbers", "list of 3 numbers" in out, out)

@@ -118,6 +118,17 @@ def hands(folder, ask):
             check("and the warning goes away with it", code == 0 and "warning" not in out, out)
     code, out, _ = told("radius: 0.01, center: [0, 0.1, 0]")
     check("a hand that no radius leads to the ball is told none", "feels nothing" in out and "give a hand.radius" not in out, out)
+    for size, by in ((0.05, 0.0055), (0.05, 0.008), (0.1, 0.008)):  # parts of 5 and 10 mm, which the hand passes around
+        small = re.sub(r"^      - \[(.*)\]$", lambda m: "      - [" + ", ".join(f"{size * float(x) + by:g}" for x in m[1].split(",")) + "]",
+                       open(f"{SOURCE}/config/models/box.yaml").read(), flags=re.M)
+        part = write(folder, "small.yaml", small)
+        models = f"models:\n  - {{name: rods, plugin: nurbs_rigid, parameters: {{geometry: {part}, stiffness: 500}}}}\n"
+        code, out, _ = told("script: stroke", models=models)
+        radius = re.search(r"expected a hand.radius of (\S+) m, with which it touches", out)
+        check(f"a hand round a part of {size * 100} mm at {by} m is told a radius, and no other place", code == 0 and radius and "mount.position" not in out, out)
+        if radius:
+            code, out, _ = told(f"script: stroke, radius: {radius[1]}", models=models)
+            check("and touches it with that", code == 0 and "feels nothing" not in out, out)
     huge = re.sub(r"^      - \[(.*)\]$", lambda m: "      - [" + ", ".join(str(30 * float(x)) for x in m[1].split(",")) + "]",
                   open(f"{SOURCE}/config/models/sphere.yaml").read(), flags=re.M)
     write(folder, "huge.yaml", huge)

@@ -4,7 +4,10 @@
 Usage: slips_of_users.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
 """
 import os
+import resource
+import signal
 import struct
+import subprocess
 import sys
 import tempfile
 
@@ -108,6 +111,8 @@ def outputs(folder, ask):
           and not os.path.exists(os.path.join(folder, "t.csv")), (code, out, err))
     others(folder, ask, recording, path, file)
     of_a_recording(folder, ask, recording)
+    where_nothing_can_be_written(folder, ask, recording)
+    on_a_full_disk(folder, recording, path, file)
     code, out, err = ask("trace", file, "--probe", path, "--out", os.path.join(folder, "feet.csv"))
     check("a path in mm is warned of", code == 0 and "row 2 is 30 m from the world's origin" in err, err)
     whole = open(recording, "rb").read()
@@ -119,6 +124,32 @@ def outputs(folder, ask):
         check(f"{name}: a damaged recording is not the same to the last bit", code != 0 and ("lost" in err or "difference" in out), (code, out, err))
         ask_plot = ask("plot", os.path.join(folder, name), "--out", os.path.join(folder, "x.svg"))
         check(f"{name}: nor is it drawn without a word", name != "cut.h5" or "it ends at byte" in ask_plot[2] and "are lost" in ask_plot[2], ask_plot)
+
+
+def where_nothing_can_be_written(folder, ask, recording):
+    """Is bad input to each command, as to run, and told before the work begins."""
+    mesh = write(folder, "cube.stl", stl(cube((0, 0, 0))))
+    for words in (("plot", recording, "--out", "/nonexist/x.svg"), ("import", mesh, "-o", "/nonexist/x.hpart"), ("device", "new", "x", "--out", "/nonexist/x.yaml"),
+                  ("plugin", "new", "x", "--dir", "/dev/null/x"), ("trace", scene(folder), "--probe", os.path.join(folder, "p.csv"), "--out", "/nonexist/x.csv")):
+        code, out, err = ask(*words)
+        check(f"{words[0]} {words[1]} where nothing can be written is bad input", code == 2 and words[-1] in err and " cannot be " in err, (code, out, err))
+
+
+def on_a_full_disk(folder, recording, path, file):
+    """What was begun and could not be completed is not left behind, so that the next try is not refused. The disk is a limit of 100 bytes a file."""
+    def limited():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+
+    new = os.path.join(folder, "new")
+    for words, left in ((("plot", recording, "--out", new + ".svg"), ".svg"), (("export", recording, "--mcap", new + ".mcap"), ".mcap"),
+                        (("export", recording, "--csv", new + ".csv", "--stream", "ticks"), ".csv"), (("export", recording, "--csv", new), ""),
+                        (("trace", file, "--probe", path, "--out", new + ".feet"), ".feet"), (("plugin", "new", "my_shape", "--dir", new), ""),
+                        (("tune", file, "--motion-seconds", "0.2", "--limit-seconds", "1", "--write"), None)):
+        done = subprocess.run([HAPTICD, *words], capture_output=True, text=True, timeout=120, preexec_fn=limited)
+        name = new + left if left is not None else file.replace(".yaml", ".tuned.yaml")
+        check(f"{words[0]} leaves nothing on a full disk", done.returncode == 1 and not os.path.exists(name) and not os.path.exists(name + ".part")
+              and "written" in done.stderr, (done, os.listdir(folder)))
 
 
 def of_a_recording(folder, ask, recording):
@@ -205,6 +236,9 @@ def numbers(folder, ask):
     check("a stiffness in N/mm is warned of", code == 0 and "0.8 N/m cannot be felt" in out and "1 N/mm is 1000 N/m" in out, out)
     code, out, _ = ask("check", scene(folder, clients="{mode: add, max_force: 40}"))
     check("so is a bound beyond the arm's", code == 0 and "clients.max_force" in out and "8.5 N at most" in out, out)
+    code, out, _ = ask("check", scene(folder, stiffness="800, friction: 0.5"))
+    check("a friction is told of which it may be, and where all parameters are", code == 2 and '(did you mean "friction_dynamic" or "friction_static"?)' in out
+          and "; see hapticd plugin info nurbs_rigid" in out, out)
     code, out, _ = ask("check", scene(folder))
     check("a good scene is not", code == 0 and "warning" not in out, out)
 

@@ -38,7 +38,7 @@ def words(ask):
                                       ("loud", "maybe", "expected true or false"), ("push", "abc", "\"abc\" is not a number, expected a number from 0 to 3 N"),
                                       ("push", "7", "7 is out of range, expected a number from 0 to 3 N"), ("whole", "1.5", "expected a whole number from 0 to 9"),
                                       ("fixed", "abc", "cannot change while the model runs"), ("file", "x.csv", "cannot change while the model runs"),
-                                      ("lw", "hertz", "did you mean \"law\"?")):
+                                      ("lw", "hertz", "did you mean \"law\"?"), ("fixd", "1", "not live change in the scene, then: hapticd ctl reload")):
         code, out, err = ask("set", "donut", parameter, word)
         check(f"{parameter} {word} is refused in words", code == 1 and expected in err and "Could not" not in err, (code, out, err))
     live = {p["id"]: p for p in json.loads(ask("list")[1])["models"][0]["live_parameters"]}
@@ -93,6 +93,10 @@ def places(folder, hapticd):
 
 
 def memory(folder, hapticd):
+    code, out, err = hapticd("check", scene(folder, "allocates: 2"))
+    check("check warns of a plugin that allocates in a step", code == 0 and "models[0].plugin: warning: steps of donut allocate memory" in out, (out, err))
+    code, out, err = hapticd("check", scene(folder, ""))
+    check("and of no other", "allocate" not in out, (out, err))
     code, out, err = hapticd("run", scene(folder, "allocates: 2"), "--virtual-time", "--for", "1")
     check("steps that ask for memory name their model", "mostly in the plugin wordy (donut)" in out + err, (code, out, err))
     code, out, err = hapticd("run", scene(folder, ""), "--virtual-time", "--for", "1")

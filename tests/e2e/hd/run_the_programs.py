@@ -363,6 +363,9 @@ def command(folder):
     check("a program must be named", done.returncode == 2 and "PROGRAM" in done.stderr, done)
     done = run("/no/such/program")
     check("a program that is none is told", done.returncode == 2 and "/no/such/program" in done.stderr, done)
+    for program in ("/no/such/program", "./nosuch", "no-such-program", "/"):
+        done = run(program)
+        check(f"{program}: before a daemon is started for it", done.returncode == 2 and f"{program}: " in done.stderr and "starting one" not in done.stderr, done)
     done = run("--scene", os.path.join(folder, "none.yaml"), "true")
     check("a scene that is none is told", done.returncode == 1 and "none.yaml" in done.stderr, done)
 

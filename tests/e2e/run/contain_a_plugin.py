@@ -64,6 +64,14 @@ def crash(folder, environment, how, reasons):
     hapticd(environment, "plugin", "clear", "deadly")
 
 
+def slow(folder, environment):
+    scene = sceneOf(folder, "slow")
+    code, out, err = hapticd(environment, "check", scene)
+    check("slow: check says that it did not move the hand to the end, and why",
+          code == 0 and ":4:" in out and "models[1].plugin: warning: the hand was not moved to the end" in out and "of processor time, because a step of bad takes 2" in out
+          and "a run silences a plugin that needs more" in out and f"hapticd plugin check {folder}" in out, (code, out, err))
+
+
 def builtAnew(folder, environment):
     """A file that was built after the crash is another plugin: it is tried, and what was known of it is told."""
     file, scene = os.path.join(folder, "plugins", os.path.basename(SHAPES)), sceneOf(folder, "segv")
@@ -148,6 +156,7 @@ with tempfile.TemporaryDirectory() as scratch:
     for signal, words in (("segv", ["SIGSEGV"]), ("fpe", ["SIGFPE"]), ("bus", ["SIGBUS"]), ("ill", ["SIGILL"]), ("abort", ["SIGABRT"]),
                           ("hang", ["did not return", "never slept"])):
         crash(scratch, surroundings, signal, words)
+    slow(scratch, surroundings)
     builtAnew(scratch, surroundings)
     service(scratch, surroundings)
     unit(scratch)

@@ -4,7 +4,11 @@
 Usage: hold_test.py HAPTICD RIG.so ENDING_SHAPES.so     prints one line per check; exit 1 when one fails.
 """
 import os
+import shutil
+import signal
+import subprocess
 import sys
+import tempfile
 import time
 
 here = os.path.dirname(os.path.abspath(__file__))
@@ -73,4 +77,19 @@ check("SIGTERM ends the run all the same, and names what kept it", time.monotoni
       (time.monotonic() - begun, said))
 check("nobody is in quarantine for being slow", run.quarantined() == "")
 check("the motors are off", not run.arm.motors_on())
+
+with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
+    scene = os.path.join(folder, "scene.yaml")
+    with open(scene, "w") as file:
+        file.write("hapticd: 1\nmodels:\n  - {name: late, plugin: slow, parameters: {setting_up: 60}}\n")
+    plugins = os.path.join(folder, "plugins")  # without the other test plugins: some of them hang while they are looked at
+    os.mkdir(plugins)
+    shutil.copy(MODULES[1], plugins)
+    setting_up = subprocess.Popen([HAPTICD, "--plugin-path", plugins, "run", scene], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                  env=dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder))
+    time.sleep(1)
+    setting_up.send_signal(signal.SIGINT)
+    said = setting_up.communicate(timeout=30)[0]
+check("Ctrl-C during set-up is told as a wish, with what was going on, and blames nobody",
+      "ended as asked (SIGINT), while plugin 'slow' of model 'late' was in its activate()" in said and "warning" not in said, said)
 finish()

@@ -116,7 +116,7 @@ TEST(CommandLine, RefusesWordsThatAreMissingOrTooMany) {
       {{"draw"}, "error: file is missing, expected `example draw FILE`; see example draw --help"},
       {{"move", "a"}, "error: --to is missing, expected `example move FILE --to X Y Z`;"},
       {{"--name", "x", "drwa"}, "error: there is no subcommand \"drwa\", expected one of draw, move"},
-      {{"draw", "a", "--angle"}, "error: --angle: 1 more value expected (FLOAT); see example draw --help"},
+      {{"draw", "a", "--angle"}, "error: --angle: 1 more value expected: NUMBER; see example draw --help"},
       {{"draw", "a", "b"}, "error: unexpected word \"b\": `example draw` takes only FILE and options"},
       {{"drwa"}, "error: there is no subcommand \"drwa\", expected one of draw"},
       {{"draw", "a", "--corner", "1", "2"}, "--corner has no effect alone, expected also --angle"},
@@ -146,8 +146,8 @@ TEST(CommandLine, HelpAndVersionEndTheProgramWell) {
   EXPECT_EQ(e.parse({"--version"}), 0);
   EXPECT_EQ(e.said, "example 7\n");
   EXPECT_EQ(e.parse({"draw", "--help"}), 0);
-  for (const char* text : {"Draw something.", "file TEXT REQUIRED", "--colour TEXT:{red,blue}", "-q,--quiet",
-                           "--scale FLOAT:FLOAT in [0.5 - 2]=1"})
+  for (const char* text : {"Draw something.", "file TEXT REQUIRED", "--colour {red,blue}", "-q,--quiet",
+                           "--scale NUMBER (0.5 to 2)=1", "--layer INTEGER"})
     EXPECT_NE(e.said.find(text), std::string::npos) << "expected \"" << text << "\" in: " << e.said;
   EXPECT_EQ(e.calls, 0);
 }
@@ -164,7 +164,7 @@ TEST(CommandLine, TellsItsTableForManualsAndCompletions) {
   EXPECT_TRUE(options[1].positional());
   EXPECT_EQ(options[1].positionalName(), "file");
   EXPECT_FALSE(options[2].positional());
-  EXPECT_EQ(options[2].valueName(), "TEXT:{red,blue}");
+  EXPECT_EQ(options[2].valueName(), "{red,blue}");
   EXPECT_EQ(options[2].longNames(), std::vector<std::string>{"colour"});
   EXPECT_EQ(options[8].valueName(), "");
   EXPECT_EQ(options[8].allNames(), "-q,--quiet");

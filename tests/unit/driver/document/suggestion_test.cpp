@@ -6,9 +6,11 @@
 namespace hapticd::document {
 namespace {
 
-TEST(Suggestion, IsTheOnlyNameThatBeginsLikeTheWord) {
+TEST(Suggestion, IsTheNamesThatBeginLikeTheWord) {
   EXPECT_EQ(suggestion("nurbs", {"mat_deformable", "nurbs_rigid"}), " (did you mean \"nurbs_rigid\"?)");
-  EXPECT_EQ(suggestion("nurbs", {"nurbs_rigid", "nurbs_elastic"}), "");
+  EXPECT_EQ(suggestion("friction", {"friction_static", "stiffness", "friction_dynamic", "friction_static"}),
+            " (did you mean \"friction_dynamic\" or \"friction_static\"?)");
+  EXPECT_EQ(suggestion("hand", {"hand_a", "hand_b", "hand_c", "hand_d"}), "") << "too many";
   EXPECT_EQ(suggestion("nur", {"nurbs_rigid"}), "");
 }
 

@@ -218,7 +218,8 @@ struct Rude : hapticd::Shape {
 /// Behaves for ten ticks, and then does what ends or stops a process.
 struct Deadly : hapticd::Shape {
   int how, ticks = 0;
-  static constexpr const char* kHows[] = {"segv", "fpe", "ill", "bus", "hang", "pause", "jump", "sleep", "abort"};
+  static constexpr const char* kHows[] = {"segv",  "fpe",  "ill",   "bus",   "hang",
+                                          "pause", "jump", "sleep", "abort", "slow"};
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.deadly", "deadly", "1.0.0", "MIT", "Crashes."};
   static constexpr auto fields() {
     return std::array{Fields<Deadly>::choice("how", &Deadly::how, kHows, 0, "What it does.")};
@@ -236,22 +237,22 @@ struct Deadly : hapticd::Shape {
     if (how == 2) std::raise(SIGILL);
     if (how == 3) std::raise(SIGBUS);
     while (how == 4) zero = zero + 1;
-    if (how == 5 && ticks == 10) spin();
+    if (how == 5 && ticks == 10) spin(300'000'000);  // five times what the watchdog leaves a simulated arm
     if (how == 6 && ticks % 2 == 0) out.force[1] = 500;
     if (how == 7 && ticks == 10) usleep(50'000);
     if (how == 8) std::abort();
+    if (how == 9) spin(2'000'000);  // two ticks
     return HSP_OK;
   }
 
-  /// For five times what the watchdog leaves a simulated arm, counted as the watchdog counts: by processor time.
-  static void spin() noexcept {
-    constexpr time_t kNanoseconds = 300'000'000;
+  /// Counted as the watchdog counts: by processor time.
+  static void spin(time_t nanoseconds) noexcept {
     const auto used = [] {
       timespec now{};
       clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
       return now.tv_sec * 1'000'000'000 + now.tv_nsec;
     };
-    for (const time_t from = used(); used() - from < kNanoseconds;) continue;
+    for (const time_t from = used(); used() - from < nanoseconds;) continue;
   }
 };
 
