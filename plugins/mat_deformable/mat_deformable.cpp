@@ -43,6 +43,7 @@ medial::BodyOptions MatDeformable::bodyOptions(const MedialFile& file, double ra
   options.form = evaluation_ == 0 ? spline::Form::kTable : spline::Form::kNet;
   options.shear_distance = shear_distance_;
   options.shear_offset = shear_distance_ > 0 || file.revision >= 2 ? 0 : shear_offset_;
+  options.envelope = envelope_ == 0 ? medial::Envelope::kExact : medial::Envelope::kFoot;
   options.damping_scale = damping_scale_;
   options.deformation.split = split_;
   options.deformation.influence = {static_cast<int>(influence_[0]), static_cast<int>(influence_[1])};

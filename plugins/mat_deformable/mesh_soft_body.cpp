@@ -47,7 +47,7 @@ class MeshSoftBody final : public SoftBody {
                medial::FeltPlace& place) noexcept override {
     const double distance = (p - foot.center).norm();
     const double cosine = distance > 0 ? felt.normal.dot(p - foot.center) / distance : 0;
-    body_.placeOf(p, foot, felt.normal, directness(cosine), place);
+    body_.placeOf(p, foot, felt.normal, medial::directness(cosine), place);
   }
   medial::FeltSurface* feltSurface() noexcept override { return body_.feltSurface(); }
   void yield(std::span<const medial::Press> contacts) noexcept override { body_.deformation().press(contacts); }

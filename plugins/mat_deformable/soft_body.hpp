@@ -60,16 +60,6 @@ struct Felt {
   double steep = 1;  ///< length of the depth's gradient; less than 1 if two parts of the surface push together
   double share = 0;  ///< weight of the rival (see rivalShare()), 0 to 1
 };
-/// if the cosine between the felt direction and the direction of the foot is above this, they count as equal
-inline constexpr double kSameDirection = 0.99;
-/// if this cosine is below kTurned, the directions are different, and the felt direction turns toward that of the foot
-inline constexpr double kTurned = 0.9;
-
-/// [rt] Returns 1 if a felt direction with this cosine to the direction of the foot counts as equal to it, and 0 if as
-/// different; values between blend the two cases.
-inline double directness(double cosine) noexcept {
-  return std::clamp((cosine - kTurned) / (kSameDirection - kTurned), 0.0, 1.0);
-}
 
 /// What a person should know about a body before touching it.
 struct Description {
