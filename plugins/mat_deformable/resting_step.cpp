@@ -31,6 +31,7 @@ void MatDeformable::push(const hsp_probe& probe, const LocatedSurface& located, 
   const double closing = -velocity.dot(felt.normal);
   const medial::BodyForce whole = body_->press(p, track.foot, felt, closing);
   const medial::BodyForce answer = whole.weakened(restingShare(whole, located.moved, track), felt.normal);
+  track.exerted = answer.force;
   const contact::FrictionLaw law{std::max(friction_static_, friction_dynamic_), friction_dynamic_, answer.stiffness,
                                  viscosity_};
   const Vector3d surface = p + felt.depth * felt.normal;
@@ -42,21 +43,21 @@ void MatDeformable::push(const hsp_probe& probe, const LocatedSurface& located, 
       {track.foot.u, track.foot.v, felt.normal, felt.depth, closing, track.foot.element});
 }
 
-/// Returns the share of the springs' force that a probe on a body at rest feels, see EnergyAccount.
+/// Returns the share of the springs' force that a probe on a body at rest feels, see EnergyAccount. What a damper takes
+/// may be given back too: the account is that of the whole force.
 double MatDeformable::restingShare(const medial::BodyForce& whole, const Vector3d& moved,
                                    Track& track) noexcept HSP_RT {
   double work = 0;
   if (track.pressed) {
-    track.account.add(-0.5 * track.exerted.dot(moved));
+    const Vector3d drag = whole.force - whole.elastic;
+    track.account.add(-0.5 * (track.exerted + drag).dot(moved));
     work = -0.5 * whole.elastic.dot(moved);
   } else {
     track.account = {};
     track.account.add(firstWork(whole.elastic, moved, whole.energy));
   }
-  const double share = track.account.share(work, whole.energy);
   track.pressed = true;
-  track.exerted = share * whole.elastic;
-  return share;
+  return track.account.share(work, whole.energy);
 }
 
 }  // namespace hapticd

@@ -37,7 +37,7 @@ struct Track {
   bool settled = false;  ///< in the interior of a sheet: `pushed` has turned fully to the direction of the foot
   contact::Friction friction;
   medial::EnergyAccount account;     ///< of a body at rest; a felt surface has one for all probes
-  Eigen::Vector3d exerted{0, 0, 0};  ///< [N] force of the springs in the last tick
+  Eigen::Vector3d exerted{0, 0, 0};  ///< [N] force without friction in the last tick
   bool pressed = false;              ///< it was pushed in the last tick
   // The following is used only on a felt surface:
   /// true if the probe was already located in an earlier tick since it came near; if false, the probe may have begun
