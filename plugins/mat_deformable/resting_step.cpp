@@ -29,7 +29,9 @@ void MatDeformable::push(const hsp_probe& probe, const LocatedSurface& located, 
   const Vector3d p(probe.position), velocity(probe.velocity);
   const Felt& felt = located.surface;
   const double closing = -velocity.dot(felt.normal);
-  const medial::BodyForce whole = body_->press(p, track.foot, felt, closing);
+  medial::BodyForce whole = body_->press(p, track.foot, felt, closing);
+  for (Vector3d* part : {&whole.force, &whole.elastic}) *part *= felt.steep;  // the slope of the energy in a valley
+  whole.normal *= felt.steep;
   const medial::BodyForce answer = whole.weakened(restingShare(whole, located.moved, track), felt.normal);
   track.exerted = answer.force;
   const contact::FrictionLaw law{std::max(friction_static_, friction_dynamic_), friction_dynamic_, answer.stiffness,

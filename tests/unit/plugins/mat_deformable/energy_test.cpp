@@ -101,6 +101,27 @@ TEST(Energy, AStrokeOverALumpFeelsItsStiffness) {
   }
 }
 
+/// In the crotch of a body whose dynamics are not felt, too, the force is the slope of an energy: what lies beyond is
+/// felt whole. The blend of two directions had no energy, and after some strokes nothing of the force was left.
+TEST(Energy, AHandThatCrossesACrotchFeelsTheWholeForceBeyond) {
+  for (const double y : {-.021, -.019, -.017}) {
+    Plugin crossed("branch.ma"), pressed("branch.ma");
+    for (Plugin* palm : {&crossed, &pressed}) {
+      palm->set("dynamics", kOff);
+      ASSERT_EQ(palm->activate(), HSP_OK);
+    }
+    const Vector3d left(-.012, y, .008), right(.012, y, .008), up(0, 0, .01);
+    Hand crossing(crossed, left + up), pressing(pressed, right + up);
+    for (int i = 0; i < 4; ++i)
+      for (const Vector3d& corner : {left, right, left}) crossing.line(corner);
+    crossing.line(right);
+    pressing.line(right);
+    EXPECT_GT(crossing.force().norm(), .95 * pressing.force().norm()) << y;
+    crossing.line(right + up);
+    EXPECT_LT(crossing.given - crossing.taken, .01 * crossing.taken);
+  }
+}
+
 /// A contact that ran dry stays so only until the probe has left.
 TEST(Energy, ANewContactFeelsTheWholeForceAgain) {
   for (const double dynamics : {kOff, kFelt}) {
