@@ -6,6 +6,7 @@
 namespace hapticd {
 namespace {
 
+using medial::directness;
 using medial::FeltPlace;
 using medial::PlaceNode;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The force in a valley of a felt body, where the probe is nearly equally deep below two parts of the surface.
+/// The force in a valley of a felt body or of a mesh, where the probe is nearly equally deep below two parts of the
+/// surface.
 #pragma once
 #include "soft_body.hpp"
 

@@ -79,7 +79,7 @@ class GridBody final : public SoftBody {
   }
   void placeOf(const Vector3d& p, const SkeletonFoot& foot, const Felt& felt, medial::Envelope envelope,
                medial::FeltPlace& place) noexcept override {
-    body_.placeOf(p, foot, felt.normal, envelope, directness(felt.normal.dot(foot.normal)), place);
+    body_.placeOf(p, foot, felt.normal, envelope, medial::directness(felt.normal.dot(foot.normal)), place);
   }
   medial::FeltSurface* feltSurface() noexcept override { return body_.feltSurface(); }
   void yield(std::span<const medial::Press> contacts) noexcept override { body_.deformation().press(contacts); }

@@ -43,6 +43,7 @@ medial::BodyOptions MatDeformable::bodyOptions(const MedialFile& file, double ra
   options.form = evaluation_ == 0 ? spline::Form::kTable : spline::Form::kNet;
   options.shear_distance = shear_distance_;
   options.shear_offset = shear_distance_ > 0 || file.revision >= 2 ? 0 : shear_offset_;
+  options.envelope = envelope_ == 0 ? medial::Envelope::kExact : medial::Envelope::kFoot;
   options.damping_scale = damping_scale_;
   options.deformation.split = split_;
   options.deformation.influence = {static_cast<int>(influence_[0]), static_cast<int>(influence_[1])};
@@ -110,6 +111,7 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
   const std::vector<unsigned char> loaded = std::exchange(states_->loaded, {});
   if (!loaded.empty() && !restoreState(loaded, body_->nodes(), body_->feltSurface()))
     throw std::invalid_argument(geometry_ + ": the saved state that was loaded belongs to another body");
+  openAccount();
   if (viscosity_ > 0 || (surface == nullptr && (file.swings || file.damps))) report.flags |= HSP_R_VELOCITY;
   report.max_stiffness = body_->greatestStiffness() * (surface != nullptr ? surface->contactRatio() : 1);
   // A felt surface can push a hand that does not move: the surface swings back, or another hand lets go of it.
@@ -118,6 +120,12 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
   report.locked_bytes = body_->bytes() + displaced_->bytes() + volume_bytes + probes * sizeof(Track) + sizeof *this +
                         (frames_ ? frames_->bytes() : 0);
   describe(file, activation.rate_hz > 0 ? 1 / activation.rate_hz : medial::FeltOptions{}.tick);
+}
+
+void MatDeformable::openAccount() {
+  const medial::FeltSurface* const surface = body_->feltSurface();
+  account_ = {};
+  if (surface != nullptr) account_.add(surface->energy({}));
 }
 
 void MatDeformable::deactivate() {
@@ -140,6 +148,7 @@ void MatDeformable::reset() noexcept HSP_RT {
   if (medial::FeltSurface* const surface = body_->feltSurface(); surface != nullptr) surface->reset();
   if (keeper_) keeper_->volume.reset();
   stored_ = 0;
+  account_ = {};
   shown_at_rest_ = false;
 }
 
@@ -173,7 +182,8 @@ hsp_status MatDeformable::step(const hsp_step& step) noexcept HSP_RT {
 
 double MatDeformable::energy() const noexcept HSP_RT {
   const medial::FeltSurface* const surface = body_->feltSurface();
-  return stored_ + (surface != nullptr ? surface->energy({contacts_.data(), met_.size()}) : body_->nodes().energy());
+  if (surface == nullptr) return stored_ + body_->nodes().energy();
+  return stored_ + std::min(surface->energy({contacts_.data(), met_.size()}), account_.held());
 }
 
 /// Publishes displacements for drawing: 60 times a second while the body moves, and once when it has come to rest.
@@ -222,19 +232,22 @@ FindOptions MatDeformable::findOptions(const hsp_step& step) const noexcept HSP_
 
 MatDeformable::LocatedSurface MatDeformable::locate(const hsp_probe& probe, const hsp_step& step, uint32_t index,
                                                     hsp_contact& contact) noexcept HSP_RT {
-  if (index >= tracks_.size()) return {HSP_E_ARG, false, {}};
+  if (index >= tracks_.size()) return {HSP_E_ARG, false, {}, {}};
   Track& track = tracks_[index];
   if (!track.active || (probe.flags & HSP_IN_INVALID) != 0) {
     track.friction.reset();
-    track.counted = false;
+    track.counted = track.pressed = false;
+    track.exerted.setZero();
     return {};
   }
   const Vector3d p(probe.position);
-  if (!p.allFinite()) return {HSP_E_NUMERIC, false, {}};
-  if ((probe.flags & HSP_IN_JUMP) != 0) {
+  if (!p.allFinite()) return {HSP_E_NUMERIC, false, {}, {}};
+  const bool jumped = (probe.flags & HSP_IN_JUMP) != 0;
+  if (jumped) {
     track.side = 0;
     track.pushed.setZero();
-    track.met = false;
+    track.met = track.pressed = false;
+    track.exerted.setZero();
   }
   const Vector3d moved = track.known ? Vector3d(p - track.last) : Vector3d(Vector3d::Zero());
   const Vector3d center = track.foot.center, rival = track.rival.center;
@@ -258,34 +271,7 @@ MatDeformable::LocatedSurface MatDeformable::locate(const hsp_probe& probe, cons
   contact.flags = HSP_OUT_TRACED;
   if (foot.rim) contact.flags |= HSP_OUT_EDGE;
   if (surface.depth > 0) contact.flags |= HSP_OUT_CONTACT;
-  return {foot.converged ? HSP_OK : HSP_DEGRADED, true, surface};
-}
-
-hsp_status MatDeformable::touch(const hsp_probe& probe, const hsp_step& step, uint32_t index,
-                                hsp_contact& contact) noexcept HSP_RT {
-  const LocatedSurface located = locate(probe, step, index, contact);
-  if (!located.found) return located.status;
-  if (located.surface.depth > 0) {
-    push(probe, located.surface, tracks_[index], contact);
-  } else {
-    tracks_[index].friction.reset();
-  }
-  return located.status;
-}
-
-void MatDeformable::push(const hsp_probe& probe, const Felt& felt, Track& track, hsp_contact& contact) noexcept HSP_RT {
-  const Vector3d p(probe.position), velocity(probe.velocity);
-  const double closing = -velocity.dot(felt.normal);
-  const medial::BodyForce answer = body_->press(p, track.foot, felt, closing);
-  const contact::FrictionLaw law{std::max(friction_static_, friction_dynamic_), friction_dynamic_, answer.stiffness,
-                                 viscosity_};
-  const Vector3d surface = p + felt.depth * felt.normal;
-  const Vector3d rub = track.friction.step(law, surface, felt.normal, answer.normal, velocity);
-  Eigen::Map<Vector3d>(contact.force) = answer.force + rub;
-  contact.stiffness = answer.stiffness;
-  stored_ += answer.energy + track.friction.energy(law);
-  presses_.push_back(  // has room for all probes
-      {track.foot.u, track.foot.v, felt.normal, felt.depth, closing, track.foot.element});
+  return {foot.converged ? HSP_OK : HSP_DEGRADED, true, surface, jumped ? Vector3d(Vector3d::Zero()) : moved};
 }
 
 int64_t MatDeformable::nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const {

@@ -74,8 +74,8 @@ class MatDeformable final : public Shape {
                 "with dynamics felt: time constant of this relaxation"),
         F::real("shear_offset", &T::shear_offset_, "", 0, 0.5, kUsualShearOffset,
                 "distance from the contact to the ends of four springs along the surface, as a share of the parameter "
-                "range; 0: no such springs. They make the body stiffer than its file says; with shear_distance they do "
-                "not")};
+                "range; 0: no such springs. They make the body stiffer than its file says; with shear_distance there "
+                "are none")};
   }
   static constexpr auto contactFields() {  // what else a probe feels
     using T = MatDeformable;
@@ -114,11 +114,11 @@ class MatDeformable final : public Shape {
         F::real("display_tolerance", &T::display_tolerance_, "m", 0, 1e-2, 0,
                 "largest distance of the drawn mesh, which is updated 60 times a second, from the surface; 0: no such "
                 "mesh"),
-        F::real("shear_distance", &T::shear_distance_, "m", 0, 1, 0,
-                "distance from the contact to the ends of four springs along the surface. They change the direction of "
-                "the force, but "
-                "not its part along the normal. 0: shear_offset is used for files of format hapticd-model/1, and no "
-                "springs for others"),
+        F::real(
+            "shear_distance", &T::shear_distance_, "m", 0, 1, 0,
+            "distance along the surface, to either side, over which the change of the stiffness is taken. It pushes "
+            "toward the softer side, and does not change the part of the force along the normal. 0: the change at "
+            "the contact alone, and shear_offset is used for files of format hapticd-model/1"),
         F::real(
             "probe_radius", &T::probe_radius_, "m", 1e-4, 0.1, 5e-3,
             "radius of the flat tip for which young, poisson and thickness of a file are converted into a stiffness")};
@@ -160,6 +160,7 @@ class MatDeformable final : public Shape {
   MedialFile readFile() const;
   void openContacts(uint32_t probes);
   uint32_t openDisplay();    ///< @return the number of moving vertices; 0 if none are drawn
+  void openAccount();        ///< with the energy of a surface that swings at the start
   std::size_t openVolume();  ///< @return bytes of the volume keeper; 0 if the volume is not kept
   static const void* surfacesExtension();
   static const void* geometryExtension();
@@ -181,6 +182,7 @@ class MatDeformable final : public Shape {
     hsp_status status = HSP_OK;
     bool found = false;
     Felt surface;
+    Eigen::Vector3d moved{0, 0, 0};  ///< [m] of the probe since the last tick; 0 if it was put here
   };
   LocatedSurface locate(const hsp_probe& probe, const hsp_step& step, uint32_t index,
                         hsp_contact& contact) noexcept HSP_RT;
@@ -188,9 +190,14 @@ class MatDeformable final : public Shape {
   hsp_status stepFelt(const hsp_step& step) noexcept HSP_RT;
   hsp_status addContact(const hsp_probe& probe, const hsp_step& step, uint32_t index,
                         hsp_contact& contact) noexcept HSP_RT;
-  void answer(const hsp_probe& probe, const medial::FeltContact& met, const Felt& felt, Track& track,
-              hsp_contact& contact) noexcept HSP_RT;
-  void push(const hsp_probe& probe, const Felt& felt, Track& track, hsp_contact& contact) noexcept HSP_RT;
+  medial::BodyForce feltForce(const hsp_probe& probe, const medial::FeltContact& met, const Felt& felt,
+                              const Track& track) noexcept HSP_RT;
+  double feltShare() noexcept HSP_RT;
+  static double restingShare(const medial::BodyForce& whole, const Eigen::Vector3d& moved,
+                             Track& track) noexcept HSP_RT;
+  void answer(const hsp_probe& probe, const medial::FeltContact& met, const Felt& felt, const medial::BodyForce& force,
+              Track& track, hsp_contact& contact) noexcept HSP_RT;
+  void push(const hsp_probe& probe, const LocatedSurface& located, Track& track, hsp_contact& contact) noexcept HSP_RT;
 
   double energy() const noexcept HSP_RT;  ///< [J] energy of the body and its contacts
 
@@ -220,6 +227,8 @@ class MatDeformable final : public Shape {
   struct FeltProbe {
     uint32_t probe = 0;
     Felt felt;
+    Eigen::Vector3d moved{0, 0, 0};  ///< [m] of the probe since the last tick
+    medial::BodyForce force;         ///< `energy` is that of the springs, as a multiple of that of the surface
   };
   /// Contacts of this step. The list has as many entries as one surface can have contacts; the first met_.size() are in
   /// use.
@@ -234,7 +243,8 @@ class MatDeformable final : public Shape {
   double since_shown_ = 0;  ///< [s] time since the last set of displacements for drawing
   bool shown_at_rest_ = true;
   uint64_t last_time_ns_ = 0;
-  double stored_ = 0;  ///< [J] energy in the springs of the contacts
+  double stored_ = 0;              ///< [J] energy in the springs of the contacts
+  medial::EnergyAccount account_;  ///< of all contacts of a felt surface; other bodies have one per probe
 };
 
 }  // namespace hapticd

@@ -30,11 +30,7 @@ class MeshSoftBody final : public SoftBody {
   /// equally near.
   void find(const Vector3d& p, uint32_t, const FindOptions& options, Track& track) const noexcept override {
     const uint32_t start = track.known ? track.foot.element : MedialMesh::kNoStart;
-    if (!felt_) {
-      track.foot = body_.foot(p, start, options.crease, MedialMesh::kMostVisits);
-    } else {
-      track.apart = body_.feet(p, start, options.crease, track.foot, track.rival);
-    }
+    track.apart = body_.feet(p, start, options.crease, track.foot, track.rival);
   }
   Felt felt(const Vector3d& p, const Vector3d& moved, Track& track) const noexcept override {
     return feltTurning(p, moved, felt_, track);
@@ -47,7 +43,7 @@ class MeshSoftBody final : public SoftBody {
                medial::FeltPlace& place) noexcept override {
     const double distance = (p - foot.center).norm();
     const double cosine = distance > 0 ? felt.normal.dot(p - foot.center) / distance : 0;
-    body_.placeOf(p, foot, felt.normal, directness(cosine), place);
+    body_.placeOf(p, foot, felt.normal, medial::directness(cosine), place);
   }
   medial::FeltSurface* feltSurface() noexcept override { return body_.feltSurface(); }
   void yield(std::span<const medial::Press> contacts) noexcept override { body_.deformation().press(contacts); }
@@ -88,7 +84,7 @@ class MeshSoftBody final : public SoftBody {
  private:
   medial::MeshBody body_;
   double greatest_radius_ = 0;
-  /// The force fades out after a push through the body only if the body is felt. Other bodies keep their old results.
+  /// The force fades out after a push through the body only if the body is felt.
   bool felt_ = false;
 };
 

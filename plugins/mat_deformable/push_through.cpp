@@ -83,7 +83,7 @@ Felt feltTurning(const Vector3d& p, const Vector3d& moved, bool fades, Track& tr
   // A probe that was pushed through, or whose two feet are opposite, is still pushed back to where it came from.
   const bool other =
       track.swapped && track.pushed.dot(track.rival.normal) > 0 && foot.normal.dot(track.rival.normal) > kOppositeFeet;
-  if (entered || (fades && track.settled && (other || clear))) {
+  if (entered || (track.settled && (other || clear))) {
     track.pushed = other ? foot.normal : wanted;
   } else {
     turn(wanted, asideOf(moved, track.pushed), track);

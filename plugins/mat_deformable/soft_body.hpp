@@ -11,6 +11,7 @@
 #include "hapticd/shape.h"
 #include "kernels/contact/friction.hpp"
 #include "kernels/medial/body.hpp"
+#include "kernels/medial/energy_account.hpp"
 #include "kernels/medial/mesh_body.hpp"
 #include "kernels/medial/moving_mesh.hpp"
 #include "kernels/medial/nodes.hpp"
@@ -35,6 +36,9 @@ struct Track {
   int side = 0;          ///< side of a sheet from which the probe came, +1 or -1; 0 if the side is not decided
   bool settled = false;  ///< in the interior of a sheet: `pushed` has turned fully to the direction of the foot
   contact::Friction friction;
+  medial::EnergyAccount account;     ///< of a body at rest; a felt surface has one for all probes
+  Eigen::Vector3d exerted{0, 0, 0};  ///< [N] force without friction in the last tick
+  bool pressed = false;              ///< it was pushed in the last tick
   // The following is used only on a felt surface:
   /// true if the probe was already located in an earlier tick since it came near; if false, the probe may have begun
   /// inside
@@ -52,6 +56,13 @@ struct Track {
   double inside = 0;     ///< [m] depth of the probe below the displaced surface
 };
 
+/// [rt] Returns the work [J] of a hand in the first tick of a contact, for its account: at most the energy of the
+/// springs. A foot that was found late begins deep, where nobody has pressed. A probe that was put there counts as
+/// pressed.
+inline double firstWork(const Eigen::Vector3d& force, const Eigen::Vector3d& moved, double energy) noexcept {
+  return moved.isZero(0) ? energy : std::clamp(-0.5 * force.dot(moved), 0.0, energy);
+}
+
 /// The surface that the probe feels. After a push through the skeleton, this is still the surface of the side from
 /// which the probe came.
 struct Felt {
@@ -60,17 +71,6 @@ struct Felt {
   double steep = 1;  ///< length of the depth's gradient; less than 1 if two parts of the surface push together
   double share = 0;  ///< weight of the rival (see rivalShare()), 0 to 1
 };
-/// if the cosine between the felt direction and the direction of the foot is above this, they count as equal
-inline constexpr double kSameDirection = 0.99;
-/// if this cosine is below kTurned, the directions are different, and the felt direction turns toward that of the foot
-inline constexpr double kTurned = 0.9;
-
-/// [rt] Returns 1 if a felt direction with this cosine to the direction of the foot counts as equal to it, and 0 if as
-/// different; values between blend the two cases.
-inline double directness(double cosine) noexcept {
-  return std::clamp((cosine - kTurned) / (kSameDirection - kTurned), 0.0, 1.0);
-}
-
 /// What a person should know about a body before touching it.
 struct Description {
   std::string text;

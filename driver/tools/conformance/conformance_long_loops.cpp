@@ -191,8 +191,7 @@ Verdict longLoopsGiveNoEnergy(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   Subject& subject = *made.subject;
-  if (subject.moves() || (subject.description().flags & HSP_C_DEFORMS) != 0)
-    return skipped("it moves or deforms, so its energy does not depend on the place of the probe alone");
+  if (subject.moves()) return skipped("it moves, so its energy does not depend on the place of the probe alone");
   if (recipe.touch.places.empty()) return atEachPlace(recipe, [](Subject&, const Place&) { return std::string(); });
   const std::vector<Loop> loops = loopsOf(subject, recipe.touch.places);
   if (loops.empty()) return skipped("its surface goes on smoothly for less than 10 mm");

@@ -81,15 +81,12 @@ Verdict loopsGiveNoEnergy(const Recipe& recipe, uint64_t) {
   if (!made.error.empty()) return made.error;
   if (made.subject->moves()) return skipped("the shape moves by itself, so gravity may give it energy too");
   int left = 6;  // [places] at all of them, a slow shape would take too long
-  Verdict verdict = atEachPlace(recipe, [&left](Subject& subject, const Place& place) {
+  return atEachPlace(recipe, [&left](Subject& subject, const Place& place) {
     if (left-- <= 0) return std::string();
     const Vector3d u = place.out.unitOrthogonal(), v = place.out.cross(u);
     std::string given = gives(subject, place, u);
     return given.empty() ? gives(subject, place, v) : given;
   });
-  // The force of a soft body comes from the material near the probe, so it need not be the gradient of a potential.
-  const bool soft = (made.subject->description().flags & HSP_C_DEFORMS) != 0;
-  return soft && verdict.failed() ? noted(verdict.text) : verdict;
 }
 
 }  // namespace hapticd::conformance

@@ -91,8 +91,7 @@ class WalkLog final : public servo::TickLog {
  private:
   /// Judges a plugin as a run does. A step that took too long is left out, because that depends on the machine.
   void judge(const servo::ModelState& state, record::ModelReport report) {
-    // A soft body that is stroked gives and takes energy in every round; one or two rounds do not tell which prevails.
-    report.moves = state.moves || (state.shape->description().flags & HSP_C_DEFORMS) != 0;
+    report.moves = state.moves;
     report.size_m = state.shape->report().size_m;
     const bool slow = state.guard.fault() == servo::ShapeFault::kOverrun;
     const std::string fault = slow ? "" : servo::silenceReason(state);

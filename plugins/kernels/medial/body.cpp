@@ -38,6 +38,17 @@ std::vector<double> orZeros(const std::vector<double>& samples, std::size_t coun
 
 }  // namespace
 
+BodyForce BodyForce::weakened(double share, const Vector3d& outward) const noexcept {
+  BodyForce weak = *this;
+  if (share == 1) return weak;
+  weak.elastic *= share;
+  weak.force -= (1 - share) * elastic;
+  weak.normal = weak.force.dot(outward);
+  if (weak.normal < 0) weak.force -= weak.normal * outward;
+  weak.normal = std::max(0.0, weak.normal);
+  return weak;
+}
+
 Body::Body(const BodyData& data, const BodyOptions& options)
     : options_(options), skeleton_(data.grid, options.degree, options.form) {
   stiffness_ = fieldOf(skeleton_, data.stiffness, data.grid, "stiffness");
@@ -84,34 +95,17 @@ std::vector<Oscillator> Body::materialOf(const BodyData& data) const {
   return material;
 }
 
-std::array<double, 2> Body::offsetsAt(const SkeletonFoot& foot) const noexcept {
-  std::array<double, 2> offsets{0, 0};
-  spline::SurfacePoint s;
-  if (turns()) skeleton_.surface().evaluate1(foot.u, foot.v, s);
-  for (std::size_t axis = skeleton_.curve() ? 1 : 0; axis < 2; ++axis) {
-    const auto& range = skeleton_.parameters()[axis];
-    const double whole = range.back() - range.front();
-    offsets[axis] = options_.shear_offset * whole;
-    if (!turns()) continue;
-    const double metres = (axis == 0 ? s.Su : s.Sv).norm();  // [m] length of one unit of the parameter; 0 at a pole
-    offsets[axis] = metres * whole > options_.shear_distance ? options_.shear_distance / metres : whole;
-  }
-  return offsets;
-}
-
 /// Finds four points of the contour at rest beside the contact. From the contact to each point, the normal turns as the
 /// skeleton's normal does. The springs fade out toward the rim, so that the force does not jump there.
 Body::Neighbours Body::neighboursOf(const SkeletonFoot& foot, const Vector3d& normal) const noexcept {
   Neighbours neighbours;
-  const std::array<double, 2> offsets = offsetsAt(foot);
-  const double part = !turns() ? 1 : skeleton_.curve() ? 0.5 : 0.25;
+  if (!springs()) return neighbours;
   const double here = stiffness_.evaluate(foot.u, foot.v).f;
   const double side = std::clamp(kSideways * normal.dot(foot.across), -1.0, 1.0);  // changes continuously round the rim
   spline::SurfacePoint s;
   for (std::size_t axis = skeleton_.curve() ? 1 : 0; axis < 2; ++axis) {
     const auto& range = skeleton_.parameters()[axis];
-    const double offset = offsets[axis];
-    if (!(offset > 0)) continue;
+    const double offset = options_.shear_offset * (range.back() - range.front());
     for (const double sign : {-1.0, 1.0}) {
       std::array<double, 2> at{foot.u, foot.v};
       const double start = at[axis];
@@ -127,10 +121,34 @@ Body::Neighbours Body::neighboursOf(const SkeletonFoot& foot, const Vector3d& no
       if (!(length > 0)) continue;
       ShearSpring& spring = neighbours.springs[neighbours.count++];
       spring.anchor = s.S + skeleton_.radius().evaluate(at[0], at[1]).f / length * turned;
-      spring.stiffness = part * share * 0.5 * (here + stiffness_.evaluate(at[0], at[1]).f);
+      spring.stiffness = share * 0.5 * (here + stiffness_.evaluate(at[0], at[1]).f);
     }
   }
   return neighbours;
+}
+
+std::array<double, 2> Body::slopesAlong(const SkeletonFoot& foot, const FootMotion& motion) const noexcept {
+  const ScalarField::Value k = stiffness_.evaluate(foot.u, foot.v);
+  std::array<double, 2> slopes{k.fu, k.fv};
+  for (std::size_t axis = 0; axis < 2 && options_.shear_distance > 0; ++axis) {
+    const auto& range = skeleton_.parameters()[axis];
+    const double metres = (axis == 0 ? motion.tangent_u : motion.tangent_v).norm();  // per unit of the parameter
+    const double whole = range.back() - range.front();
+    const double offset = metres * whole > options_.shear_distance ? options_.shear_distance / metres : whole;
+    std::array<double, 2> low{foot.u, foot.v}, high = low;
+    low[axis] = std::max(low[axis] - offset, range.front());
+    high[axis] = std::min(high[axis] + offset, range.back());
+    slopes[axis] =
+        (stiffness_.evaluate(high[0], high[1]).f - stiffness_.evaluate(low[0], low[1]).f) / (high[axis] - low[axis]);
+  }
+  return slopes;
+}
+
+Vector3d Body::slopeOfStiffness(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& normal) const noexcept {
+  const double direct = directness(normal.dot(foot.normal));
+  const FootMotion motion = footMotion(skeleton_, p, foot, normal, options_.envelope, direct);
+  const std::array<double, 2> slopes = slopesAlong(foot, motion);
+  return slopes[0] * motion.toward_u + slopes[1] * motion.toward_v;
 }
 
 BodyForce Body::press(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& normal, double depth,
@@ -141,20 +159,22 @@ BodyForce Body::press(const Vector3d& p, const SkeletonFoot& foot, const Vector3
   const Neighbours neighbours = neighboursOf(foot, normal);
   const std::span<const ShearSpring> springs(neighbours.springs.data(), neighbours.count);
   result.stiffness = stiffness_.evaluate(foot.u, foot.v).f;
-  result.force = pressForce(p, surface, normal, result.stiffness, depth, springs);
   result.energy = 0.5 * result.stiffness * depth * depth;
-  if (turns()) result.force += (result.stiffness * depth - result.force.dot(normal)) * normal;
   for (const ShearSpring& spring : springs) {
-    if (turns()) break;  // then the springs do no work along the normal
     const double stretch = (spring.anchor - p).norm() - (spring.anchor - surface).norm();
     result.energy += 0.5 * spring.stiffness * stretch * stretch;
   }
-  if (std::isfinite(closing_speed))
-    result.force +=
-        damping_.evaluate(foot.u, foot.v).f * std::min(1.0, depth / options_.damping_scale) * closing_speed * normal;
-  result.normal = result.force.dot(normal);
-  if (result.normal < 0) result.force -= result.normal * normal;  // a surface does not pull
-  result.normal = std::max(0.0, result.normal);
+  const double outward = pressForce(p, surface, normal, result.stiffness, depth, springs).dot(normal);
+  const double pushes = std::max(0.0, outward);
+  Vector3d along = Vector3d::Zero();
+  if (!stiffness_.constant() && result.stiffness > 0)
+    along = forceAlong(slopeOfStiffness(p, foot, normal), normal, result.energy / result.stiffness, pushes);
+  result.elastic = pushes * normal + along;
+  const double drag = std::isfinite(closing_speed) ? damping_.evaluate(foot.u, foot.v).f *
+                                                         std::min(1.0, depth / options_.damping_scale) * closing_speed
+                                                   : 0;
+  result.normal = std::max(0.0, outward + drag);  // a surface does not pull
+  result.force = result.normal * normal + along;
   return result;
 }
 
@@ -181,7 +201,7 @@ void Body::checkMonotonicityAt(const SkeletonFoot& at, const Vector3d& normal, M
 
 MonotonicityReport Body::checkMonotonicity() const {
   MonotonicityReport report;
-  if (turns()) return report;
+  if (!springs()) return report;
   const auto visit = [&](double u, double v) {
     SkeletonFoot at;
     spline::SurfacePoint s;

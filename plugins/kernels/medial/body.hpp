@@ -39,9 +39,10 @@ struct BodyOptions {
   /// parameter distance from a contact to the ends of its four shear springs, as a share of the parameter range; 0: no
   /// shear springs
   double shear_offset = 0.05;
-  /// [m] distance along the skeleton to the ends of the shear springs; if above 0, it replaces shear_offset (see
-  /// press())
+  /// [m] distance along the skeleton over which the slope of the stiffness is taken, to either side; 0: at the contact
+  /// alone. If above 0, there are no shear springs
   double shear_distance = 0;
+  Envelope envelope = Envelope::kExact;  ///< how feet are found, so that it is known how they move
   /// [m] depth at which the contact's damping reaches its full value; it is 0 at the surface
   double damping_scale = 5e-3;
   DeformationOptions deformation;
@@ -50,10 +51,14 @@ struct BodyOptions {
 
 /// The force of a pressed body.
 struct BodyForce {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N] force on the probe
-  double normal = 0;                                ///< [N] outward part of `force`
-  double stiffness = 0;                             ///< [N/m] stiffness of the normal spring at the contact
-  double energy = 0;                                ///< [J] energy stored in the springs
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();    ///< [N] force on the probe
+  Eigen::Vector3d elastic = Eigen::Vector3d::Zero();  ///< [N] the part of `force` that comes from springs
+  double normal = 0;                                  ///< [N] outward part of `force`
+  double stiffness = 0;                               ///< [N/m] stiffness of the normal spring at the contact
+  double energy = 0;                                  ///< [J] energy of a straight press to this depth
+
+  /// [rt] Returns this force with a share of the springs' part, 0 to 1. It does not pull inward.
+  BodyForce weakened(double share, const Eigen::Vector3d& outward) const noexcept;
 };
 
 /// Result of the check that the force grows with depth at every examined place. It describes the worst place.
@@ -82,10 +87,10 @@ class Body {
   const ScalarField& stiffness() const noexcept { return stiffness_; }
 
   /// [rt] Returns the force on a probe at `p` with the foot `foot`, at the depth `depth` [m] along the outward unit
-  /// direction `normal`. The force comes from a normal spring, from four springs along the surface, and from damping
-  /// against `closing_speed` [m/s]. It never pulls inward along the normal. With `shear_distance` the four springs only
-  /// turn the force: together they are as stiff as the normal spring, and the part of the force along the normal is
-  /// stiffness * depth, with the stiffness of the file.
+  /// direction `normal`. Along the normal it comes from a normal spring, from four springs along the surface, and from
+  /// damping against `closing_speed` [m/s]; it never pulls inward. Along the surface it is the slope of the stiffness
+  /// (see forceAlong()), and no greater than outward: the springs have no part there, because their ends move along
+  /// with the contact, and a force on the probe alone would drive it round.
   BodyForce press(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;
   /// [rt] Describes to a felt surface the place where a probe at `p` touches the contour.
@@ -98,10 +103,8 @@ class Body {
   /// [main] Checks at samples all over the skeleton, on both sides, that the force grows with depth.
   MonotonicityReport checkMonotonicity() const;
   /// [any] Returns an upper bound of the slope of the force over depth [N/m]: the stiffness of the normal spring, plus
-  /// that of the four springs along the surface unless they only turn the force.
-  double greatestStiffness() const noexcept {
-    return (options_.shear_offset > 0 && !turns() ? 5 : 1) * stiffness_.greatest();
-  }
+  /// that of the four springs along the surface.
+  double greatestStiffness() const noexcept { return (springs() ? 5 : 1) * stiffness_.greatest(); }
   std::size_t bytes() const noexcept;
 
  private:
@@ -109,12 +112,13 @@ class Body {
     std::array<ShearSpring, 4> springs;
     std::size_t count = 0;
   };
-  /// [any] True if the springs along the surface only turn the force. If false, they add to the normal spring, as in
-  /// Corso et al. 2002.
-  bool turns() const noexcept { return options_.shear_distance > 0; }
-  /// Returns the differences of the parameter to a neighbour along u (index 0) and v (index 1); 0 if there is no
-  /// neighbour.
-  std::array<double, 2> offsetsAt(const SkeletonFoot& foot) const noexcept;
+  /// [any] True if springs along the surface add to the normal spring, as in Corso et al. 2002.
+  bool springs() const noexcept { return options_.shear_offset > 0 && !(options_.shear_distance > 0); }
+  /// Returns the gradient of the stiffness over the position of a probe [N/m^2].
+  Eigen::Vector3d slopeOfStiffness(const Eigen::Vector3d& p, const SkeletonFoot& foot,
+                                   const Eigen::Vector3d& normal) const noexcept;
+  /// Returns the derivatives of the stiffness along u and v [N/m], over `shear_distance`.
+  std::array<double, 2> slopesAlong(const SkeletonFoot& foot, const FootMotion& motion) const noexcept;
   Neighbours neighboursOf(const SkeletonFoot& foot, const Eigen::Vector3d& normal) const noexcept;
   /// Updates `report` if the springs reduce the slope of the force along `normal` at this place more than at the places
   /// that were examined before.

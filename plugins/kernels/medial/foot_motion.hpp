@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// The motion of a foot as its probe moves.
 #pragma once
+#include <algorithm>
+
 #include "kernels/medial/skeleton.hpp"
 
 namespace hapticd::medial {
@@ -13,6 +15,17 @@ struct FootMotion {
   /// [1/m] rotation of the direction to the probe per metre of motion across it, while the foot stays
   double turn = 0;
 };
+
+/// if the cosine between a direction and that of the foot is above this, they count as equal
+inline constexpr double kSameDirection = 0.99;
+/// if this cosine is below kTurned, the directions are different
+inline constexpr double kTurned = 0.9;
+
+/// [rt] Returns 1 if a direction with this cosine to the direction of the foot counts as equal to it, and 0 if as
+/// different; values between blend the two cases.
+inline double directness(double cosine) noexcept {
+  return std::clamp((cosine - kTurned) / (kSameDirection - kTurned), 0.0, 1.0);
+}
 
 /// [rt] Returns the motion of a foot, from the derivative of the condition that makes it a foot, d|p - S|/du = dr/du.
 /// @param direct 1 if `normal` is the direction from the foot to the probe. 0 if it is not, because the probe was

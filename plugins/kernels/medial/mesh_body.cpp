@@ -336,20 +336,6 @@ double MeshBody::material(const std::vector<double>& values, const SkeletonFoot&
   return std::max(0.0, sum);
 }
 
-BodyForce MeshBody::press(const SkeletonFoot& foot, const Vector3d& normal, double depth,
-                          double closing_speed) const noexcept {
-  BodyForce result;
-  if (!(depth > 0)) return result;
-  result.stiffness = material(stiffness_, foot);
-  result.energy = 0.5 * result.stiffness * depth * depth;
-  const double drag = std::isfinite(closing_speed)
-                          ? material(damping_, foot) * std::min(1.0, depth / options_.damping_scale) * closing_speed
-                          : 0;
-  result.normal = std::max(0.0, result.stiffness * depth + drag);  // a surface does not pull
-  result.force = result.normal * normal;
-  return result;
-}
-
 double MeshBody::greatestStiffness() const noexcept {
   return *std::max_element(stiffness_.begin(), stiffness_.end());
 }

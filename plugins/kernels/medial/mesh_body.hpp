@@ -95,13 +95,9 @@ class MeshBody {
   /// separating
   double feet(const Eigen::Vector3d& p, uint32_t start, double crease, SkeletonFoot& foot,
               SkeletonFoot& rival) const noexcept;
-  /// [rt] Returns the force on a probe `depth` [m] below the surface along `normal`: a spring, and damping against
-  /// `closing_speed` [m/s].
-  BodyForce press(const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
-                  double closing_speed) const noexcept;
-  /// [rt] Returns the same force for a probe at `p`, plus that of springs along the surface to points of the contour at
-  /// the distance `shear_distance`, which may lie on other cones and slabs. These springs turn the force toward the
-  /// stiffer neighbour; its part along the normal stays the same.
+  /// [rt] Returns the force on a probe at `p`, `depth` [m] below the surface along `normal`: a spring, damping against
+  /// `closing_speed` [m/s], and along the surface the slope of the stiffness (see forceAlong()). It is taken within the
+  /// cone or slab of the foot, or over `shear_distance`, also on other cones and slabs.
   BodyForce press(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;
   /// [rt] Describes to a felt surface the place where a probe at `p` touches the body.
@@ -116,8 +112,9 @@ class MeshBody {
   std::size_t bytes() const noexcept;
 
  private:
-  std::size_t neighboursOf(const Eigen::Vector3d& surface, const SkeletonFoot& foot, const Eigen::Vector3d& normal,
-                           std::array<ShearSpring, 6>& springs) const noexcept;
+  /// Returns the gradient of the stiffness over the position of a probe [N/m^2].
+  Eigen::Vector3d slopeOfStiffness(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal,
+                                   double depth) const noexcept;
   SkeletonFoot footOf(const MeshFoot& found) const noexcept;
   /// Returns 0 if both feet are on the same place of the body, 1 if they are on two places.
   double apart(const MeshFoot& a, const MeshFoot& b) const noexcept;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Springs from a pressed place of a medial mesh to points of the contour beside it, which may lie on other cones and
-/// slabs.
+/// The force of a pressed place of a medial mesh, whose stiffness may change from vertex to vertex.
 #include <algorithm>
+#include <cmath>
 
 #include "kernels/medial/mesh_body.hpp"
 #include "kernels/medial/shear.hpp"
@@ -14,47 +14,54 @@ using Eigen::Vector3d;
 /// The search for one neighbour ends after visiting this many nodes of the mesh's search tree. Near the surface some
 /// tens of nodes suffice.
 constexpr int kMostVisits = 400;
+constexpr double kBeside = 1e-6;  ///< [m] the probe is moved by this much to measure the slope within a cone or slab
 /// If the sine of the angle between an axis of the model frame and the normal is below this, the axis has no direction
 /// along the surface.
 constexpr double kLeastAside = 1e-6;
 
 }  // namespace
 
-/// A mesh has no rows, so the neighbours lie along the axes of the model frame, projected on the surface, forward and
-/// back. The weight of each neighbour is the squared length of its projected axis. So the six together have the same
-/// effect for every orientation of the surface, and the force does not jump where cones and slabs meet.
-std::size_t MeshBody::neighboursOf(const Vector3d& surface, const SkeletonFoot& foot, const Vector3d& normal,
-                                   std::array<ShearSpring, 6>& springs) const noexcept {
-  const double here = material(stiffness_, foot), distance = options_.shear_distance;
-  std::size_t count = 0;
+/// A mesh has no rows, so the stiffness is compared along the axes of the model frame, projected on the surface,
+/// forward and back. Each difference counts by the squared length of its projected axis: so together they are the
+/// gradient, for every orientation of the surface, and it does not jump where cones and slabs meet.
+Vector3d MeshBody::slopeOfStiffness(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& normal,
+                                    double depth) const noexcept {
+  Vector3d slope = Vector3d::Zero();
+  if (stiffness_.size() == 1) return slope;
+  const bool wide = options_.shear_distance > 0;
+  const double distance = wide ? options_.shear_distance : kBeside;
+  const Vector3d from = wide ? Vector3d(p + depth * normal) : p;
+  const auto stiffnessAt = [&](const Vector3d& place) {
+    if (wide) return material(stiffness_, this->foot(place, foot.element, 0, kMostVisits));
+    SkeletonFoot there = foot;
+    const HullFoot found = mesh_.footOn(foot.element, place);
+    there.u = found.parameter[0], there.v = found.parameter[1];
+    return material(stiffness_, there);
+  };
   for (Eigen::Index k = 0; k < 3; ++k) {
     const Vector3d along = Vector3d::Unit(k) - normal[k] * normal;
-    const double share = along.squaredNorm();
-    if (!(share > kLeastAside * kLeastAside)) continue;
-    for (const double sign : {-1.0, 1.0}) {
-      const Vector3d aside = sign / std::sqrt(share) * along;
-      const SkeletonFoot there = this->foot(surface + distance * aside, foot.element, 0, kMostVisits);
-      if (!there.converged) continue;
-      ShearSpring& spring = springs[count];
-      spring.anchor = there.center + there.radius * there.normal;
-      // less than 1 at a rim
-      const double reached = std::clamp((spring.anchor - surface).dot(aside) / distance, 0.0, 1.0);
-      spring.stiffness = 0.25 * share * reached * 0.5 * (here + material(stiffness_, there));
-      count += spring.stiffness > 0 ? 1 : 0;
-    }
+    const double length = along.norm();
+    if (!(length > kLeastAside)) continue;
+    const Vector3d aside = distance / length * along;
+    slope += (stiffnessAt(from + aside) - stiffnessAt(from - aside)) / (2 * distance) * length * along;
   }
-  return count;
+  return slope;
 }
 
 BodyForce MeshBody::press(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& normal, double depth,
                           double closing_speed) const noexcept {
-  BodyForce result = press(foot, normal, depth, closing_speed);
-  if (!(options_.shear_distance > 0) || !(depth > 0)) return result;
-  std::array<ShearSpring, 6> springs;
-  const Vector3d surface = p + depth * normal;
-  const std::size_t count = neighboursOf(surface, foot, normal, springs);
-  const Vector3d pulled = pressForce(p, surface, normal, 0, depth, {springs.data(), count});
-  result.force += pulled - pulled.dot(normal) * normal;
+  BodyForce result;
+  if (!(depth > 0)) return result;
+  result.stiffness = material(stiffness_, foot);
+  result.energy = 0.5 * result.stiffness * depth * depth;
+  const double outward = result.stiffness * depth;
+  const Vector3d along = forceAlong(slopeOfStiffness(p, foot, normal, depth), normal, 0.5 * depth * depth, outward);
+  result.elastic = outward * normal + along;
+  const double drag = std::isfinite(closing_speed)
+                          ? material(damping_, foot) * std::min(1.0, depth / options_.damping_scale) * closing_speed
+                          : 0;
+  result.normal = std::max(0.0, outward + drag);  // a surface does not pull
+  result.force = result.normal * normal + along;
   return result;
 }
 

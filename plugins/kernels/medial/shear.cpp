@@ -17,6 +17,13 @@ Eigen::Vector3d pressForce(const Eigen::Vector3d& probe, const Eigen::Vector3d& 
   return force;
 }
 
+Eigen::Vector3d forceAlong(const Eigen::Vector3d& slope, const Eigen::Vector3d& normal, double per_stiffness,
+                           double most) noexcept {
+  const Eigen::Vector3d along = -per_stiffness * (slope - slope.dot(normal) * normal);
+  const double length = along.norm();
+  return length > most ? Eigen::Vector3d(most / length * along) : along;
+}
+
 Monotonicity monotonicity(double angle, double stiffness, double shear_stiffness) noexcept {
   Monotonicity result;
   result.ratio = 1 / std::cos(angle / 2);

@@ -69,17 +69,18 @@ struct Ring : hapticd::Shape {
   }
 };
 
-#define SOFT(Name, name, soft, percent)                                                                  \
-  struct Name : Ring<Name, soft, percent> {                                                              \
-    static constexpr hapticd::ShapeInfo kInfo{"org.example.shape." name, name, "1.0", "MIT", "A ring."}; \
+#define SOFT(Name, name, soft, percent, flags)                                                                  \
+  struct Name : Ring<Name, soft, percent> {                                                                     \
+    static constexpr hapticd::ShapeInfo kInfo{"org.example.shape." name, name, "1.0", "MIT", "A ring.", flags}; \
   };
-SOFT(Softer, "softer", Soft::kNormal, 20)
-SOFT(MuchSofter, "much_softer", Soft::kNormal, 80)
-SOFT(WrongSlope, "wrong_slope", Soft::kWrong, 20)
-SOFT(RightSlope, "right_slope", Soft::kSlope, 80)
-SOFT(RightSlopeRubs, "right_slope_rubs", Soft::kRubs, 80)
-SOFT(Bumps, "bumps", Soft::kBumps, 0)
+SOFT(Softer, "softer", Soft::kNormal, 20, 0)
+SOFT(SofterFlesh, "softer_flesh", Soft::kNormal, 20, HSP_C_DEFORMS)
+SOFT(MuchSofter, "much_softer", Soft::kNormal, 80, 0)
+SOFT(WrongSlope, "wrong_slope", Soft::kWrong, 20, 0)
+SOFT(RightSlope, "right_slope", Soft::kSlope, 80, 0)
+SOFT(RightSlopeRubs, "right_slope_rubs", Soft::kRubs, 80, 0)
+SOFT(Bumps, "bumps", Soft::kBumps, 0, 0)
 
 }  // namespace
 
-HAPTICD_SHAPES(Softer, MuchSofter, WrongSlope, RightSlope, RightSlopeRubs, Bumps)
+HAPTICD_SHAPES(Softer, SofterFlesh, MuchSofter, WrongSlope, RightSlope, RightSlopeRubs, Bumps)

@@ -33,7 +33,10 @@ check("plugins ship", len(shipped) >= 4, shipped)
 SURFACES = "geometry=" + os.path.join(SOURCE, "config", "models", "teapot.yaml" if LONG else "goblet.yaml")
 RUBS = ("--set", "friction_static=0.4", "--set", "friction_dynamic=0.3")  # a stuck point outlived a jump: 0.16 N
 NURBS = os.path.join(SHIPPED, "nurbs_rigid.so")
-for file, *more in [(file,) for file in shipped] + [(NURBS, "--set", SURFACES), (NURBS, *RUBS)]:
+BODY = os.path.join(SHIPPED, "mat_deformable.so")  # the pebble drove a hand that strokes it, the lump one that leaves over it
+FLESH = [(BODY, "--set", "geometry=" + os.path.join(SOURCE, "config", "models", model + ".yaml"), "--set", "dynamics=" + dynamics)
+         for model in ("pebble", "palpation") for dynamics in ("off", "felt")]
+for file, *more in [(file,) for file in shipped] + [(NURBS, "--set", SURFACES), (NURBS, *RUBS)] + FLESH:
     code, tests, failed, err = examined(file, "--timeout", "120", *more)  # a loaded machine is no hang
     why = [(t["plugin"], t["name"], t["why"]) for t in tests if t["result"] == "fail"]
     check(f"{os.path.basename(file)} {' '.join(more)} passes", len(tests) >= 25 and not failed, (code, why, err[-300:]))
@@ -175,13 +178,13 @@ check("memory that was overrun is named beside the crash that it caused", over a
 SOFT, LONG_LOOP = os.path.join(BROKEN, "soft_places.so"), "long-loops-give-no-energy"
 for dents, softer in (("dents=[0.2]", True), ("dents=[-1.5707963, 0.5]", True), ("dents=[]", False)):
     code, tests, failed, err = examined(SOFT, "--timeout", "60", "--set", dents)
-    for shape in ("softer", "much_softer", "wrong_slope", "right_slope", "right_slope_rubs", "bumps"):
-        wrong = softer and shape in ("softer", "much_softer", "wrong_slope")
+    for shape in ("softer", "softer_flesh", "much_softer", "wrong_slope", "right_slope", "right_slope_rubs", "bumps"):
+        wrong = softer and shape in ("softer", "softer_flesh", "much_softer", "wrong_slope")
         mine = [(t["name"], t["why"]) for t in tests if t["plugin"] == shape and t["result"] == "fail"]
         good = [name for name, _ in mine][-1:] == [LONG_LOOP] and "N/m stiff here" in mine[-1][1] if wrong else not mine
         check(f"{shape} with {dents} {'gives energy in long loops' if wrong else 'passes'}", tests and good, mine)
 said = subprocess.run([HAPTICD, "plugin", "check", SOFT], capture_output=True, text=True, timeout=280).stdout
-check("an array that is empty by default is told, with what to try", said.count("dents is empty by default") == 6 and "--set 'dents=[0]'" in said, said[-300:])
+check("an array that is empty by default is told, with what to try", said.count("dents is empty by default") == 7 and "--set 'dents=[0]'" in said, said[-300:])
 
 # Mistakes of a first shape. Each is told by one test, which says what to do.
 code, tests, failed, err = examined(os.path.join(BROKEN, "first_shapes.so"), "--timeout", "60")

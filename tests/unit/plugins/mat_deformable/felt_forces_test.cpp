@@ -45,7 +45,7 @@ std::vector<Moment> feel(const std::string& model) {
   return all;
 }
 
-/// felt_forces.csv was written by the version that followed every foot to 1e-8 m, however far the probe was.
+/// felt_forces.csv was written by a version that was compared with one that followed every foot to 1e-8 m, however far
 std::map<std::string, std::vector<Moment>> recorded() {
   std::ifstream file(HAPTICD_SOURCE_DIR "/tests/unit/plugins/mat_deformable/felt_forces.csv");
   std::map<std::string, std::vector<Moment>> all;

@@ -201,9 +201,10 @@ TEST(MeshBody, NeverPullsAndPushesAsItsMaterialSays) {
   const MeshBody body(data, {});
   const SkeletonFoot foot = body.foot({0, 0, .008}, kNoStart, 0);
   EXPECT_NEAR(foot.depth, .002, 1e-4);
-  EXPECT_NEAR(body.press(foot, foot.normal, foot.depth, 0).normal, 600 * foot.depth, 600 * foot.depth * .1);
-  EXPECT_EQ(body.press(foot, foot.normal, foot.depth, -1e3).normal, 0);
-  EXPECT_EQ(body.press(foot, foot.normal, -1, 0).normal, 0);
+  EXPECT_NEAR(body.press({0, 0, .008}, foot, foot.normal, foot.depth, 0).normal, 600 * foot.depth,
+              600 * foot.depth * .1);
+  EXPECT_EQ(body.press({0, 0, .008}, foot, foot.normal, foot.depth, -1e3).normal, 0);
+  EXPECT_EQ(body.press({0, 0, .008}, foot, foot.normal, -1, 0).normal, 0);
   EXPECT_EQ(body.greatestStiffness(), 600);
 }
 
