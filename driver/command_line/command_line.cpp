@@ -348,7 +348,7 @@ std::string wrongCount(const CLI::App& app, const std::string& told) {
 
 /// Returns what is wrong with the command line, in the form of all other messages.
 std::string describe(const CLI::App& app, const CLI::ParseError& error) {
-  const std::string told = error.what();
+  std::string told = error.what();
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return unexpected(innermost(app), app.remaining(true));
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) return missing(innermost(app), told);
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return unreadable(innermost(app), told);
