@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd explain`: prints what a scene makes the daemon load, start and compute, why, and what it costs.
+/// `hapticd explain`: prints what a scene makes the daemon load, start and compute, why, and what it costs; or what
+/// happened in a recording.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -11,6 +12,7 @@
 #include "base/offline_tick.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
+#include "cli/explain_recording.hpp"
 #include "cli/guarded_command.hpp"
 #include "cli/tick_watch.hpp"
 #include "diagnostics/explain_cost.hpp"
@@ -167,6 +169,7 @@ int explainCost(const ExplainArguments& options, const scene::Scene& scene) {
 }
 
 int explain(const ExplainArguments& options) {
+  if (isRecording(options.scene)) return explainRecording(options.scene);
   auto scene = loadSceneOrReport(options.scene, options.device);
   if (!scene) return kBadInput;
   const GuardedCommand guarded;
@@ -197,13 +200,16 @@ void addExplain(const Command& app, int& exit_code) {
   auto options = std::make_shared<ExplainArguments>();
   const Command command = app.addSubcommand(
       "explain", "Show what the daemon loads, starts and computes for a scene, why, and at what cost.");
-  command.addOption("scene", options->scene, "scene file (YAML)").required();
+  command.addOption("scene", options->scene, "scene file (YAML); or a recording, whose events are printed in words")
+      .required();
   command.addOption("--device", options->device, "device file; replaces the devices of the scene");
   command.addFlag("--cost", options->cost,
                   "print a table of every part: the line of the scene that asks for it, its time per tick [ns] and its "
                   "memory [bytes]; parts that are not needed are listed too");
   command.addFlag("--json", options->json, "print the same table as JSON");
-  command.footer("Example:\n  hapticd explain config/scenes/teapot.yaml --cost");
+  command.footer(
+      "Examples:\n  hapticd explain config/scenes/teapot.yaml --cost\n  hapticd explain run.h5    # what happened in "
+      "a run that was recorded");
   command.callback([options, &exit_code] { exit_code = explain(*options); });
 }
 

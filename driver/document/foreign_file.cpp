@@ -25,6 +25,8 @@ constexpr Kind kKinds[] = {{".step", "ISO-10303-21", "a STEP file"},
                            {".ply", "ply\n", "a mesh (PLY)"},
                            {".obj", "", "a mesh (OBJ)"}};
 
+constexpr std::string_view kRecording = "\x89HDF";  ///< the first bytes of an HDF5 file
+
 std::string endingOf(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
@@ -42,6 +44,9 @@ std::string foreignFile(std::string_view text, const std::string& file) {
     return "a part, expected YAML: use it as the geometry of nurbs_rigid (for a soft body use a .ma file); to see its "
            "contents, run: hapticd part info " +
            file;
+  if (text.substr(0, kRecording.size()) == kRecording)
+    return "a recording (HDF5), expected YAML: to run it again, use hapticd replay " + file +
+           "; to read what happened, hapticd explain; to draw it, hapticd plot; to look at it, hapticd view";
   const auto is = [&](const Kind& kind) {
     return ending == kind.ending || (!kind.begins.empty() && text.substr(0, kind.begins.size()) == kind.begins);
   };

@@ -46,6 +46,8 @@ def foreign(folder, ask):
         part = name.split(".")[0] + ".hpart"
         check(f"geometry: {name} is told how to come in", code == 2 and f"{kind}, expected YAML" in out + err
               and f"hapticd import {file} -o {part}" in out + err, (code, out, err))
+    code, out, err = ask("check", write(folder, "a.h5", b"\x89HDF\r\n\x1a\n"))
+    check("a recording is no scene", code == 2 and "a recording (HDF5)" in out + err and "hapticd replay" in out + err, (code, out, err))
     code, out, err = ask("check", write(folder, "a.hpart", b"\3\0\0"))
     check("a part is no scene", code == 2 and "hapticd part info" in out + err, (code, out, err))
     code, out, err = ask("import", write(folder, "cubestl", STL), "-o", os.path.join(folder, "x.hpart"))
