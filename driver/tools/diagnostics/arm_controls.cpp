@@ -36,14 +36,15 @@ Control bound(const char* hazards, const char* name, double value, const char* u
 void addTimes(const host::DeviceInstance& device, bool opened, const std::optional<codec::Wire>& wire,
               std::vector<Control>& to) {
   const hdv_info& info = device.info();
-  const bool known = opened || wire;
+  const bool known = opened || wire, isSimulated = opened && (info.capabilities & HDV_C_SIMULATED) != 0;
   const bool watchdog = opened ? (info.capabilities & HDV_C_WATCHDOG) != 0 : wire && wire->cutsSoon();
   const std::string after = wire && wire->watchdog > 0 ? numberText(wire->watchdog * 1e3) + " ms after the last command"
                                                        : std::string("when commands stop");
   to.push_back({"H30", "the hardware's own watchdog", known ? onIf(watchdog) : ControlState::kUnknown,
-                !known ? "only the arm itself can tell, and it is not plugged in"
-                : watchdog
-                    ? "the arm cuts its motors " + after
+                !known     ? "only the arm itself can tell, and it is not plugged in"
+                : watchdog ? "the arm cuts its motors " + after
+                : isSimulated
+                    ? "a simulated arm has none"
                     : "the arm holds the last force when the machine dies: keep a switch within reach; if it cuts "
                       "its motors by itself, give wire.watchdog"});
   const double rate = opened ? info.rate_hz : wire ? wire->rate : 0;
@@ -51,7 +52,7 @@ void addTimes(const host::DeviceInstance& device, bool opened, const std::option
                 !known     ? "the arm itself says its rate"
                 : rate > 0 ? "fades after " + numberText(2000 / rate) + " ms"
                            : "held for up to 50 ms: give the rate of the arm"});
-  if (opened && (info.capabilities & HDV_C_SIMULATED) != 0) return;
+  if (isSimulated) return;
   const double most = rate > 0 ? servo::mostForceAt(kFastServo, rate, info.max_force) : HUGE_VAL;
   to.push_back({"H21", "force that suits its rate", known ? onIf(rate > 0) : ControlState::kUnknown,
                 !known      ? "the arm itself says its rate"
@@ -97,7 +98,7 @@ Control enableSwitch(const scene::Enable& enable, uint32_t buttons) {
 
 void addLimits(const scene::Limits& limits, double force, bool simulated, uint32_t buttons, std::vector<Control>& to) {
   to.push_back(bound("H16", "largest force", force, "N", "give limits.force"));
-  to.push_back(bound("H18", "growth of the force", limits.slew, "N/s", "give limits.slew"));
+  to.push_back(bound("H18", "growth of the force", limits.slew, "N/s", "limits.slew is 0"));
   const double velocity = limits.velocity.value_or(simulated ? 0 : 5);
   to.push_back(bound("H1 H2", "speed between samples", velocity, "m/s",
                      simulated ? "a simulated arm has no encoders; give limits.velocity" : "limits.velocity is 0"));

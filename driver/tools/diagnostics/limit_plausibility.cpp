@@ -43,6 +43,10 @@ void checkVelocity(const Bounds& of) {
   constexpr double kStill = 0.2;  // [m/s] a slow move of a hand
   constexpr double kFast = 20;    // [m/s] faster than any arm
   const double velocity = of.device.limits.velocity.value_or(0);
+  if (of.device.limits.velocity && velocity == 0)
+    of.warn({"limits", "velocity"},
+            "0 means no limit, so a position that jumps by less than 20 m/s is never a fault; remove the key for the "
+            "default (5 m/s on real hardware), or give m/s, such as 2");
   if (velocity > 0 && velocity < kStill)
     of.warn({"limits", "velocity"},
             fmt::format("a hand moves at 0.1 to 1 m/s, so with {:g} m/s its first stroke would be a "
@@ -53,6 +57,22 @@ void checkVelocity(const Bounds& of) {
             fmt::format("{0:g} m/s is faster than any hand or arm, so faulty encoders are never "
                         "noticed; the value must be in m/s: {0:g} mm/s is {1:g} m/s",
                         velocity, velocity / 1000));
+}
+
+/// Warns of a bound of growth that is switched off. Both have defaults, because they bound every blow.
+void checkGrowth(const Bounds& of) {
+  const scene::Limits& limits = of.device.limits;
+  const scene::Limits usual;
+  if (limits.slew == 0)
+    of.warn({"limits", "slew"},
+            fmt::format("0 means no limit, so a wrong force begins as a blow; remove the key for the default "
+                        "({:g} N/s), or give N/s",
+                        usual.slew));
+  if (limits.torque_slew == 0)
+    of.warn({"limits", "torque_slew"},
+            fmt::format("0 means no limit, so a wrong torque begins as a blow; remove the key for the default "
+                        "({:g} N m/s), or give N m/s",
+                        usual.torque_slew));
 }
 
 void checkDynamics(const Bounds& of) {
@@ -239,6 +259,7 @@ void warnOfImplausibleLimits(const Node& root, const scene::Device& device, cons
       force = force > 0 ? std::min(force, value.number) : value.number;
   if (!(force > 0)) force = 5;  // [N] a usual force of such arms, if no key gives one
   const Bounds bounds{root, device, force, warnings};
+  checkGrowth(bounds);
   checkDynamics(bounds);
   checkVelocity(bounds);
   checkCarried(bounds);

@@ -160,6 +160,8 @@ TOGETHER = [
     (WIRED, {"force: 2, ": "force: 40, slew: 2, ramp_in: 250, velocity: 0.02, ", "workspace: 0.3": "workspace: 0.01"},
      {"limits.ramp_in": "250 ms is 0.25 s", "limits.slew": "2 N/ms is 2000 N/s", "limits.velocity": "its first stroke would be a fault",
       "limits.workspace": "a hand is farther away at once", "limits.force": "N"}),
+    (WIRED, {"force: 2, ": "force: 2, slew: 0, torque_slew: 0, velocity: 0, "},
+     {"limits.slew": "0 means no limit", "limits.torque_slew": "0 means no limit", "limits.velocity": "0 means no limit"}),
     (WIRED, {"[0.21, 0.17": "[0.21, 17", "method: pose": "method: device", "max_stiffness: 600": "max_stiffness: 0.6", "mass: 0.2": "mass: 100"},
      {"arm.lengths[1]": "17 mm is 0.017 m", "calibration.method": "no field of wire.input", "device.max_stiffness": "0.6 N/mm is 600 N/m",
       "device.mass": "100 g is 0.1 kg"}),
