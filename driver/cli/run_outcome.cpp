@@ -50,8 +50,15 @@ record::RunNotes notesOf(const servo::Runner& runner) {
   return notes;
 }
 
-record::LimitReport limitsOf(const std::string& device, const servo::Limiter& limiter) {
-  record::LimitReport report{device, limiter.clips().any, {}};
+record::LimitReport limitsOf(const servo::Runner& runner, size_t arm) {
+  const servo::Limiter& limiter = runner.arms()[arm]->limiter();
+  const servo::SentForce& sent = runner.telemetry().sent(arm);
+  record::LimitReport report{.device = runner.scene().devices[arm].name,
+                             .sent_max_n = sent.largest,
+                             .faults = limiter.faults(),
+                             .fault_ticks = sent.fault_ticks,
+                             .any = limiter.clips().any,
+                             .ticks = {}};
   for (size_t i = 0; i < servo::kLimitCount; ++i)
     if (const uint64_t ticks = limiter.clips().ticks[i]; ticks > 0)
       report.ticks.emplace_back(servo::nameOf(static_cast<servo::Limit>(i)), ticks);
@@ -105,7 +112,7 @@ record::RunReport reportOf(const RunOutcome& outcome, servo::Runner& runner, std
   report.resident_bytes = runner.residentBytes();
   report.answer_time = runner.scene().clients.answer_time;
   for (size_t i = 0; i < runner.arms().size(); ++i)
-    report.limits.push_back(limitsOf(runner.scene().devices[i].name, runner.arms()[i]->limiter()));
+    report.limits.push_back(limitsOf(runner, i));
   return report;
 }
 

@@ -131,7 +131,9 @@ std::string untouchedText(const RunReport& report) {
   const bool silenced = std::any_of(report.faults.begin(), report.faults.end(),
                                     [](const std::string& fault) { return fault.rfind("model ", 0) == 0; });
   if (touched || silenced || report.ticks == 0) return "";
-  return "  contact   none: the tip touched no model\n";
+  const bool faulted = std::any_of(report.limits.begin(), report.limits.end(),
+                                   [](const LimitReport& device) { return device.fault_ticks > 0; });
+  return faulted ? "  contact   none while forces were allowed\n" : "  contact   none: the tip touched no model\n";
 }
 
 std::string limitText(const LimitReport& device, uint64_t ticks) {
@@ -140,7 +142,17 @@ std::string limitText(const LimitReport& device, uint64_t ticks) {
                                  100.0 * static_cast<double>(device.any) / static_cast<double>(ticks));
   for (size_t i = 0; i < device.ticks.size(); ++i)
     text += fmt::format("{}{}: {}", i > 0 ? ", " : "", device.ticks[i].first, device.ticks[i].second);
-  return text + ")\n";
+  return text + fmt::format("); the hand got {:.2f} N at most\n", device.sent_max_n);
+}
+
+/// Reports faults, because those that were cleared are not in the messages at the end, and because statistics of
+/// contacts leave out their ticks.
+std::string faultTimeText(const LimitReport& device, const RunReport& report) {
+  if (device.faults == 0) return "";
+  const double seconds = report.rate_hz > 0 ? static_cast<double>(device.fault_ticks) / report.rate_hz : 0;
+  return fmt::format("faults of {}: {} in this run, {:.2f} s without force, which are left out of contact, depth and "
+                     "force above\n",
+                     device.device, device.faults, seconds);
 }
 
 /// Reports joints at a stop: a hand that leans on a stop feels a force that does not come from the scene.
@@ -211,7 +223,10 @@ Result<void> writeJson(const RunReport& report, const std::string& file) {
   json["limits"] = Json::object();
   for (const LimitReport& device : report.limits) {
     Json& ticks = json["limits"][device.device];
-    ticks = {{"clipped_ticks", device.any}};
+    ticks = {{"clipped_ticks", device.any},
+             {"sent_max_n", device.sent_max_n},
+             {"faults", device.faults},
+             {"fault_ticks", device.fault_ticks}};
     for (const auto& [limit, count] : device.ticks) ticks["by_limit"][limit] = count;
   }
   json["stops"] = Json::object();
@@ -246,6 +261,7 @@ std::string summary(const RunReport& report) {
     if ((felt(model.contact) || report.models.size() <= kMostModels) && shown++ < kMostModels)
       text += modelText(model, report);
   for (const LimitReport& device : report.limits) text += limitText(device, report.ticks);
+  for (const LimitReport& device : report.limits) text += faultTimeText(device, report);
   for (const StopReport& stop : report.stops) text += stopText(stop, report);
   for (const ClientReport& client : report.clients) text += clientText(client, report.answer_time);
   for (const std::string& fault : report.faults) text += "fault: " + fault + "\n";

@@ -111,7 +111,13 @@ void EventFinder::check(double t, uint32_t index, const Core& core) noexcept HSP
 void EventFinder::check(double t, uint32_t index, const Arm& arm) noexcept HSP_RT {
   ArmNote& note = arms_[index];
   const auto number = static_cast<int32_t>(index);
-  if (const Fault fault = arm.limiter().fault(); fault != note.fault) {
+  const Fault fault = arm.limiter().fault();
+  if (fault != Fault::kNone && fault == note.fault && arm.limiter().faults() != note.faults) {  // it was cleared, and came back in this tick
+    add(HAPTICD_CLEARED, -1, number, 0, 0);
+    note.fault = Fault::kNone;
+  }
+  note.faults = arm.limiter().faults();
+  if (fault != note.fault) {
     note.fault = fault;
     if (fault != Fault::kStopped)  // kStopped here is the planned end of the run; a hold is noted in order()
       add(fault != Fault::kNone ? HAPTICD_FAULT : HAPTICD_CLEARED, -1, number, static_cast<uint32_t>(fault),

@@ -53,6 +53,7 @@ class EventFinder {
   };
   struct ArmNote : RefusedNote {  // its own counts are for the leader of the hand, `pushes` for the pushing programs
     Fault fault = Fault::kNone;
+    uint32_t faults = 0;  ///< number of faults until then
     RefusedNote pushes;
   };
   static constexpr std::array<double, link::kMaxProbes> never() {

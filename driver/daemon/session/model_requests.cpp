@@ -202,15 +202,20 @@ void RequestHandler::addWarnings(const control::Peer& peer, const std::vector<sc
   }
 }
 
-/// Lists which of these models wait for a tip to leave them. @param met [s] time in which the servo surely has stepped
-/// the models once
-nlohmann::ordered_json RequestHandler::waitingOf(const std::vector<scene::Model>& models, double met) const {
-  nlohmann::ordered_json waiting = nlohmann::ordered_json::array();
+/// Waits until the servo has run for this time [s], or has ended.
+void RequestHandler::waitForServo(double seconds) const {
   const auto now = [&] {
     return runner_.telemetry().statusWriter()->page().now.read().value_or(status::TickStatus{}).t;
   };
   const double came = now();
-  waitUntil([&] { return now() > came + met || runner_.loop().finished(); });
+  waitUntil([&] { return now() > came + seconds || runner_.loop().finished(); });
+}
+
+/// Lists which of these models wait for a tip to leave them. @param met [s] time in which the servo surely has stepped
+/// the models once
+nlohmann::ordered_json RequestHandler::waitingOf(const std::vector<scene::Model>& models, double met) const {
+  nlohmann::ordered_json waiting = nlohmann::ordered_json::array();
+  waitForServo(met);
   for (uint32_t i = 0; i < places_.size(); ++i) {
     const std::string& name = places_[i].model.name;
     const auto is = [&](const scene::Model& model) { return model.name == name; };

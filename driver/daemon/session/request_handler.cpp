@@ -323,7 +323,20 @@ Result<void> RequestHandler::clear(const control::Peer& peer, const std::string&
     order.target = i;
     if (auto given = post(order); !given) return given;
   }
-  return found ? Result<void>() : refuse("unknown", noSuchDevice(runner_.scene(), device));
+  return found ? faultAfterClear(device) : refuse("unknown", noSuchDevice(runner_.scene(), device));
+}
+
+/// Refuses a clear if its cause persists: then a fault is latched again in the next ticks.
+Result<void> RequestHandler::faultAfterClear(const std::string& device) {
+  constexpr double kSoon = 0.02;  // [s] in which the old force has ramped out, and the checks have run again
+  waitForServo(kSoon);
+  const auto& devices = runner_.scene().devices;
+  for (size_t i = 0; i < devices.size(); ++i) {
+    if (!device.empty() && devices[i].name != device) continue;
+    if (const std::string fault = runner_.faultOf(i); !fault.empty())
+      return refuse("fault", "it was cleared, but a fault is there again: " + fault);
+  }
+  return {};
 }
 
 Result<std::string> RequestHandler::dump(const std::string& why) {

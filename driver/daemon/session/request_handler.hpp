@@ -87,6 +87,8 @@ class RequestHandler {
   Result<void> set(const control::Request& request);
   Result<std::string> move(const control::Request& request);
   Result<void> clear(const control::Peer& peer, const std::string& device);
+  Result<void> faultAfterClear(const std::string& device);
+  void waitForServo(double seconds) const;
   Result<std::string> hold(const std::string& device, const char*& code);
   Result<scene::Scene> loadFor(const control::Peer& peer, const control::Request& request);
   Result<scene::Scene> loadOwn(const control::Peer& peer);

@@ -13,7 +13,8 @@ Telemetry::Telemetry(const scene::Scene& scene, double rate, uint32_t places)
     : rate_(rate),
       models_(std::max<size_t>(scene.models.size(), places)),
       rows_(static_cast<size_t>(std::ceil(kBlackBoxSeconds * rate))),
-      stops_(scene.devices.size()) {
+      stops_(scene.devices.size()),
+      sent_(scene.devices.size()) {
   for (const scene::Device& device : scene.devices) all_devices_.push_back(device.name);
   for (const scene::Model& model : scene.models) {
     names_.push_back(model.name);
@@ -81,8 +82,10 @@ void Telemetry::tick(double t, double dt, Nanoseconds late, const TickDuration& 
   if (flight_) flight_->tick(t, dt, late, spent.total, core, arms);
   if (status_) status_->tick({recorded_, overruns_, missed_, t}, late, spent.total, core, arms, models_);
   ++recorded_;
-  for (size_t i = 0; i < arms.size() && i < stops_.size(); ++i)
+  for (size_t i = 0; i < arms.size() && i < stops_.size(); ++i) {
+    sent_[i].add(*arms[i]);
     if (arms[i]->probe().valid) stops_[i].add(arms[i]->info(), arms[i]->sample());
+  }
   if (!arms.empty()) {
     const Arm& arm = *arms.front();
     for (int i = 0; i < 3; ++i) {
@@ -101,17 +104,17 @@ void Telemetry::keep(const BlackBoxRow& row) noexcept HSP_RT {
   if (row_count_ < rows_.size()) ++row_count_;
 }
 
-/// True at the planned end of a run, and in a hold. No force acts then, so the depth of the hand says nothing about the
-/// model and is not counted.
-bool Telemetry::held(const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
-  const auto is = [](const auto& arm) { return arm->limiter().fault() == Fault::kStopped; };
+/// True at the planned end of a run, in a hold, and in a fault of every arm. No force acts then, so the depth of the
+/// hand and the force that the model asks for are not counted: nobody feels them.
+bool Telemetry::withoutForce(const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+  const auto is = [](const auto& arm) { return arm->limiter().fault() != Fault::kNone; };
   return !arms.empty() && std::all_of(arms.begin(), arms.end(), is);
 }
 
 void Telemetry::recordArms(uint32_t index, double dt, const Core& core,
                            const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
   for (uint32_t arm = 0; arm < devices_.size() && arm < core.probeCount(); ++arm) {
-    if (arm < arms.size() && arms[arm]->limiter().fault() == Fault::kStopped) continue;
+    if (arm < arms.size() && arms[arm]->limiter().fault() != Fault::kNone) continue;
     const Contact& contact = core.contact(index, arm);
     const double force = Eigen::Map<const Vector3d>(contact.world.force).norm();
     by_arm_[index * devices_.size() + arm].add(contact.traced && contact.world.depth_m > 0, contact.world.depth_m,
@@ -137,7 +140,7 @@ double Telemetry::pullOf(const Contact& contact, const Arm& arm) noexcept HSP_RT
 
 void Telemetry::recordModels(double dt, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms,
                              BlackBoxRow& row) noexcept HSP_RT {
-  const bool pushed = !held(arms);
+  const bool pushed = !withoutForce(arms);
   for (const uint32_t index : core.live()) {
     const ModelState& model = core.models()[index];
     if (model.status < row.status) row.status = model.status;

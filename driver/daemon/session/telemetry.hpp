@@ -15,6 +15,7 @@
 #include "servo/loop/tick_log.hpp"
 #include "session/flight.hpp"
 #include "session/status_writer.hpp"
+#include "session/sent_force.hpp"
 #include "session/stop_counts.hpp"
 
 namespace hapticd::servo {
@@ -84,6 +85,9 @@ class Telemetry final : public TickLog {
   /// [main] Returns the report that --report writes. @param faults messages of the faults
   record::RunReport report(const std::vector<std::string>& faults) const;
 
+  /// [main] Returns what an arm gave to the hand.
+  const SentForce& sent(size_t arm) const { return sent_[arm]; }
+
   /// [main] Returns the rows of the black box, oldest first.
   std::vector<BlackBoxRow> blackBox() const;
 
@@ -94,7 +98,7 @@ class Telemetry final : public TickLog {
   std::vector<BlackBoxRow> fromFlight() const;
   void keep(const BlackBoxRow& row) noexcept HSP_RT;
   std::vector<record::ArmContact> armsOf(size_t place) const;
-  static bool held(const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+  static bool withoutForce(const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
   void recordArms(uint32_t index, double dt, const Core& core,
                   const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
   /// [N] Largest force of a model on any probe in a tick, in cases without a proper contact: nothing traced, no depth,
@@ -120,6 +124,7 @@ class Telemetry final : public TickLog {
   std::vector<record::ContactStatistics> by_arm_;  ///< [model * devices_.size() + arm]
   std::vector<BlackBoxRow> rows_;                  // used only without flight_
   std::vector<StopCounts> stops_;                  ///< statistics of joints at their stops, by arm
+  std::vector<SentForce> sent_;                    ///< by arm
   std::vector<std::string> all_devices_;           ///< names of all arms
   BlackBoxRow newest_;
   size_t next_ = 0, row_count_ = 0;

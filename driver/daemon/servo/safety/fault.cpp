@@ -25,7 +25,7 @@ const char* describe(Fault fault) {
     case Fault::kStale:
       return "the device sent no new sample; check its cable and rate: hapticd device info FILE";
     case Fault::kTooFast:
-      return "the tip moved faster than limits.velocity; hold the arm, then start again";
+      return "the tip moved faster than limits.velocity; hold the arm still, then: hapticd ctl clear";
     case Fault::kLate:
       return "too many ticks in a row were missed; find the cause with: hapticd doctor";
     case Fault::kNotCalibrated:
@@ -34,10 +34,9 @@ const char* describe(Fault fault) {
       return "stopped by the user";
     case Fault::kStuck:
       return "a tick did not end, and the watchdog cut the motors; find the cause with: hapticd doctor, or, in a "
-             "module "
-             "of your own: hapticd device check FILE";
+             "module of your own: hapticd device check FILE";
     case Fault::kOverheated:
-      return "a motor is hotter than limits.motors allow; let it cool down, then start again";
+      return "a motor is hotter than limits.motors allow; let it cool down, then: hapticd ctl clear";
     case Fault::kJumped:
       return "the position jumped farther than a hand can move; check the encoders and their cables, then: hapticd "
              "device info FILE";

@@ -186,6 +186,7 @@ void Limiter::trip(Fault fault, double measured) noexcept HSP_RT {
   if (fault != Fault::kNone) cleared_ = false;  // the user has not cleared this fault
   if (fault == Fault::kNone || (before != Fault::kNone && (endsByItself(fault) || !endsByItself(before)))) return;
   measured_ = measured;
+  faults_ += fault == Fault::kStopped ? 0 : 1;
   if (before != Fault::kNone) return fault_.set(fault);  // the force ramps down already
   fade_ = 1;
   fault_force_ = last_force_;

@@ -89,6 +89,8 @@ class Limiter {
   Fault recovered() const noexcept { return recovered_.get(); }  ///< [any] the last fault that ended by itself
   /// [main] value measured at the fault, in the unit of the fault
   double measured() const noexcept { return measured_; }
+  /// [rt] number of faults so far, those that are over included; a stop is not a fault
+  uint32_t faults() const noexcept { return faults_; }
   /// true if there is no enable switch, or if the switch enables forces
   bool enabled() const noexcept { return enabled_; }
   /// true if the enable switch was down at the start and has not been released since
@@ -118,6 +120,7 @@ class Limiter {
   double fade_ = 0;  // 1 to 0, from the force at a fault to zero
   LatchedFault fault_, recovered_;
   double measured_ = 0;
+  uint32_t faults_ = 0;
   // The switch must be pressed during the run. A button that is down from the start may be taped down.
   bool enabled_ = true, button_was_down_ = true, released_ = false, found_pressed_ = false;
   bool clipped_ = false;  // a limit has reduced the force of this tick

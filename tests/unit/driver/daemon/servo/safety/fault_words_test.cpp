@@ -31,7 +31,7 @@ TEST(FaultWords, NameTheStateInItsUnit) {
 TEST(FaultWords, HaveTheConsequenceAndTheCure) {
   EXPECT_EQ(faultMessage("arm", Fault::kTooFast, 7),
             "device arm: the tip moved faster than limits.velocity (measured: 7 m/s); its forces ended and stay off "
-            "until the fault is cleared; hold the arm, then start again");
+            "until the fault is cleared; hold the arm still, then: hapticd ctl clear");
   EXPECT_EQ(faultMessage("arm", Fault::kStale, 0.06, "no report came; look at the cable"),
             "device arm: no report came (measured: 0.06 s); its forces ended and come back in a ramp once the device "
             "works again; "

@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""What a run says of forces that the hand did not get: cut by a limit, or kept away by a fault that comes again.
+
+Usage: faults_of_a_run.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
+"""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+HAPTICD, SOURCE = sys.argv[1], sys.argv[2]
+sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
+from e2e import check, finish, program, until
+
+SCENE = os.path.join(SOURCE, "config", "scenes", "sphere.yaml")
+ARM = """hapticd-device: 1
+module: simulated
+name: arm
+mount: {{position: [0, 0, 0.09]}}
+limits: {{force: 2, {0}}}
+hand: {{script: press, radius: 0.05, rise: 0.01, rate: 2, center: [0, 0, -0.09]}}
+"""
+
+
+def arm(folder, limits):
+    file = os.path.join(folder, "arm.yaml")
+    with open(file, "w", encoding="utf-8") as out:
+        out.write(ARM.format(limits))
+    return file
+
+
+def virtual(folder, ask, limits):
+    report = os.path.join(folder, "report.json")
+    _, out, _ = ask("run", SCENE, "--device", arm(folder, limits), "--virtual-time", "--for", "3", "--report", report)
+    with open(report, encoding="utf-8") as text:
+        found = json.load(text)
+    return out, found, found["models"]["sphere"], found["limits"]["arm"]
+
+
+def cut_by_a_limit(folder, ask):
+    out, _, model, sent = virtual(folder, ask, "ramp_in: 0.2")
+    check("the model asks for more than the limit", model["force_n"]["max"] > 2, model["force_n"])
+    check("the report has what the hand got", 1.5 < sent["sent_max_n"] < 2 + 1e-9 and sent["faults"] == 0, sent)
+    check("so has the summary", f"the hand got {sent['sent_max_n']:.2f} N at most" in out, out)
+
+
+def kept_away_by_a_fault(folder, ask):
+    out, report, model, sent = virtual(folder, ask, "velocity: 0.05")
+    check("a fault that stays", sent["faults"] == 1 and sent["fault_ticks"] > 0.5 * report["ticks"], sent)
+    check("ticks without force are no contact", model["contact_ticks"] + sent["fault_ticks"] <= report["ticks"], (model, sent))
+    check("the force is that of other ticks", model["force_n"]["max"] < 6, model["force_n"])
+    check("the summary tells of the fault and its time", "faults of arm: 1 in this run" in out and "left out" in out, out)
+
+
+def told_by_a_recording(folder, ask):
+    file = os.path.join(folder, "run.h5")
+    ask("run", SCENE, "--device", arm(folder, "velocity: 0.05"), "--virtual-time", "--for", "1", "--record", file)
+    code, out, err = ask("explain", file)
+    check("explain tells of the fault in words", code == 0 and "limits.velocity (measured: 0.05" in out and "1000 ticks" in out
+          and "sphere was touched or clicked 1 times" in out, (code, out, err))
+    with open(file, "r+b") as damaged:
+        damaged.truncate(300)
+    code, out, err = ask("explain", file)
+    check("explain refuses what is left of a file", code == 2 and file in out + err, (code, out, err))
+
+
+def cleared_in_vain(folder, environment, ask):
+    """The tip is always too fast: each clear is followed by the same fault, at once."""
+    report = os.path.join(folder, "report.json")
+    run = subprocess.Popen([HAPTICD, "run", SCENE, "--device", arm(folder, "velocity: 1e-4"), "--report", report],
+                           env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    check("it runs", until(lambda: "too fast" in ask("ctl", "status")[1] or "faster" in ask("ctl", "status")[1], 30))
+    for _ in range(3):
+        code, out, err = ask("ctl", "clear")
+        check("a clear that does not help says why", code == 1 and "a fault is there again" in out + err and
+              "limits.velocity" in out + err, (code, out, err))
+        time.sleep(0.1)
+    ask("ctl", "stop")
+    out, err = run.communicate(timeout=30)
+    with open(report, encoding="utf-8") as text:
+        sent = json.load(text)["limits"]["arm"]
+    check("each fault is in the log", sent["faults"] >= 4 and err.count("error: fault:") == sent["faults"], (sent, err))
+    check("so is each clear", err.count("the fault is over") == sent["faults"] - 1, (sent, err))
+    check("the summary counts them", f"faults of arm: {sent['faults']} in this run" in out, out)
+
+
+with tempfile.TemporaryDirectory() as place:
+    settings = dict(os.environ, RUNTIME_DIRECTORY=place, STATE_DIRECTORY=os.path.join(place, "state"))
+    cut_by_a_limit(place, program(HAPTICD, settings))
+    kept_away_by_a_fault(place, program(HAPTICD, settings))
+    told_by_a_recording(place, program(HAPTICD, settings))
+    cleared_in_vain(place, settings, program(HAPTICD, settings))
+finish()
