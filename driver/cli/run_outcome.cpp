@@ -111,8 +111,7 @@ record::RunReport reportOf(const RunOutcome& outcome, servo::Runner& runner, std
       }
   report.resident_bytes = runner.residentBytes();
   report.answer_time = runner.scene().clients.answer_time;
-  for (size_t i = 0; i < runner.arms().size(); ++i)
-    report.limits.push_back(limitsOf(runner, i));
+  for (size_t i = 0; i < runner.arms().size(); ++i) report.limits.push_back(limitsOf(runner, i));
   return report;
 }
 

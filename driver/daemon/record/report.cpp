@@ -150,9 +150,10 @@ std::string limitText(const LimitReport& device, uint64_t ticks) {
 std::string faultTimeText(const LimitReport& device, const RunReport& report) {
   if (device.faults == 0) return "";
   const double seconds = report.rate_hz > 0 ? static_cast<double>(device.fault_ticks) / report.rate_hz : 0;
-  return fmt::format("faults of {}: {} in this run, {:.2f} s without force, which are left out of contact, depth and "
-                     "force above\n",
-                     device.device, device.faults, seconds);
+  return fmt::format(
+      "faults of {}: {} in this run, {:.2f} s without force, which are left out of contact, depth and "
+      "force above\n",
+      device.device, device.faults, seconds);
 }
 
 /// Reports joints at a stop: a hand that leans on a stop feels a force that does not come from the scene.

@@ -36,9 +36,9 @@ struct ModelReport {
 /// What came between the forces of the models and the hand, for one device.
 struct LimitReport {
   std::string device;
-  double sent_max_n = 0;     ///< [N] largest force that was sent to the device
-  uint32_t faults = 0;       ///< faults of the run, those that are over included
-  uint64_t fault_ticks = 0;  ///< ticks in which a fault kept the force away
+  double sent_max_n = 0;                                ///< [N] largest force that was sent to the device
+  uint32_t faults = 0;                                  ///< faults of the run, those that are over included
+  uint64_t fault_ticks = 0;                             ///< ticks in which a fault kept the force away
   uint64_t any = 0;                                     ///< ticks in which at least one limit reduced the force
   std::vector<std::pair<std::string, uint64_t>> ticks;  ///< for each limit, the ticks in which it reduced the force
 };

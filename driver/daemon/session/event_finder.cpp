@@ -112,7 +112,8 @@ void EventFinder::check(double t, uint32_t index, const Arm& arm) noexcept HSP_R
   ArmNote& note = arms_[index];
   const auto number = static_cast<int32_t>(index);
   const Fault fault = arm.limiter().fault();
-  if (fault != Fault::kNone && fault == note.fault && arm.limiter().faults() != note.faults) {  // it was cleared, and came back in this tick
+  const bool again = arm.limiter().faults() != note.faults;
+  if (fault != Fault::kNone && fault == note.fault && again) {  // it was cleared, and came back in this tick
     add(HAPTICD_CLEARED, -1, number, 0, 0);
     note.fault = Fault::kNone;
   }

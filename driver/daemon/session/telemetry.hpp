@@ -14,8 +14,8 @@
 #include "record/report.hpp"
 #include "servo/loop/tick_log.hpp"
 #include "session/flight.hpp"
-#include "session/status_writer.hpp"
 #include "session/sent_force.hpp"
+#include "session/status_writer.hpp"
 #include "session/stop_counts.hpp"
 
 namespace hapticd::servo {
