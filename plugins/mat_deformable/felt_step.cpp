@@ -37,7 +37,7 @@ hsp_status MatDeformable::stepFelt(const hsp_step& step) noexcept HSP_RT {
     const hsp_probe& probe = *HSP_AT(const hsp_probe, step.in, step.in_stride, met_[k].probe);
     met_[k].force = feltForce(probe, contacts[k], met_[k].felt, tracks_[met_[k].probe]);
   }
-  const double share = feltShare();
+  const double share = feltShare(step.dt_s);
   for (std::size_t k = 0; k < met_.size(); ++k) {
     const uint32_t i = met_[k].probe;
     answer(*HSP_AT(const hsp_probe, step.in, step.in_stride, i), contacts[k], met_[k].felt,
@@ -75,7 +75,7 @@ hsp_status MatDeformable::addContact(const hsp_probe& probe, const hsp_step& ste
       mixPlaces(*beside_, 0.5 * located.surface.share, met.place);
     }
   } else if (depth > 0) {  // too many probes for one surface: this one feels the body at rest
-    push(probe, located, track, contact);
+    push(probe, located, step, track, contact);
   } else {  // no contact: the surface here is at rest
     account_.add(lastWork(track, located.moved));
     track.exerted.setZero();
@@ -106,7 +106,7 @@ medial::BodyForce MatDeformable::feltForce(const hsp_probe& probe, const medial:
 
 /// Returns the share of the force that the probes feel, see EnergyAccount. All probes have one account, because one
 /// hand may get what another one has put into the surface.
-double MatDeformable::feltShare() noexcept HSP_RT {
+double MatDeformable::feltShare(double dt) noexcept HSP_RT {
   double work = 0, energy = 0;
   bool touched = false;
   for (std::size_t k = 0; k < met_.size(); ++k) {
@@ -126,7 +126,7 @@ double MatDeformable::feltShare() noexcept HSP_RT {
     touched = true;
   }
   if (!touched && account_.held() != 0) account_.keep(body_->feltSurface()->energy({contacts_.data(), met_.size()}));
-  return touched ? account_.share(work, energy) : 1;
+  return touched ? account_.share(work, energy, dt) : 1;
 }
 
 /// Writes the result for a probe.

@@ -234,15 +234,17 @@ MatDeformable::LocatedSurface MatDeformable::locate(const hsp_probe& probe, cons
                                                     hsp_contact& contact) noexcept HSP_RT {
   if (index >= tracks_.size()) return {HSP_E_ARG, false, {}, {}};
   Track& track = tracks_[index];
-  if (!track.active || (probe.flags & HSP_IN_INVALID) != 0) {
-    track.friction.reset();
-    track.counted = track.pressed = false;
-    track.exerted.setZero();
-    return {};
-  }
   const Vector3d p(probe.position);
-  if (!p.allFinite()) return {HSP_E_NUMERIC, false, {}, {}};
+  if (!track.active || (probe.flags & HSP_IN_INVALID) != 0 || !p.allFinite()) {
+    track.friction.reset();
+    track.counted = track.pressed = track.met = false;
+    track.exerted.setZero();
+    track.missed = true;
+    const bool said = !track.active || (probe.flags & HSP_IN_INVALID) != 0;
+    return {said ? HSP_OK : HSP_E_NUMERIC, false, {}, {}};
+  }
   const bool jumped = (probe.flags & HSP_IN_JUMP) != 0;
+  const bool missed = std::exchange(track.missed, false), put = jumped || missed;  // nobody knows how it came here
   if (jumped) {
     track.side = 0;
     track.pushed.setZero();
@@ -271,7 +273,7 @@ MatDeformable::LocatedSurface MatDeformable::locate(const hsp_probe& probe, cons
   contact.flags = HSP_OUT_TRACED;
   if (foot.rim) contact.flags |= HSP_OUT_EDGE;
   if (surface.depth > 0) contact.flags |= HSP_OUT_CONTACT;
-  return {foot.converged ? HSP_OK : HSP_DEGRADED, true, surface, jumped ? Vector3d(Vector3d::Zero()) : moved};
+  return {foot.converged ? HSP_OK : HSP_DEGRADED, true, surface, put ? Vector3d(Vector3d::Zero()) : moved};
 }
 
 int64_t MatDeformable::nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const {

@@ -118,7 +118,7 @@ class MatDeformable final : public Shape {
             "shear_distance", &T::shear_distance_, "m", 0, 1, 0,
             "distance along the surface, to either side, over which the change of the stiffness is taken. It pushes "
             "toward the softer side, and does not change the part of the force along the normal. 0: the change at "
-            "the contact alone, and shear_offset is used for files of format hapticd-model/1"),
+            "the contact (of a mesh: over 1 mm), and shear_offset is used for files of format hapticd-model/1"),
         F::real(
             "probe_radius", &T::probe_radius_, "m", 1e-4, 0.1, 5e-3,
             "radius of the flat tip for which young, poisson and thickness of a file are converted into a stiffness")};
@@ -192,12 +192,13 @@ class MatDeformable final : public Shape {
                         hsp_contact& contact) noexcept HSP_RT;
   medial::BodyForce feltForce(const hsp_probe& probe, const medial::FeltContact& met, const Felt& felt,
                               const Track& track) noexcept HSP_RT;
-  double feltShare() noexcept HSP_RT;
-  static double restingShare(const medial::BodyForce& whole, const Eigen::Vector3d& moved,
+  double feltShare(double dt) noexcept HSP_RT;
+  static double restingShare(const medial::BodyForce& whole, const Eigen::Vector3d& moved, double dt,
                              Track& track) noexcept HSP_RT;
   void answer(const hsp_probe& probe, const medial::FeltContact& met, const Felt& felt, const medial::BodyForce& force,
               Track& track, hsp_contact& contact) noexcept HSP_RT;
-  void push(const hsp_probe& probe, const LocatedSurface& located, Track& track, hsp_contact& contact) noexcept HSP_RT;
+  void push(const hsp_probe& probe, const LocatedSurface& located, const hsp_step& step, Track& track,
+            hsp_contact& contact) noexcept HSP_RT;
 
   double energy() const noexcept HSP_RT;  ///< [J] energy of the body and its contacts
 

@@ -5,18 +5,15 @@
 #include "mat_deformable.hpp"
 
 namespace hapticd {
-namespace {
 
 using Eigen::Vector3d;
-
-}  // namespace
 
 hsp_status MatDeformable::touch(const hsp_probe& probe, const hsp_step& step, uint32_t index,
                                 hsp_contact& contact) noexcept HSP_RT {
   const LocatedSurface located = locate(probe, step, index, contact);
   if (!located.found) return located.status;
   if (located.surface.depth > 0) {
-    push(probe, located, tracks_[index], contact);
+    push(probe, located, step, tracks_[index], contact);
   } else {
     tracks_[index].friction.reset();
     tracks_[index].pressed = false;
@@ -24,7 +21,7 @@ hsp_status MatDeformable::touch(const hsp_probe& probe, const hsp_step& step, ui
   return located.status;
 }
 
-void MatDeformable::push(const hsp_probe& probe, const LocatedSurface& located, Track& track,
+void MatDeformable::push(const hsp_probe& probe, const LocatedSurface& located, const hsp_step& step, Track& track,
                          hsp_contact& contact) noexcept HSP_RT {
   const Vector3d p(probe.position), velocity(probe.velocity);
   const Felt& felt = located.surface;
@@ -32,7 +29,7 @@ void MatDeformable::push(const hsp_probe& probe, const LocatedSurface& located, 
   medial::BodyForce whole = body_->press(p, track.foot, felt, closing);
   for (Vector3d* part : {&whole.force, &whole.elastic}) *part *= felt.steep;  // the slope of the energy in a valley
   whole.normal *= felt.steep;
-  const medial::BodyForce answer = whole.weakened(restingShare(whole, located.moved, track), felt.normal);
+  const medial::BodyForce answer = whole.weakened(restingShare(whole, located.moved, step.dt_s, track), felt.normal);
   track.exerted = answer.force;
   const contact::FrictionLaw law{std::max(friction_static_, friction_dynamic_), friction_dynamic_, answer.stiffness,
                                  viscosity_};
@@ -47,7 +44,7 @@ void MatDeformable::push(const hsp_probe& probe, const LocatedSurface& located, 
 
 /// Returns the share of the springs' force that a probe on a body at rest feels, see EnergyAccount. What a damper takes
 /// may be given back too: the account is that of the whole force.
-double MatDeformable::restingShare(const medial::BodyForce& whole, const Vector3d& moved,
+double MatDeformable::restingShare(const medial::BodyForce& whole, const Vector3d& moved, double dt,
                                    Track& track) noexcept HSP_RT {
   double work = 0;
   if (track.pressed) {
@@ -59,7 +56,7 @@ double MatDeformable::restingShare(const medial::BodyForce& whole, const Vector3
     track.account.add(firstWork(whole.elastic, moved, whole.energy));
   }
   track.pressed = true;
-  return track.account.share(work, whole.energy);
+  return track.account.share(work, whole.energy, dt);
 }
 
 }  // namespace hapticd

@@ -39,6 +39,7 @@ struct Track {
   medial::EnergyAccount account;     ///< of a body at rest; a felt surface has one for all probes
   Eigen::Vector3d exerted{0, 0, 0};  ///< [N] force without friction in the last tick
   bool pressed = false;              ///< it was pushed in the last tick
+  bool missed = false;               ///< its last sample was bad
   // The following is used only on a felt surface:
   /// true if the probe was already located in an earlier tick since it came near; if false, the probe may have begun
   /// inside
@@ -57,8 +58,8 @@ struct Track {
 };
 
 /// [rt] Returns the work [J] of a hand in the first tick of a contact, for its account: at most the energy of the
-/// springs. A foot that was found late begins deep, where nobody has pressed. A probe that was put there counts as
-/// pressed.
+/// springs. A foot that was found late begins deep, where nobody has pressed. A probe that was put there, or whose last
+/// samples were bad, counts as pressed.
 inline double firstWork(const Eigen::Vector3d& force, const Eigen::Vector3d& moved, double energy) noexcept {
   return moved.isZero(0) ? energy : std::clamp(-0.5 * force.dot(moved), 0.0, energy);
 }

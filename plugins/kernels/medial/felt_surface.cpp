@@ -148,7 +148,7 @@ void FeltSurface::wake(uint32_t node) noexcept {
 }
 
 /// Moves the surface inward to a displacement [m], if the present one is less, as a long press does. Moving toward the
-/// rest position removes energy.
+/// rest position removes energy, and so does stopping what moves.
 void FeltSurface::setDisplacement(const FeltPlace& place, double displacement) noexcept {
   const double ratio = contactRatio();
   const double lag = displacement - shift(place);
@@ -162,6 +162,7 @@ void FeltSurface::setDisplacement(const FeltPlace& place, double displacement) n
     wake(part.node);
     const Vector4d moved = part.weight * compliance_[part.node] / stiffness * push;
     nodes_->nodes_[part.node].x += moved;
+    nodes_->nodes_[part.node].v.setZero();
     if (!branch_.empty()) branch_[part.node] += moved;
   }
 }

@@ -14,7 +14,9 @@ using Eigen::Vector3d;
 /// The search for one neighbour ends after visiting this many nodes of the mesh's search tree. Near the surface some
 /// tens of nodes suffice.
 constexpr int kMostVisits = 400;
-constexpr double kBeside = 1e-6;  ///< [m] the probe is moved by this much to measure the slope within a cone or slab
+/// [m] distance over which the slope is taken if `shear_distance` gives none. The stiffness has kinks where slabs meet,
+/// so the slope at a point would change there in one step.
+constexpr double kBeside = 1e-3;
 /// If the sine of the angle between an axis of the model frame and the normal is below this, the axis has no direction
 /// along the surface.
 constexpr double kLeastAside = 1e-6;
@@ -28,22 +30,17 @@ Vector3d MeshBody::slopeOfStiffness(const Vector3d& p, const SkeletonFoot& foot,
                                     double depth) const noexcept {
   Vector3d slope = Vector3d::Zero();
   if (stiffness_.size() == 1) return slope;
-  const bool wide = options_.shear_distance > 0;
-  const double distance = wide ? options_.shear_distance : kBeside;
-  const Vector3d from = wide ? Vector3d(p + depth * normal) : p;
+  const double distance = options_.shear_distance > 0 ? options_.shear_distance : kBeside;
+  const Vector3d surface = p + depth * normal;
   const auto stiffnessAt = [&](const Vector3d& place) {
-    if (wide) return material(stiffness_, this->foot(place, foot.element, 0, kMostVisits));
-    SkeletonFoot there = foot;
-    const HullFoot found = mesh_.footOn(foot.element, place);
-    there.u = found.parameter[0], there.v = found.parameter[1];
-    return material(stiffness_, there);
+    return material(stiffness_, this->foot(place, foot.element, 0, kMostVisits));
   };
   for (Eigen::Index k = 0; k < 3; ++k) {
     const Vector3d along = Vector3d::Unit(k) - normal[k] * normal;
     const double length = along.norm();
     if (!(length > kLeastAside)) continue;
     const Vector3d aside = distance / length * along;
-    slope += (stiffnessAt(from + aside) - stiffnessAt(from - aside)) / (2 * distance) * length * along;
+    slope += (stiffnessAt(surface + aside) - stiffnessAt(surface - aside)) / (2 * distance) * length * along;
   }
   return slope;
 }

@@ -13,7 +13,7 @@ struct Guarded {
   double force(double stiffness, double depth) {
     const double whole = stiffness * depth, moved = depth - depth_;
     account.add(.5 * last_ * moved);
-    share = account.share(.5 * whole * moved, .5 * whole * depth);
+    share = account.share(.5 * whole * moved, .5 * whole * depth, 0);
     got -= .5 * (last_ + share * whole) * moved;
     last_ = share * whole, depth_ = depth;
     return last_;
@@ -72,6 +72,23 @@ TEST(EnergyAccount, AContactForgetsWhatWasMissingNearTheSurface) {
   EXPECT_LT(spring.got, 1e-6);
 }
 
+/// What a hand did not put in is forgiven, without a step: it feels the place where it rests.
+TEST(EnergyAccount, ForgivesWhatIsMissing) {
+  constexpr double kEnergy = .05;
+  for (const double dt : {1e-4, 1e-3, 1e-2}) {  // in the same time at every rate
+    EnergyAccount account;
+    double before = account.share(0, kEnergy, 0), t = 0;
+    EXPECT_EQ(before, 0);
+    for (; before < 1; t += dt) {
+      const double now = account.share(0, kEnergy, dt);
+      EXPECT_GT(now, before);
+      EXPECT_LT(now - before, 4 * dt);
+      before = now;
+    }
+    EXPECT_NEAR(t, EnergyAccount::kForgivesIn * std::log(3), .02);
+  }
+}
+
 TEST(EnergyAccount, KeepsNoMoreThanIsStored) {
   EnergyAccount account;
   account.add(3);
@@ -83,7 +100,7 @@ TEST(EnergyAccount, KeepsNoMoreThanIsStored) {
   account.add(std::nan(""));
   account.keep(2);
   EXPECT_EQ(account.held(), 0);
-  EXPECT_EQ(account.share(0, 1), 0);
+  EXPECT_EQ(account.share(0, 1, 0), 0);
 }
 
 }  // namespace
