@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "diagnostics/given_values.hpp"
-#include "diagnostics/limit_warnings.hpp"
+#include "diagnostics/rest_joints.hpp"
 #include "servo/arm/weight.hpp"
 
 namespace hapticd::diagnostics {

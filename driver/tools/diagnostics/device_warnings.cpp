@@ -22,6 +22,7 @@
 #include "diagnostics/meant_tree.hpp"
 #include "diagnostics/motor_warnings.hpp"
 #include "diagnostics/mount_warnings.hpp"
+#include "diagnostics/rest_joints.hpp"
 #include "diagnostics/safety_warnings.hpp"
 #include "diagnostics/travel_warnings.hpp"
 #include "diagnostics/unit_warnings.hpp"

@@ -12,7 +12,8 @@
 #include "codec/wire_overlap.hpp"
 #include "diagnostics/arm_plausibility.hpp"
 #include "diagnostics/given_values.hpp"
-#include "diagnostics/limit_warnings.hpp"
+#include "diagnostics/motor_force.hpp"
+#include "diagnostics/rest_joints.hpp"
 #include "diagnostics/wire_of.hpp"
 
 namespace hapticd::diagnostics {

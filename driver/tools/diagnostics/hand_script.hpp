@@ -9,7 +9,6 @@
 
 #include "description/scene.hpp"
 #include "diagnostics/given_values.hpp"
-#include "diagnostics/unread_keys.hpp"
 #include "document/problem.hpp"
 
 namespace hapticd::diagnostics {
@@ -34,8 +33,6 @@ struct HandScript {
   double cycleTime() const;  ///< [s] time in which the hand completes its motion once
 };
 
-inline constexpr double kFastestHand = 2;  ///< [m/s] greatest speed of a human hand that strokes, presses or taps
-
 /// A key of the files that determines the motion of a hand, and its place (file, line and column).
 struct HandKey {
   document::Place place;
@@ -49,11 +46,5 @@ HandKey keyOfHand(const scene::Scene& scene, const scene::Device& device, std::i
 
 /// [main] Returns the script of an arm's hand; nothing if the arm is not simulated or its module cannot be loaded.
 std::optional<HandScript> handScriptOf(const scene::Device& device);
-
-/// [main] Warns of strokes of more than half a turn to either side, which seem to be in degrees; of a hand that is
-/// faster than human hands; of a path that is so slow that its times seem not to be in s; and of values that no hand
-/// has.
-/// @param unread keys that could not be read; no warning depends on them
-document::Problems fastHands(const scene::Scene& scene, const UnreadKeys& unread = {});
 
 }  // namespace hapticd::diagnostics

@@ -10,12 +10,14 @@
 #include <vector>
 
 #include "diagnostics/arm_reach.hpp"
+#include "diagnostics/fast_hands.hpp"
 #include "diagnostics/hand_inside.hpp"
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/key_place.hpp"
-#include "diagnostics/limit_warnings.hpp"
+#include "diagnostics/nearest_model.hpp"
 #include "diagnostics/overlapping_models.hpp"
 #include "diagnostics/radius_advice.hpp"
+#include "diagnostics/rest_joints.hpp"
 #include "diagnostics/unreachable_models.hpp"
 #include "diagnostics/walk_end.hpp"
 #include "diagnostics/walk_warnings.hpp"

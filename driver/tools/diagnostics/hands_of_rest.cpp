@@ -2,7 +2,6 @@
 #include "diagnostics/hands_of_rest.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <iterator>
 #include <string>
 #include <string_view>
@@ -10,6 +9,7 @@
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/hand_start.hpp"
 #include "diagnostics/key_place.hpp"
+#include "diagnostics/model_of_key.hpp"
 #include "diagnostics/value_plausibility.hpp"
 
 namespace hapticd::diagnostics {
@@ -40,11 +40,6 @@ void renumber(const scene::Scene& scene, const std::vector<size_t>& indices, doc
 
 }  // namespace
 
-std::optional<size_t> modelOf(const std::string& key) {
-  if (!key.starts_with(kModels)) return std::nullopt;
-  return std::strtoul(key.c_str() + kModels.size(), nullptr, 10);
-}
-
 bool leaveOutCurves(scene::Model& model, size_t index, const document::Problems& problems) {
   constexpr std::string_view kCurves[] = {"detent",           "end_stiffness",    "damping", "friction_static",
                                           "friction_dynamic", "friction_viscous", "texture"};
@@ -56,13 +51,6 @@ bool leaveOutCurves(scene::Model& model, size_t index, const document::Problems&
     std::erase_if(model.parameters, [&group](const scene::Value& value) { return value.id.starts_with(group); });
   }
   return true;
-}
-
-std::vector<document::Problems> problemsOfModels(const document::Problems& problems, size_t count) {
-  std::vector<document::Problems> of_models(count);
-  for (const document::Problem& one : problems)
-    if (const auto model = modelOf(one.key); model && *model < count) of_models[*model].push_back(one);
-  return of_models;
 }
 
 void dropOfCurves(const std::vector<bool>& curved, document::Problems& warnings) {

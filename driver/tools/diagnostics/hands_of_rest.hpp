@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Judges the hands of a scene of which some models have problems.
 #pragma once
-#include <cstddef>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "description/scene.hpp"
@@ -36,12 +33,5 @@ void dropOfCurves(const std::vector<bool>& curved, document::Problems& warnings)
 /// [main] Returns true if a warning says that a model's surfaces are not where they were meant, so that what a hand
 /// meets there only follows from it.
 bool isOfSurfaces(const document::Problem& warning);
-
-/// [main] Returns the index of the model that a key such as "models[3].pose" is about.
-std::optional<size_t> modelOf(const std::string& key);
-
-/// [main] Returns the problems of each model, in their order. The time is proportional to the number of problems.
-/// @param count number of models; problems of models beyond it are left out
-std::vector<document::Problems> problemsOfModels(const document::Problems& problems, size_t count);
 
 }  // namespace hapticd::diagnostics

@@ -7,7 +7,7 @@
 
 #include "diagnostics/arm_plausibility.hpp"
 #include "diagnostics/given_values.hpp"
-#include "diagnostics/limit_warnings.hpp"
+#include "diagnostics/rest_joints.hpp"
 #include "diagnostics/wire_of.hpp"
 
 namespace hapticd::diagnostics {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "diagnostics/given_values.hpp"
-#include "diagnostics/limit_warnings.hpp"
+#include "diagnostics/motor_force.hpp"
 #include "document/table.hpp"
 
 namespace hapticd::diagnostics {

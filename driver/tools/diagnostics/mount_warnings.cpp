@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "diagnostics/given_values.hpp"
-#include "diagnostics/limit_warnings.hpp"
+#include "diagnostics/rest_joints.hpp"
 
 namespace hapticd::diagnostics {
 

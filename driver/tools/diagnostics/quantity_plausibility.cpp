@@ -8,7 +8,7 @@
 #include <string>
 
 #include "diagnostics/given_model.hpp"
-#include "diagnostics/hand_script.hpp"
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/value_plausibility.hpp"
 #include "host/catalog.hpp"
 #include "host/device_instance.hpp"

@@ -14,8 +14,8 @@
 namespace hapticd::diagnostics {
 namespace {
 
-constexpr double kNarrowest = 1e-3, kWidest = 0.2;  ///< [m] few arms let a hand move farther from its centre
-constexpr double kMostOfTrials = 2;                 ///< [s] of processor time for all trials of one advice
+constexpr double kLeastRadius = 1e-3, kMostRadius = 0.2;  ///< [m] few arms let a hand move farther from its centre
+constexpr double kMostOfTrials = 2;                       ///< [s] of processor time for all trials of one advice
 
 /// Returns the scene with this radius of a hand; nothing if its module has no such parameter.
 std::optional<scene::Scene> withRadius(const scene::Scene& scene, uint32_t device, double radius) {
@@ -55,7 +55,7 @@ std::optional<double> radiusThatTouches(const scene::Scene& scene, uint32_t devi
   const std::clock_t begun = std::clock();
   for (const double wanted : radii) {
     const double radius = std::round(wanted * kRound) / kRound;
-    if (!(radius >= kNarrowest && radius <= kWidest)) continue;
+    if (!(radius >= kLeastRadius && radius <= kMostRadius)) continue;
     if (static_cast<double>(std::clock() - begun) > kMostOfTrials * CLOCKS_PER_SEC) break;
     const auto changed = withRadius(scene, device, radius);
     if (changed && touches(*changed, device)) return radius;

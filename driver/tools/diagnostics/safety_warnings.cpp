@@ -10,7 +10,8 @@
 #include <string>
 
 #include "diagnostics/given_values.hpp"
-#include "diagnostics/limit_warnings.hpp"
+#include "diagnostics/motor_force.hpp"
+#include "diagnostics/rest_joints.hpp"
 #include "diagnostics/slow_arm.hpp"
 #include "diagnostics/wire_of.hpp"
 

@@ -15,15 +15,4 @@ void warnOfUnits(const document::Node& root, const std::string& file, document::
 /// [main] Returns true if the limits of a joint are beyond a whole turn, so that warnOfUnits() warns of them.
 bool hasLimitsBeyondATurn(const document::Node& root);
 
-/// [main] Warns of whole numbers that begin with a zero, as in [0,05, 0], where a comma was meant as a decimal point.
-void warnOfZeros(const document::Node& root, const std::string& file, document::Problems& warnings);
-
-/// [main] Warns of an arm that a scene puts metres away, because millimetres were meant.
-void warnOfMounts(const document::Node& root, const std::string& file, document::Problems& warnings);
-
-/// [main] Warns of orientations in a scene that were probably written x, y, z, w. @param key path of `root`, for
-/// messages
-void warnOfTurns(const document::Node& root, const std::string& file, document::Problems& warnings,
-                 const std::string& key = "");
-
 }  // namespace hapticd::diagnostics

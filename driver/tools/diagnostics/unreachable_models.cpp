@@ -8,9 +8,9 @@
 #include <limits>
 #include <optional>
 
-#include "diagnostics/arm_reach.hpp"
 #include "diagnostics/far_limits.hpp"
 #include "diagnostics/key_place.hpp"
+#include "diagnostics/nearest_model.hpp"
 #include "servo/loop/lockstep.hpp"
 
 namespace hapticd::diagnostics {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "diagnostics/hand_script.hpp"
+#include "diagnostics/given_values.hpp"
 #include "diagnostics/key_place.hpp"
 #include "servo/arm/velocity_use.hpp"
 #include "servo/velocity/estimator_delay.hpp"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "diagnostics/hands_of_rest.hpp"
+#include "diagnostics/model_of_key.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
