@@ -2,7 +2,7 @@
 #include "cli/device_file.hpp"
 
 #include "cli/command.hpp"
-#include "diagnostics/device_trial.hpp"
+#include "diagnostics/device/device_trial.hpp"
 
 namespace hapticd::cli {
 

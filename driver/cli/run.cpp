@@ -19,7 +19,7 @@
 #include "cli/run_signals.hpp"
 #include "cli/scene_warnings.hpp"
 #include "cli/view_process.hpp"
-#include "diagnostics/enable_button.hpp"
+#include "diagnostics/device/enable_button.hpp"
 #include "document/node.hpp"
 #include "host/file_stamp.hpp"
 #include "log/log.hpp"

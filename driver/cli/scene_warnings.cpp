@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "cli/command.hpp"
-#include "diagnostics/far_limits.hpp"
-#include "diagnostics/setting_plausibility.hpp"
-#include "diagnostics/value_plausibility.hpp"
+#include "diagnostics/reading/far_limits.hpp"
+#include "diagnostics/scene/setting_plausibility.hpp"
+#include "diagnostics/scene/value_plausibility.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
 #include "host/file_stamp.hpp"

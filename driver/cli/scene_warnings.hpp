@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "description/scene.hpp"
-#include "diagnostics/model_trial.hpp"
-#include "diagnostics/unread_keys.hpp"
+#include "diagnostics/reading/unread_keys.hpp"
+#include "diagnostics/scene/model_trial.hpp"
 #include "document/problem.hpp"
 #include "session/runner.hpp"
 
