@@ -161,7 +161,7 @@ std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog
   if (!loaded.device) return std::nullopt;
   document::Problems doubts;
   const document::Problems wrong = tryDevice(file, catalog, {}, &doubts);
-  problems.insert(problems.end(), wrong.begin(), wrong.end());
+  document::append(problems, wrong);
   if (!wrong.empty()) return std::nullopt;
   auto device = host::DeviceInstance::create(*loaded.device, logNothing);
   if (!device) return document::report(problems, file, 0, 0, "", device.error()), std::nullopt;

@@ -319,7 +319,7 @@ document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog
       std::any_of(given.begin(), given.end(), [](const scene::Value& value) { return value.id.starts_with("hand."); });
   if (!own_hand)  // a scene gives the arm a hand, so what is wrong with the default one does not matter
     std::erase_if(problems, [](const document::Problem& one) { return one.key.starts_with("hand"); });
-  for (const document::Problem& one : fastHands(alone)) warnings.push_back(one);
+  document::append(warnings, fastHands(alone));
   return problems;
 }
 
@@ -358,7 +358,7 @@ document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool
   const uint32_t far = in.count();
   const std::string far_arms = in.text();
   if (all_models) reportFar(scene, far_arms, far, warnings);
-  for (document::Problem& one : readProblems(in)) warnings.push_back(std::move(one));
+  document::append(warnings, readProblems(in));
   return warnings;
 }
 

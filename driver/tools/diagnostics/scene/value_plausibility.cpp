@@ -110,7 +110,7 @@ document::Problems implausibleValues(const scene::Scene& scene, const ModelBoxes
   }
   reportModelsInOnePlace(scene, placed, warnings);
   reportIdlePoses(scene, placed, warnings);
-  warnings.insert(warnings.end(), of_values.begin(), of_values.end());
+  document::append(warnings, std::move(of_values));
   return warnings;
 }
 
