@@ -36,7 +36,8 @@ WALLS = [
     ("driver/tools/diagnostics/reading/unread_keys.cpp", "description/class_info.hpp", ["diagnostics/scene/given_model.hpp", "host/catalog.hpp", "scene/load.hpp"]),
     ("driver/tools/diagnostics/device/device_warnings.cpp", "diagnostics/reading/given_values.hpp", ["diagnostics/scene/model_trial.hpp", "diagnostics/hand/hand_script.hpp", "session/runner.hpp"]),
     ("driver/tools/diagnostics/scene/value_plausibility.cpp", "diagnostics/reading/key_place.hpp", ["diagnostics/device/arm_reach.hpp", "diagnostics/hand/hand_script.hpp"]),
-    ("driver/tools/diagnostics/hand/hand_start.cpp", "diagnostics/scene/nearest_model.hpp", ["diagnostics/machine/doctor_checks.hpp", "cli/command.hpp"]),
+    ("driver/tools/diagnostics/hand/hand_start.cpp", "diagnostics/scene/nearest_model.hpp", ["diagnostics/check/judge_file.hpp", "cli/command.hpp"]),
+    ("driver/tools/diagnostics/check/judge_file.cpp", "diagnostics/hand/hand_start.hpp", ["diagnostics/machine/doctor_checks.hpp", "cli/command.hpp"]),
 ]
 
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// Checks the readable part of a scene with problems, so that `check` reports all problems at once.
+/// Judges the readable part of a scene with problems, so that `check` reports all problems at once.
 #pragma once
 #include "description/scene.hpp"
 #include "document/problem.hpp"
+#include "host/catalog.hpp"
 
-namespace hapticd::cli {
+namespace hapticd::diagnostics {
 
 /// [main] Sets up the models and checks the values that could be read. A check that depends on a value with a problem
 /// is left out.
@@ -12,6 +13,7 @@ namespace hapticd::cli {
 /// @param draft the part of the scene that could be read
 /// @param problems problems of the scene; those of its models are added
 /// @param warnings warnings about the scene; those about its models are added
-bool checkDraft(scene::Scene draft, document::Problems& problems, document::Problems& warnings);
+bool judgeDraftScene(scene::Scene draft, host::Catalog& catalog, document::Problems& problems,
+                     document::Problems& warnings);
 
-}  // namespace hapticd::cli
+}  // namespace hapticd::diagnostics
