@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
+
+#include "base/os.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -27,10 +28,7 @@ constexpr KnownDevice kKnown[] = {
 };
 
 std::string lineOf(const fs::path& file) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  return line;
+  return os::firstLine(file.string());
 }
 
 std::vector<fs::path> sorted(const fs::path& dir) {

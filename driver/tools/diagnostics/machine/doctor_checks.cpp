@@ -19,14 +19,9 @@
 
 namespace hapticd::diagnostics {
 
-namespace {
+using os::firstLine;
 
-std::string firstLine(const std::string& file) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  return line;
-}
+namespace {
 
 Finding ok(std::string name, std::string state) {
   return {std::move(name), Verdict::kOk, std::move(state), "", ""};
