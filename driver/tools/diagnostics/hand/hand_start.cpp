@@ -145,7 +145,7 @@ MountKey keyOfFar(const scene::Scene& scene, uint32_t device, uint32_t model, co
   const scene::Model& nearest = scene.models[model];
   const auto mount = mountOf(scene, device);
   if (mount && tip.norm() > nearest.pose.position.norm()) return *mount;
-  return {placeOfKey(nearest.place.file, key).value_or(nearest.place), key};
+  return {placeInModel(nearest, key), key};
 }
 
 /// Warns of a real arm whose tip rests far away from all models, though the arm can reach one. Arms whose file gives no

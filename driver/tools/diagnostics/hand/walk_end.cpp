@@ -92,7 +92,7 @@ void reportWalkEnd(const scene::Scene& scene, const std::string& how, const host
   const std::string key = fmt::format("models[{}].plugin", index);
   const std::string ended = hangs ? fmt::format("did not return from a step within {} s", kStepSeconds) : how;
   document::report(
-      warnings, placeOfKey(model.place.file, key).value_or(model.place), key,
+      warnings, placeInModel(model, key), key,
       fmt::format("model {}: when the hand was moved, its plugin {}; a run would end there; find the cause "
                   "with: hapticd plugin check {}",
                   model.name, ended, model.library.string()));

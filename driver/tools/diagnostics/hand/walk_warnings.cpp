@@ -224,8 +224,7 @@ bool isOdd(const Walk& walk, size_t model) {
 void reportPlugin(const scene::Scene& scene, size_t index, const Walk& walk, document::Problems& warnings) {
   const scene::Model& model = scene.models[index];
   const std::string key = fmt::format("models[{}].plugin", index);
-  for (const std::string& text : walk.judged[index])
-    document::report(warnings, placeOfKey(model.place.file, key).value_or(model.place), key, text);
+  for (const std::string& text : walk.judged[index]) document::report(warnings, placeInModel(model, key), key, text);
 }
 
 void checkWalkOfArm(const scene::Scene& scene, uint32_t index, const Walk& walk, const servo::World& world,
@@ -265,7 +264,7 @@ void reportAllocations(const scene::Scene& scene, const Walk& walk, document::Pr
     if (model.name != walk.allocates) continue;
     const std::string key = fmt::format("models[{}].plugin", i);
     document::report(
-        warnings, placeOfKey(model.place.file, key).value_or(model.place), key,
+        warnings, placeInModel(model, key), key,
         fmt::format("steps of {} allocate memory, which may have to wait, and then the tick is late; allocate it in "
                     "activate(): step(), which is touch() of a shape in C++, may not",
                     model.name));
@@ -289,7 +288,7 @@ void reportLate(const scene::Scene& scene, const Walk& walk, document::Problems&
   const scene::Model& model = scene.models[slowest];
   const std::string key = fmt::format("models[{}].plugin", slowest);
   document::report(
-      warnings, placeOfKey(model.place.file, key).value_or(model.place), key,
+      warnings, placeInModel(model, key), key,
       fmt::format("{}, because a step of {} takes {:.2g} ms (a tick lasts {:.2g} ms{}); hapticd plugin check {} "
                   "measures it",
                   what, model.name, step * 1e3, walk.period * 1e3,

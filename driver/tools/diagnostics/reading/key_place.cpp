@@ -43,4 +43,8 @@ std::optional<document::Place> placeOfKey(const std::filesystem::path& file, con
   return root ? placeOfKey(*root, file, key) : std::nullopt;
 }
 
+document::Place placeInModel(const scene::Model& model, const std::string& key) {
+  return placeOfKey(model.place.file, key).value_or(model.place);
+}
+
 }  // namespace hapticd::diagnostics

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "description/scene.hpp"
 #include "document/node.hpp"
 #include "document/problem.hpp"
 
@@ -17,5 +18,8 @@ std::optional<document::Place> placeOfKey(const std::filesystem::path& file, con
 /// [main] Does the same in a file that was read already. @param root its tree
 std::optional<document::Place> placeOfKey(const document::Node& root, const std::filesystem::path& file,
                                           const std::string& key);
+
+/// [main] Returns the place of a key in the file of a model; the place of the model if the file does not have the key.
+document::Place placeInModel(const scene::Model& model, const std::string& key);
 
 }  // namespace hapticd::diagnostics

@@ -2,9 +2,9 @@
 #include "diagnostics/reading/unread_keys.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "base/nearest_word.hpp"
+#include "diagnostics/reading/model_of_key.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -28,7 +28,8 @@ std::string ownOf(const std::string& key) {
 UnreadKeys::UnreadKeys(const document::Problems& problems) {
   for (const document::Problem& one : problems) {
     if (one.key == "models") continue;  // no list: its elements were read all the same
-    if (!one.key.starts_with(kModels)) {
+    const auto model = modelOf(one.key);
+    if (!model) {
       keys_.push_back(one.key);
       // An unknown key of the servo may stand for gravity; a wrong value of another key does not.
       if (one.key.starts_with("servo.") && one.kind == document::ProblemKind::kUnknownKey)
@@ -36,9 +37,7 @@ UnreadKeys::UnreadKeys(const document::Problems& problems) {
       continue;
     }
     if (one.kind == document::ProblemKind::kUnusedValue) continue;  // the path was read
-    char* end = nullptr;
-    const size_t index = std::strtoul(one.key.c_str() + kModels.size(), &end, 10);
-    of_models_[index].push_back(one);
+    of_models_[*model].push_back(one);
   }
 }
 

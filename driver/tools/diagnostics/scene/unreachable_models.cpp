@@ -26,7 +26,7 @@ bool rests(const scene::Model& model, const host::ShapeInstance& shape) {
 void reportAt(const scene::Scene& scene, size_t index, const std::string& what, document::Problems& warnings) {
   const std::string key = fmt::format("models[{}].pose.position", index);
   const scene::Model& model = scene.models[index];
-  document::report(warnings, placeOfKey(model.place.file, key).value_or(model.place), key, what);
+  document::report(warnings, placeInModel(model, key), key, what);
 }
 
 struct EnclosedModel {

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 
 #include "diagnostics/reading/given_values.hpp"
 #include "diagnostics/reading/key_place.hpp"
+#include "diagnostics/reading/model_of_key.hpp"
 #include "diagnostics/scene/given_model.hpp"
 
 namespace hapticd::diagnostics {
@@ -76,7 +76,7 @@ void reportIdlePoses(const scene::Scene& scene, const std::vector<bool>& placed,
     if (!placed[i] || model.path.empty() || pose == poseText({}) || pose == poseText(model.path.front().pose)) continue;
     const std::string key = fmt::format("models[{}].pose", i);
     document::report(
-        warnings, placeOfKey(model.place.file, key).value_or(model.place), key,
+        warnings, placeInModel(model, key), key,
         fmt::format("has no effect: the path of {} gives its poses in the world; remove the pose, and add it "
                     "to the rows of the path",
                     model.name));
@@ -115,16 +115,16 @@ document::Problems implausibleValues(const scene::Scene& scene, const ModelBoxes
 }
 
 std::vector<bool> strayModels(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog) {
-  constexpr std::string_view kModels = "models[", kParameters = ".parameters.";
+  constexpr std::string_view kParameters = ".parameters.";
   std::vector<bool> strays(scene.models.size());
   for (const document::Problem& one : implausibleValues(scene, boxes, catalog)) {
     const size_t at = one.key.find(kParameters);
-    if (!one.key.starts_with(kModels) || at == std::string::npos) continue;
-    const size_t model = std::strtoul(one.key.c_str() + kModels.size(), nullptr, 10);
+    const auto model = modelOf(one.key);
+    if (!model || *model >= strays.size() || at == std::string::npos) continue;
     const std::string id = one.key.substr(at + kParameters.size());
     for (const char* moves : {"mass", "inertia", "center", "tether", "velocity", "spin", "drag", "joint", "pivot",
                               "length", "angle", "rate"})
-      if (id == moves && model < strays.size()) strays[model] = true;
+      if (id == moves) strays[*model] = true;
   }
   return strays;
 }
