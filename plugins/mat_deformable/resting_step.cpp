@@ -5,11 +5,8 @@
 #include "mat_deformable.hpp"
 
 namespace hapticd {
-namespace {
 
 using Eigen::Vector3d;
-
-}  // namespace
 
 hsp_status MatDeformable::touch(const hsp_probe& probe, const hsp_step& step, uint32_t index,
                                 hsp_contact& contact) noexcept HSP_RT {
