@@ -44,6 +44,9 @@ void unlockMemory();
 /// Gives the calling thread the policy SCHED_FIFO at `priority`.
 std::error_code setFifo(int priority);
 
+/// [main] Returns the first line of a file, such as one of /proc or /sys; "" if it cannot be read.
+std::string firstLine(const std::string& file);
+
 /// Returns how many processors this machine has, with those that are switched off.
 int processors();
 

@@ -29,13 +29,6 @@ std::error_code error(int code) {
   return {code, std::generic_category()};
 }
 
-std::string firstLine(const char* file) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  return line;
-}
-
 /// Returns the value of a "Name:\tvalue" line of /proc/self/status.
 std::string statusField(const std::string& name) {
   std::ifstream in("/proc/self/status");
@@ -56,6 +49,13 @@ std::string limitOf(int resource) {
 }
 
 }  // namespace
+
+std::string firstLine(const std::string& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
 
 struct Thread::Handle {
   pthread_t thread{};

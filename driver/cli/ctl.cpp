@@ -65,10 +65,6 @@ void awaitDaemon(const CtlArguments& options) {
   control::waitForStart([&options] { return socketOf(options); }, options.wait);
 }
 
-std::string lineOf(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 /// Does `ctl socket`: prints only the path of the socket, for programs that connect to it. Fails if nobody serves it.
 int showSocket(const CtlArguments& options) {
   auto client = control::Client::connect(socketOf(options));
@@ -102,7 +98,7 @@ int sendScene(const CtlArguments& options, Json request) {
   if (!client) return fail(kFailed, client.error());
   const bool again = !request.contains("file");
   if (again) {
-    const auto answer = client->ask(lineOf({{"do", "status"}}));
+    const auto answer = client->ask(document::jsonLine({{"do", "status"}}));
     const Json status = answer ? document::parseJson(*answer) : Json();
     if (!status.is_object()) return show(options, answer);
     request["file"] = status.value("scene", "");
@@ -113,7 +109,7 @@ int sendScene(const CtlArguments& options, Json request) {
   if (!files) request.erase("file");  // the daemon may read its own scene, even if only the daemon's user may
   if (files) request["files"] = files->names;
   const std::vector<int> numbers = files ? files->numbers() : std::vector<int>();
-  return show(options, client->askWith(lineOf(request), numbers), scene);
+  return show(options, client->askWith(document::jsonLine(request), numbers), scene);
 }
 
 /// Returns the exit code after a stream of answers has ended. Reports an error if the daemon was killed or crashed.
@@ -143,7 +139,7 @@ int follow(const CtlArguments& options) {
   RealClock clock(0);
   uint64_t seen = 0;
   for (const char* word : {"vertices", "geometry"}) {  // if the model has no frames, the first request fails
-    const auto answer = client->ask(lineOf({{"do", word}, {"model", options.model}}));
+    const auto answer = client->ask(document::jsonLine({{"do", word}, {"model", options.model}}));
     const Json json = answer ? document::parseJson(*answer) : Json();
     if (!answer) return fail(kFailed, answer.error());
     if (!json.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + *answer);
@@ -151,7 +147,8 @@ int follow(const CtlArguments& options) {
     if (word == std::string("geometry")) std::printf("%s\n", answer->c_str());
   }
   while (std::fflush(stdout) == 0) {
-    const auto answer = client->ask(lineOf({{"do", "vertices"}, {"model", options.model}, {"after", seen}}));
+    const auto answer =
+        client->ask(document::jsonLine({{"do", "vertices"}, {"model", options.model}, {"after", seen}}));
     if (!answer) return endOfStream(options);
     const Json json = document::parseJson(*answer);
     if (!json.is_object() || !json.value("ok", false)) break;  // the model was removed
@@ -203,8 +200,8 @@ const Command addRequest(const Command& parent, const char* word, const char* do
     const bool stops = std::string(word) == "stop";
     exit_code = options->follow ? follow(*options)
                 : scene         ? sendScene(*options, json)
-                : stops         ? stop(*options, lineOf(json))
-                                : send(*options, lineOf(json));
+                : stops         ? stop(*options, document::jsonLine(json))
+                                : send(*options, document::jsonLine(json));
   });
   return command;
 }
@@ -246,7 +243,7 @@ int showEvents(const CtlArguments& options) {
   uint64_t end = UINT64_MAX;  // number of the first event that the subscription sends
   for (const char* word : {"subscribe", "events"}) {
     if (word == std::string("subscribe") && !options.follow) continue;
-    const auto answer = client->ask(lineOf({{"do", word}}));
+    const auto answer = client->ask(document::jsonLine({{"do", word}}));
     const Json json = answer ? document::parseJson(*answer) : Json();
     if (!answer) return fail(kFailed, answer.error());
     if (!json.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + *answer);

@@ -99,7 +99,7 @@ int leadByLines(const LeadOptions& options) {
   if (!client) return fail(kFailed, client.error());
   Json request = {{"do", "lead"}};
   request[options.hand.empty() ? "model" : "hand"] = options.hand.empty() ? options.model : options.hand;
-  auto reply = client->askForMore(request.dump(-1, ' ', false, Json::error_handler_t::replace));
+  auto reply = client->askForMore(document::jsonLine(request));
   if (!reply) return fail(kFailed, reply.error());
   const Json answer = document::parseJson(reply->line);
   if (!answer.is_object() || !answer.value("ok", false))

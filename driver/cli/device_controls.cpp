@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/command.hpp"
-#include "diagnostics/arm_controls.hpp"
+#include "diagnostics/device/arm_controls.hpp"
 
 namespace hapticd::cli {
 namespace {

@@ -2,14 +2,13 @@
 #include "cli/device_file.hpp"
 
 #include "cli/command.hpp"
-#include "diagnostics/device_trial.hpp"
+#include "diagnostics/device/device_trial.hpp"
 
 namespace hapticd::cli {
 
 document::Problems problemsOfDevice(const std::string& file) {
   document::Problems problems = scene::loadDevice(file, catalog()).problems;
-  const document::Problems more = diagnostics::tryDevice(file, catalog(), problems);
-  problems.insert(problems.end(), more.begin(), more.end());
+  document::append(problems, diagnostics::tryDevice(file, catalog(), problems));
   document::sortByPlace(problems);
   return problems;
 }

@@ -19,7 +19,7 @@
 #include "cli/questions.hpp"
 #include "codec/checksum.hpp"
 #include "codec/wire_correction.hpp"
-#include "diagnostics/device_trial.hpp"
+#include "diagnostics/device/device_trial.hpp"
 #include "document/node.hpp"
 
 namespace hapticd::cli {

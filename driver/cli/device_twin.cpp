@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd device twin`: writes the device file of a simulated arm with the mechanism of a real one.
-#include "diagnostics/device_twin.hpp"
+#include "diagnostics/device/device_twin.hpp"
 
 #include <cstdio>
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 #include "cli/command.hpp"
 #include "cli/device_file.hpp"
-#include "diagnostics/device_trial.hpp"
-#include "diagnostics/hand_start.hpp"
+#include "diagnostics/device/device_trial.hpp"
+#include "diagnostics/hand/hand_start.hpp"
 #include "document/node.hpp"
 
 namespace hapticd::cli {

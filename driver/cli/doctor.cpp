@@ -8,9 +8,9 @@
 
 #include "cli/colour.hpp"
 #include "cli/command.hpp"
-#include "diagnostics/arm_checks.hpp"
-#include "diagnostics/client_warnings.hpp"
-#include "diagnostics/doctor_checks.hpp"
+#include "diagnostics/machine/arm_checks.hpp"
+#include "diagnostics/machine/client_warnings.hpp"
+#include "diagnostics/machine/doctor_checks.hpp"
 #include "status/page_file.hpp"
 
 namespace hapticd::cli {

@@ -102,7 +102,7 @@ class RecordedModelsImpl final : public RecordedModels {
       at = json["at"].get<double>();
       json.erase("at");
     }
-    const auto request = control::parseRequest(at ? json.dump(-1, ' ', false, Json::error_handler_t::replace) : line);
+    const auto request = control::parseRequest(at ? document::jsonLine(json) : line);
     if (!request) return control::refusal(request.error());
     if (request->kind == Request::Kind::kList) return list();
     const bool names = request->kind == Request::Kind::kFeature;
@@ -127,7 +127,7 @@ class RecordedModelsImpl final : public RecordedModels {
                         {"enabled", true},
                         {"live_parameters", Json::array()},
                         {"deforms", built.rerun != nullptr}});
-    return Json({{"ok", true}, {"models", std::move(models)}}).dump(-1, ' ', false, Json::error_handler_t::replace);
+    return document::jsonLine(Json({{"ok", true}, {"models", std::move(models)}}));
   }
 
   std::unique_ptr<record::Recording> recording_;

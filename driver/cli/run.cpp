@@ -17,9 +17,9 @@
 #include "cli/output_file.hpp"
 #include "cli/run_outcome.hpp"
 #include "cli/run_signals.hpp"
-#include "cli/scene_warnings.hpp"
 #include "cli/view_process.hpp"
-#include "diagnostics/enable_button.hpp"
+#include "diagnostics/check/added_models.hpp"
+#include "diagnostics/device/enable_button.hpp"
 #include "document/node.hpp"
 #include "host/file_stamp.hpp"
 #include "log/log.hpp"
@@ -203,7 +203,7 @@ int runScene(const RunArguments& options, scene::Scene& scene) {
   const StopBySignal stop(**runner);
   if (!options.virtual_time) heedSuspendSignal();
   const auto advise = [&runner](const scene::Scene& models, const std::vector<double>& stiffness) {
-    return warningsOfModels(**runner, models, stiffness);
+    return diagnostics::warningsOfAddedModels(**runner, models, stiffness, catalog());
   };
   if (files) files->serve(**runner, options.device, catalog(), advise, logOfRun);
   if (auto done = tickToTheEnd(**runner, files.get()); !done) return fail(kFailed, done.error());

@@ -18,7 +18,7 @@
 #include "base/clock.hpp"
 #include "cli/command.hpp"
 #include "control/liveness.hpp"
-#include "diagnostics/client_warnings.hpp"
+#include "diagnostics/machine/client_warnings.hpp"
 #include "host/class_table.hpp"
 #include "servo/safety/limiter.hpp"
 #include "session/silence_reason.hpp"

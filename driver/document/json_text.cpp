@@ -13,4 +13,8 @@ nlohmann::ordered_json parseJsonOrThrow(std::string_view text) {
   return nlohmann::ordered_json::parse(text);
 }
 
+std::string jsonLine(const nlohmann::ordered_json& json) {
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 }  // namespace hapticd::document

@@ -296,9 +296,9 @@ std::optional<Node> parseOn(const std::string& text, const std::string& file, Pr
       recovery->toFile(found);
       // It is empty only without what was left out.
       std::erase_if(found, [](const Problem& one) { return one.what == kEmpty; });
-      problems.insert(problems.end(), recovery->problems().begin(), recovery->problems().end());
+      append(problems, recovery->problems());
     }
-    problems.insert(problems.end(), found.begin(), found.end());
+    append(problems, std::move(found));
     return std::move(made.root);
   }
 }

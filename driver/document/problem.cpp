@@ -37,6 +37,10 @@ void report(Problems& problems, const std::string& file, int line, int column, c
   report(problems, place, key, what);
 }
 
+void append(Problems& problems, Problems more) {
+  problems.insert(problems.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
 std::string textOf(const Problems& problems) {
   std::string all;
   for (const Problem& one : problems) all += (all.empty() ? "" : "\n") + one.text();

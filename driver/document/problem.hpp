@@ -43,6 +43,9 @@ void report(Problems& problems, const Place& place, const std::string& key, cons
 void report(Problems& problems, const std::string& file, int line, int column, const std::string& key,
             const std::string& what);
 
+/// Adds the problems of another list.
+void append(Problems& problems, Problems more);
+
 /// Returns all problems as text, one in a line.
 std::string textOf(const Problems& problems);
 

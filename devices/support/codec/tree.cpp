@@ -33,7 +33,7 @@ std::string shortText(double number) {
 /// Returns a value as messages show it.
 std::string shown(const Json& value) {
   constexpr size_t kLongest = 40;
-  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = document::jsonLine(value);
   if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
   return text;
 }

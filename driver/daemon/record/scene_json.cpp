@@ -266,7 +266,7 @@ std::string sceneToJson(const scene::Scene& scene) {
                      {"clients", clientsJson(scene.clients)},
                      {"models", std::move(models)},
                      {"devices", std::move(devices)}};
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return document::jsonLine(json);
 }
 
 Result<scene::Scene> sceneFromJson(const std::string& json_text) {

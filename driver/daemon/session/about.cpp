@@ -189,7 +189,7 @@ record::About aboutRun(const scene::Scene& scene, const World& world, const std:
   for (uint32_t kind = 0; kind < HAPTICD_EVENT_KINDS; ++kind) json["events"].push_back(nameOfEvent(kind));
   json["columns"] = document::parseJsonOrThrow(record::columnsJson(streams));
   json["scene"] = document::parseJsonOrThrow(record::sceneToJson(scene));
-  return {json.dump(-1, ' ', false, Json::error_handler_t::replace), textOf(scene.file)};
+  return {document::jsonLine(json), textOf(scene.file)};
 }
 
 Result<RecordedRun> readAbout(const std::string& json_text) {

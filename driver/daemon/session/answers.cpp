@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "document/json_text.hpp"
 #include "document/suggestion.hpp"
 #include "host/class_params.hpp"
 #include "host/class_table.hpp"
@@ -140,7 +141,7 @@ Json silencedJson(const Session& session) {
 }  // namespace
 
 std::string lineOf(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return document::jsonLine(json);
 }
 
 record::ClientReport reportOf(const ClientForces::Client& client, const Leads::Pusher& pusher,

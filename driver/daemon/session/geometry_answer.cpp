@@ -10,6 +10,7 @@
 
 #include "base/sealed_memory.hpp"
 #include "control/server.hpp"
+#include "document/json_text.hpp"
 #include "hapticd/shape_names.h"
 
 namespace hapticd::servo {
@@ -138,8 +139,7 @@ Result<std::string> verticesAnswer(const host::ShapeInstance& shape, double afte
 std::string featureAnswer(const host::ShapeInstance& shape, uint32_t feature) {
   using Json = nlohmann::ordered_json;
   const std::string name = featureName(shape, feature);
-  return Json({{"ok", true}, {"name", name.empty() ? Json() : Json(name)}})
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+  return document::jsonLine({{"ok", true}, {"name", name.empty() ? Json() : Json(name)}});
 }
 
 }  // namespace hapticd::servo

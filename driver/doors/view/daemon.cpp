@@ -44,7 +44,7 @@ class DaemonImpl final : public Daemon {
       return;
     }
     pending_.push_back(std::move(answered));
-    out_ += request.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    out_ += document::jsonLine(request) + "\n";
     if (sending_.empty()) send();
   }
   bool connected() const override { return connected_; }

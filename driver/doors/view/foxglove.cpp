@@ -130,7 +130,7 @@ void FoxgloveSession::advertise() {
   add(SIZE_MAX, "/scene", "json", "foxglove.SceneUpdate", "jsonschema", kSceneDefinition);
   Json adverts = Json::array();
   for (const Channel& channel : channels_) adverts.push_back(channel.advert);
-  peer_.text(Json({{"op", "advertise"}, {"channels", adverts}}).dump(-1, ' ', false, Json::error_handler_t::replace));
+  peer_.text(document::jsonLine(Json({{"op", "advertise"}, {"channels", adverts}})));
 }
 
 /// Returns 1 + the client's number of a subscription to the channel, or 0 if nobody has subscribed. The client may

@@ -107,7 +107,7 @@ void NativeSession::begin() {
                 {"name", stage_.recorded() ? stage_.options().file : stage_.options().name},
                 {"streams", streams},
                 {"about", stage_.about()}};
-  peer_.text(hello.dump(-1, ' ', false, Json::error_handler_t::replace));
+  peer_.text(document::jsonLine(hello));
   next_.assign(rows.streams().size(), 0);
   frames_.clear();
   bodies_.clear();
@@ -129,13 +129,13 @@ void NativeSession::sendChanges() {
     list_number_ = stage_.listNumber();
     Json list = stage_.list();
     list["type"] = "list";
-    peer_.text(list.dump(-1, ' ', false, Json::error_handler_t::replace));
+    peer_.text(document::jsonLine(list));
   }
   if (status_number_ == stage_.statusNumber()) return;
   status_number_ = stage_.statusNumber();
   Json status = stage_.alive() ? stage_.status() : Json::object();
   status["type"] = stage_.alive() ? "status" : "end";
-  peer_.text(status.dump(-1, ' ', false, Json::error_handler_t::replace));
+  peer_.text(document::jsonLine(status));
 }
 
 void NativeSession::sendRows() {
@@ -266,7 +266,7 @@ void NativeSession::unlead(const Json& id, const Json& request) {
 void NativeSession::answer(const Json& id, Json answer) {
   answer["type"] = "answer";
   answer["id"] = id;
-  peer_.text(answer.dump(-1, ' ', false, Json::error_handler_t::replace));
+  peer_.text(document::jsonLine(answer));
 }
 
 /// Answers a request for triangles. The mesh is sent as bytes, directly before the answer that names it.

@@ -53,11 +53,13 @@ typedef struct hsp_step {
   const hsp_probe* in;            /* index `in` and `out` with HSP_AT, never with in[i] */
   uint32_t in_stride, out_stride; /* bytes */
   hsp_contact* out;
-  double dt_s;                    /* s since the last step; 0 in the first step; several periods after an overrun */
-  uint64_t budget_ns;             /* CPU time left for this call; the host counts calls that take longer; 0: no limit */
-  double tolerance_m;             /* accuracy that the host asks for; 0 means that the shape's parameters decide */
-  uint32_t max_iterations, order; /* most evaluations per probe; order of the method (1, 2); 0: parameters decide */
-  const hsp_change* changes;      /* new values of live parameters since the last step */
+  double dt_s;        /* s since the last step; 0 in the first step; several periods after an overrun */
+  uint64_t budget_ns; /* CPU time left for this call; the host counts calls that take longer; 0: no limit */
+  double tolerance_m; /* accuracy that the host asks for; 0 means that the shape's parameters decide */
+  /* Most evaluations per probe; order of the method (1, 2); 0: the shape's parameters decide. The host asks for less
+   * when ticks are late. A shape that would be felt wrongly may take more: a NURBS shell takes at least twelve. */
+  uint32_t max_iterations, order;
+  const hsp_change* changes;           /* new values of live parameters since the last step */
   uint32_t change_count, viz_capacity; /* viz_capacity: number of vertices that fit into viz_xyz */
   float* viz_xyz; /* if not NULL (about 60 times a second): write the current vertices here, x,y,z in m */
   /* On entry `pose` is the model's pose after the last step, and the probes are given in that frame. A shape with

@@ -35,7 +35,7 @@ void validateSwing(double swing_rate, double rate_hz);
 /// [rt] Advances by one step of dt [s]. A fast motion is divided into substeps. Without damping the method is a
 /// splitting of fourth order, whose energy error stays bounded. With weak damping it is Runge-Kutta of fourth order. If
 /// damping / inertia times the substep exceeds 0.05, it is an exponential step of second order, which is stable for
-/// every damping (tests Pendulum.KeepsItsEnergyForTenMillionTicks, Pendulum.ConvergesWithTheOrderItClaims).
+/// every damping (tests Pendulum.KeepsItsEnergyForMillionsOfTicks, Pendulum.ConvergesWithTheOrderItClaims).
 /// @param torque [N m] torque of the user, constant in the step
 PendulumState advance(const PendulumLaw& law, PendulumState state, double torque, double dt) noexcept;
 

@@ -49,7 +49,6 @@ class VolumeKeeper {
     next_vertex_ = next_triangle_ = 0;
     sum_ = 0;
   }
-  double restVolume() const noexcept { return rest_; }  ///< [m^3] volume of the body at rest
   std::size_t bytes() const noexcept { return sizeof *this + xyz_.capacity() * sizeof(float); }
 
  private:
@@ -67,7 +66,8 @@ class VolumeKeeper {
 
   const MovingMesh* contour_;
   std::vector<float> xyz_;
-  double rest_ = 0, area_ = 0, limit_ = 0, sum_ = 0;
+  double rest_ = 0, area_ = 0;  ///< [m^3] volume and [m^2] surface of the body at rest
+  double limit_ = 0, sum_ = 0;
   std::size_t next_vertex_ = 0, next_triangle_ = 0;
 };
 

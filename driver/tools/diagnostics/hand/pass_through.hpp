@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+/// Warns of hands that press through a model.
+#pragma once
+#include "description/scene.hpp"
+#include "diagnostics/scene/model_trial.hpp"
+#include "document/problem.hpp"
+
+namespace hapticd::diagnostics {
+
+/// [main] Warns of a hand that presses deeper than a model is thick, so that it comes out behind. @param boxes boxes of
+/// the models from tryModels()
+document::Problems pressesThrough(const scene::Scene& scene, const ModelBoxes& boxes);
+
+}  // namespace hapticd::diagnostics

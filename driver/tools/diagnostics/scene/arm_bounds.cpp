@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/scene/arm_bounds.hpp"
+
+#include <algorithm>
+
+#include "diagnostics/scene/setting_plausibility.hpp"
+#include "document/reader.hpp"
+#include "hapticd/device.h"
+#include "host/device_instance.hpp"
+#include "tune/stability.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+/// Returns what a device file says about its arm, without opening the arm. 0 means unknown.
+hdv_info infoOf(const scene::Device& device) {
+  hdv_info info{};
+  info.capabilities = HDV_C_PACING;  // unknown: with this flag there is no warning that the arm cannot drive the loop
+  for (const scene::Value& value : device.parameters) {
+    if (value.id == "device.max_stiffness") info.max_stiffness = value.number;
+    if (value.id == "device.mass") info.mass_kg = value.number;
+    if (value.id == "device.max_force") info.max_force = value.number;
+    if (value.id == "device.continuous_force") info.continuous_force = value.number;
+  }
+  return info;
+}
+
+}  // namespace
+
+document::Problems unstableContacts(const scene::Scene& scene, const std::vector<double>& stiffness) {
+  document::Problems warnings = tune::fastPaths(scene);
+  for (const scene::Device& device : scene.devices) {
+    hdv_info info = infoOf(device);
+    if (device.module == "simulated") {
+      auto arm = host::DeviceInstance::create(device, nullptr);
+      if (!arm || !(*arm)->open()) continue;
+      info = (*arm)->info();
+    }
+    document::append(warnings, tune::unstableSettings(scene, device, info, stiffness));
+    document::append(warnings, stiffTogether(scene, device, info, stiffness));
+    document::append(warnings, lightAdmittance(scene, device, info));
+    const bool described = std::any_of(device.parameters.begin(), device.parameters.end(),
+                                       [](const scene::Value& value) { return value.id == "wire"; });
+    if (described && info.max_stiffness <= 0 &&
+        std::any_of(stiffness.begin(), stiffness.end(), [](double k) { return k > 0; }))
+      document::report(
+          warnings, device.place.file.empty() ? document::Place{device.file.string()} : device.place,
+          "parameters.device.max_stiffness",
+          "the value is not given, so it is unknown whether " + device.name +
+              " is stable with these models; give the stiffness that was found stable, and begin with 100 N/m");
+  }
+  return warnings;
+}
+
+document::Problems idleBounds(const scene::Scene& scene) {
+  document::Problems warnings;
+  for (const scene::Device& device : scene.devices) {
+    const double bound = device.limits.force > 0 ? device.limits.force : infoOf(device).max_force;
+    if (bound > 0 && scene.clients.max_force > bound)
+      document::report(warnings, document::Place{scene.file.string()}, "clients.max_force",
+                       document::numberText(scene.clients.max_force) + " N, but " + device.name + " gives " +
+                           document::numberText(bound) +
+                           " N at most, so programs get no more; expected this force or less");
+  }
+  return warnings;
+}
+
+}  // namespace hapticd::diagnostics
