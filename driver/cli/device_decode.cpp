@@ -99,10 +99,12 @@ int decode(const DecodeArguments& options) {
   if (const int failed = writeOut(options.out, capture::csvOf(described->wire, described->joints, decoded));
       failed != 0)
     return failed;
+  const std::string layout = capture::hintsOf(described->wire, *taken, decoded);
   std::fprintf(stderr, "read as %s: %s\n%s%s%s", taken->text ? "hexadecimal text" : "raw bytes",
-               capture::summaryOf(decoded).c_str(), capture::hintsOf(described->wire, *taken, decoded).c_str(),
+               capture::summaryOf(decoded).c_str(), layout.c_str(),
                capture::timeSeriesHints(described->wire, decoded, described->arm.least_rate).c_str(),
-               capture::implausible(described->wire, described->arm, decoded).c_str());
+               // numbers at wrong places say nothing about the scale
+               layout.empty() ? capture::implausible(described->wire, described->arm, decoded).c_str() : "");
   if (decoded.reports.empty())
     return fail(kFailed, "no report in " + std::to_string(taken->bytes()) + " bytes, expected " +
                              std::to_string(described->wire.input.bytes()) + " bytes per report");
