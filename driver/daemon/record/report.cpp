@@ -134,12 +134,18 @@ std::string untouchedText(const RunReport& report) {
   return "  contact   none: the tip touched no model\n";
 }
 
+/// Returns the name of a limit as a person finds it in a device file. For programs, the names stay as they are.
+std::string keyOfLimit(const std::string& name) {
+  if (name == "motors (torque)") return "arm.max_torque";
+  return name == "motors (heat)" ? "motors, by their heat" : name;
+}
+
 std::string limitText(const LimitReport& device, uint64_t ticks) {
   if (device.any == 0 || ticks == 0) return "";
   std::string text = fmt::format("limits of {}: the force was reduced in {:.3g} % of the ticks (", device.device,
                                  100.0 * static_cast<double>(device.any) / static_cast<double>(ticks));
   for (size_t i = 0; i < device.ticks.size(); ++i)
-    text += fmt::format("{}{}: {}", i > 0 ? ", " : "", device.ticks[i].first, device.ticks[i].second);
+    text += fmt::format("{}{}: {}", i > 0 ? ", " : "", keyOfLimit(device.ticks[i].first), device.ticks[i].second);
   return text + ")\n";
 }
 
