@@ -21,6 +21,7 @@
 #include "cli/decoded_table.hpp"
 #include "cli/device_file.hpp"
 #include "cli/encode_columns.hpp"
+#include "cli/joint_angles.hpp"
 #include "document/csv.hpp"
 #include "document/node.hpp"
 #include "host/device_instance.hpp"
@@ -233,6 +234,10 @@ int encode(const DecodeArguments& options) {
   problems = beyondFields(options, *described, *columns, *table);
   printProblems(problems, stderr);
   if (!problems.empty()) return kBadInput;
+  std::vector<size_t> joints;
+  for (size_t i = 0; options.from_arm && i < columns->from.size() && joints.size() < described->joints; ++i)
+    if (columns->names[i] == "position" + std::to_string(joints.size() + 1)) joints.push_back(columns->from[i]);
+  warnOfDegrees(options.input, *table, joints, *described->device);
   const auto out = encodeTable(options, *described, *columns, *table);
   if (!out) return fail(kBadInput, out.error());
   return writeOut(options.out, *out);
@@ -250,9 +255,10 @@ void addDecode(const Command& device, int& exit_code) {
       .excludes(hex);
   command.addOption("-o,--out", options->out, "CSV file to write; - for standard output");
   command.footer(
-      "A capture is raw bytes, or text with one transfer per line: \"01 ff 3c\", the E: lines of hid-recorder, or "
-      "what\n"
-      "`hapticd device record` writes. The output has one row per report: positions, torques and buttons in SI units,\n"
+      "A capture is raw bytes, or text with one transfer per line: \"01 ff 3c\", the E: lines of hid-recorder, lines "
+      "of\n"
+      "usbmon, hex dumps of Wireshark, or what `hapticd device record` writes. The output has one row per report: "
+      "positions, torques and buttons in SI units,\n"
       "or the reason why the bytes are not a report. The exit code is 1 if a report is bad.\n\n"
       "Examples:\n  hapticd device decode my-arm.yaml capture.bin\n"
       "  printf '00 01 00 02 00 03 00 00 00 00 00 00 00 00\\n' | hapticd device decode "

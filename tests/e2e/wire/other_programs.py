@@ -104,4 +104,11 @@ with tempfile.TemporaryDirectory() as folder:
                          (",".join(map(str, REPORTS[1])), 'bytes(numbers).hex(" ")')):
         code, err, _ = told(line + "\n")
         check(f"advice for {line[:12]}", code == 2 and advice in err, err)
+    # Degrees where rad is expected.
+    open(arm, "w").write(ARM)
+    for command, given in ((["encode", "--from-arm", arm], b"90,0,0\n"), (["kinematics", arm, "--joints", "-"], b"q1,q2,q3\n0,90,90\n")):
+        code, out, err = run(*command, given=given)
+        check(f"{command[0]} tells degrees", code == 0 and "90 rad is 14.3 turns; positions must be in rad: 90 degrees is 1.571 rad" in err, err)
+        code, out, err = run(*command, given=given.replace(b"90", b"1.57"))
+        check(f"{command[0]} says nothing of rad", code == 0 and err == "", err)
 finish()
