@@ -329,10 +329,7 @@ void addParameterRequests(const Command& ctl, const std::shared_ptr<CtlArguments
   set.addOption("parameter", options->parameter, "a live parameter; `hapticd ctl list` shows them").required();
   set.addOption("value", options->value, "a number in the parameter's unit, or a word of a choice")
       .required()
-      .check([](const std::string& text) {
-        const std::string advice = document::toNumber(text) ? "" : document::suggestNumber(text);
-        return advice.empty() ? advice : "\"" + text + "\" is not a number" + advice;
-      });
+      .check(&document::wrongDecimal);
   set.addFlag("--consent", options->consent,
               "the person who holds the arm agrees; needed if the change may be felt suddenly");
 

@@ -10,8 +10,8 @@ namespace {
 /// Returns true for a position that hardly any joint has in rad. Positions that were recorded over several turns are no
 /// whole numbers.
 bool looksLikeDegrees(double q) {
-  constexpr double kManyTurns = 50;  // [rad]
-  return std::abs(q) > 2 * M_PI && (q == std::round(q) || std::abs(q) > kManyTurns);
+  constexpr double kTurns = 10, kManyTurns = 50;  // [rad]
+  return std::abs(q) >= kTurns && (q == std::round(q) || std::abs(q) > kManyTurns);
 }
 
 }  // namespace

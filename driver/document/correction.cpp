@@ -151,6 +151,11 @@ std::string suggestNumber(std::string_view given, std::string_view unit) {
          suggestUnit(toNumber(number).value_or(0), number + " " + std::string(rest), rest, unit);
 }
 
+std::string wrongDecimal(const std::string& text) {
+  const std::string advice = toNumber(text) ? "" : suggestNumber(text);
+  return advice.empty() ? "" : "\"" + text + "\" is not a number" + advice;
+}
+
 OtherUnit suggestOtherUnit(double value, std::pair<double, double> allowed, std::string_view unit) {
   struct UnitSlip {
     const char *unit, *meant;

@@ -131,7 +131,7 @@ scene = put("scene.yaml", f"hapticd: 1\ndevice: {os.path.basename(arm('stop_hang
 for pace in (["--virtual-time"], ["--allow-non-rt"]):
     code, text = run("run", scene, *pace, "--for", "0.1")
     check(f"a stop() that hangs does not keep a run {pace}", code not in (0, 124) and "stop()" in text and "slips_arm" in text, (code, text))
-stalls = put("scene.yaml", open(scene).read().replace("read_crashes", os.path.basename(arm("read_stalls"))[:-5]))
+stalls = put("scene.yaml", open(scene).read().replace("stop_hangs", os.path.basename(arm("read_stalls"))[:-5]))
 code, text = run("run", stalls, "--allow-non-rt", "--for", "3")
 crashes = put("scene.yaml", open(stalls).read().replace("read_stalls", os.path.basename(arm("read_crashes"))[:-5]))
 ended, said = run("run", crashes, "--allow-non-rt", "--for", "3")
@@ -143,7 +143,7 @@ code, text = run("device", "info", arm("forgets"))
 check("device info says what is unknown", "joint 1: range unknown, no bound of its motor is known" in text, text)
 code, text = run("device", "info", arm("none"))
 check("and the unit of each joint", "joint 1: -1 to 1 rad, its motor up to 1 N m\n" in text, text)
-sleeps = put("scene.yaml", open(scene).read().replace("stop_hangs", os.path.basename(arm("read_sleeps"))[:-5]))
+sleeps = put("scene.yaml", open(scene).read().replace("read_crashes", os.path.basename(arm("read_sleeps"))[:-5]))
 code, text = run("run", sleeps, "--allow-non-rt", "--for", "4")
 check("a read() that sleeps is told as the cause of late ticks", "ticks come late because of the arms: read() and write() of their modules take" in text
       and "hapticd device check FILE" in text, (code, text))
