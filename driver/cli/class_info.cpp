@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/command.hpp"
 #include "document/reader.hpp"
@@ -164,6 +166,15 @@ void printClasses(const std::vector<const host::CatalogFile*>& files, host::Kind
         std::printf("%-18s %-8s %s, %s, %s\n", "", "", info.id.c_str(), info.license.c_str(), file->path.c_str());
     }
   }
+}
+
+void warnOfAbsentFolders() {
+  const char* listed = std::getenv("HAPTICD_PLUGIN_PATH");
+  std::stringstream dirs(listed != nullptr ? listed : "");
+  std::error_code error;
+  for (std::string dir; std::getline(dirs, dir, ':');)
+    if (!dir.empty() && !std::filesystem::is_directory(dir, error))
+      std::fprintf(stderr, "warning: HAPTICD_PLUGIN_PATH names %s, but there is no such folder\n", dir.c_str());
 }
 
 void printUnusable(const std::vector<const host::CatalogFile*>& files) {

@@ -24,6 +24,9 @@ nlohmann::ordered_json classJson(const host::ClassInfo& info);
 /// Prints the files that could not be described, with the reason.
 void printUnusable(const std::vector<const host::CatalogFile*>& files);
 
+/// Warns of folders of HAPTICD_PLUGIN_PATH that do not exist.
+void warnOfAbsentFolders();
+
 /// Prints the documentation of one class from its parameter table. @param values values that a file gives, which are
 /// printed beside the defaults
 void printClass(const host::ClassInfo& info, const std::vector<scene::Value>& values = {});

@@ -17,6 +17,7 @@
 #include "control/client.hpp"
 #include "control/liveness.hpp"
 #include "document/absent_file.hpp"
+#include "document/correction.hpp"
 #include "document/json_text.hpp"
 #include "document/node.hpp"
 #include "status/page_file.hpp"
@@ -323,7 +324,9 @@ void addParameterRequests(const Command& ctl, const std::shared_ptr<CtlArguments
       });
   set.addOption("model", options->model, "name of the model").required();
   set.addOption("parameter", options->parameter, "a live parameter; `hapticd ctl list` shows them").required();
-  set.addOption("value", options->value, "a number in the parameter's unit, or a word of a choice").required();
+  set.addOption("value", options->value, "a number in the parameter's unit, or a word of a choice")
+      .required()
+      .check(&document::wrongDecimal);
   set.addFlag("--consent", options->consent,
               "the person who holds the arm agrees; needed if the change may be felt suddenly");
 

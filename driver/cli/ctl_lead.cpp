@@ -42,7 +42,8 @@ Result<hapticd_target> checked(const hapticd_target& target) {
 }
 
 /// Reads three or seven numbers. An error says what was expected.
-Result<hapticd_target> targetOf(std::string line) {
+Result<hapticd_target> targetOf(const std::string& given) {
+  std::string line = given;
   std::replace(line.begin(), line.end(), ',', ' ');
   std::vector<double> numbers;
   const char* at = line.c_str();
@@ -53,7 +54,8 @@ Result<hapticd_target> targetOf(std::string line) {
   }
   const bool rest = std::strspn(at, " \t\r") != std::strlen(at);
   if (rest || (numbers.size() != 3 && numbers.size() != 7))
-    return Error{"\"" + line.substr(0, 60) + "\" is not a pose, expected \"x y z\" in m, or \"x y z qw qx qy qz\""};
+    return Error{"\"" + given.substr(0, 60) + "\" is not a pose, expected \"x y z\" in m, or \"x y z qw qx qy qz\"" +
+                 (given.find(',') != given.npos ? "; a comma separates two numbers: write decimals with a point" : "")};
   for (const double number : numbers)
     if (!std::isfinite(number)) return Error{"a number is not finite, expected finite numbers"};
   hapticd_target target{};

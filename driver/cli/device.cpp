@@ -9,6 +9,7 @@
 #include "cli/class_info.hpp"
 #include "cli/command.hpp"
 #include "cli/device_file.hpp"
+#include "cli/joint_angles.hpp"
 #include "diagnostics/device/arm_reach.hpp"
 #include "diagnostics/device/device_trial.hpp"
 #include "diagnostics/device/enable_button.hpp"
@@ -87,6 +88,7 @@ int list() {
   std::printf("modules\n");
   printClasses(files, host::Kind::kDevice, false);
   printUnusable(files);
+  warnOfAbsentFolders();
   if (files.empty()) std::printf("  none\n%s\n", searchedText(catalog().searchPath().devices).c_str());
   printShippedFiles();
   printBuses();
@@ -139,6 +141,23 @@ void printReach(const host::DeviceInstance& device) {
                 box->min().x(), box->max().x(), box->min().y(), box->max().y(), box->min().z(), box->max().z());
 }
 
+void printJoints(const host::DeviceInstance& device) {
+  const hdv_info& info = device.info();
+  for (uint32_t i = 0; i < info.joint_count; ++i) {
+    const bool sliding = slides(device, i);
+    const char *way = sliding ? "m" : "rad", *push = sliding ? "N" : "N m";
+    std::printf("  joint %u: ", i + 1);
+    if (info.position_min[i] == 0 && info.position_max[i] == 0)
+      std::printf("range unknown, ");
+    else
+      std::printf("%g to %g %s, ", info.position_min[i], info.position_max[i], way);
+    if (info.max_torque[i] > 0)
+      std::printf("its motor up to %g %s\n", info.max_torque[i], push);
+    else
+      std::printf("no bound of its motor is known\n");
+  }
+}
+
 void printHardware(host::DeviceInstance& device) {
   auto opened = device.open();
   if (!opened) return (void)std::printf("hardware: not available\n  %s\n", opened.error().c_str());
@@ -149,9 +168,7 @@ void printHardware(host::DeviceInstance& device) {
   std::printf("  resolution %g m, felt mass %g kg, damping %g N s/m, %u buttons\n", info.resolution_m, info.mass_kg,
               info.damping, info.buttons);
   printCapabilities(info.capabilities);
-  for (uint32_t i = 0; i < info.joint_count; ++i)
-    std::printf("  joint %u: %g to %g, its motor up to %g (rad and N m, or m and N)\n", i + 1, info.position_min[i],
-                info.position_max[i], info.max_torque[i]);
+  printJoints(device);
   printReach(device);
 }
 

@@ -85,10 +85,11 @@ const char* wayOn(const Outcome& last) {
 
 int sum(const std::vector<Outcome>& outcomes, const ExamineArguments& options, const std::string& module,
         nlohmann::ordered_json& all) {
-  int failed = 0, skipped = 0;
+  int failed = 0, skipped = 0, warned = 0;
   for (const Outcome& one : outcomes) {
     skipped += one.found.verdict == Passed::kSkipped ? 1 : 0;
     failed += one.found.verdict == Passed::kFailed ? 1 : 0;
+    warned += one.found.verdict == Passed::kWarned ? 1 : 0;
     const char* result = one.found.verdict == Passed::kFailed ? "fail" : wordFor(one.found.verdict);
     all["tests"].push_back({{"module", module}, {"name", one.name}, {"result", result}, {"what", one.found.what}});
   }
@@ -99,7 +100,10 @@ int sum(const std::vector<Outcome>& outcomes, const ExamineArguments& options, c
     rest = ", " + std::to_string(all_tests - run) + " not run: " + wayOn(outcomes.back());
   else if (skipped > 0)
     rest = ", " + std::to_string(skipped) + " skipped";
-  if (!options.json) std::printf("%zu test%s, %d failed%s\n", run, run == 1 ? "" : "s", failed, rest.c_str());
+  if (!options.json)
+    std::printf("%zu test%s, %d failed%s%s\n", run, run == 1 ? "" : "s", failed,
+                warned == 0 ? "" : (", " + std::to_string(warned) + (warned == 1 ? " warning" : " warnings")).c_str(),
+                rest.c_str());
   return failed;
 }
 

@@ -21,6 +21,7 @@
 #include "cli/decoded_table.hpp"
 #include "cli/device_file.hpp"
 #include "cli/encode_columns.hpp"
+#include "cli/joint_angles.hpp"
 #include "document/csv.hpp"
 #include "document/node.hpp"
 #include "host/device_instance.hpp"
@@ -99,10 +100,12 @@ int decode(const DecodeArguments& options) {
   if (const int failed = writeOut(options.out, capture::csvOf(described->wire, described->joints, decoded));
       failed != 0)
     return failed;
+  const std::string layout = capture::hintsOf(described->wire, *taken, decoded);
   std::fprintf(stderr, "read as %s: %s\n%s%s%s", taken->text ? "hexadecimal text" : "raw bytes",
-               capture::summaryOf(decoded).c_str(), capture::hintsOf(described->wire, *taken, decoded).c_str(),
+               capture::summaryOf(decoded).c_str(), layout.c_str(),
                capture::timeSeriesHints(described->wire, decoded, described->arm.least_rate).c_str(),
-               capture::implausible(described->wire, described->arm, decoded).c_str());
+               // numbers at wrong places say nothing about the scale
+               layout.empty() ? capture::implausible(described->wire, described->arm, decoded).c_str() : "");
   if (decoded.reports.empty())
     return fail(kFailed, "no report in " + std::to_string(taken->bytes()) + " bytes, expected " +
                              std::to_string(described->wire.input.bytes()) + " bytes per report");
@@ -231,6 +234,10 @@ int encode(const DecodeArguments& options) {
   problems = beyondFields(options, *described, *columns, *table);
   printProblems(problems, stderr);
   if (!problems.empty()) return kBadInput;
+  std::vector<size_t> joints;
+  for (size_t i = 0; options.from_arm && i < columns->from.size() && joints.size() < described->joints; ++i)
+    if (columns->names[i] == "position" + std::to_string(joints.size() + 1)) joints.push_back(columns->from[i]);
+  warnOfDegrees(options.input, *table, joints, *described->device);
   const auto out = encodeTable(options, *described, *columns, *table);
   if (!out) return fail(kBadInput, out.error());
   return writeOut(options.out, *out);
@@ -248,9 +255,10 @@ void addDecode(const Command& device, int& exit_code) {
       .excludes(hex);
   command.addOption("-o,--out", options->out, "CSV file to write; - for standard output");
   command.footer(
-      "A capture is raw bytes, or text with one transfer per line: \"01 ff 3c\", the E: lines of hid-recorder, or "
-      "what\n"
-      "`hapticd device record` writes. The output has one row per report: positions, torques and buttons in SI units,\n"
+      "A capture is raw bytes, or text with one transfer per line: \"01 ff 3c\", the E: lines of hid-recorder, lines "
+      "of\n"
+      "usbmon, hex dumps of Wireshark, or what `hapticd device record` writes. The output has one row per report: "
+      "positions, torques and buttons in SI units,\n"
       "or the reason why the bytes are not a report. The exit code is 1 if a report is bad.\n\n"
       "Examples:\n  hapticd device decode my-arm.yaml capture.bin\n"
       "  printf '00 01 00 02 00 03 00 00 00 00 00 00 00 00\\n' | hapticd device decode "

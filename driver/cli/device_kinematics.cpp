@@ -7,6 +7,7 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -14,6 +15,7 @@
 
 #include "cli/command.hpp"
 #include "cli/device_file.hpp"
+#include "cli/joint_angles.hpp"
 #include "cli/output_file.hpp"
 #include "document/csv.hpp"
 #include "document/reader.hpp"
@@ -174,6 +176,9 @@ int kinematics(const KinematicsArguments& options) {
   if (const std::string wrong = whyNotWritten(options.out, kind, inputs); !wrong.empty()) return fail(kBadInput, wrong);
   auto rows = readRows(options.joints, (*device)->kinematics().joint_count);
   if (!rows) return fail(kBadInput, rows.error());
+  std::vector<size_t> joints((*device)->kinematics().joint_count);
+  std::iota(joints.begin(), joints.end(), size_t{0});
+  warnOfDegrees(options.joints, *rows, joints, **device);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
       options.out == "-" ? nullptr : std::fopen(options.out.c_str(), "w"),
       [](std::FILE* f) { return f != nullptr ? std::fclose(f) : 0; });

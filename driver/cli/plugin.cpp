@@ -16,13 +16,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+const std::string kInQuarantine = "IN QUARANTINE: ";
+
 /// Returns the note for a plugin in quarantine.
 std::string noteOf(const watch::QuarantinedPlugin& entry) {
   const auto found = catalog().shape(entry.plugin);
   if (!found || entry.holds(entry.plugin, host::identityOnDisk((*found)->file)))
-    return "IN QUARANTINE: " + entry.reason + "; runs leave it out until: hapticd plugin clear " + entry.plugin;
-  return "NOTE: " + entry.file + " ended a run by " + entry.reason +
-         "; the file has changed since, or is another one, so it runs again";
+    return kInQuarantine + entry.reason + "; runs leave it out until: hapticd plugin clear " + entry.plugin;
+  return "NOTE: " + entry.fileForPeople() + " ended a run by " + entry.reason +
+         "; the file has changed since, or is another one, so it runs again; once it is repaired: hapticd plugin "
+         "clear " +
+         entry.plugin;
 }
 
 /// Returns why runs leave a plugin out, by the name of the plugin.
@@ -30,7 +34,10 @@ std::map<std::string, std::string> quarantineNotes() {
   std::map<std::string, std::string> notes;
   const auto dir = watch::stateDir();
   if (dir.empty()) return notes;
-  for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir)) notes[entry.plugin] = noteOf(entry);
+  for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir)) {
+    std::string& note = notes[entry.plugin];  // that of the newest build, unless the present one is in quarantine
+    if (!note.starts_with(kInQuarantine)) note = noteOf(entry);
+  }
   return notes;
 }
 
@@ -53,6 +60,7 @@ int list(bool details) {
   const auto files = catalog().files(host::Kind::kShape);
   printClasses(files, host::Kind::kShape, details, quarantineNotes());
   printUnusable(files);
+  warnOfAbsentFolders();
   if (files.empty()) return fail(kFailed, "no plugin found\n" + searchedText(catalog().searchPath().plugins));
   return kWorked;
 }

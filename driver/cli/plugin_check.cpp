@@ -2,7 +2,6 @@
 /// `hapticd plugin check FILE.so`: runs the conformance tests, each in a child process of its own.
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,7 @@
 #include "base/clock.hpp"
 #include "cli/colour.hpp"
 #include "cli/command.hpp"
+#include "cli/plugin_file.hpp"
 #include "cli/set_option.hpp"
 #include "conformance/conformance.hpp"
 #include "conformance/conformance_parts.hpp"
@@ -312,22 +312,8 @@ int sum(const std::vector<Outcome>& outcomes, size_t not_run, const ConformanceA
   return failed == 0 ? kWorked : kFailed;
 }
 
-/// Returns true for a shared object. A scene that was given by mistake would otherwise get the loader's error "invalid
-/// ELF header".
-bool isSharedObject(const std::string& file) {
-  char magic[4] = {};
-  std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
-  return std::string_view(magic, sizeof magic) ==
-         "\x7f"
-         "ELF";
-}
-
 int check(const ConformanceArguments& options) {
-  if (!isSharedObject(options.file))
-    return fail(kBadInput,
-                options.file +
-                    " is not a plugin, expected a shared object (FILE.so); a scene or a device file is checked "
-                    "with: hapticd check FILE");
+  if (const std::string why = whyNoPlugin(options.file); !why.empty()) return fail(kBadInput, why);
   std::vector<Outcome> outcomes;
   const auto classes = host::describeInChild(options.file);
   if (!classes) outcomes = unusable(classes.error());
@@ -357,7 +343,7 @@ void addPluginCheck(const Command& app, int& exit_code) {
   auto options = std::make_shared<ConformanceArguments>();
   const Command command = app.subcommand("plugin").addSubcommand(
       "check", "Run the conformance tests of a plugin file, each in its own process.");
-  command.addOption("file", options->file, "plugin file (.so)").required().existingFile();
+  command.addOption("file", options->file, "plugin file (.so)").required();
   command
       .addOption("--set", options->set,
                  "set a parameter, required or not: ID=VALUE, VALUE as in a scene; may be repeated; without it the "

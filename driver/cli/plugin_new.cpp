@@ -90,6 +90,7 @@ void printNextSteps(const std::string& folder, const std::string& name) {
   std::printf("touch it:  hapticd --plugin-path %s run %s/scene.yaml\n", at, at);
   std::printf("or with CMake, where hapticd is installed:  cmake -S %s -B %s/build && cmake --build %s/build\n", at, at,
               at);
+  std::printf("for all users of this machine, after that:  sudo cmake --install %s/build\n", at);
 }
 
 /// Copies the template to a new folder, file by file, and prints their names.

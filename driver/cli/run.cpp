@@ -2,6 +2,7 @@
 /// `hapticd run`: the daemon itself, in the foreground.
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -66,13 +67,21 @@ void showStatus(const servo::Runner& runner) {
                static_cast<double>(row.depth_m) * 1e3);
 }
 
-/// Warns that a plugin that ended an earlier run is tried again, because its file was rebuilt or replaced.
-void tellTriedAgain(const scene::Model& model, const watch::QuarantinedPlugin& entry) {
-  log::write(HSP_LOG_WARNING, "",
-             "model " + model.name + ": plugin '" + entry.plugin + "' ended an earlier run by " + entry.reason + " (" +
-                 entry.file + "); the file has changed since, or is another one, so it runs again\n  fix: " +
-                 "hapticd plugin check " + model.library.string() + "; once it is repaired: hapticd plugin clear " +
-                 entry.plugin);
+/// Warns that a plugin that ended an earlier run is tried again, because its file was rebuilt or replaced. Of several
+/// builds that did so, the newest is named.
+void tellTriedAgain(const scene::Model& model, const std::vector<watch::QuarantinedPlugin>& all) {
+  const auto builds =
+      std::count_if(all.begin(), all.end(), [&](const auto& one) { return one.plugin == model.plugin; });
+  const auto newest =
+      std::find_if(all.rbegin(), all.rend(), [&](const auto& one) { return one.plugin == model.plugin; });
+  if (newest == all.rend()) return;
+  const watch::QuarantinedPlugin& entry = *newest;
+  log::write(
+      HSP_LOG_WARNING, "",
+      "model " + model.name + ": plugin '" + entry.plugin + "' ended an earlier run by " + entry.reason + " (" +
+          entry.fileForPeople() + (builds > 1 ? "; and " + std::to_string(builds - 1) + " before it" : "") +
+          "); the file has changed since, or is another one, so it runs again\n  fix: " + "hapticd plugin check " +
+          model.library.string() + "; once it is repaired: hapticd plugin clear " + entry.plugin);
 }
 
 /// Removes from the scene the models of plugins that crashed the daemon. They stay out until the file of the plugin
@@ -80,17 +89,18 @@ void tellTriedAgain(const scene::Model& model, const watch::QuarantinedPlugin& e
 std::vector<std::string> leaveOutQuarantined(scene::Scene& scene, const std::filesystem::path& dir) {
   std::vector<std::string> messages;
   if (dir.empty()) return messages;
-  for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir))
+  const std::vector<watch::QuarantinedPlugin> all = watch::quarantined(dir);
+  for (const watch::QuarantinedPlugin& entry : all)
     std::erase_if(scene.models, [&](const scene::Model& model) {
-      if (!entry.holds(model.plugin, host::identityOnDisk(model.library))) {
-        if (model.plugin == entry.plugin) tellTriedAgain(model, entry);
-        return false;
-      }
+      if (!entry.holds(model.plugin, host::identityOnDisk(model.library))) return false;
       messages.push_back("model " + model.name + ": plugin '" + entry.plugin + "' ended an earlier run by " +
                          entry.reason + "; the model is left out; once the plugin is repaired: hapticd plugin clear " +
                          entry.plugin);
       return true;
     });
+  std::set<std::string> told;  // several models may have one plugin
+  for (const scene::Model& model : scene.models)
+    if (told.insert(model.plugin).second) tellTriedAgain(model, all);
   return messages;
 }
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # hapticd_add_plugin(NAME SOURCE... [LIBRARIES LIB...])   a shape plugin:  lib/hapticd/plugins/NAME.so
 # hapticd_add_device(NAME SOURCE... [LIBRARIES LIB...])   a device module: lib/hapticd/devices/NAME.so
-# Used inside the tree and, through find_package(hapticd), outside it.
+# Used inside the tree and, through find_package(hapticd), outside it. Outside it, `cmake --install` puts the file where the
+# hapticd that was found looks for it, unless CMAKE_INSTALL_PREFIX is given; without CMAKE_BUILD_TYPE it is compiled with -O2.
 # hapticd_link_modules(PROGRAM NAME...)   plugins and modules of this tree inside a program, for platforms without dlopen()
 
 function(_hapticd_name_module name)
@@ -21,12 +22,28 @@ function(_hapticd_entry_file file folder)
   endforeach()
 endfunction()
 
+# Installs a module of a project outside the tree into the folder of the hapticd that was found, for all users.
+function(_hapticd_install_outside name kind)
+  get_target_property(include hapticd::abi INTERFACE_INCLUDE_DIRECTORIES)
+  get_filename_component(prefix ${include} DIRECTORY)
+  get_filename_component(library_dir ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../.. ABSOLUTE)
+  file(RELATIVE_PATH library_dir ${prefix} ${library_dir})
+  if(CMAKE_INSTALL_PREFIX_INITIALIZED_TO_DEFAULT)
+    set_property(CACHE CMAKE_INSTALL_PREFIX PROPERTY VALUE ${prefix})
+  endif()
+  install(TARGETS ${name} LIBRARY DESTINATION ${library_dir}/hapticd/${kind})
+endfunction()
+
 function(_hapticd_add_module name kind)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "LIBRARIES")
   if(NOT TARGET hapticd_options) # outside the tree
     add_library(${name} MODULE ${arg_UNPARSED_ARGUMENTS})
     target_link_libraries(${name} PRIVATE hapticd::abi ${arg_LIBRARIES})
     _hapticd_name_module(${name})
+    if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+      target_compile_options(${name} PRIVATE -O2) # it runs a thousand times a second
+    endif()
+    _hapticd_install_outside(${name} ${kind})
     return()
   endif()
   if(CMAKE_CURRENT_SOURCE_DIR MATCHES "^${PROJECT_SOURCE_DIR}/tests/") # never found by a user's daemon, nor installed

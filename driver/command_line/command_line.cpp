@@ -306,8 +306,10 @@ std::string unexpected(const CLI::App& app, const std::vector<std::string>& word
     return fmt::format("there is no subcommand \"{}\", expected one of {}{}", word, fmt::join(names, ", "),
                        meant(word, names));
   const std::string more = fmt::format("unexpected word \"{}\": `{}` takes ", word, wordsOf(app));
-  if (argumentsOf(app).empty()) return more + "only options";
-  return more + fmt::format("only {} and options", fmt::join(argumentsOf(app), " "));
+  const bool digits = !word.empty() && word.find_first_not_of("0123456789.,-+eE") == word.npos;
+  const char* list = digits ? "; the numbers of one option are separated by commas, without blanks: 0.21,0.17" : "";
+  if (argumentsOf(app).empty()) return more + "only options" + list;
+  return more + fmt::format("only {} and options", fmt::join(argumentsOf(app), " ")) + list;
 }
 
 /// Describes what is missing: a subcommand, an argument or an option.

@@ -114,6 +114,14 @@ std::string bare(std::string_view text) {
   return out;
 }
 
+/// Returns the other unit of length in which people write small numbers: ", and 20 cm is 0.2 m"; "" if that is no
+/// likely one. @param meant the unit that is suggested first
+std::string centimetres(double value, std::string_view meant) {
+  constexpr double kLeast = 1, kMost = 100;  // larger numbers are millimetres
+  if (meant != "mm" || std::abs(value) < kLeast || std::abs(value) >= kMost) return "";
+  return ", and " + numberText(value) + " cm is " + rounded(value / 100) + " m";
+}
+
 }  // namespace
 
 std::string suggestNumber(std::string_view given, std::string_view unit) {
@@ -143,6 +151,11 @@ std::string suggestNumber(std::string_view given, std::string_view unit) {
          suggestUnit(toNumber(number).value_or(0), number + " " + std::string(rest), rest, unit);
 }
 
+std::string wrongDecimal(const std::string& text) {
+  const std::string advice = toNumber(text) ? "" : suggestNumber(text);
+  return advice.empty() ? "" : "\"" + text + "\" is not a number" + advice;
+}
+
 OtherUnit suggestOtherUnit(double value, std::pair<double, double> allowed, std::string_view unit) {
   struct UnitSlip {
     const char *unit, *meant;
@@ -156,7 +169,9 @@ OtherUnit suggestOtherUnit(double value, std::pair<double, double> allowed, std:
   for (const UnitSlip& slip : kSlips)
     if (const double meant = value * slip.factor;
         unit == slip.unit && std::abs(value) >= slip.least && meant >= allowed.first && meant <= allowed.second)
-      return {"; " + numberText(value) + " " + slip.meant + " is " + rounded(meant) + " " + slip.unit, meant};
+      return {"; " + numberText(value) + " " + slip.meant + " is " + rounded(meant) + " " + slip.unit +
+                  centimetres(value, slip.meant),
+              meant};
   return {};
 }
 

@@ -14,6 +14,10 @@ namespace hapticd::document {
 /// @param unit the expected unit; "" if it is unknown
 std::string suggestNumber(std::string_view text, std::string_view unit = "");
 
+/// [any] Returns a message such as "\"800,5\" is not a number; write 800.5, with a point, not a comma" for a text that
+/// is meant as a number but is none; "" for numbers and for words.
+std::string wrongDecimal(const std::string& text);
+
 /// A number that is out of its range because it is in another unit.
 struct OtherUnit {
   std::string advice;  ///< such as "; 5 ms is 0.005 s"; "" if no unit is likely

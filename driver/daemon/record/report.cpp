@@ -56,6 +56,20 @@ std::string timeLine(const char* name, const Histogram& h) {
                      h.quantile(0.5), h.quantile(0.99), h.quantile(0.999), h.max());
 }
 
+/// Says that the arms are the reason for ticks that came late, if most of the time passed in their modules.
+std::string slowArmsText(const RunReport& report) {
+  constexpr double kMany = 0.01, kMost = 0.5;  // shares of the ticks, and of a tick
+  const double arms = report.arms_us.quantile(0.5);
+  const bool late = static_cast<double>(report.overruns) > kMany * static_cast<double>(report.ticks);
+  if (report.virtual_time || !late || !(arms > kMost * report.compute_us.quantile(0.5))) return "";
+  return fmt::format(
+      "  slow arm  ticks come late because of the arms: read() and write() of their modules take {:.0f} us in the "
+      "median "
+      "tick\n  fix: hapticd device check FILE (the device file) names the call; what waits belongs in a thread of the "
+      "module's own\n",
+      arms);
+}
+
 std::string contactText(const ContactStatistics& c, const RunReport& report, const std::string& who) {
   const double seconds = report.rate_hz > 0 ? static_cast<double>(c.contactTicks()) / report.rate_hz : 0;
   std::string text = fmt::format("  contact   {:.2f} s ({} ticks){}\n", seconds, c.contactTicks(), who);
@@ -136,12 +150,18 @@ std::string untouchedText(const RunReport& report) {
   return faulted ? "  contact   none while forces were allowed\n" : "  contact   none: the tip touched no model\n";
 }
 
+/// Returns the name of a limit as a person finds it in a device file. For programs, the names stay as they are.
+std::string keyOfLimit(const std::string& name) {
+  if (name == "motors (torque)") return "arm.max_torque";
+  return name == "motors (heat)" ? "motors, by their heat" : name;
+}
+
 std::string limitText(const LimitReport& device, uint64_t ticks) {
   if (device.any == 0 || ticks == 0) return "";
   std::string text = fmt::format("limits of {}: the force was reduced in {:.3g} % of the ticks (", device.device,
                                  100.0 * static_cast<double>(device.any) / static_cast<double>(ticks));
   for (size_t i = 0; i < device.ticks.size(); ++i)
-    text += fmt::format("{}{}: {}", i > 0 ? ", " : "", device.ticks[i].first, device.ticks[i].second);
+    text += fmt::format("{}{}: {}", i > 0 ? ", " : "", keyOfLimit(device.ticks[i].first), device.ticks[i].second);
   return text + fmt::format("); the hand got {:.2f} N at most\n", device.sent_max_n);
 }
 
@@ -250,6 +270,7 @@ std::string summary(const RunReport& report) {
   }
   text += timeLine("compute", report.compute_us);
   text += timeLine("in arms", report.arms_us);
+  text += slowArmsText(report);
   text += fmt::format("  servo     {} page faults, {} allocations after warm-up\n", report.page_faults,
                       report.servo_allocations);
   text += fmt::format("  process   {:.1f} MB resident, first tick {:.0f} ms after the start\n",

@@ -6,6 +6,7 @@
 #include "hapticd/device.h"
 #include "host/shipped.hpp"
 #include "scene/loader.hpp"
+#include "scene/misplaced_parameters.hpp"
 #include "scene/parameters.hpp"
 
 namespace hapticd::scene::detail {
@@ -205,6 +206,7 @@ std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceRefer
   device.library = info.file;
   if (has_hand != nullptr) *has_hand = hasHand(info);
   ParameterReader reader(in, info);
+  placeParameters(root, info, in);
   if (text.parameters != nullptr) tellOfSimulated(root, *text.parameters, info, catalog, in);
   if (text.parameters != nullptr) reader.read(*text.parameters, "parameters");
   if (text.hand != nullptr) readHand(*text.hand, "hand", info, in, reader);

@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <sstream>
 
@@ -28,6 +30,19 @@ fs::path stateDir() {
   std::error_code code;
   fs::create_directories(dir, code);
   return !dir.empty() && access(dir.c_str(), W_OK) == 0 ? dir : fs::path();
+}
+
+std::string QuarantinedPlugin::fileForPeople() const {
+  std::istringstream parts(file);
+  long long bytes = 0, seconds = 0;
+  std::string word, of, fraction, path;
+  if (!(parts >> bytes >> word >> of >> seconds >> fraction >> std::ws) || !std::getline(parts, path)) return file;
+  const auto built = static_cast<std::time_t>(seconds);
+  std::tm time{};
+  char text[48];
+  if (gmtime_r(&built, &time) == nullptr || std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S UTC", &time) == 0)
+    return path;
+  return path + " of " + text + ", " + std::to_string(bytes) + " bytes";
 }
 
 std::vector<QuarantinedPlugin> quarantined(const fs::path& dir) {

@@ -19,6 +19,9 @@ struct QuarantinedPlugin {
   bool holds(const std::string& name, const std::string& identity) const {
     return name == plugin && (file.empty() || file == identity);
   }
+
+  /// Returns the file for people: its path, its size and when it was built; "" if it is unknown.
+  std::string fileForPeople() const;
 };
 
 /// [main] Returns the folder for files that outlive a run: STATE_DIRECTORY (which systemd sets),

@@ -17,7 +17,7 @@ const char* crashName(int signal) noexcept {
     case SIGILL:
       return "an instruction that this processor lacks (SIGILL)";
     case SIGABRT:
-      return "an abort, such as a failed assertion (SIGABRT)";
+      return "an abort, such as an uncaught exception or a failed assertion (SIGABRT)";
     case SIGXCPU:
       return "a servo thread that never slept (SIGXCPU)";
     case SIGTRAP:

@@ -47,6 +47,12 @@ HDerror errorOf(uint32_t fault) {
   }
 }
 
+constexpr const char* kFrameIsUsed =
+    "a frame was refused: HD_ONE_FRAME_LIMIT allows one frame of a device in a tick, and another callback, or an "
+    "earlier frame of this one, has used it (0x0400; the hdEndFrame that follows gets 0x0401)\n  fix: nest them: "
+    "frames "
+    "within hdBeginFrame and hdEndFrame of one callback are one frame; or call hdDisable(HD_ONE_FRAME_LIMIT)";
+
 std::string hintOf(const std::string& arm, uint32_t fault) {
   if (fault == kStopped)
     return "the arm " + arm +
@@ -133,8 +139,10 @@ void Arm::fillFrame(Frame& frame) const {
 
 void Arm::begin(uint64_t scheduler_tick) {
   if (in_frame_) return;
-  if (scheduler_tick != UINT64_MAX && ended_ && ended_in_ == scheduler_tick && isEnabled(HD_ONE_FRAME_LIMIT))
+  if (scheduler_tick != UINT64_MAX && ended_ && ended_in_ == scheduler_tick && isEnabled(HD_ONE_FRAME_LIMIT)) {
+    hintOnce(kFrameIsUsed);
     return errors_.push(HD_ILLEGAL_BEGIN, handle_);
+  }
   last_ = frame_;
   if (scheduler_tick == UINT64_MAX) refresh();
   frame_ = {};

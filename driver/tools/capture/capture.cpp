@@ -6,6 +6,8 @@
 #include <optional>
 #include <sstream>
 
+#include "capture/other_programs.hpp"
+
 namespace hapticd::capture {
 namespace {
 
@@ -76,6 +78,26 @@ std::string otherForm(const std::string& text) {
   return dump ? "; this is a dump with addresses: give the dumped file itself, or the output of `xxd -p -c SIZE`" : "";
 }
 
+Error notHexadecimal(int number, const std::string& line, const std::string& text) {
+  const std::string form = otherForm(text);
+  return Error{"line " + std::to_string(number) + ": \"" + shown(line) +
+               "\" is not hexadecimal, expected two digits per byte and one report per line: 01 ff 3c" +
+               (form.empty() ? formOfProgram(line) : form)};
+}
+
+/// Takes what other programs write before and after the bytes away from a line.
+/// @param continues becomes true if the bytes belong to the transfer of the line before
+Result<void> takeOther(std::string& line, Transfer& transfer, bool& continues) {
+  if (const auto usbmon = usbmonLine(line)) {
+    if (!*usbmon) return Error{usbmon->error()};
+    line = (*usbmon)->digits, transfer.time = (*usbmon)->time;
+  } else if (!takeEvent(line, transfer.time)) {
+    takeTime(line, transfer.time);
+    if (const auto offset = takeDumpOffset(line)) continues = *offset > 0;
+  }
+  return {};
+}
+
 Result<Capture> readText(const std::string& text) {
   Capture capture;
   capture.text = true;
@@ -88,12 +110,16 @@ Result<Capture> readText(const std::string& text) {
     if (line.empty() || line[0] == '>' || isHeading(line)) continue;
     if (line[0] == '<') line.erase(0, 1), line.erase(0, line.find_first_not_of(' '));
     Transfer transfer;
-    if (!takeEvent(line, transfer.time)) takeTime(line, transfer.time);
+    bool continues = false;
+    if (const auto taken = takeOther(line, transfer, continues); !taken)
+      return Error{"line " + std::to_string(number) + ": " + taken.error()};
     auto bytes = bytesIn(line);
-    if (!bytes)
-      return Error{"line " + std::to_string(number) + ": \"" + shown(line) +
-                   "\" is not hexadecimal, expected two digits per byte and one report per line: 01 ff 3c" +
-                   otherForm(text)};
+    if (!bytes) return notHexadecimal(number, line, text);
+    if (continues && !capture.transfers.empty()) {
+      std::vector<uint8_t>& before = capture.transfers.back().bytes;
+      before.insert(before.end(), bytes->begin(), bytes->end());
+      continue;
+    }
     transfer.bytes = std::move(*bytes);
     if (!transfer.bytes.empty()) capture.transfers.push_back(std::move(transfer));
   }

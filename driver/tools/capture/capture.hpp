@@ -12,7 +12,8 @@ namespace hapticd::capture {
 enum class Form : uint8_t {
   kGuess,  ///< read as text if every line is such text, otherwise as raw bytes
   kRaw,    ///< the bytes themselves
-  kHex,    ///< one transfer per line: two hex digits per byte; # begins a comment. Also hid-recorder's "E:" lines.
+  kHex,    ///< one transfer per line: two hex digits per byte; # begins a comment. Also hid-recorder's "E:" lines,
+           ///< and those of other_programs.hpp.
 };
 
 /// One transfer: a HID report, or a packet of an endpoint. A raw capture is one long transfer.

@@ -72,6 +72,30 @@ std::string unlikely(const hdv_info& info) {
   return "";
 }
 
+/// Returns a text about bounds of the joints that open() has probably forgotten, or "". Zero is a valid bound, but
+/// hardly any arm is meant to have it.
+std::string forgotten(const hdv_info& info) {
+  uint32_t boundless = 0, fixed = 0;
+  for (uint32_t i = 0; i < info.joint_count; ++i) {
+    boundless += info.max_torque[i] == 0 ? 1 : 0;
+    fixed += info.position_min[i] == 0 && info.position_max[i] == 0 ? 1 : 0;
+  }
+  const auto of = [&info](uint32_t count) {
+    return count == info.joint_count ? std::string("all joints")
+                                     : fmt::format("{} of {} joints", count, info.joint_count);
+  };
+  std::string text;
+  if (boundless > 0)
+    text = "hdv_info.max_torque is 0 for " + of(boundless) +
+           ", so nothing bounds the torques that are sent, and check cannot compare limits.force with the motors; "
+           "expected "
+           "the largest torque of each joint [N m; N for a sliding joint]";
+  if (fixed > 0)
+    text += std::string(text.empty() ? "" : "; ") + "hdv_info.position_min and position_max are 0 for " + of(fixed) +
+            ", so the range of the arm is unknown; expected the stops [rad; m for a sliding joint], or infinite ones";
+  return text;
+}
+
 /// Tests that the module has what open() claims, because a scene that relies on a false claim would run without it.
 Finding claims(const scene::Device& device) {
   const Opened opened = openArm(device);
@@ -89,6 +113,7 @@ Finding claims(const scene::Device& device) {
                            ": hapticd device calibrate cannot calibrate it, and no force comes before samples carry "
                            "HDV_S_CALIBRATED");
   if (const std::string odd = unlikely(opened.arm->info()); !odd.empty()) return Finding::warned(odd);
+  if (const std::string bounds = forgotten(opened.arm->info()); !bounds.empty()) return Finding::warned(bounds);
   if (const std::string heavy =
           host::heavyForMotors(opened.arm->kinematics(), opened.arm->handle(), opened.arm->info());
       !heavy.empty())

@@ -50,6 +50,21 @@ try:
     raise SystemExit("no such column was accepted")
 except KeyError as error:
     assert "expected one of: t, n (did you mean \\"t\\"?)" in str(error), error
+try:
+    hapticd._error.Named("model", {"door": 1})["doors"]
+except KeyError as error:
+    assert str(error).endswith("expected one of: door (did you mean \\"door\\"?)") and str(error).startswith("there is no model"), str(error)
+asked = {}
+model = hapticd.Model(type("Client", (), {"ask": lambda self, **request: asked.update(request) or {"seconds": 1}})(),
+                      {"name": "door", "number": 0, "plugin": "p", "enabled": True, "kinematic": True, "leader": None,
+                       "pose": {"position": [0, 0, 0], "orientation": [1, 0, 0, 0]}})
+model.move([0, 0, 0.1], orientation=[1, 0, 0, 0])
+assert asked["orientation"] == [1, 0, 0, 0] and "seconds" not in asked, asked
+try:
+    model.move([0, 0, 0.1], [1, 0, 0, 0])
+    raise SystemExit("an orientation was taken for seconds")
+except TypeError as error:
+    assert "orientation=[w, x, y, z]" in str(error), error
 def lead(kind):
     fd = os.memfd_create("lead")
     os.truncate(fd, 4096)

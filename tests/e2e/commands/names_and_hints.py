@@ -82,9 +82,35 @@ def geometries(folder, ask):
     check("a model file needs no part", code == 2 and "a model file needs no import" in said, said)
 
 
+def plugin_files(folder, ask):
+    """What people give in the place of a plugin's file, and old notes of the quarantine."""
+    bump = os.path.join(folder, "bump")
+    os.mkdir(bump)
+    code, _, err = ask("plugin", "check", bump)
+    check("a folder without a plugin is told to be built", code == 2 and f"{bump} is a folder" in err and "build it first" in err, err)
+    shutil.copy(os.path.join(PLUGINS, "nurbs_rigid.so"), os.path.join(bump, "bump.so"))
+    code, _, err = ask("plugin", "check", bump)
+    check("a folder is told the file in it", code == 2 and err.rstrip().endswith(f"expected the file of a plugin: {bump}/bump.so"), err)
+    code, _, err = ask("plugin", "check", "nurbs_rigid")
+    check("the name of a plugin is told its file", code == 2 and "the file of the plugin with this name is" in err and "nurbs_rigid.so" in err, err)
+    os.environ["HAPTICD_PLUGIN_PATH"] = folder + "/none"
+    absent = program(HAPTICD, dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder))("plugin", "list")
+    del os.environ["HAPTICD_PLUGIN_PATH"]
+    check("a folder of the path that does not exist is told", absent[0] == 0 and f"HAPTICD_PLUGIN_PATH names {folder}/none, but there is no such folder" in absent[2], absent)
+    old = "nurbs_rigid\tan abort\t{} bytes of {}.80406239 /x/nurbs_rigid.so\n"
+    note = write(folder, "quarantine", old.format(93968, 1795916526) + old.format(93999, 1795916626))
+    balls = write(folder, "balls.yaml", "hapticd: 1\nmodels:\n" + "".join(
+        f"  - {{name: {name}, plugin: nurbs_rigid, parameters: {{geometry: {SOURCE}/config/models/sphere.yaml}}}}\n" for name in "ab"))
+    code, out, err = ask("run", balls, "--virtual-time", "--for", "0.1")
+    check("old builds in the quarantine are told once, the newest with its date", code == 0 and (out + err).count("ended an earlier run") == 1
+          and "/x/nurbs_rigid.so of 2026-11-29 01:43:46 UTC, 93999 bytes; and 1 before it" in out + err, out + err)
+    os.remove(note)
+
+
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     said = program(HAPTICD, dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch))
     hidden(scratch, said)
     unloadable(scratch, said)
     geometries(scratch, said)
+    plugin_files(scratch, said)
 finish()

@@ -29,6 +29,9 @@ CASES = [
      f"{OUT}[0].endian", "big in all of wire.output, but little in all of wire.input"),
     (WIRED, {SECOND: SECOND.replace("i16", "|u16")}, f"{IN}[2].type", "the types of the other joints are signed"),
     (WIRED, {SECOND: SECOND.replace("9.6e-5", "|0.0055")}, f"{IN}[2].scale", "scale_degrees: 0.0055"),
+    (WIRED, {SECOND: SECOND.replace("9.6e-5", "|20000")}, f"{IN}[2].scale",
+     "if it is the counts of a turn, write 2 pi / (counts of a motor turn * motor turns of one joint turn): 0.000314159"),
+    (WIRED.replace("usb_hid", "usb_bulk"), {"    exchange": "    |exchange"}, "parameters.wire.endpoints", "not given, so {in: 0x81, out: 0x02} are used"),
     (WIRED, {READ.format(3, 6): READ.format(3, 6).replace("9.6e-5", "|9.6e-4")}, f"{IN}[3].scale", "10 times as coarse as that of any other"),
     (WIRED, {SENT.format(3, 4): SENT.format(3, 4).replace("2.0e-5", "|2.0e-4")}, f"{OUT}[2].scale", "measured by arm.max_torque"),
     (WIRED, {FIRST_OUT: FIRST_OUT.replace("1, at", "|3, at"), SENT.format(3, 4): SENT.format(1, 4)}, f"{OUT}[0].joint",
@@ -138,6 +141,12 @@ REFUSED = [
     (WIRED, {"lengths: [0.21, 0.17, 0.03, 0, 0]": "lengths: |[0,2, 0,9, 0, 0, 0]"}, "parameters.arm.lengths", "expected 5 for this kind of arm; a comma separates two numbers: write 0.2, not 0,2"),
     (WIRED, {"max_torque: [0.6]": "max_torque: |[0,6, 0,6]"}, "parameters.arm.max_torque", "write 0.6, not 0,6"),
     (WIRED, {"lengths: [0.21, 0.17, 0.03, 0, 0]": "lengths: |[0, 2, 1]"}, "parameters.arm.lengths", "3 numbers, expected 5 for this kind of arm\n"),
+    (WIRED, {"lengths: [0.21": "lengths: [|21"}, "parameters.arm.lengths[0]", "21 mm is 0.021 m, and 21 cm is 0.21 m\n"),
+    (WIRED, {"hapticd-device: 1\n": "hapticd-device: 1\n|verified: true\n"}, "verified",
+     "it is a parameter of usb_hid: expected parameters: {device: {verified: true}}"),
+    (WIRED, {"hapticd-device: 1\n": "hapticd-device: 1\n|device: {verified: true}\n"}, "device",
+     "it is a parameter of usb_hid: expected parameters: {device: {verified: true}}\n"),
+    (WIRED, {"hapticd-device: 1\n": "hapticd-device: 1\n|id: '1:2'\n"}, "id", 'expected parameters: {usb: {id: "1:2"}}'),
     (WIRED, {"lengths: [0.21": "lengths: [|205"}, "parameters.arm.lengths[0]", "205 mm is 0.205 m\n"),
 ]
 
@@ -256,6 +265,11 @@ def strict(folder):
     done = subprocess.run([HAPTICD, "check", scene, "--device", file], capture_output=True, text=True, timeout=120)
     check("a limit that cuts all is told where it stands", f"{place}: limits.impulse: warning: this limit cuts the force" in done.stdout
           and "stiffness" not in done.stdout, done.stdout)
+    weak, _ = written(os.path.join(folder, "weak.yaml"), PREMIUM + "|", {"arm: {": "arm: {max_torque: [0.02], "})
+    done = subprocess.run([HAPTICD, "check", scene, "--device", weak], capture_output=True, text=True, timeout=120)
+    check("the motors' bound has the name of its key", ": arm.max_torque cuts the force in" in done.stdout and "limits.motors" not in done.stdout, done.stdout)
+    done = subprocess.run([HAPTICD, "run", scene, "--device", weak, "--virtual-time", "--for", "2"], capture_output=True, text=True, timeout=120)
+    check("also in the summary of a run", "arm.max_torque: " in done.stdout + done.stderr and "motors (torque)" not in done.stdout + done.stderr, done.stdout + done.stderr)
     file, place = written(os.path.join(folder, "slow.yaml"), PREMIUM, {"force: 8.5": "force: 8.5, velocity: |0.02"})
     with open(scene) as text:
         own = text.read().replace("../", f"{SOURCE}/config/")

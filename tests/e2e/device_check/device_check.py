@@ -114,7 +114,8 @@ for slip, test, words, *more in (
     code, tests = examined(slip, *more)
     result, what = tests.get(test, ("", tests))
     check(f"{slip} fails by {test}", code == 1 and result == "fail" and words in what, (code, tests))
-for slip, test, words in (("fast", "claims", "rate_hz"), ("read_microseconds", "samples", "more than 0.1 s behind now_ns"), ("no_angular_rows", "kinematics", "rows 3 to 5"), ("weight_pulls", "kinematics", "pull the tip down"),
+for slip, test, words in (("forgets", "claims", "hdv_info.max_torque is 0 for all joints"), ("forgets", "claims", "position_min and position_max are 0 for all joints"),
+                          ("fast", "claims", "rate_hz"), ("read_microseconds", "samples", "more than 0.1 s behind now_ns"), ("no_angular_rows", "kinematics", "rows 3 to 5"), ("weight_pulls", "kinematics", "pull the tip down"),
                           ("weight_aside", "kinematics", "push the tip aside and never up, if gravity is along x"),
                           ("weight_in_grams", "claims", "the torques of gravity() are more than the motors give")):
     code, tests = examined(slip)
@@ -136,6 +137,16 @@ crashes = put("scene.yaml", open(stalls).read().replace("read_stalls", os.path.b
 ended, said = run("run", crashes, "--allow-non-rt", "--for", "3")
 check("a module that crashes a run is to be examined", ended == 1 and f"repair the module; hapticd device check {MODULES}" in said and "slips_arm.so" in said, (ended, said))
 check("a read() that stalls is told of its module", "its module did not return" in text and "hapticd device check" in text and "doctor" not in text, (code, text))
+code, text = run("device", "check", arm("forgets"))
+check("warnings are counted", text.rstrip().endswith("8 tests, 0 failed, 1 warning"), text)
+code, text = run("device", "info", arm("forgets"))
+check("device info says what is unknown", "joint 1: range unknown, no bound of its motor is known" in text, text)
+code, text = run("device", "info", arm("none"))
+check("and the unit of each joint", "joint 1: -1 to 1 rad, its motor up to 1 N m\n" in text, text)
+sleeps = put("scene.yaml", open(scene).read().replace("read_crashes", os.path.basename(arm("read_sleeps"))[:-5]))
+code, text = run("run", sleeps, "--allow-non-rt", "--for", "4")
+check("a read() that sleeps is told as the cause of late ticks", "ticks come late because of the arms: read() and write() of their modules take" in text
+      and "hapticd device check FILE" in text, (code, text))
 code, text = run("check", arm("inverse_mirrored"))
 check("check warns of a wrong inverse", code == 0 and "warning" in text and "the module cannot tell which joint positions" in text and "inverse()" in text, (code, text))
 

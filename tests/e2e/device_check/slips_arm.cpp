@@ -34,6 +34,7 @@ struct SlipsArm : hapticd::Device {
     info.rate_hz = is("fast") ? 1e9 : 1000;
     info.max_force = info.continuous_force = 6;
     for (int i = 0; i < 2; ++i) {
+      if (is("forgets")) continue;
       info.max_torque[i] = 1;
       info.position_min[i] = -1;
       info.position_max[i] = 1;

@@ -146,8 +146,11 @@ def plain(daemon):
     for program in ("hello", "hello98"):
         daemon.program(program, "PHANTOM Premium 1.5")
     daemon.program("names", os.path.join(HERE, "functions.txt"))
-    for program in ("hdu", "values", "scheduler", "constructor"):
+    for program in ("hdu", "values", "constructor"):
         daemon.program(program)
+    told = daemon.program("scheduler").stderr
+    check("a second frame in a tick is told once, with two ways out", told.count("HD_ONE_FRAME_LIMIT allows one frame") == 1
+          and "nest them" in told and "hdDisable(HD_ONE_FRAME_LIMIT)" in told, told)
 
 
 def client_force(daemon):

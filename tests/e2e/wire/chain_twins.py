@@ -5,6 +5,7 @@ Usage: chain_twins.py HAPTICD SOURCE_DIR       exit 1 when one is off
 """
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -54,6 +55,15 @@ with tempfile.TemporaryDirectory() as folder:
         told = json.load(open(report)) if os.path.exists(report) else {}
         touched = told.get("models", {}).get("sphere", {}).get("contact_ticks", 0)
         check("and presses the sphere", code == 0 and touched > 200 and told["faults"] == [], (touched, out[-1200:], err, open(twin).read()))
+
+    # What an arm sends as floating-point numbers has no counts, and a hand that presses needs no axis of strokes.
+    new("--kind", "chain", "--joints", "2")
+    text = open(arm).read().replace("type: i16, scale: 0.000314159265, wraps: true", "type: f32, scale: 1").replace("joint: 2, at: 4", "joint: 2, at: 6")
+    text = re.sub(r"size: \d+", "size: 12", text, count=1)
+    open(arm, "w").write(re.sub(r"button: 1, bit_offset: \d+", "button: 1, at: 11", text))
+    run("device", "twin", arm, "-o", twin)
+    code, out, err = run("check", twin)
+    check("a twin is not warned of itself", code == 0 and "hand.axis" not in out and "joint.counts" not in out, (out, err, open(twin).read()))
 
     # Nobody said what its motors sustain: the Premium's 1.4 N are not theirs.
     new("--kind", "phantom")

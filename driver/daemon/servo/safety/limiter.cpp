@@ -58,6 +58,13 @@ const char* nameOf(Limit limit) {
   return kNames[static_cast<size_t>(limit)];
 }
 
+const char* keyOf(Limit limit) {
+  static constexpr const char* kKeys[kLimitCount] = {
+      "limits.workspace", "limits.motors", "limits.force",   "limits.torque", "limits.power",
+      "limits.impulse",   "limits.slew",   "arm.max_torque", "limits.weight", "age of the sample"};
+  return kKeys[static_cast<size_t>(limit)];
+}
+
 Limiter::Limiter(const scene::Limits& limits, double device_max_force)
     : limits_(limits), max_force_(limits.force > 0 ? limits.force : device_max_force), enabled_(!limits.enable.button) {
   if (limits.force > 0 && device_max_force > 0) max_force_ = std::min(limits.force, device_max_force);

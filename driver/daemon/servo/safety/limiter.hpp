@@ -18,7 +18,8 @@ namespace hapticd::servo {
 /// The limits that can reduce a force. nameOf() lists their names in this order.
 enum class Limit : uint8_t { kWorkspace, kHeat, kForce, kTorque, kPower, kImpulse, kSlew, kMotors, kWeight, kSample };
 constexpr size_t kLimitCount = 10;
-const char* nameOf(Limit limit);  ///< such as "force" for limits.force
+const char* nameOf(Limit limit);  ///< such as "force" for limits.force; a name in reports for programs
+const char* keyOf(Limit limit);   ///< key of a device file that sets the limit, such as "limits.force"
 
 /// Counts the ticks in which a limit reduced the force.
 struct Clips {

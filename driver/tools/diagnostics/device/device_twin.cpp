@@ -67,6 +67,7 @@ std::string armOfTwin(const Node& arm, bool chain) {
 }
 
 /// Returns the encoder counts per turn of each joint, from the scales of the positions; empty if they cannot be found.
+/// Positions that the arm sends as floating-point numbers have no counts.
 std::vector<double> countsOf(const Node& parameters) {
   std::vector<double> counts;
   for (const Node& field : below(below(below(parameters, "wire"), "input"), "fields").items) {
@@ -75,6 +76,7 @@ std::vector<double> countsOf(const Node& parameters) {
     const auto degrees = document::toNumber(below(field, "scale_degrees").scalar);
     const double turn = scale ? 2 * M_PI / std::abs(*scale) : degrees ? 360 / std::abs(*degrees) : 0;
     const auto joint = document::toNumber(below(field, "joint").scalar).value_or(0);
+    if (below(field, "type").scalar.starts_with("f")) return {};
     if (!(turn >= 1 && turn <= 1e9) || !(joint >= 1 && joint <= 16)) return {};
     counts.resize(std::max(counts.size(), static_cast<size_t>(joint)), turn);
     counts[static_cast<size_t>(joint) - 1] = turn;
@@ -131,8 +133,7 @@ TwinPose standOfFlat(const RestPose& rest, const std::string& pose) {
       "middle, {}\n",
       listOf(-stand.center), pose, rest.flat ? "in the plane in which it moves" : "in a direction in which it moves");
   stand.pressing = rest.flat;
-  const bool along_y = std::abs(rest.push.y()) > 0.9;
-  stand.hand = ", normal: " + listOf(rest.push) + (along_y ? ", axis: [0, 0, 1]" : "");
+  stand.hand = ", normal: " + listOf(rest.push);
   return stand;
 }
 

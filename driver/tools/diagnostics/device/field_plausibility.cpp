@@ -133,6 +133,16 @@ void mixedSigns(const Side& side, Role role) {
   }
 }
 
+/// Returns the advice for a scale that is too large for rad per count. Numbers above one are counts of an encoder;
+/// smaller ones may be degrees.
+std::string inRadians(double scale) {
+  if (std::abs(scale) <= 1) return fmt::format("if it is in degrees, write scale_degrees: {:g}", scale);
+  return fmt::format(
+      "if it is the counts of a turn, write 2 pi / (counts of a motor turn * motor turns of one joint "
+      "turn): {:.6g} with one motor turn",
+      2 * M_PI / scale);
+}
+
 /// Warns of a scale that is far larger or smaller than the others, because the joints of these arms are alike and the
 /// decimal point may be wrong.
 void unlikeOthers(const Side& side, Role role, const std::vector<double>& motors) {
@@ -157,13 +167,11 @@ void unlikeOthers(const Side& side, Role role, const std::vector<double>& motors
     if (coarseness(i) < kTimes * next && !finer) continue;
     const double times = coarseness(i) / next, degrees = times * M_PI / 180;
     const bool in_degrees = role == Role::kPosition && degrees > 0.9 && degrees < 1.1;
-    side.warn(
-        i, "scale",
-        fmt::format(
-            "this scale is {:.3g} times as {} as that of any other joint{}: {}", finer ? least / coarseness(i) : times,
-            finer ? "fine" : "coarse", role == Role::kTorque ? ", measured by arm.max_torque" : "",
-            in_degrees ? fmt::format("if it is in degrees, write scale_degrees: {:g}", side.report.fields[i].scale)
-                       : "is the decimal point wrong?"));
+    side.warn(i, "scale",
+              fmt::format("this scale is {:.3g} times as {} as that of any other joint{}: {}",
+                          finer ? least / coarseness(i) : times, finer ? "fine" : "coarse",
+                          role == Role::kTorque ? ", measured by arm.max_torque" : "",
+                          in_degrees ? inRadians(side.report.fields[i].scale) : "is the decimal point wrong?"));
   }
 }
 
@@ -201,9 +209,8 @@ void coarseCounts(const Node& root, const Side& side, const host::DeviceInstance
   const auto q = restJoints(root, joints);
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor> J(6, joints);
   if (arm.kinematics().jacobian(arm.handle(), q.data(), J.data()) < 0 || !J.allFinite()) return;
-  double stiffness = 0;
-  for (const scene::Value& value : side.device.parameters)
-    if (value.id == "device.max_stiffness") stiffness = value.number;
+  const scene::Value* most = givenIn(side.device.parameters, "device.max_stiffness");
+  const double stiffness = most != nullptr ? most->number : 0;
   for (const size_t i : side.of({Role::kPosition})) {
     const Field& field = side.report.fields[i];
     if (field.type == codec::Type::kFloat || field.index >= joints || side.fields.items[i].find("scale") == nullptr)
@@ -212,11 +219,10 @@ void coarseCounts(const Node& root, const Side& side, const host::DeviceInstance
     if (step < kAlways && (step < kSmall || step * stiffness < kBuzz)) continue;
     side.warn(
         i, "scale",
-        fmt::format("one count of joint {} moves the tip by {:.3g} mm{}; the value must be in rad per count; if it is "
-                    "in degrees, write scale_degrees: {:g}",
+        fmt::format("one count of joint {} moves the tip by {:.3g} mm{}; the value must be in rad per count; {}",
                     field.index + 1, step * 1e3,
                     stiffness > 0 ? fmt::format(", a step of {:.2g} N at device.max_stiffness", step * stiffness) : "",
-                    field.scale));
+                    inRadians(field.scale)));
   }
 }
 
@@ -247,10 +253,10 @@ void coarseAngles(const Side& side) {
     if (field.type == codec::Type::kFloat || !(std::abs(field.scale) > kLarge) ||
         side.fields.items[i].find("scale") == nullptr)
       continue;
-    side.warn(i, "scale",
-              fmt::format("one count of joint {} is {:.3g} rad, or {:.3g} degrees; the value must be in rad per count; "
-                          "if it is in degrees, write scale_degrees: {:g}",
-                          field.index + 1, field.scale, field.scale * 180 / M_PI, field.scale));
+    side.warn(
+        i, "scale",
+        fmt::format("one count of joint {} is {:.3g} rad, or {:.3g} degrees; the value must be in rad per count; {}",
+                    field.index + 1, field.scale, field.scale * 180 / M_PI, inRadians(field.scale)));
   }
 }
 
@@ -349,13 +355,9 @@ void polynomialBackwards(const Side& side) {
 
 /// Warns of an offset that has no effect, because calibration in a pose takes the zero from where the arm is held.
 void idleOffset(const Side& side) {
-  const auto given = [&side](const char* id) {
-    for (const scene::Value& value : side.device.parameters)
-      if (value.id == id) return value.number;
-    return 0.0;
-  };
   constexpr double kPose = 2;  // index in the choices none, device, pose
-  if (given("calibration.method") != kPose) return;
+  const scene::Value* method = givenIn(side.device.parameters, "calibration.method");
+  if (method == nullptr || method->number != kPose) return;
   for (const size_t i : side.of({Role::kPosition}))
     for (const char* key : {"offset", "offset_degrees"})
       if (side.fields.items[i].find(key) != nullptr && side.report.fields[i].offset != 0)

@@ -273,10 +273,22 @@ void warnOfWaits(const Node& root, const scene::Device& device, document::Proble
   }
 }
 
+/// Warns of endpoints that are not given: their numbers are those of common boards, and not those of every arm.
+void warnOfEndpoints(const Node& wire, const scene::Device& device, document::Problems& warnings) {
+  if (wire.find("endpoints") != nullptr) return;
+  const codec::Wire defaults;
+  document::report(
+      warnings, device.file.string(), wire.line, wire.column, "parameters.wire.endpoints",
+      fmt::format("not given, so {{in: {:#04x}, out: {:#04x}}} are used; expected the endpoints that lsusb "
+                  "-v shows as bEndpointAddress (IN and OUT) for this arm",
+                  defaults.endpoint_in, defaults.endpoint_out));
+}
+
 /// Warns of keys that only an arm on bulk endpoints (module usb_bulk) can obey.
 void warnOfBulkKeys(const Node& root, const scene::Device& device, document::Problems& warnings) {
   const Node* wire = find(root, {"parameters", "wire"});
-  if (wire == nullptr || device.module == "usb_bulk") return;
+  if (wire == nullptr) return;
+  if (device.module == "usb_bulk") return warnOfEndpoints(*wire, device, warnings);
   const std::string file = device.file.string(), module = device.module;
   if (const Node* endpoints = wire->find("endpoints"))
     document::report(warnings, file, endpoints->line, endpoints->column, "parameters.wire.endpoints",

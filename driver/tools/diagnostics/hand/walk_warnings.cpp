@@ -196,7 +196,8 @@ void reportCut(const scene::Scene& scene, const scene::Device& device, const Han
                                : keyOfHand(scene, device, {"hand.radius", "hand.path", "hand.script"});
   if (seen.depth < kDeep && stiffness != nullptr)
     key = {stiffness->place, fmt::format("models[{}].parameters.stiffness", seen.deepest)};
-  const std::string limit = servo::nameOf(static_cast<servo::Limit>(strictest(seen)));
+  const auto strict = static_cast<servo::Limit>(strictest(seen));
+  const std::string limit = servo::nameOf(strict);
   if (reportOwnLimit(device, seen, limit, warnings)) return;
   const std::string most =
       limit == "motors (torque)" && seen.asked <= limiter.maxForce()
@@ -207,10 +208,10 @@ void reportCut(const scene::Scene& scene, const scene::Device& device, const Han
   document::report(
       warnings, key.place, key.id,
       fmt::format(
-          "the hand of {} is up to {:.3g} mm deep in {} and asks for up to {:.3g} N{}: limits.{} cuts the force in "
+          "the hand of {} is up to {:.3g} mm deep in {} and asks for up to {:.3g} N{}: {} cuts the force in "
           "{:.0f} % of the ticks with a force; expected a hand that presses less (hand.radius, hand.rise in m) or "
           "less stiffness",
-          device.name, seen.depth * 1e3, model.name, seen.asked, most, limit,
+          device.name, seen.depth * 1e3, model.name, seen.asked, most, servo::keyOf(strict),
           100 * static_cast<double>(seen.cut) / static_cast<double>(seen.contact)));
 }
 

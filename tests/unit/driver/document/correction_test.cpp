@@ -30,6 +30,8 @@ TEST(Meant, SaysHowToWriteANumberThatWasWrittenOtherwise) {
   for (const auto& [text, unit, meant] : cases) EXPECT_EQ(suggestNumber(text, unit), meant) << text;
   for (const char* text : {"", "fast", "1.2.3", "10-20", "1000 2000", "1 2", "0,5,1", ",", "-", "mm", "true"})
     EXPECT_EQ(suggestNumber(text, "N"), "") << text;
+  EXPECT_EQ(wrongDecimal("800,5"), "\"800,5\" is not a number; write 800.5, with a point, not a comma");
+  EXPECT_EQ(wrongDecimal("800.5") + wrongDecimal("linear"), "");
 }
 
 TEST(Meant, ReadsAListInATextAndTwoNumbersInOne) {

@@ -26,6 +26,7 @@ static double pressed(hapticd_client* client, int events, uint64_t* row, double 
 }
 
 int main(int argc, char** argv) {
+  if (argc > 1 && argv[1][0] == '-') return fprintf(stderr, "usage: button [NAME]\n"), 2;
   hapticd_error error;
   hapticd_client* client = hapticd_connect(argc > 1 ? argv[1] : NULL, &error);
   if (client == NULL) return fprintf(stderr, "error: %s\n", error.text), 1;

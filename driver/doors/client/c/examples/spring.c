@@ -22,11 +22,13 @@ int main(int argc, char** argv) {
   const double seconds = argc > 2 ? atof(argv[2]) : 10, stiffness = argc > 3 ? atof(argv[3]) : 200;
   const struct sched_param priority = {.sched_priority = 70};
   hapticd_error error;
-  hapticd_client* client = hapticd_connect(name, &error);
+  hapticd_client* client = NULL;
   hapticd_lead* lead = NULL;
   hapticd_state state, first;
   uint64_t answers = 0;
 
+  if (name[0] == '-') return fprintf(stderr, "usage: spring [NAME [SECONDS [N/m [LISTEN]]]]\n"), 2;
+  client = hapticd_connect(name, &error);
   if (client == NULL) return fprintf(stderr, "error: %s\n", error.text), 1;
   if (hapticd_next_state(client, 0, UINT64_MAX, 1000, &first) != 1) {
     fprintf(stderr, "error: the daemon has no arm\n");

@@ -44,6 +44,13 @@ def meant(name: object, known: Iterable[object]) -> str:
     return f' (did you mean "{similar[0]}"?)' if similar else ""
 
 
+class UnknownName(KeyError):
+    """A KeyError whose text is not printed with quotes and backslashes."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
 class Named(dict):  # type: ignore[type-arg]
     """A dictionary whose error for an unknown name lists the known names."""
 
@@ -53,4 +60,4 @@ class Named(dict):  # type: ignore[type-arg]
 
     def __missing__(self, name: object) -> None:
         known = f"expected one of: {', '.join(map(str, self))}{meant(name, self)}" if self else "nor any other"
-        raise KeyError(f"there is no {self._what} {name!r}, {known}")
+        raise UnknownName(f"there is no {self._what} {name!r}, {known}")

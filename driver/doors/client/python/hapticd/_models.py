@@ -64,11 +64,18 @@ class Model:
         """Fades the force of the model out. The model is still traced."""
         self._client.ask(do="disable", model=self.name)
 
-    def move(self, position: Sequence[float], seconds: Optional[float] = None) -> float:
-        """Sends a kinematic model to a position [m]. Returns how many seconds the motion takes."""
+    def move(self, position: Sequence[float], seconds: Optional[float] = None,
+             orientation: Optional[Sequence[float]] = None) -> float:
+        """Sends a kinematic model to a position [m] and an orientation (a unit quaternion w, x, y, z; it stays as it is
+        without one). Returns how many seconds the motion takes."""
         if not hasattr(position, "__len__"):
             raise TypeError(f"move() expects a position [x, y, z] in m, got {position!r}")
+        if hasattr(seconds, "__len__"):
+            raise TypeError(f"move() expects seconds as its second argument, got {seconds!r}; name an orientation: "
+                            "move(position, orientation=[w, x, y, z])")
         request: dict[str, Any] = {"do": "move", "model": self.name, "position": list(position)}
+        if orientation is not None:
+            request["orientation"] = list(orientation)
         if seconds is not None:
             request["seconds"] = seconds
         return self._client.ask(**request)["seconds"]

@@ -35,6 +35,8 @@ TEST(Quarantine, HoldsAFileAndNotEveryOneOfItsName) {
   EXPECT_TRUE(list[0].holds("a", "8 bytes of 1.2 /x/a.so"));
   EXPECT_FALSE(list[0].holds("a", "9 bytes of 3.4 /x/a.so"));
   EXPECT_FALSE(list[0].holds("b", "8 bytes of 1.2 /x/a.so"));
+  EXPECT_EQ(list[0].fileForPeople(), "/x/a.so of 1970-01-01 00:00:01 UTC, 8 bytes");
+  EXPECT_EQ(list[2].fileForPeople(), "");
   EXPECT_TRUE(list[2].holds("b", "whatever the file is: an older version wrote no more"));
   EXPECT_TRUE(*clearQuarantine(dir, "b"));
   ASSERT_EQ(quarantined(dir).size(), 2u);
