@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "kernels/spline/cusp.hpp"
+#include "kernels/spline/refinement.hpp"
+
 namespace hapticd {
 namespace {
 
@@ -50,38 +53,23 @@ Fold foldAt(const SurfaceData& surface, int axis, int first) {
   return fold;
 }
 
-/// True if the weights of the rows of a fold, and of the rows beside it, are multiples of one another.
-bool weightsAreAlike(const SurfaceData& surface, int axis, int first) {
-  if (surface.weights.empty()) return true;
-  const int from = std::max(first - 1, 0);
-  const int to = std::min(first + surface.degree[static_cast<std::size_t>(axis)], surface.count(axis) - 1);
-  const auto weight = [&](int row, int line) { return surface.weights[pointAt(surface, axis, row, line)]; };
-  for (int row = from + 1; row <= to; ++row)
-    for (int line = 1; line < surface.count(1 - axis); ++line) {
-      const double expected = weight(row, 0) / weight(from, 0) * weight(from, line);
-      if (!(std::abs(weight(row, line) - expected) <= 1e-12 * expected)) return false;
-    }
-  return true;
-}
-
 }  // namespace
 
 void warnOfCusps(const SurfaceData& surface, std::size_t index, Problems& odd) {
-  constexpr double kSame = 1e-9;  // as in kernels/spline/cusp.cpp
   for (const int axis : {0, 1}) {
     const int degree = surface.degree[static_cast<std::size_t>(axis)];
     if (degree < 2) continue;
     for (int first = 0; first + degree <= surface.count(axis); ++first) {
       const Fold fold = foldAt(surface, axis, first);
-      const bool alike = weightsAreAlike(surface, axis, first);
-      if (!(fold.length > 0) || (alike && fold.apart <= kSame * fold.length)) continue;
+      if (!(fold.length > 0)) continue;
+      if (!spline::hasDoubtfulCusp(surface)) return;
       std::array<char, 320> text{};
       std::snprintf(
           text.data(), text.size(),
           "rows %d to %d of control points along %s coincide to %.2g m%s, so the surface folds there and feet "
           "near the fold may be wrong; make it two surfaces that meet in an edge",
           first, first + degree - 1, axis == 0 ? "u" : "v", fold.apart,
-          alike ? "" : ", but their weights are no multiples of one another");
+          spline::weightsAreAlike(surface, axis) ? "" : ", but their weights are no multiples of one another");
       return odd.add({{"surfaces", 0}, {"", index}, {"points", 0}}, text.data());
     }
   }

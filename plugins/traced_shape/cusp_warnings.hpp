@@ -8,9 +8,8 @@
 
 namespace hapticd {
 
-/// [main] Warns if as many rows of control points as the degree nearly coincide, and the surface therefore folds there,
-/// but the kernel cannot make the spans beside the fold regular (kernels/spline/cusp.hpp): the rows are not equal to
-/// the last digit, or their weights are no multiples of one another.
+/// [main] Warns if as many rows of control points as the degree coincide or nearly do, the surface therefore folds
+/// there, and the kernel cannot make the spans beside the fold regular (spline::hasDoubtfulCusp()).
 void warnOfCusps(const spline::SurfaceData& surface, std::size_t index, Problems& odd);
 
 }  // namespace hapticd

@@ -3,11 +3,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <iterator>
 #include <set>
 #include <stdexcept>
 
 #include "kernels/spline/cusp.hpp"
+#include "kernels/spline/grading.hpp"
 #include "kernels/spline/line_set.hpp"
 #include "kernels/spline/surface.hpp"
 
@@ -98,6 +101,64 @@ std::vector<double> partingKnots(const SurfaceData& data, int axis, double smoot
   return {result.begin(), result.end()};
 }
 
+/// Returns the strips between knots along an axis.
+std::vector<SurfaceData> strips(const SurfaceData& surface, int axis, const std::vector<double>& knots) {
+  const LineSet lines(surface, axis);
+  std::vector<SurfaceData> result;
+  for (std::size_t i = 0; i + 1 < knots.size(); ++i)
+    result.push_back(lines.part(knots[i], knots[i + 1]).surface(surface, axis));
+  return result;
+}
+
+/// How a piece beside a cusp became regular.
+enum class Mended : std::uint8_t {
+  kStraight,  ///< it is straight along the axis, or not beside a cusp
+  kGraded,    ///< its speed was evened out
+  kDoubtful   ///< its speed still varies, or its weights bend it so that the distance may have many minima
+};
+
+/// Makes a piece regular along an axis.
+Mended mend(const std::vector<double>& cusps, SurfaceData& piece, int axis) {
+  if (straighten(piece, axis)) return Mended::kStraight;
+  const double lo = piece.domain(axis)[0], hi = piece.domain(axis)[1];
+  if (std::none_of(cusps.begin(), cusps.end(), [=](double cusp) { return cusp == lo || cusp == hi; }))
+    return Mended::kStraight;
+  const bool sure = piece.degree[static_cast<std::size_t>(1 - axis)] == 1 || weightsAreAlike(piece, axis);
+  return grade(piece, axis) && sure ? Mended::kGraded : Mended::kDoubtful;
+}
+
+/// The parts of a surface, and whether one beside a cusp is doubtful.
+struct Parting {
+  std::vector<SurfaceData> parts;
+  bool doubtful = false;
+};
+
+Parting parting(const SurfaceData& surface, double smooth_angle) {
+  const std::vector<double> us = partingKnots(surface, 0, smooth_angle), vs = partingKnots(surface, 1, smooth_angle);
+  if (us.size() == 2 && vs.size() == 2) return {{surface}};
+  const std::array<std::vector<double>, 2> cusps = {cuspKnots(surface, 0), cuspKnots(surface, 1)};
+  const std::vector<SurfaceData> strips_u = strips(surface, 0, us), strips_v = strips(surface, 1, vs);
+  Parting result;
+  for (std::size_t i = 0; i + 1 < us.size(); ++i) {
+    SurfaceData strip = strips_u[i];
+    const Mended along_u = mend(cusps[0], strip, 0);
+    for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
+      SurfaceData part = LineSet(strip, 1).part(vs[j], vs[j + 1]).surface(strip, 1);
+      const Mended worse = std::max(along_u, mend(cusps[1], part, 1));
+      // In a strip that is flat as a whole, only the corners matter, not the curves between its parts.
+      const bool flat = worse != Mended::kStraight &&
+                        (isFlatQuad(strips_u[i]) || isFlatQuad(strips_v[j]) ||
+                         isFlatQuad(LineSet(strips_u[i], 1).part(vs[j], vs[j + 1]).surface(strips_u[i], 1)));
+      if (flat) makeBilinear(part);
+      if (isOnlyALine(part, 0) || isOnlyALine(part, 1)) continue;
+      result.doubtful = result.doubtful || (worse == Mended::kDoubtful && !flat);
+      result.parts.push_back(std::move(part));
+    }
+  }
+  if (result.parts.empty()) result.parts = {surface};
+  return result;
+}
+
 }  // namespace
 
 CurveData refine(const CurveData& curve, std::span<const double> added) {
@@ -145,20 +206,12 @@ std::vector<SurfaceData> bezierPieces(const SurfaceData& surface) {
 
 std::vector<SurfaceData> splitAtCreases(const SurfaceData& surface, double smooth_angle) {
   validate(surface);
-  const std::vector<double> us = partingKnots(surface, 0, smooth_angle);
-  const std::vector<double> vs = partingKnots(surface, 1, smooth_angle);
-  if (us.size() == 2 && vs.size() == 2) return {surface};
-  std::vector<SurfaceData> result;
-  for (std::size_t i = 0; i + 1 < us.size(); ++i) {
-    SurfaceData strip = LineSet(surface, 0).part(us[i], us[i + 1]).surface(surface, 0);
-    straighten(strip, 0);
-    for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
-      SurfaceData part = LineSet(strip, 1).part(vs[j], vs[j + 1]).surface(strip, 1);
-      straighten(part, 1);
-      if (!isOnlyALine(part, 0) && !isOnlyALine(part, 1)) result.push_back(std::move(part));
-    }
-  }
-  return result.empty() ? std::vector<SurfaceData>{surface} : result;
+  return parting(surface, smooth_angle).parts;
+}
+
+bool hasDoubtfulCusp(const SurfaceData& surface) {
+  validate(surface);
+  return parting(surface, kSmoothAngle).doubtful;
 }
 
 }  // namespace hapticd::spline

@@ -33,8 +33,12 @@ std::vector<SurfaceData> bezierPieces(const SurfaceData& surface);
 /// [main] Splits a surface at its gaps (knots of multiplicity degree + 1), at its creases, and at its cusps and one
 /// span beside them (see cusp.hpp). A crease is a knot of multiplicity `degree` where somewhere the normals of both
 /// sides differ by more than `smooth_angle` [rad] or the surface folds back. Each part keeps its parameters, so its
-/// domain() is its range in the whole surface, but in a span beside a cusp they may run otherwise. Parts that are only
-/// lines are left out. The parts are in u-major order.
+/// domain() is its range in the whole surface, but in a span beside a cusp they may run otherwise: there the parts are
+/// rewritten so that no tangent vanishes (see cusp.hpp and grading.hpp). This moves no point by more than 1e-8 of the
+/// part. Parts that are only lines are left out. The parts are in u-major order.
 std::vector<SurfaceData> splitAtCreases(const SurfaceData& surface, double smooth_angle = kSmoothAngle);
+
+/// [main] True if the surface has a cusp beside which splitAtCreases() cannot make each part regular.
+bool hasDoubtfulCusp(const SurfaceData& surface);
 
 }  // namespace hapticd::spline

@@ -249,6 +249,17 @@ void snapToPole(const Patch& patch, const Iterate& at, double enough, Step& step
   }
 }
 
+/// True if the tangents change so much along a step that its end must be evaluated. The bend of a surface may be as
+/// small as the allowed error of the foot; then the normal at the foot would not be that of the surface.
+bool turns(const Patch& patch, const spline::SurfacePoint& E, const Step& step) noexcept {
+  constexpr double kMost = 0.3;  // change, relative to the tangent
+  for (int side = 0; side < kSides; ++side)
+    if ((step.sides & bit(side)) && patch.sides[static_cast<std::size_t>(side)].kind == SideKind::kPole) return false;
+  const Vector3d turn_u = step.d[0] * E.Suu + step.d[1] * E.Suv, turn_v = step.d[0] * E.Suv + step.d[1] * E.Svv;
+  return turn_u.squaredNorm() > kMost * kMost * E.Su.squaredNorm() ||
+         turn_v.squaredNorm() > kMost * kMost * E.Sv.squaredNorm();
+}
+
 }  // namespace
 
 void startNewton(const Patch& patch, Iterate& at, LocalFoot& foot) noexcept {
@@ -288,9 +299,14 @@ void descend(const Patch& patch, const Vector3d& p, Iterate& at, double toleranc
     const Array2d tangents2(at.E.Su.squaredNorm(), at.E.Sv.squaredNorm());
     const bool alike = (kAlike2 * tangents2 > last_tangents2).all();
     last_tangents2 = tangents2;
-    if (!step.leaves && (length <= enough || (alike && ratio < 0.1 && 10 * length * ratio * ratio <= enough))) {
-      foot.converged = true;
-      break;
+    const bool near = length <= enough || (alike && ratio < 0.1 && 10 * length * ratio * ratio <= enough);
+    if (!step.leaves && near) {
+      if (length > rounding && turns(patch, at.E, step)) {
+        last_length = 0;
+      } else {
+        foot.converged = true;
+        break;
+      }
     }
     const double share = advance(patch, p, step, max_evaluations, rounding, at, gap, foot);
     if (share == 0) break;

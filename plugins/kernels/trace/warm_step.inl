@@ -161,14 +161,15 @@ inline bool inside(V2 uv, const spline::TableCell& cell) {
   return all((uv > get2(cell.lo)) & (uv < get2(cell.end)));
 }
 
-/// Returns 1 / |n|, or 0 if n has nearly vanished on the way, as it does toward a cusp. @param near 1 / |n| at a point
+/// Returns 1 / |n|, or 0 if the length of n has changed so much on the way that the end must be evaluated, as toward a
+/// cusp. @param near 1 / |n| at a point
 /// close by
 inline double shrinkTo(V4 n, double near) {
   constexpr double kLittle = 1e-4;     // the error of the series below is less than the cube of this
-  constexpr double kVanished2 = 1e-8;  // squared ratio of the lengths
+  constexpr double kMost2 = 2;         // largest squared ratio of the lengths
   const double n2 = dots(n, n, n)[0], e = 1 - n2 * (near * near);
   if (!(e * e < kLittle * kLittle)) [[unlikely]]
-    return n2 * (near * near) > kVanished2 ? 1 / __builtin_sqrt(n2) : 0;
+    return n2 * (near * near) > 1 / kMost2 && n2 * (near * near) < kMost2 ? 1 / __builtin_sqrt(n2) : 0;
   return near + near * e * (0.5 + 0.375 * e);
 }
 

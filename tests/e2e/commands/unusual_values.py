@@ -148,6 +148,13 @@ def ridge(points_apart, weights):
             f"    knots: [[0, 0, 0, 0, 0.5, 1, 1, 1, 1], [0, 0, 1, 1]]\n    points: |{points}\n    weights: {weights}\n")
 
 
+def curved_ridge(weights):
+    """Three rows of control points coincide at a curved ridge."""
+    points = [[x, y, 0.05 - abs(x) + z] for x in (-0.05, 0, 0, 0, 0.05) for y, z in ((-0.05, 0), (0, 0.01), (0.05, 0))]
+    return ("format: hapticd-model/1\nsurfaces:\n  - name: ridge\n    degree: [3, 2]\n"
+            f"    knots: [[0, 0, 0, 0, 0.5, 1, 1, 1, 1], [0, 0, 0, 1, 1, 1]]\n    points: |{points}\n    weights: {weights}\n")
+
+
 def bulge(turned):
     """A net of 5 by 4 points, v fastest, or turned round."""
     points = [[[0.02 * i, 0.03 * j, 0.02 if 0 < i < 4 and 0 < j < 3 else 0] for j in range(4)] for i in range(5)]
@@ -166,8 +173,7 @@ MODELS = [
     ("points with u fastest", "nurbs_rigid", bulge(True), "v runs fastest"),
     ("a decimal point elsewhere", "nurbs_rigid", net([3, 2], f"[{CUBIC}, {QUADRIC}]", points=flat_net(0.02).replace("[0.04, 0.02, 0]", "|[0.04, 0.02, 0.2]")), "decimal point"),
     ("a weight of 800000", "nurbs_rigid", cube(folded), "8e+05 times the neighbouring weight"),
-    ("rows that nearly coincide", "nurbs_rigid", ridge(1e-7, [1] * 10), "rows 1 to 3 of control points along u coincide to 1e-07 m"),
-    ("weights at a cusp", "nurbs_rigid", ridge(0, [1.5] + [1] * 9), "their weights are no multiples of one another"),
+    ("weights at a curved cusp", "nurbs_rigid", curved_ridge([1.5] + [1] * 14), "their weights are no multiples of one another"),
     ("a soft body in g", "mat_deformable", SOFT + "  stiffness: 300\n  damping: 2\n  mass: |10\n", "10 g is 0.01 kg"),
     ("a reach in mm", "mat_deformable", SOFT + "  stiffness: 300\n  shear_reach: |3\n", "3 mm is 0.003 m"),
     ("a layer in mm", "mat_deformable", SOFT + "  young: 20000\n  poisson: 0.3\n  thickness: |20\n", "20 mm is 0.02 m"),
@@ -271,6 +277,9 @@ def right(folder):
     write(folder, "whole.yaml", cube())
     write(folder, "net.yaml", bulge(False))
     own.append(write(folder, "bulge.yaml", scene(model("sides: both", geometry="net.yaml")))[0])
+    for name, text in (("near.yaml", ridge(1e-7, [1] * 10)), ("weighted.yaml", ridge(0, [1.5] + [1] * 9))):  # rows that fold the surface
+        write(folder, name, text)
+        own.append(write(folder, "a-ridge-" + name, scene(model("sides: both", geometry=name)))[0])
     own.append(write(folder, "cube.yaml", scene(model("", geometry="whole.yaml")))[0])
     shipped = sorted(glob.glob(os.path.join(SOURCE, "config", "scenes", "**", "*.yaml"), recursive=True))
     shipped += [os.path.join(SOURCE, "plugins", "template", "scene.yaml")]
