@@ -55,22 +55,9 @@ std::string otherWay(const std::string& file) {
   return "";
 }
 
-/// Returns true for BREP files of Open CASCADE, the only CAD files without a unit.
-bool statesNoUnit(const std::string& file) {
-  const std::string ending = lowerEnding(file);
-  return ending == ".brep" || ending == ".brp" || ending == ".rle";
-}
-
 /// Returns a message about options that have no effect with this format, or "".
 std::string misplaced(const ImportArguments& options, bool cad) {
   const bool turned = options.placement.fit > 0 || options.placement.center || options.up != "y";
-  if (cad && (turned || options.placement.scale != 1))
-    return statesNoUnit(options.file)
-               ? "--scale, --fit, --center and --up have no effect with CAD files: place the part by `pose` in the "
-                 "scene. This format states no unit and is read in mm; if it is in another unit, save the part as "
-                 "STEP in a CAD program, which states it"
-               : "--scale, --fit, --center and --up have no effect with CAD files, which state their unit: place the "
-                 "part by `pose` in the scene";
   if (options.medial && turned)
     return "--fit, --center and --up have no effect with --medial, expected only --scale (metres per unit of the file)";
   if (options.outward != "auto" && (cad || options.medial || isMeshFile(options.file)))
@@ -98,6 +85,8 @@ int importCadFile(const ImportArguments& options) {
   how.file = options.file;
   how.out = options.out;
   how.json = options.json;
+  how.placement = options.placement;
+  how.placement.up = options.up[0];
   return importCad(how);
 }
 
@@ -213,7 +202,11 @@ void addMedialOptions(const Command& command, ImportArguments& options) {
 
 void addPlacementOptions(const Command& command, ImportArguments& options) {
   Placement& placement = options.placement;
-  const Option scale = command.addOption("--scale", placement.scale, "metres per unit of the file").within(1e-9, 1e9);
+  const Option scale =
+      command
+          .addOption("--scale", placement.scale,
+                     "metres per unit of the file; CAD: a factor on top of the unit that the file states")
+          .within(1e-9, 1e9);
   command.addOption("--fit", placement.fit, "scale so that the largest extent is this many metres")
       .within(1e-6, 1e3)
       .excludes(scale);

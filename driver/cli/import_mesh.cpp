@@ -42,6 +42,15 @@ std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
   return report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
+/// Returns the name of a unit of so many metres; `otherwise` if it has none.
+std::string unitName(double metres, const char* otherwise) {
+  constexpr std::pair<double, const char*> kUnits[] = {{1, "m"},     {0.01, "cm"},   {0.001, "mm"},
+                                                       {1e-6, "um"}, {0.0254, "in"}, {0.3048, "ft"}};
+  for (const auto& [size, name] : kUnits)
+    if (metres == size) return name;
+  return otherwise;
+}
+
 /// Returns the unit of the file, as it is noted in the part.
 std::string unitOf(const importing::Placement& placement) {
   char text[64];
@@ -49,7 +58,7 @@ std::string unitOf(const importing::Placement& placement) {
     std::snprintf(text, sizeof text, "whatever makes it fit into %.6g m", placement.fit);
   else
     std::snprintf(text, sizeof text, "%.6g m", placement.scale);
-  return placement.fit > 0 || placement.scale != 1 ? text : "m";
+  return placement.fit > 0 ? text : unitName(placement.scale, text);
 }
 
 void print(const importing::MeshReport& r, const std::string& out) {

@@ -78,7 +78,13 @@ Json describe(const Part& part, std::size_t bytes) {
     losses.push_back({{"what", loss.what}, {"reason", loss.reason}, {"size_m", loss.size}});
   return {{"format", "hapticd-part/1"},
           {"bytes", bytes},
-          {"source", {{"file", part.source.file}, {"unit", part.source.unit}, {"sha256", part.source.sha256}}},
+          {"source",
+           {{"file", part.source.file},
+            {"unit", part.source.unit},
+            {"unit_assumed", part.source.unit_assumed},
+            {"scale", part.source.scale},
+            {"placed", part.source.placed},
+            {"sha256", part.source.sha256}}},
           {"tolerance_m", part.tolerance},
           {"faces", part.faces.size()},
           {"face_kinds", countsOf(faces)},
@@ -119,15 +125,19 @@ std::string edgesOf(const Json& info) {
   return kinds.empty() ? all : all + ", of these " + kinds;
 }
 
+std::string counted(const Json& count, const char* what) {
+  return std::to_string(count.get<std::size_t>()) + " " + what + (count.get<std::size_t>() == 1 ? "" : "s");
+}
+
 void printBodies(const Json& info) {
   for (const Json& body : info["bodies"]) {
     const std::string name = body["name"].get<std::string>();
     std::printf("  body %s: %s, %s, ", name.empty() ? "unnamed" : ("'" + name + "'").c_str(),
                 body["kind"].get<std::string>().c_str(), body["closed"].get<bool>() ? "closed" : "open");
     if (body["triangles"].get<std::size_t>() > 0)
-      std::printf("%zu triangles\n", body["triangles"].get<std::size_t>());
+      std::printf("%s\n", counted(body["triangles"], "triangle").c_str());
     else
-      std::printf("%zu faces, %zu edges\n", body["faces"].get<std::size_t>(), body["edges"].get<std::size_t>());
+      std::printf("%s, %s\n", counted(body["faces"], "face").c_str(), counted(body["edges"], "edge").c_str());
   }
 }
 
@@ -151,12 +161,21 @@ std::string sizeOf(const Json& loss) {
   return text;
 }
 
+/// Returns the file of a part, its unit, and how the import placed it.
+std::string sourceOf(const Json& source) {
+  std::string text = source["file"].get<std::string>() + ", unit " + source["unit"].get<std::string>();
+  if (source["unit_assumed"].get<bool>()) text += " (assumed)";
+  char scaled[40];
+  std::snprintf(scaled, sizeof scaled, ", scaled by %.6g", source["scale"].get<double>());
+  if (source["scale"].get<double>() != 1) text += scaled;
+  const std::string placed = source["placed"].get<std::string>();
+  return text + (placed.empty() ? "" : ", " + placed);
+}
+
 void print(const std::string& file, const Json& info) {
   std::printf("%s: %s, %zu bytes\n", file.c_str(), info["format"].get<std::string>().c_str(),
               info["bytes"].get<std::size_t>());
-  const Json& source = info["source"];
-  std::printf("  from %s, unit %s, tolerance %.3g m\n", source["file"].get<std::string>().c_str(),
-              source["unit"].get<std::string>().c_str(), info["tolerance_m"].get<double>());
+  std::printf("  from %s, tolerance %.3g m\n", sourceOf(info["source"]).c_str(), info["tolerance_m"].get<double>());
   if (info.contains("box_m")) {
     const Json &size = info["box_m"]["size"], &low = info["box_m"]["low"];
     const double most = std::max({size[0].get<double>(), size[1].get<double>(), size[2].get<double>()});

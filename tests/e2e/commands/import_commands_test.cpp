@@ -82,7 +82,7 @@ TEST_F(ImportCommands, ImportMakesAPartOfTriangles) {
   EXPECT_TRUE(has(made.text, "1 hole with 3 free edges")) << made.text;
   const Outcome info = run("part info " + part);
   EXPECT_EQ(info.exit_code, 0);
-  EXPECT_TRUE(has(info.text, "body 'egg': mesh, open, 1 triangles")) << info.text;
+  EXPECT_TRUE(has(info.text, "body 'egg': mesh, open, 1 triangle\n")) << info.text;
   EXPECT_TRUE(has(info.text, "size: 100 x 100 x 0 mm, least corner at (0, 0, 0) mm")) << info.text;
   EXPECT_TRUE(has(run("part info " + part + " --json").text, "\"box_m\"")) << info.text;
   EXPECT_EQ(run("part info " + mesh).exit_code, 2);
