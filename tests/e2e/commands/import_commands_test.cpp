@@ -148,7 +148,28 @@ TEST_F(ImportCommands, CheckWarnsOfAWallThatAPressGoesThrough) {
   const Outcome soft = check("800");
   EXPECT_EQ(soft.exit_code, 0) << soft.text;
   EXPECT_TRUE(has(soft.text, "a wall is 2 mm thick")) << soft.text;
+  EXPECT_TRUE(has(soft.text, "the contact is held all the same, and stiffness: 1100 keeps the tip inside"))
+      << soft.text;
+  EXPECT_FALSE(has(check("1100").text, "thick")) << "what is advised is enough";
+  EXPECT_TRUE(has(check("800, contact_hysteresis: 0.001").text, "contact_hysteresis is smaller: leave it out"));
   EXPECT_FALSE(has(check("6000").text, "thick"));
+}
+
+TEST_F(ImportCommands, AWallThatNoStiffnessMendsIsNoWarning) {
+  const std::string foil =
+      "v 0 0 0\nv 60 0 0\nv 60 40 0\nv 0 40 0\nv 0 0 .1\nv 60 0 .1\nv 60 40 .1\nv 0 40 .1\n"
+      "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  const std::string part = (dir_ / "foil.hpart").string();
+  ASSERT_EQ(run("import " + put("foil.obj", foil) + " --scale 0.001 -o " + part).exit_code, 0);
+  const Outcome told = run("check " + put("scene.yaml",
+                                          "hapticd: 1\nmodels:\n  - {name: foil, plugin: nurbs_rigid, parameters: "
+                                          "{geometry: foil.hpart}}\n"),
+                           kShipped);
+  EXPECT_FALSE(has(told.text, "thick")) << told.text;
+  const Outcome explained = run("explain " + (dir_ / "scene.yaml").string(), kShipped);
+  EXPECT_TRUE(has(explained.text, "a wall is 0.1 mm thick")) << explained.text;
+  EXPECT_TRUE(has(explained.text, "few arms render a stiffness that is enough, but the contact is held"))
+      << explained.text;
 }
 
 }  // namespace
