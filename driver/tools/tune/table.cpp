@@ -53,6 +53,7 @@ std::string table(const Findings& findings) {
   const auto& tried = findings.tuning.candidates;
   std::string text = fmt::format("{} settings measured over {}\n", tried.size(), findings.motion);
   if (const std::string why = stoppedWhy(findings); !why.empty()) text += why + "\n";
+  if (const std::string none = untouched(findings.tuning.touches); !none.empty()) text += "warning: " + none + "\n";
   text += frontText(findings);
   if (std::any_of(tried.begin(), tried.end(), [](const Candidate& c) { return c.error.ambiguous > 0; }))
     text +=
