@@ -9,6 +9,8 @@
 
 #include "base/regular_file.hpp"
 #include "cli/command.hpp"
+#include "cli/part_feature.hpp"
+#include "cli/part_poses.hpp"
 #include "kernels/brep/model.hpp"
 #include "kernels/brep/part_file.hpp"
 #include "kernels/brep/part_names.hpp"
@@ -103,6 +105,9 @@ void addMeasures(Json& info, Part part) {
     const brep::Model model(std::move(part));
     const Eigen::Vector3d low = model.bounds().min(), size = model.bounds().sizes();
     info["box_m"] = {{"low", {low.x(), low.y(), low.z()}}, {"size", {size.x(), size.y(), size.z()}}};
+    const Eigen::Vector3d middle = model.bounds().center();
+    info["middle_m"] = {middle.x(), middle.y(), middle.z()};
+    for (const PartPose& pose : centringPoses(model.bounds())) info["poses"][pose.name] = poseText(pose);
     for (const std::string& warning : model.warnings()) info["warnings"].push_back(warning);
   } catch (const std::invalid_argument& error) {
     info["warnings"].push_back(error.what());
@@ -184,8 +189,13 @@ void print(const std::string& file, const Json& info) {
       return std::round(1e9 * length.get<double>()) * (large ? 1e-9 : 1e-6) + 0.0;
     };
     const char* unit = large ? "m" : "mm";
-    std::printf("  size: %.4g x %.4g x %.4g %s, least corner at (%.4g, %.4g, %.4g) %s\n", in(size[0]), in(size[1]),
-                in(size[2]), unit, in(low[0]), in(low[1]), in(low[2]), unit);
+    const Json& middle = info["middle_m"];
+    std::printf(
+        "  size: %.4g x %.4g x %.4g %s, least corner at (%.4g, %.4g, %.4g) %s, middle at (%.4g, %.4g, %.4g) %s\n",
+        in(size[0]), in(size[1]), in(size[2]), unit, in(low[0]), in(low[1]), in(low[2]), unit, in(middle[0]),
+        in(middle[1]), in(middle[2]), unit);
+    std::printf("  in a scene, to centre it:    %s\n", info["poses"]["centred"].get<std::string>().c_str());
+    std::printf("  the same, and its z is up:   %s\n", info["poses"]["z_up"].get<std::string>().c_str());
   }
   if (info["faces"].get<std::size_t>() > 0) {
     std::printf("  faces: %s\n", listed(info["face_kinds"]).c_str());
@@ -205,6 +215,11 @@ int printFeature(const std::string& file, const Part& part, std::uint32_t featur
     return fail(kBadInput, file + ": has no feature " + std::to_string(feature) + "; hapticd part info " + file +
                                " lists its features");
   std::printf("%s\n", name.c_str());
+  try {
+    std::printf("  %s\n", featureText(part, feature).c_str());
+  } catch (const std::invalid_argument& error) {
+    std::printf("  %s\n", error.what());
+  }
   return kWorked;
 }
 
@@ -246,7 +261,7 @@ void addPart(const Command& app, int& exit_code) {
   info.addFlag("--json", *json, "print JSON");
   auto feature = std::make_shared<std::optional<std::uint32_t>>();
   info.addOption("--feature", *feature,
-                 "print only the instance and the face of this feature number (column feature of a trace)")
+                 "print only this feature (column feature of a trace): its instance and face, its kind, size and place")
       .excludes("--json");
   info.footer("Example:\n  hapticd part info bracket.hpart");
   info.callback([file, json, feature, &exit_code] { exit_code = partInfo(*file, *json, *feature); });

@@ -85,6 +85,30 @@ def counts():
     check("one face is one face", "open, 1 face, 4 edges" in info, info)
 
 
+def poses():
+    told("bracket.step")  # from 0 to 40, 40 and 10 mm
+    info = json.loads(run("part", "info", PART, "--json")[1])
+    check("part info has the middle", max(abs(a - b) for a, b in zip(info["middle_m"], (0.02, 0.02, 0.005))) < 1e-9, info["middle_m"])
+    check("and a pose that centres", info["poses"]["centred"] == "pose: {position: [-0.02, -0.02, -0.005]}", info["poses"])
+    check("and one with z up", info["poses"]["z_up"] == "pose: {position: [-0.02, -0.005, 0.02], orientation: [0.7071068, -0.7071068, 0, 0]}", info["poses"])
+    text = run("part", "info", PART)[1]
+    check("in the text too", all(pose in text for pose in info["poses"].values()) and "middle at (20, 20, 5) mm" in text, text)
+    with open(join("scene.yaml"), "w") as out:
+        out.write("hapticd: 1\nmodels:\n  - {name: a, plugin: nurbs_rigid, " + info["poses"]["z_up"].replace("0.7071068", "0.7") +
+                  ", parameters: {geometry: x.hpart}}\n")
+    err = "".join(run("check", join("scene.yaml"))[1:])
+    check("a rounded quaternion is told with that of length 1", "with length 1 it is [0.7071068, -0.7071068, 0, 0]" in err, err)
+
+
+def features():
+    told("bracket.step")
+    lines = [run("part", "info", PART, "--feature", str(i))[1] for i in range(8)]
+    check("a face is told with kind, size and place", any("a plane that looks along (0, 0, 1), 40 x 40 x 0 mm large, middle at (20, 20, 10) mm" in line for line in lines), lines)
+    told("sphere.step")
+    line = run("part", "info", PART, "--feature", "0")[1]
+    check("a sphere with its radius", "a sphere of radius 20 mm, 40 x 40 x 40 mm large, middle at (0, 0, 0) mm" in line, line)
+
+
 def depths(points, metres):
     """Depth and foot at some points of the part, each time with the probe from far away."""
     with open(join("scene.yaml"), "w") as out:
@@ -114,6 +138,6 @@ def placed_parts():
 
 
 subprocess.run([MAKE_PARTS, folder], check=True, timeout=300)
-for part_of_the_test in (units, sizes, sizes_in_scenes, open_bodies, counts, placed_parts):
+for part_of_the_test in (units, sizes, sizes_in_scenes, open_bodies, counts, poses, features, placed_parts):
     part_of_the_test()
 finish()

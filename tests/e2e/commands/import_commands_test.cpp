@@ -123,7 +123,10 @@ TEST_F(ImportCommands, ANameThatSeveralInstancesHaveNeedsAPath) {
 TEST_F(ImportCommands, NamesInstanceAndFaceOfAFeature) {
   const std::string part = HAPTICD_SOURCE_DIR "/config/models/as1.hpart";
   EXPECT_TRUE(has(run("part info " + part).text, "instance 'rod_1': body 1, features 16 to 19"));
-  EXPECT_EQ(run("part info " + part + " --feature 17").text, "as1/rod-assembly_1/rod_1: face 1\n");
+  EXPECT_EQ(run("part info " + part + " --feature 17").text,
+            "as1/rod-assembly_1/rod_1: face 1\n  a cylinder of radius 5 mm, 200 x 5 x 10 mm large, middle at (90, "
+            "72.5, 60) mm\n");
+  EXPECT_TRUE(has(run("part info " + part + " --feature 18").text, "middle at (90, 77.5, 60) mm")) << "the other half";
   EXPECT_EQ(run("part info " + part + " --feature 160").exit_code, 2);
   const std::string scene =
       put("rod.yaml", "hapticd: 1\nmodels:\n  - {name: rod, plugin: nurbs_rigid, parameters: {geometry: " + part +
