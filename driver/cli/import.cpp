@@ -141,7 +141,13 @@ int importModel(const ImportArguments& options) {
                                options.file + "); hapticd part info shows what it holds");
   if (const std::string way = otherWay(options.file); !way.empty()) return fail(kBadInput, way);
   if (const std::string other = misnamed(options.file); !other.empty()) return fail(kBadInput, other);
-  const bool from_cad = isCadFile(options.file) && !options.medial;
+  if (std::error_code error; !std::filesystem::exists(options.file, error))
+    return fail(kBadInput, options.file + ": there is no such file");
+  if (options.medial && isCadFile(options.file))
+    return fail(kBadInput, options.file +
+                               ": --medial takes a closed surface of triangles, not CAD\n  fix: export a mesh in a CAD "
+                               "program, then: hapticd import --medial BODY.stl BODY.ma");
+  const bool from_cad = isCadFile(options.file);
   if (const std::string wrong = misplaced(options, from_cad); !wrong.empty())
     return fail(kBadInput, options.file + ": " + wrong);
   for (const std::string& wrong : {whyKept(options), options.out == "-" ? "" : whyNotWritable(options.out)})

@@ -175,5 +175,27 @@ TEST_F(ImportCommands, AWallThatNoStiffnessMendsIsNoWarning) {
       << explained.text;
 }
 
+TEST_F(ImportCommands, TheFirstSlipOfAnImportIsTold) {
+  const std::string triangle = "# by hand\no a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const auto told = [&](const std::string& words) { return run("import " + words).text; };
+  EXPECT_TRUE(has(told("nothere.stl"), "nothere.stl: there is no such file"));
+  EXPECT_TRUE(has(told(put("x.stl", triangle)), "is a mesh (OBJ), by its first bytes, and its name ends in '.stl'"));
+  EXPECT_TRUE(
+      has(told("--medial " + put("x.step", "ISO-10303-21;\n") + " x.ma"), "--medial takes a closed surface of"));
+  const std::string open = told("--medial " + put("x.obj", triangle) + " " + (dir_ / "x.ma").string());
+  EXPECT_TRUE(has(open, "the surface is not closed: 3 edges are at a hole")) << open;
+  EXPECT_TRUE(has(open, "without --medial, import lists the holes")) << open;
+}
+
+TEST_F(ImportCommands, AnInstanceOfAMeshFileIsNotCalledOneOfAModelFile) {
+  put("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Outcome told = run("check " + put("scene.yaml",
+                                          "hapticd: 1\nmodels:\n  - {name: x, plugin: nurbs_rigid, parameters: "
+                                          "{geometry: x.obj, instance: Brick}}\n"),
+                           kShipped);
+  EXPECT_TRUE(has(told.text, "a mesh (OBJ), expected YAML: convert it")) << told.text;
+  EXPECT_FALSE(has(told.text, "is a model file")) << told.text;
+}
+
 }  // namespace
 }  // namespace hapticd::test
