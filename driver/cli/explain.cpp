@@ -109,7 +109,9 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
               (report.flags & HSP_R_VELOCITY) != 0 ? "used (damping, viscosity or friction)" : "not used");
     printLine("  memory", bytes(report.locked_bytes));
     printLine("  cost", std::to_string(costs[i]) +
-                            " ns per tick of a probe that rests near the surface; --cost: along the hand's path");
+                            " ns (median) of a step while the probe rests 1 mm in front of the model's box; a hand on "
+                            "its path may take far "
+                            "less or more: see --cost");
     const auto [begin, end] = details.equal_range(model.name);
     for (auto detail = begin; detail != end; ++detail) printLine(detail == begin ? "  details" : "", detail->second);
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <sstream>
 #include <string_view>
 
 #include "base/regular_file.hpp"
@@ -61,6 +62,19 @@ bool isIges(std::string_view bytes) {
          number.substr(0, number.size() - 1).find_first_not_of(" 0") == std::string_view::npos;
 }
 
+/// Returns true for the text of an OBJ file: its first line that is no comment and names nothing is a point.
+bool isObj(const std::string& bytes) {
+  std::istringstream in(bytes);
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::string kind;
+    double x = 0, y = 0, z = 0;
+    if (!(words >> kind) || kind[0] == '#' || kind == "mtllib" || kind == "o" || kind == "g") continue;
+    return kind == "v" && static_cast<bool>(words >> x >> y >> z);
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string misnamed(const std::string& file) {
@@ -70,6 +84,8 @@ std::string misnamed(const std::string& file) {
   const auto* found = std::find_if(std::begin(kKinds), std::end(kKinds),
                                    [&](const Kind& kind) { return words.starts_with(kind.begins); });
   if (found == std::end(kKinds) && isIges(bytes)) found = &kIges;
+  constexpr Kind kObj{"", "a mesh (OBJ)", ".obj ", ""};
+  if (found == std::end(kKinds) && isObj(bytes)) found = &kObj;
   if (found == std::end(kKinds)) return "";
   if (!ending.empty() && found->endings.find(ending + " ") != std::string_view::npos) return "";
   std::string text = file + ": is " + std::string(found->name) + ", by its first bytes";

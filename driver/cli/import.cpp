@@ -55,22 +55,9 @@ std::string otherWay(const std::string& file) {
   return "";
 }
 
-/// Returns true for BREP files of Open CASCADE, the only CAD files without a unit.
-bool statesNoUnit(const std::string& file) {
-  const std::string ending = lowerEnding(file);
-  return ending == ".brep" || ending == ".brp" || ending == ".rle";
-}
-
 /// Returns a message about options that have no effect with this format, or "".
 std::string misplaced(const ImportArguments& options, bool cad) {
   const bool turned = options.placement.fit > 0 || options.placement.center || options.up != "y";
-  if (cad && (turned || options.placement.scale != 1))
-    return statesNoUnit(options.file)
-               ? "--scale, --fit, --center and --up have no effect with CAD files: place the part by `pose` in the "
-                 "scene. This format states no unit and is read in mm; if it is in another unit, save the part as "
-                 "STEP in a CAD program, which states it"
-               : "--scale, --fit, --center and --up have no effect with CAD files, which state their unit: place the "
-                 "part by `pose` in the scene";
   if (options.medial && turned)
     return "--fit, --center and --up have no effect with --medial, expected only --scale (metres per unit of the file)";
   if (options.outward != "auto" && (cad || options.medial || isMeshFile(options.file)))
@@ -98,6 +85,8 @@ int importCadFile(const ImportArguments& options) {
   how.file = options.file;
   how.out = options.out;
   how.json = options.json;
+  how.placement = options.placement;
+  how.placement.up = options.up[0];
   return importCad(how);
 }
 
@@ -152,7 +141,13 @@ int importModel(const ImportArguments& options) {
                                options.file + "); hapticd part info shows what it holds");
   if (const std::string way = otherWay(options.file); !way.empty()) return fail(kBadInput, way);
   if (const std::string other = misnamed(options.file); !other.empty()) return fail(kBadInput, other);
-  const bool from_cad = isCadFile(options.file) && !options.medial;
+  if (std::error_code error; !std::filesystem::exists(options.file, error))
+    return fail(kBadInput, options.file + ": there is no such file");
+  if (options.medial && isCadFile(options.file))
+    return fail(kBadInput, options.file +
+                               ": --medial takes a closed surface of triangles, not CAD\n  fix: export a mesh in a CAD "
+                               "program, then: hapticd import --medial BODY.stl BODY.ma");
+  const bool from_cad = isCadFile(options.file);
   if (const std::string wrong = misplaced(options, from_cad); !wrong.empty())
     return fail(kBadInput, options.file + ": " + wrong);
   for (const std::string& wrong : {whyKept(options), options.out == "-" ? "" : whyNotWritable(options.out)})
@@ -213,7 +208,11 @@ void addMedialOptions(const Command& command, ImportArguments& options) {
 
 void addPlacementOptions(const Command& command, ImportArguments& options) {
   Placement& placement = options.placement;
-  const Option scale = command.addOption("--scale", placement.scale, "metres per unit of the file").within(1e-9, 1e9);
+  const Option scale =
+      command
+          .addOption("--scale", placement.scale,
+                     "metres per unit of the file; CAD: a factor on top of the unit that the file states")
+          .within(1e-9, 1e9);
   command.addOption("--fit", placement.fit, "scale so that the largest extent is this many metres")
       .within(1e-6, 1e3)
       .excludes(scale);

@@ -18,6 +18,24 @@ constexpr std::size_t kMaxMeshBytes = std::size_t{4} << 30;
 constexpr double kTooLarge = 5;     ///< [m] a model larger than this was probably given in millimetres
 constexpr double kTooSmall = 1e-3;  ///< [m] a smaller part was probably scaled twice: no fingertip feels its form
 
+nlohmann::ordered_json holePlaces(const std::vector<brep::OpenBorder>& borders) {
+  nlohmann::ordered_json places = nlohmann::ordered_json::array();
+  for (const brep::OpenBorder& border : borders) {
+    const Eigen::Vector3d middle = border.box.center();
+    places.push_back({{"middle_m", {middle.x(), middle.y(), middle.z()}},
+                      {"width_m", border.box.diagonal().norm()},
+                      {"free_edges", border.edges}});
+  }
+  return places;
+}
+
+nlohmann::ordered_json bodyList(const importing::MeshReport& report) {
+  nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
+  for (const importing::MeshBody& body : report.bodies)
+    bodies.push_back({{"name", body.name}, {"triangles", body.triangles}, {"closed", body.closed}});
+  return bodies;
+}
+
 std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
   const nlohmann::ordered_json report = {{"part", out},
                                          {"triangles", r.triangles},
@@ -38,8 +56,19 @@ std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
                                          {"unorientable_edges", r.unorientable},
                                          {"holes", r.holes},
                                          {"free_edges", r.free_edges},
+                                         {"hole_places", holePlaces(r.borders)},
+                                         {"bodies", bodyList(r)},
                                          {"remarks", r.remarks}};
   return report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+/// Returns the name of a unit of so many metres; `otherwise` if it has none.
+std::string unitName(double metres, const char* otherwise) {
+  constexpr std::pair<double, const char*> kUnits[] = {{1, "m"},     {0.01, "cm"},   {0.001, "mm"},
+                                                       {1e-6, "um"}, {0.0254, "in"}, {0.3048, "ft"}};
+  for (const auto& [size, name] : kUnits)
+    if (metres == size) return name;
+  return otherwise;
 }
 
 /// Returns the unit of the file, as it is noted in the part.
@@ -49,13 +78,16 @@ std::string unitOf(const importing::Placement& placement) {
     std::snprintf(text, sizeof text, "whatever makes it fit into %.6g m", placement.fit);
   else
     std::snprintf(text, sizeof text, "%.6g m", placement.scale);
-  return placement.fit > 0 || placement.scale != 1 ? text : "m";
+  return placement.fit > 0 ? text : unitName(placement.scale, text);
 }
 
 void print(const importing::MeshReport& r, const std::string& out) {
   std::printf("%s: %zu triangle%s, %zu points, %.4g x %.4g x %.4g m, %s\n", out.c_str(), r.triangles,
               r.triangles == 1 ? "" : "s", r.points, r.size.x(), r.size.y(), r.size.z(),
               r.closed ? "closed" : "open: a shell that is felt from both sides unless the scene says sides: front");
+  for (const importing::MeshBody& body : r.bodies)
+    std::printf("  body '%s': %zu triangle%s, %s\n", body.name.c_str(), body.triangles, body.triangles == 1 ? "" : "s",
+                body.closed ? "closed" : "open");
   for (const std::string& line : importing::linesOf(r)) std::printf("  %s\n", line.c_str());
   warnOfSize(out, r.size.norm());
 }

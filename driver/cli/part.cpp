@@ -9,6 +9,8 @@
 
 #include "base/regular_file.hpp"
 #include "cli/command.hpp"
+#include "cli/part_feature.hpp"
+#include "cli/part_poses.hpp"
 #include "kernels/brep/model.hpp"
 #include "kernels/brep/part_file.hpp"
 #include "kernels/brep/part_names.hpp"
@@ -78,7 +80,13 @@ Json describe(const Part& part, std::size_t bytes) {
     losses.push_back({{"what", loss.what}, {"reason", loss.reason}, {"size_m", loss.size}});
   return {{"format", "hapticd-part/1"},
           {"bytes", bytes},
-          {"source", {{"file", part.source.file}, {"unit", part.source.unit}, {"sha256", part.source.sha256}}},
+          {"source",
+           {{"file", part.source.file},
+            {"unit", part.source.unit},
+            {"unit_assumed", part.source.unit_assumed},
+            {"scale", part.source.scale},
+            {"placed", part.source.placed},
+            {"sha256", part.source.sha256}}},
           {"tolerance_m", part.tolerance},
           {"faces", part.faces.size()},
           {"face_kinds", countsOf(faces)},
@@ -97,6 +105,9 @@ void addMeasures(Json& info, Part part) {
     const brep::Model model(std::move(part));
     const Eigen::Vector3d low = model.bounds().min(), size = model.bounds().sizes();
     info["box_m"] = {{"low", {low.x(), low.y(), low.z()}}, {"size", {size.x(), size.y(), size.z()}}};
+    const Eigen::Vector3d middle = model.bounds().center();
+    info["middle_m"] = {middle.x(), middle.y(), middle.z()};
+    for (const PartPose& pose : centringPoses(model.bounds())) info["poses"][pose.name] = poseText(pose);
     for (const std::string& warning : model.warnings()) info["warnings"].push_back(warning);
   } catch (const std::invalid_argument& error) {
     info["warnings"].push_back(error.what());
@@ -119,15 +130,19 @@ std::string edgesOf(const Json& info) {
   return kinds.empty() ? all : all + ", of these " + kinds;
 }
 
+std::string counted(const Json& count, const char* what) {
+  return std::to_string(count.get<std::size_t>()) + " " + what + (count.get<std::size_t>() == 1 ? "" : "s");
+}
+
 void printBodies(const Json& info) {
   for (const Json& body : info["bodies"]) {
     const std::string name = body["name"].get<std::string>();
     std::printf("  body %s: %s, %s, ", name.empty() ? "unnamed" : ("'" + name + "'").c_str(),
                 body["kind"].get<std::string>().c_str(), body["closed"].get<bool>() ? "closed" : "open");
     if (body["triangles"].get<std::size_t>() > 0)
-      std::printf("%zu triangles\n", body["triangles"].get<std::size_t>());
+      std::printf("%s\n", counted(body["triangles"], "triangle").c_str());
     else
-      std::printf("%zu faces, %zu edges\n", body["faces"].get<std::size_t>(), body["edges"].get<std::size_t>());
+      std::printf("%s, %s\n", counted(body["faces"], "face").c_str(), counted(body["edges"], "edge").c_str());
   }
 }
 
@@ -151,12 +166,21 @@ std::string sizeOf(const Json& loss) {
   return text;
 }
 
+/// Returns the file of a part, its unit, and how the import placed it.
+std::string sourceOf(const Json& source) {
+  std::string text = source["file"].get<std::string>() + ", unit " + source["unit"].get<std::string>();
+  if (source["unit_assumed"].get<bool>()) text += " (assumed)";
+  char scaled[40];
+  std::snprintf(scaled, sizeof scaled, ", scaled by %.6g", source["scale"].get<double>());
+  if (source["scale"].get<double>() != 1) text += scaled;
+  const std::string placed = source["placed"].get<std::string>();
+  return text + (placed.empty() ? "" : ", " + placed);
+}
+
 void print(const std::string& file, const Json& info) {
   std::printf("%s: %s, %zu bytes\n", file.c_str(), info["format"].get<std::string>().c_str(),
               info["bytes"].get<std::size_t>());
-  const Json& source = info["source"];
-  std::printf("  from %s, unit %s, tolerance %.3g m\n", source["file"].get<std::string>().c_str(),
-              source["unit"].get<std::string>().c_str(), info["tolerance_m"].get<double>());
+  std::printf("  from %s, tolerance %.3g m\n", sourceOf(info["source"]).c_str(), info["tolerance_m"].get<double>());
   if (info.contains("box_m")) {
     const Json &size = info["box_m"]["size"], &low = info["box_m"]["low"];
     const double most = std::max({size[0].get<double>(), size[1].get<double>(), size[2].get<double>()});
@@ -165,8 +189,13 @@ void print(const std::string& file, const Json& info) {
       return std::round(1e9 * length.get<double>()) * (large ? 1e-9 : 1e-6) + 0.0;
     };
     const char* unit = large ? "m" : "mm";
-    std::printf("  size: %.4g x %.4g x %.4g %s, least corner at (%.4g, %.4g, %.4g) %s\n", in(size[0]), in(size[1]),
-                in(size[2]), unit, in(low[0]), in(low[1]), in(low[2]), unit);
+    const Json& middle = info["middle_m"];
+    std::printf(
+        "  size: %.4g x %.4g x %.4g %s, least corner at (%.4g, %.4g, %.4g) %s, middle at (%.4g, %.4g, %.4g) %s\n",
+        in(size[0]), in(size[1]), in(size[2]), unit, in(low[0]), in(low[1]), in(low[2]), unit, in(middle[0]),
+        in(middle[1]), in(middle[2]), unit);
+    std::printf("  in a scene, to centre it:    %s\n", info["poses"]["centred"].get<std::string>().c_str());
+    std::printf("  the same, and its z is up:   %s\n", info["poses"]["z_up"].get<std::string>().c_str());
   }
   if (info["faces"].get<std::size_t>() > 0) {
     std::printf("  faces: %s\n", listed(info["face_kinds"]).c_str());
@@ -186,6 +215,11 @@ int printFeature(const std::string& file, const Part& part, std::uint32_t featur
     return fail(kBadInput, file + ": has no feature " + std::to_string(feature) + "; hapticd part info " + file +
                                " lists its features");
   std::printf("%s\n", name.c_str());
+  try {
+    std::printf("  %s\n", featureText(part, feature).c_str());
+  } catch (const std::invalid_argument& error) {
+    std::printf("  %s\n", error.what());
+  }
   return kWorked;
 }
 
@@ -227,7 +261,7 @@ void addPart(const Command& app, int& exit_code) {
   info.addFlag("--json", *json, "print JSON");
   auto feature = std::make_shared<std::optional<std::uint32_t>>();
   info.addOption("--feature", *feature,
-                 "print only the instance and the face of this feature number (column feature of a trace)")
+                 "print only this feature (column feature of a trace): its instance and face, its kind, size and place")
       .excludes("--json");
   info.footer("Example:\n  hapticd part info bracket.hpart");
   info.callback([file, json, feature, &exit_code] { exit_code = partInfo(*file, *json, *feature); });

@@ -159,6 +159,17 @@ std::optional<Eigen::Vector3d> Reader::vector3(const Node& node, const std::stri
   return good ? std::optional(v) : std::nullopt;
 }
 
+/// Returns a quaternion as a file gives it: [w, x, y, z].
+static std::string listText(const Eigen::Quaterniond& q) {
+  const auto part = [](double x) { return numberText(std::round(x * 1e7) / 1e7 + 0.0); };
+  return "[" + part(q.w()) + ", " + part(q.x()) + ", " + part(q.y()) + ", " + part(q.z()) + "]";
+}
+
+/// Returns the rotation that was probably meant by a quaternion of another length, or "" if it is 0.
+static std::string nearestRotation(const Eigen::Quaterniond& q) {
+  return q.norm() > 1e-6 ? "; with length 1 it is " + listText(q.normalized()) : "";
+}
+
 /// Returns the quaternion of a mapping with axis and angle, as a hint; "" if the node is none.
 static std::string turnOf(const Node& node) {
   const Node *axis = node.isMap() ? node.find("axis") : nullptr, *angle = node.isMap() ? node.find("angle") : nullptr;
@@ -169,9 +180,7 @@ static std::string turnOf(const Node& node) {
   if (!(v.norm() > 0) || !v.allFinite() || !std::isfinite(given)) return "";
   const bool degrees = std::abs(given) > 2 * M_PI;
   const Eigen::Quaterniond q(Eigen::AngleAxisd(degrees ? given * M_PI / 180 : given, v.normalized()));
-  const auto part = [](double x) { return numberText(std::round(x * 1e7) / 1e7 + 0.0); };
-  return numberText(given) + (degrees ? " degrees" : " rad") + " about this axis are [" + part(q.w()) + ", " +
-         part(q.x()) + ", " + part(q.y()) + ", " + part(q.z()) + "]";
+  return numberText(given) + (degrees ? " degrees" : " rad") + " about this axis are " + listText(q);
 }
 
 std::optional<Eigen::Quaterniond> Reader::quaternion(const Node& node, const std::string& key) {
@@ -202,7 +211,8 @@ std::optional<Eigen::Quaterniond> Reader::quaternion(const Node& node, const std
   Eigen::Quaterniond q(v[0], v[1], v[2], v[3]);
   if (normalise(q)) return q;
   problem(node, key,
-          "the quaternion has length " + numberText(q.norm()) + ", expected 1 within 0.001 (order w, x, y, z)");
+          "the quaternion has length " + numberText(q.norm()) + ", expected 1 within 0.001 (order w, x, y, z)" +
+              nearestRotation(q));
   return std::nullopt;
 }
 

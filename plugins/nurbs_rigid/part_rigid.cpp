@@ -38,22 +38,55 @@ std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const brep::Model& part) {
   return extents;
 }
 
-/// Warns of walls that a firm press goes through. The hand still feels the wall, because the contact is held. But the
-/// tip is drawn on the other side, where it may be in front of another face.
-void NurbsRigid::warnOfThinWalls(const hsp_activation& activation) const {
-  // [N] firm press of an exploring finger tip [assumption]; the arm's limit is for short moments
-  constexpr double kFirmPress = 2;
-  const double force = std::min(forceToClaimFor(activation, kFirmPress), kFirmPress);
-  if (!(stiffness_ > 0) || host() == nullptr || host()->log == nullptr) return;
-  const double depth = contact::wallDepthAt({stiffness_, damping_, exponent_, depth_scale_}, force);
-  const std::optional<ThinWall> wall = thinnestWall(*part(), depth);
-  if (!wall) return;
+namespace {
+
+/// Returns the part of a message about a thin wall that says what it is.
+std::string thinWallText(const ThinWall& wall, double force, double depth) {
   char text[256];
   std::snprintf(text, sizeof text,
                 ": a wall is %.3g mm thick, but a press of %.3g N goes %.3g mm deep at this stiffness, so the tip "
-                "comes out behind; give a greater stiffness",
-                1e3 * wall->thickness, force, 1e3 * depth);
-  host()->log(host(), HSP_LOG_WARNING, (part()->featureName(wall->feature) + text).c_str());
+                "comes out behind",
+                1e3 * wall.thickness, force, 1e3 * depth);
+  return text;
+}
+
+/// Returns a number of two digits that is clearly greater.
+double roundedUp(double number) {
+  constexpr double kMargin = 1.02;
+  const double digit = std::pow(10, std::floor(std::log10(kMargin * number)) - 1);
+  return digit * std::ceil(kMargin * number / digit);
+}
+
+}  // namespace
+
+/// Warns of walls that a firm press goes through. The hand still feels the wall, because the contact is held. But the
+/// tip is drawn on the other side, where it may be in front of another face. Walls so thin that no arm renders a
+/// sufficient stiffness are only noted for `hapticd explain`: most parts have such a place, and nobody can mend it.
+void NurbsRigid::warnOfThinWalls(const hsp_activation& activation) const {
+  // [N] firm press of an exploring finger tip [assumption]; the arm's limit is for short moments
+  constexpr double kFirmPress = 2;
+  constexpr double kStiffest = 5000;  // [N/m] the greatest stiffness that is advised [assumption: arms for the desk]
+  const double force = std::min(forceToClaimFor(activation, kFirmPress), kFirmPress);
+  if (!(stiffness_ > 0) || host() == nullptr || host()->log == nullptr) return;
+  const double depth = contact::wallDepthAt({stiffness_, damping_, exponent_, depth_scale_}, force);
+  const double least = contact::wallDepthAt({kStiffest, damping_, exponent_, depth_scale_}, force);
+  const auto tell = [&](int level, const ThinWall& wall, const std::string& advice) {
+    host()->log(host(), level,
+                (part()->featureName(wall.feature) + thinWallText(wall, force, depth) + "; " + advice).c_str());
+  };
+  const std::optional<ThinWall> wall = thinnestWall(*part(), depth);
+  if (!wall) return;
+  if (contact_hysteresis_ < wall->thickness)
+    return tell(HSP_LOG_WARNING, *wall,
+                "the contact is lost there, because contact_hysteresis is smaller: leave it out");
+  if (wall->thickness < least)
+    tell(HSP_LOG_DEBUG, *wall,
+         "few arms render a stiffness that is enough, but the contact is held, so the hand feels it");
+  if (const auto other = wall->thickness < least ? thinnestWall(*part(), depth, least) : wall)
+    tell(HSP_LOG_WARNING, *other,
+         "the contact is held all the same, and stiffness: " +
+             std::to_string(static_cast<int>(roundedUp(stiffness_ * std::pow(depth / other->thickness, exponent_)))) +
+             " keeps the tip inside, if the arm is stable with it");
 }
 
 dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded) {

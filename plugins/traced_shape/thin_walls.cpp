@@ -29,7 +29,8 @@ Eigen::Array2d evenly(std::uint32_t i) {
 
 class WallPress {
  public:
-  WallPress(const brep::Model& part, double depth) : tracer_(part), others_(part), depth_(depth) {}
+  WallPress(const brep::Model& part, double depth, double least)
+      : tracer_(part), others_(part), depth_(depth), least_(least) {}
 
   /// Presses at a point, given in its body's frame, if it lies on the surface of the part.
   void press(const brep::Placement& place, const Vector3d& in_body) {
@@ -44,6 +45,7 @@ class WallPress {
       const double middle = 0.5 * (inside + out);
       (comesOut(place, foot, middle) ? out : inside) = middle;
     }
+    if (out < least_) return;
     wall_ = ThinWall{out, static_cast<std::uint32_t>(foot.surface)};
   }
 
@@ -68,7 +70,7 @@ class WallPress {
 
   brep::Tracer tracer_;
   OtherSolids others_;
-  double depth_;
+  double depth_, least_;
   std::optional<ThinWall> wall_;
 };
 
@@ -101,7 +103,7 @@ void pressTriangles(const brep::Model& part, const brep::Placement& place, std::
 
 }  // namespace
 
-std::optional<ThinWall> thinnestWall(const brep::Model& part, double depth) {
+std::optional<ThinWall> thinnestWall(const brep::Model& part, double depth, double least) {
   if (!(depth > kOnSurface) || !std::isfinite(depth)) return std::nullopt;
   std::uint64_t count = 0;
   for (const brep::Placement& place : part.placements()) {
@@ -111,7 +113,7 @@ std::optional<ThinWall> thinnestWall(const brep::Model& part, double depth) {
   if (count == 0) return std::nullopt;
   const auto each = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kPoints / count, 1, kMostOfFace));
   const auto stride = static_cast<std::uint32_t>((count + kPoints - 1) / kPoints);
-  WallPress presser(part, depth);
+  WallPress presser(part, depth, least);
   for (const brep::Placement& place : part.placements()) {
     if (!place.solid) continue;
     pressFaces(part, place, each, stride, presser);

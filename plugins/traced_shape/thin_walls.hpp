@@ -16,6 +16,7 @@ struct ThinWall {
 /// [main] Finds the thinnest wall of the part's solids that a press of `depth` [m] goes through: the probe is then
 /// outside again, behind a face whose normal points away from the pressed face. Returns nothing if there is no such
 /// wall, or if no sample point lies on it. Tries at most about 2000 points, spread over all faces and triangles.
-std::optional<ThinWall> thinnestWall(const brep::Model& part, double depth);
+/// @param least [m] walls that are thinner than this are passed over
+std::optional<ThinWall> thinnestWall(const brep::Model& part, double depth, double least = 0);
 
 }  // namespace hapticd

@@ -23,9 +23,9 @@ std::string oddPlace(const Eigen::AlignedBox3d& box, const hsp_pose& pose) {
   if (size > kHuge || size < kTiny) {
     std::snprintf(
         text, sizeof text,
-        "it is %.3g m large, which is too large or too small for a hand; is it in a wrong unit? (see --scale of "
+        "it is %.3g %s large from corner to corner, too %s for a hand; is it in a wrong unit? (see --scale of "
         "hapticd import)",
-        size);
+        size > kHuge ? size : 1e3 * size, size > kHuge ? "m" : "mm", size > kHuge ? "large" : "small");
     return text;
   }
   const Eigen::Quaterniond turn(pose.orientation[0], pose.orientation[1], pose.orientation[2], pose.orientation[3]);

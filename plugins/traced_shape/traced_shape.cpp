@@ -35,11 +35,11 @@ void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
   takeFormerNames();
   const std::string text = readModelText(geometry_);
   if (brep::looksLikePart(std::as_bytes(std::span(text)))) return loadPart(text, activation, report);
+  if (sides_ == kAuto) sides_ = kFront;
+  ModelFile file = readLogged(text, geometry_, host());
   if (!instance_.empty())
     throw std::invalid_argument("instance: '" + instance_ + "', but " + geometry_ +
                                 " is a model file, which has no instances; geometry must be a part (.hpart)");
-  if (sides_ == kAuto) sides_ = kFront;
-  ModelFile file = readLogged(text, geometry_, host());
   trace::ModelOptions options;
   options.edges = std::move(file.edges);
   options.form = evaluation_ == 0 ? spline::Form::kTable : spline::Form::kNet;

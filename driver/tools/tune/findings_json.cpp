@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tune/page.hpp"
@@ -44,6 +45,15 @@ Json servoJson(const Findings& findings) {
   return {{"rates", rates}, {"radii", radii}, {"estimators", estimators}};
 }
 
+Json touchesJson(const Findings& findings) {
+  Json all = Json::array();
+  for (const Touches& of : findings.tuning.touches)
+    all.push_back({{"model", of.model},
+                   {"ticks", of.ticks},
+                   {"nearest_m", std::isfinite(of.nearest_m) ? Json(of.nearest_m) : Json()}});
+  return all;
+}
+
 }  // namespace
 
 std::string json(const Findings& findings) {
@@ -58,6 +68,7 @@ std::string json(const Findings& findings) {
             {"candidates", all}};
   json.update(servoJson(findings));
   json["noise"] = {{"foot_um", kErrorNoise * 1e6}, {"force_n", kForceNoise}, {"p50_relative", kCostNoise}};
+  json["touches"] = touchesJson(findings);
   json["stopped"] = stopped.empty() ? Json() : Json(stopped);
   return json.dump(2) + "\n";
 }

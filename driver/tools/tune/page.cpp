@@ -66,7 +66,7 @@ std::string servoTables(const Findings& findings) {
 
 std::string page(const Findings& findings) {
   const auto& tuning = findings.tuning;
-  const std::string stopped = stoppedWhy(findings);
+  const std::string stopped = stoppedWhy(findings), none = untouched(findings.tuning.touches);
   return fmt::format(
              "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>hapticd tune {0}</title>\n"
              "<style>body{{font:15px/1.5 Helvetica,Arial,sans-serif;max-width:60em;margin:2em auto;color:#222}}"
@@ -76,10 +76,11 @@ std::string page(const Findings& findings) {
              "</style>\n"
              "<h1>Speed against accuracy: {0}</h1>\n<p>{1} settings measured over {2}. {5}Errors are the largest of "
              "the whole motion, against a converged reference: every tolerance at its smallest, every count at its "
-             "largest, velocity from the motion itself.</p>\n<p><b>Chosen: {3}</b>: {4}.</p>\n",
+             "largest, velocity from the motion itself.</p>\n<p><b>Chosen: {3}</b>: {4}.</p>\n{6}",
              escaped(findings.scene), tuning.candidates.size(), escaped(findings.motion),
              escaped(nameOf(findings, tuning.candidates[tuning.chosen])), escaped(reason(findings)),
-             stopped.empty() ? "" : "It " + stopped + ". ") +
+             stopped.empty() ? "" : "It " + stopped + ". ",
+             none.empty() ? "" : "<p><b>Warning:</b> " + escaped(none) + "</p>\n") +
          picture(findings) + frontTable(findings) + servoTables(findings) + "</html>\n";
 }
 

@@ -67,6 +67,7 @@ class Search {
     if (auto again = measureAgain(); !again) return Error{again.error()};
     Tuning tuning;
     tuning.candidates = std::move(candidates_);
+    tuning.touches = touchesOf(scene_, reference_);
     tuning.complete = going_;
     tuning.out_of_time = out_of_time_;
     tuning.planned = std::max(distinct(), tuning.candidates.size());

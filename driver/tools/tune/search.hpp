@@ -8,6 +8,7 @@
 
 #include "tune/knob.hpp"
 #include "tune/measurement.hpp"
+#include "tune/touches.hpp"
 
 namespace hapticd::tune {
 
@@ -37,10 +38,11 @@ struct Progress {
 struct Tuning {
   std::vector<Candidate> candidates;  ///< candidates[0] is the scene as written
   size_t chosen = 0;
-  bool reached = false;      ///< true if the chosen setting meets the goal
-  bool complete = false;     ///< true if neither the time limit nor the user stopped the search
-  bool out_of_time = false;  ///< true if the time limit stopped the search
-  size_t planned = 0;        ///< number of settings to try
+  bool reached = false;          ///< true if the chosen setting meets the goal
+  bool complete = false;         ///< true if neither the time limit nor the user stopped the search
+  bool out_of_time = false;      ///< true if the time limit stopped the search
+  size_t planned = 0;            ///< number of settings to try
+  std::vector<Touches> touches;  ///< of the converged reference
 };
 
 struct SearchOptions {

@@ -25,7 +25,10 @@ std::string frontText(const Findings& findings) {
   for (const Candidate* c : points(findings)) (c->on_front ? text : beaten) += rowText(findings, *c);
   if (!beaten.empty())
     text += "\nfor each of these, another is as accurate and cheaper, or as cheap and more accurate:\n" + beaten;
-  return text + "\n" + noise(findings) + "\n";
+  return text + "\n" + noise(findings) +
+         "\nthe times are those of ticks that follow each other at once; a run sleeps between its ticks, so its caches "
+         "are "
+         "colder and its steps take longer\n";
 }
 
 std::string servoText(const Findings& findings) {
@@ -53,6 +56,7 @@ std::string table(const Findings& findings) {
   const auto& tried = findings.tuning.candidates;
   std::string text = fmt::format("{} settings measured over {}\n", tried.size(), findings.motion);
   if (const std::string why = stoppedWhy(findings); !why.empty()) text += why + "\n";
+  if (const std::string none = untouched(findings.tuning.touches); !none.empty()) text += "warning: " + none + "\n";
   text += frontText(findings);
   if (std::any_of(tried.begin(), tried.end(), [](const Candidate& c) { return c.error.ambiguous > 0; }))
     text +=

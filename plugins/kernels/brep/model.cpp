@@ -322,14 +322,17 @@ class ModelBuilder {
     if (gaps == 0) return;
     const auto widest = [this](std::uint32_t f) { return model_.faces_[f].trim.gaps().widest; };
     std::stable_sort(faces.begin(), faces.end(), [&](auto a, auto b) { return widest(a) > widest(b); });
-    std::string text = std::to_string(gaps) + " gaps in the loops of faces were closed by straight lines: ";
+    std::string text =
+        std::to_string(gaps) + (gaps == 1 ? " gap in the loop of a face was closed by a straight line: "
+                                          : " gaps in the loops of faces were closed by straight lines: ");
     for (std::size_t i = 0; i < std::min(faces.size(), kMostNamed); ++i) {
       char size[32];
       std::snprintf(size, sizeof size, ", %.3g mm", 1000 * widest(faces[i]));
       text += (i == 0 ? "" : "; ") + faceName(part_, faces[i]) + size;
     }
     if (faces.size() > kMostNamed)
-      text += "; and narrower ones on " + std::to_string(faces.size() - kMostNamed) + " faces";
+      text += "; and narrower ones on " + std::to_string(faces.size() - kMostNamed) +
+              (faces.size() - kMostNamed == 1 ? " face" : " faces");
     model_.warnings_.push_back(std::move(text));
   }
 

@@ -203,9 +203,12 @@ struct Loss {
 
 /// The file from which a part was imported.
 struct Source {
-  std::string file;    ///< name of the file, without folders
-  std::string sha256;  ///< SHA-256 of its bytes, hexadecimal
-  std::string unit;    ///< unit of its lengths, such as "mm" or "in"
+  std::string file;           ///< name of the file, without folders
+  std::string sha256;         ///< SHA-256 of its bytes, hexadecimal
+  std::string unit;           ///< unit of its lengths, such as "mm" or "in"
+  bool unit_assumed = false;  ///< true if the file does not state its unit
+  double scale = 1;           ///< factor by which a CAD part was scaled on top of its unit
+  std::string placed{};       ///< how a CAD part was turned and moved, in words; empty if it was not
 };
 
 struct Part {

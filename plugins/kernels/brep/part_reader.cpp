@@ -55,6 +55,14 @@ double numberAt(const Json& object, const char* key) {
   return found != object.end() && found->is_number() ? found->get<double>() : 0;
 }
 
+Source readSource(const Json& header) {
+  Source source{textAt(header, "file"), textAt(header, "sha256"), textAt(header, "unit")};
+  source.placed = textAt(header, "placed");
+  source.unit_assumed = header.is_object() && header.value("unit_assumed", Json()) == true;
+  if (const double scale = header.is_object() ? numberAt(header, "scale") : 0; scale > 0) source.scale = scale;
+  return source;
+}
+
 void readLosses(const Json& header, Part& part) {
   const auto losses = header.find("losses");
   if (losses == header.end()) return;
@@ -139,8 +147,7 @@ Json readHeader(std::span<const std::byte> bytes) {
 Part readBytes(std::span<const std::byte> bytes) {
   const Json header = readHeader(bytes);
   Part part;
-  if (const auto source = header.find("source"); source != header.end())
-    part.source = {textAt(*source, "file"), textAt(*source, "sha256"), textAt(*source, "unit")};
+  if (const auto source = header.find("source"); source != header.end()) part.source = readSource(*source);
   part.names = textsAt(header, "names");
   part.warnings = textsAt(header, "warnings");
   part.tolerance = numberAt(header, "tolerance");

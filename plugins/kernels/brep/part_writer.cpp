@@ -23,16 +23,20 @@ Json lossesOf(const Part& part) {
   return losses;
 }
 
+Json sourceOf(const Source& source) {
+  Json json = {{"file", source.file}, {"sha256", source.sha256}, {"unit", source.unit}};
+  if (source.unit_assumed) json["unit_assumed"] = true;
+  if (source.scale != 1) json["scale"] = source.scale;
+  if (!source.placed.empty()) json["placed"] = source.placed;
+  return json;
+}
+
 }  // namespace
 
 std::string writePart(const Part& part) {
   checkPart(part);
-  Json header = {{"source", {{"file", part.source.file}, {"sha256", part.source.sha256}, {"unit", part.source.unit}}},
-                 {"tolerance", part.tolerance},
-                 {"names", part.names},
-                 {"warnings", part.warnings},
-                 {"losses", lossesOf(part)},
-                 {"sections", Json::array()}};
+  Json header = {{"source", sourceOf(part.source)}, {"tolerance", part.tolerance}, {"names", part.names},
+                 {"warnings", part.warnings},       {"losses", lossesOf(part)},    {"sections", Json::array()}};
   std::string data;
   forEachSection(part, [&](const char* name, const auto& records) {
     if (records.empty()) return;

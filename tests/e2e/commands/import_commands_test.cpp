@@ -82,7 +82,7 @@ TEST_F(ImportCommands, ImportMakesAPartOfTriangles) {
   EXPECT_TRUE(has(made.text, "1 hole with 3 free edges")) << made.text;
   const Outcome info = run("part info " + part);
   EXPECT_EQ(info.exit_code, 0);
-  EXPECT_TRUE(has(info.text, "body 'egg': mesh, open, 1 triangles")) << info.text;
+  EXPECT_TRUE(has(info.text, "body 'egg': mesh, open, 1 triangle\n")) << info.text;
   EXPECT_TRUE(has(info.text, "size: 100 x 100 x 0 mm, least corner at (0, 0, 0) mm")) << info.text;
   EXPECT_TRUE(has(run("part info " + part + " --json").text, "\"box_m\"")) << info.text;
   EXPECT_EQ(run("part info " + mesh).exit_code, 2);
@@ -123,7 +123,10 @@ TEST_F(ImportCommands, ANameThatSeveralInstancesHaveNeedsAPath) {
 TEST_F(ImportCommands, NamesInstanceAndFaceOfAFeature) {
   const std::string part = HAPTICD_SOURCE_DIR "/config/models/as1.hpart";
   EXPECT_TRUE(has(run("part info " + part).text, "instance 'rod_1': body 1, features 16 to 19"));
-  EXPECT_EQ(run("part info " + part + " --feature 17").text, "as1/rod-assembly_1/rod_1: face 1\n");
+  EXPECT_EQ(run("part info " + part + " --feature 17").text,
+            "as1/rod-assembly_1/rod_1: face 1\n  a cylinder of radius 5 mm, 200 x 5 x 10 mm large, middle at (90, "
+            "72.5, 60) mm\n");
+  EXPECT_TRUE(has(run("part info " + part + " --feature 18").text, "middle at (90, 77.5, 60) mm")) << "the other half";
   EXPECT_EQ(run("part info " + part + " --feature 160").exit_code, 2);
   const std::string scene =
       put("rod.yaml", "hapticd: 1\nmodels:\n  - {name: rod, plugin: nurbs_rigid, parameters: {geometry: " + part +
@@ -148,7 +151,50 @@ TEST_F(ImportCommands, CheckWarnsOfAWallThatAPressGoesThrough) {
   const Outcome soft = check("800");
   EXPECT_EQ(soft.exit_code, 0) << soft.text;
   EXPECT_TRUE(has(soft.text, "a wall is 2 mm thick")) << soft.text;
+  EXPECT_TRUE(has(soft.text, "the contact is held all the same, and stiffness: 1100 keeps the tip inside"))
+      << soft.text;
+  EXPECT_FALSE(has(check("1100").text, "thick")) << "what is advised is enough";
+  EXPECT_TRUE(has(check("800, contact_hysteresis: 0.001").text, "contact_hysteresis is smaller: leave it out"));
   EXPECT_FALSE(has(check("6000").text, "thick"));
+}
+
+TEST_F(ImportCommands, AWallThatNoStiffnessMendsIsNoWarning) {
+  const std::string foil =
+      "v 0 0 0\nv 60 0 0\nv 60 40 0\nv 0 40 0\nv 0 0 .1\nv 60 0 .1\nv 60 40 .1\nv 0 40 .1\n"
+      "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  const std::string part = (dir_ / "foil.hpart").string();
+  ASSERT_EQ(run("import " + put("foil.obj", foil) + " --scale 0.001 -o " + part).exit_code, 0);
+  const Outcome told = run("check " + put("scene.yaml",
+                                          "hapticd: 1\nmodels:\n  - {name: foil, plugin: nurbs_rigid, parameters: "
+                                          "{geometry: foil.hpart}}\n"),
+                           kShipped);
+  EXPECT_FALSE(has(told.text, "thick")) << told.text;
+  const Outcome explained = run("explain " + (dir_ / "scene.yaml").string(), kShipped);
+  EXPECT_TRUE(has(explained.text, "a wall is 0.1 mm thick")) << explained.text;
+  EXPECT_TRUE(has(explained.text, "few arms render a stiffness that is enough, but the contact is held"))
+      << explained.text;
+}
+
+TEST_F(ImportCommands, TheFirstSlipOfAnImportIsTold) {
+  const std::string triangle = "# by hand\no a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const auto told = [&](const std::string& words) { return run("import " + words).text; };
+  EXPECT_TRUE(has(told("nothere.stl"), "nothere.stl: there is no such file"));
+  EXPECT_TRUE(has(told(put("x.stl", triangle)), "is a mesh (OBJ), by its first bytes, and its name ends in '.stl'"));
+  EXPECT_TRUE(
+      has(told("--medial " + put("x.step", "ISO-10303-21;\n") + " x.ma"), "--medial takes a closed surface of"));
+  const std::string open = told("--medial " + put("x.obj", triangle) + " " + (dir_ / "x.ma").string());
+  EXPECT_TRUE(has(open, "the surface is not closed: 3 edges are at a hole")) << open;
+  EXPECT_TRUE(has(open, "without --medial, import lists the holes")) << open;
+}
+
+TEST_F(ImportCommands, AnInstanceOfAMeshFileIsNotCalledOneOfAModelFile) {
+  put("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Outcome told = run("check " + put("scene.yaml",
+                                          "hapticd: 1\nmodels:\n  - {name: x, plugin: nurbs_rigid, parameters: "
+                                          "{geometry: x.obj, instance: Brick}}\n"),
+                           kShipped);
+  EXPECT_TRUE(has(told.text, "a mesh (OBJ), expected YAML: convert it")) << told.text;
+  EXPECT_FALSE(has(told.text, "is a model file")) << told.text;
 }
 
 }  // namespace

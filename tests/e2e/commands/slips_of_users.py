@@ -80,7 +80,7 @@ def meshes(folder, ask):
     code, out, err = ask("part", "info", out_file)
     ask("import", write(folder, "a.stl", stl(cube((0, 0, 0), 40))), "-o", out_file, "--scale", "0.001")
     code, out, err = ask("part", "info", out_file)
-    check("the unit is the scale that was given", "unit 0.001 m" in out, out)
+    check("the unit is the scale that was given", "unit mm" in out, out)
     ask("import", write(folder, "a.stl", stl(cube((0, 0, 0), 40))), "-o", out_file, "--fit", "0.05")
     code, out, err = ask("part", "info", out_file)
     check("or what it was made to fit", "unit whatever makes it fit into 0.05 m" in out, out)

@@ -142,6 +142,15 @@ with tempfile.TemporaryDirectory() as folder:
         far.write("t,x,y,z\n" + "".join(f"{i * 1e-3:.3f},1,1,1\n" for i in range(1000)))
     assert "comes near no model" in run("tune", file, "--probe", f"{folder}/far.csv", code=1)
 
+    # Nor has one that comes near and touches nothing, which is told.
+    with open(f"{folder}/near.csv", "w") as near:
+        near.write("t,x,y,z\n" + "".join(f"{i * 1e-3:.3f},{0.06 + i * 1e-6!r},0,0\n" for i in range(1000)))
+    text = run("tune", file, "--probe", f"{folder}/near.csv", "--limit-seconds", "2", "--json", f"{folder}/near.json")
+    touches = json.load(open(f"{folder}/near.json"))["touches"]
+    assert "warning: the motion does not touch" in text and "no force is compared" in text, text
+    assert [t["ticks"] for t in touches] == [0] and touches[0]["nearest_m"] > 0, touches
+    assert "does not touch" not in out, out
+
     # A goal that nothing reaches: the nearest is chosen, and the exit code says so.
     assert "none of" in run("tune", file, "--motion-seconds", "0.5", "--limit-seconds", "2", "--budget-us", "0.001", code=1)
     open(f"{folder}/empty.yaml", "w").write("hapticd: 1\nmodels: []\n")

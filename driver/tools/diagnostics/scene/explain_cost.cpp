@@ -321,7 +321,9 @@ std::string costTable(const std::vector<CostRow>& rows) {
   text += "what is not needed\n";
   for (const CostRow& row : rows)
     if (!row.there()) text += fmt::format("  {:<34} {}\n", row.part, row.why);
-  return text;
+  return text +
+         "the times are means over ticks that follow each other at once; a run sleeps between its ticks, so its caches "
+         "are colder and its steps take longer\n";
 }
 
 std::string costJson(const std::string& scene, const std::vector<CostRow>& rows) {

@@ -45,6 +45,13 @@ std::string shortUnit(std::string unit) {
   return unit;
 }
 
+/// Notes that the file states no unit. Open CASCADE takes millimetres then.
+void assumeUnit(CadFile& cad) {
+  cad.unit = "mm";
+  cad.unit_assumed = true;
+  cad.remarks.emplace_back(kNoUnit);
+}
+
 double millimetresIn(const std::string& unit) {
   const std::pair<const char*, double> known[] = {{"mm", 1},     {"cm", 10},   {"m", 1000}, {"in", 25.4},
                                                   {"ft", 304.8}, {"um", 1e-3}, {"km", 1e6}};
@@ -110,7 +117,8 @@ void readStep(const std::string& file, CadFile& cad) {
   if (!lengths.IsEmpty() && !lengths.First().IsEmpty())
     cad.unit = shortUnit(lengths.First().ToCString());
   else if (cad.remarks.empty())
-    cad.remarks.emplace_back(kNoUnit);
+    assumeUnit(cad);
+  cad.unit_assumed = std::find(cad.remarks.begin(), cad.remarks.end(), kNoUnit) != cad.remarks.end();
   Handle(TDocStd_Document) document = newDocument();
   const Handle(Progress) progress = new Progress("reading shapes");
   const bool made = reader.Transfer(document, progress->Start());
@@ -144,7 +152,7 @@ void readIgesUnit(const IGESData_GlobalSection& section, CadFile& cad) {
   else if (named)
     cad.unit = name;
   else
-    cad.remarks.emplace_back(kNoUnit);
+    assumeUnit(cad);
 }
 
 void readIges(const std::string& file, CadFile& cad) {
@@ -231,7 +239,7 @@ void readBrep(const std::string& file, CadFile& cad) {
         "belong");
   }
   if (shape.IsNull()) throw CadError("it is not a BREP file of Open CASCADE, or it is damaged");
-  cad.unit = "mm";
+  assumeUnit(cad);
   Node node;
   node.name = node.body_name = std::filesystem::path(file).stem().string();
   addShape(shape, node, cad);

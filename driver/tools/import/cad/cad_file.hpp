@@ -30,8 +30,9 @@ struct Node {
 };
 
 struct CadFile {
-  std::vector<Node> nodes;  ///< parents come before their children
-  std::string unit;         ///< unit of length in the file, such as "mm" or "in"
+  std::vector<Node> nodes;    ///< parents come before their children
+  std::string unit;           ///< unit of length in the file, such as "mm" or "in"
+  bool unit_assumed = false;  ///< true if the file does not state its unit
   /// Colours of faces and other shapes; the key is the address of the TShape.
   std::unordered_map<const void*, std::uint32_t> colours;
   std::vector<brep::Loss> losses;    ///< faces of the file that the reader could not make

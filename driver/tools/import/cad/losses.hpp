@@ -9,7 +9,8 @@
 namespace hapticd::cad {
 
 inline constexpr const char* kNoUnit =
-    "the file states no unit of length that can be read: millimetres were assumed; is the size right?";
+    "the file states no unit of length that can be read: millimetres were assumed; is the size right? If not, import "
+    "it with --scale: 25.4 for inches, 10 for centimetres, 1000 for metres";
 
 /// [main] Appends a loss for each face of the file without a shape, with the reader's reason.
 /// @param to_mm millimetres per unit of the coordinates in the file

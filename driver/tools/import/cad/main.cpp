@@ -17,6 +17,7 @@
 
 #include "base/regular_file.hpp"
 #include "cad_import/part_builder.hpp"
+#include "cad_import/placed_part.hpp"
 #include "cad_import/shape_fixes.hpp"
 #include "command_line/command_line.hpp"
 #include "kernels/brep/part_file.hpp"
@@ -30,6 +31,8 @@ struct Options {
   std::string file, out;
   double memory_mb = 0, time_s = 0;  ///< 0 means no limit
   bool check = false, json = false;
+  Placement placement;
+  std::string up = "y";
 };
 
 /// Limits processor time and memory. Memory is not limited with sanitizers, which use more addresses than any limit
@@ -60,6 +63,21 @@ int failOfMemory(const Options& options) {
                              " MB of memory that are allowed\n  fix: allow more: --memory MEGABYTES");
 }
 
+/// Prints the report and writes the part, with the steps of the import among its warnings.
+int finish(const Options& options, brep::Part& part, const Report& report) {
+  const std::string out = options.check ? options.file : options.out;
+  const std::string text = options.json ? jsonOf(part, report, out) : textOf(part, report, out);
+  const std::vector<std::string> steps = stepsOf(report);
+  part.warnings.insert(part.warnings.begin(), steps.begin(), steps.end());
+  const std::string bytes = brep::writePart(part);
+  if (!options.check)
+    if (const auto written = writeWhole(options.out, bytes); !written) return fail(kFailed, written.error());
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+  std::fputs(oddSizeOf(part, report, out).c_str(), stderr);
+  return kWorked;
+}
+
 int import(const Options& options) {
   const auto begun = std::chrono::steady_clock::now();
   Report report;
@@ -67,13 +85,17 @@ int import(const Options& options) {
   CadFile file = readCad(options.file);
   brep::Part part = buildPart(file, report);
   part.source.file = std::filesystem::path(options.file).filename().string();
-  const std::string bytes = brep::writePart(part);
+  brep::checkPart(part);
+  report.measures = measured(part);
+  if (options.placement.moves()) {
+    placePart(part, options.placement, report.measures.box);
+    brep::checkPart(part);
+    report.measures = measured(part);
+  }
+  const std::vector<std::string> open = openBodies(part);
+  part.warnings.insert(part.warnings.end(), open.begin(), open.end());
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  if (!options.check)
-    if (const auto written = writeWhole(options.out, bytes); !written) return fail(kFailed, written.error());
-  const std::string out = options.check ? options.file : options.out;
-  std::fputs((options.json ? jsonOf(part, report, out) : textOf(part, report, out)).c_str(), stdout);
-  return kWorked;
+  return finish(options, part, report);
 }
 
 int guarded(const Options& options) {
@@ -105,7 +127,12 @@ int main(int argc, char** argv) {
   app.addOption("--time", options.time_s, "largest processor time that the import may use [s]");
   app.addFlag("--check", options.check, "write no file, only report what would be lost");
   app.addFlag("--json", options.json, "report as JSON");
+  app.addOption("--scale", options.placement.scale, "factor on top of the unit of the file");
+  app.addOption("--fit", options.placement.fit, "scale so that the largest extent is this many metres");
+  app.addFlag("--center", options.placement.center, "move the middle of the box to the origin");
+  app.addOption("--up", options.up, "axis that points up in the file").oneOf({"x", "y", "z"});
   if (const auto ended = app.parse(argc, argv)) return *ended;
+  options.placement.up = options.up[0];
   hapticd::cad::setLimits(options);
   // Messages of Open CASCADE are dropped, because the report says what matters to the user.
   Message::DefaultMessenger()->ChangePrinters().Clear();

@@ -30,6 +30,7 @@ class PartBuilder {
 
   Part run() {
     part_.source.unit = file_.unit;
+    part_.source.unit_assumed = file_.unit_assumed;
     part_.losses = file_.losses;
     part_.warnings = file_.remarks;
     const Handle(Progress) progress = new Progress("converting");

@@ -42,7 +42,56 @@ std::string metresText(double length) {
   return text;
 }
 
+/// Returns the size of the part, such as "80 x 60 x 20 mm, ".
+std::string sizeText(const Report& report) {
+  const Eigen::AlignedBox3d& box = report.measures.box;
+  if (box.isEmpty()) return "";
+  const bool large = box.sizes().maxCoeff() >= 1;
+  const Eigen::Vector3d size = box.sizes() * (large ? 1 : 1000);
+  char text[100];
+  std::snprintf(text, sizeof text, "%.4g x %.4g x %.4g %s, ", size.x(), size.y(), size.z(), large ? "m" : "mm");
+  return text;
+}
+
+Json sizeJson(const Report& report) {
+  if (report.measures.box.isEmpty()) return nullptr;
+  const Eigen::Vector3d size = report.measures.box.sizes();
+  return {size.x(), size.y(), size.z()};
+}
+
+std::string unitText(const brep::Source& source) {
+  std::string text = "unit " + source.unit + (source.unit_assumed ? " (assumed)" : "");
+  char scaled[40];
+  std::snprintf(scaled, sizeof scaled, ", scaled by %.6g", source.scale);
+  if (source.scale != 1) text += scaled;
+  return text + (source.placed.empty() ? "" : ", " + source.placed);
+}
+
 }  // namespace
+
+std::string oddSizeOf(const Part& part, const Report& report, const std::string& out) {
+  constexpr double kTooLarge = 5, kTooSmall = 1e-3;  // [m] as for meshes and in `check`
+  if (report.measures.box.isEmpty()) return "";
+  const double size = report.measures.box.diagonal().norm();
+  if (size <= kTooLarge && size >= kTooSmall) return "";
+  const bool large = size > kTooLarge, scaled = part.source.scale != 1;
+  char text[80];
+  std::snprintf(text, sizeof text, ": %.3g %s large from corner to corner, too %s for a hand; ",
+                size * (large ? 1 : 1000), large ? "m" : "mm", large ? "large" : "small");
+  return "warning: " + out + text +
+         (scaled ? "is --scale right? It is a factor on top of the unit of the file\n"
+                 : "if the unit of the file is wrong, add --scale, a factor on top of it, such as --scale " +
+                       std::string(large ? "0.001" : "1000") + "\n");
+}
+
+std::vector<std::string> stepsOf(const Report& report) {
+  std::vector<std::string> lines;
+  if (report.recognised > 0)
+    lines.push_back(plural(report.recognised, "spline face is", "spline faces are") +
+                    " really a plane, cylinder, cone or sphere, and stored as such");
+  lines.insert(lines.end(), report.steps.begin(), report.steps.end());
+  return lines;
+}
 
 std::string textOf(const Part& part, const Report& report, const std::string& out) {
   constexpr std::size_t kMostLines = 40;
@@ -50,7 +99,7 @@ std::string textOf(const Part& part, const Report& report, const std::string& ou
   std::string text = out + ": " + plural(part.faces.size(), "face", "faces") + " in " +
                      plural(part.bodies.size(), "body", "bodies") + ", " +
                      plural(counts.placed, "instance", "instances") + " with " + plural(counts.faces, "face", "faces") +
-                     ", unit " + part.source.unit + "\n ";
+                     ", " + sizeText(report) + unitText(part.source) + "\n ";
   for (const auto& [kind, count] : counts.kinds)
     text += (text.back() == ' ' ? " " : ", ") + std::to_string(count) + " " + kind;
   text += "\n";
@@ -58,11 +107,8 @@ std::string textOf(const Part& part, const Report& report, const std::string& ou
   const auto add = [&](const std::string& line) {
     if (++lines <= kMostLines) text += "  " + line + "\n";
   };
-  if (report.recognised > 0)
-    add(plural(report.recognised, "spline face is", "spline faces are") +
-        " really a plane, cylinder, cone or sphere, and stored as such");
-  for (const std::string& step : report.steps) add(step);
-  for (const std::string& warning : part.warnings) add(warning);
+  for (const auto& said : {stepsOf(report), part.warnings, report.measures.notes})
+    for (const std::string& line : said) add(line);
   for (const brep::Loss& loss : part.losses)
     add("lost: " + loss.what + ": " + loss.reason + (loss.size > 0 ? " (" + metresText(loss.size) + ")" : ""));
   if (lines > kMostLines)
@@ -78,8 +124,14 @@ std::string jsonOf(const Part& part, const Report& report, const std::string& ou
     losses.push_back({{"what", loss.what}, {"reason", loss.reason}, {"size_m", loss.size}});
     if (loss.face != kNone) losses.back()["face"] = loss.face;
   }
+  std::vector<std::string> warnings = part.warnings;
+  warnings.insert(warnings.end(), report.measures.notes.begin(), report.measures.notes.end());
   const Json json = {{"part", out},
                      {"unit", part.source.unit},
+                     {"unit_assumed", part.source.unit_assumed},
+                     {"scale", part.source.scale},
+                     {"placed", part.source.placed},
+                     {"size_m", sizeJson(report)},
                      {"bodies", part.bodies.size()},
                      {"instances", counts.placed},
                      {"faces", part.faces.size()},
@@ -89,7 +141,7 @@ std::string jsonOf(const Part& part, const Report& report, const std::string& ou
                      {"tolerance_m", part.tolerance},
                      {"recognised", report.recognised},
                      {"steps", report.steps},
-                     {"warnings", part.warnings},
+                     {"warnings", warnings},
                      {"losses", losses},
                      {"seconds", report.seconds}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

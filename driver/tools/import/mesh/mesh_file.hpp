@@ -18,7 +18,9 @@ inline constexpr std::size_t kMostTriangles = 20'000'000;
 struct MeshFile {
   std::vector<Eigen::Vector3d> points;
   std::vector<std::array<std::uint32_t, 3>> corners;  ///< polygons are cut into triangles
-  std::vector<std::string> remarks;                   ///< what is odd about the file and did not stop the reader
+  std::vector<std::string> objects;   ///< names of the objects of the file that have triangles; empty if it names none
+  std::vector<std::uint32_t> object;  ///< object of each triangle; empty if the file names none
+  std::vector<std::string> remarks;   ///< what is odd about the file and did not stop the reader
 };
 
 /// [main] Reads a mesh. Messages begin with `name`, whose ending gives the format (.obj, .stl, .ply in any case).

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/brep/open_borders.hpp"
 #include "kernels/brep/part.hpp"
 #include "mesh_import/mesh_crossings.hpp"
 #include "mesh_import/mesh_file.hpp"
@@ -14,6 +15,13 @@ struct MeshOptions {
   double scale = 1;         ///< metres per unit of the file
   double smooth_angle = 0;  ///< [rad] normals are interpolated over edges that bend by less than this
   std::string unit{"m"};    ///< the unit that was assumed for the file's numbers; it is written into the part
+};
+
+/// A body of a mesh with several.
+struct MeshBody {
+  std::string name;
+  std::size_t triangles = 0;
+  bool closed = false;
 };
 
 /// Properties of a mesh, and the repairs that were made.
@@ -33,11 +41,16 @@ struct MeshReport {
   bool closed = false;                    ///< true if the mesh bounds a volume
   double volume = 0;                      ///< [m^3] enclosed volume if closed
   Eigen::Vector3d size{0, 0, 0};          ///< [m] size of the bounding box
+  std::vector<brep::OpenBorder> borders;  ///< where the holes are
+  std::vector<MeshBody> bodies;           ///< if there are several
   Crossings crossings;                    ///< shells that pass through each other
   std::vector<std::string> remarks;       ///< what the reader of the file found odd
+
+  /// Adds the report of one body.
+  void add(const MeshReport& body);
 };
 
-/// [main] Makes a part with one body of triangles, and writes `file_name` into it as its source. @throws
+/// [main] Makes a part with one body for each object of the file, and writes `file_name` into it as its source. @throws
 /// std::invalid_argument if no triangle can be kept.
 brep::Part meshPart(const MeshFile& mesh, const MeshOptions& options, const std::string& file_name, MeshReport& report);
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// Reads OBJ, the format of Wavefront: the lines `v` and `f`. Lines of other kinds are passed over.
+/// Reads OBJ, the format of Wavefront: the lines `v`, `f` and `o`. Lines of other kinds are passed over.
+#include <map>
+
+#include "kernels/brep/part_names.hpp"
 #include "mesh_import/mesh_file.hpp"
 #include "mesh_import/mesh_words.hpp"
 #include "mesh_import/polygons.hpp"
@@ -16,15 +19,20 @@ class ObjReader {
     while (words_.nextLine()) {
       const std::string_view kind = words_.next();
       if (kind == "v") readPoint();
+      if (kind == "o") object_ = plainLine();
+      groups_ += kind == "g" ? 1 : 0;
       if ((kind == "f" || kind == "fo") && !readFace()) tell(line_);
       if (mesh_.corners.size() > kMostTriangles)
         return Error{at(line_) + "the file has more than 20,000,000 triangles"};
       free_form_ = free_form_ || kind == "surf" || kind == "curv";
       lines_ += kind == "l" ? 1 : 0;
     }
-    for (const Late& late : late_)
+    for (const Late& late : late_) {
+      object_ = late.object;
       if (!addFace(late.indices, late.line)) tell(late.line);
+    }
     if (!wrong_lines_.none()) return wrong_lines_.error(name_);
+    tellWhatIsDropped();
     if (mesh_.corners.empty()) return Error{name_ + ": " + whatIsMissing()};
     return std::move(mesh_);
   }
@@ -34,6 +42,7 @@ class ObjReader {
   struct Late {
     std::vector<std::int64_t> indices;
     std::size_t line;
+    std::string object;
   };
 
   std::string at(std::size_t line) const { return name_ + ":" + std::to_string(line) + ": "; }
@@ -76,7 +85,7 @@ class ObjReader {
       indices_.push_back(index < 0 ? index + last + 1 : index);
       if (goes_on && !words_.nextLine()) break;
     }
-    if (late) return late_.push_back({indices_, line_}), true;
+    if (late) return late_.push_back({indices_, line_, object_}), true;
     return addFace(indices_, line_);
   }
 
@@ -95,7 +104,32 @@ class ObjReader {
     }
     if (polygon.size() < 3)
       return fail("the face has " + std::to_string(polygon.size()) + " points; expected f and at least three");
-    return cutPolygon(mesh_.points, std::move(polygon), mesh_.corners) || fail(kPolygonTooLarge);
+    if (!cutPolygon(mesh_.points, std::move(polygon), mesh_.corners)) return fail(kPolygonTooLarge);
+    mesh_.object.resize(mesh_.corners.size(), objectIndex());
+    return true;
+  }
+
+  /// Returns the index of the object to which faces belong now.
+  std::uint32_t objectIndex() {
+    const auto [known, is_new] = object_numbers_.try_emplace(object_, static_cast<std::uint32_t>(mesh_.objects.size()));
+    if (is_new) mesh_.objects.push_back(object_);
+    return known->second;
+  }
+
+  /// Returns the rest of the line as a name.
+  std::string plainLine() {
+    std::string name;
+    for (std::string_view word = words_.next(); !word.empty(); word = words_.next())
+      name += (name.empty() ? "" : " ") + std::string(word);
+    return brep::plainText(name);
+  }
+
+  /// Notes what the file has and a part has not.
+  void tellWhatIsDropped() {
+    if (mesh_.objects.size() > 1 || groups_ < 2) return;
+    mesh_.remarks.push_back("the file has " + std::to_string(groups_) +
+                            " groups (g), which are not kept: its triangles are one body; name objects (o) to get one "
+                            "body for each");
   }
 
   std::string whatIsMissing() const {
@@ -113,7 +147,9 @@ class ObjReader {
   std::vector<std::uint32_t> points_;  ///< index of each point of the file after equal points were joined
   std::vector<std::int64_t> indices_;
   std::vector<Late> late_;
-  std::size_t line_ = 0, lines_ = 0;
+  std::string object_;  ///< the object to which faces belong
+  std::map<std::string, std::uint32_t> object_numbers_;
+  std::size_t line_ = 0, lines_ = 0, groups_ = 0;
   bool free_form_ = false;
   std::string wrong_;
   WrongLines wrong_lines_;

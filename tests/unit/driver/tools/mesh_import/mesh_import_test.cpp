@@ -64,7 +64,9 @@ TEST(MeshImport, SeesHolesAndEdgesOfThreeTriangles) {
   EXPECT_FALSE(report.closed);
   EXPECT_EQ(report.holes, 1u);
   EXPECT_EQ(report.free_edges, 4u);
-  EXPECT_EQ(linesOf(report)[0], "1 hole with 4 free edges");
+  EXPECT_EQ(linesOf(report)[0], "1 hole with 4 free edges, around (0.5, 0.5, 1) m, 1.41 m wide");
+  ASSERT_EQ(report.borders.size(), 1u);
+  EXPECT_EQ(report.borders[0].edges, 4u);
 
   MeshReport fin;
   const brep::Part part = partOf(std::string(kCube) + "v 2 0.5 0.5\nf 2 3 9\n", fin);

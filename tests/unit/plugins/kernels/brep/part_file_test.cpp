@@ -36,7 +36,7 @@ TEST(Crc32c, GivesThePublishedCheckValues) {
 
 TEST(PartFile, ComesBackAsItWasWritten) {
   Part part = samples::cappedCylinder(10, 20);
-  part.source = {"can.step", std::string(64, 'a'), "mm"};
+  part.source = {"can.step", std::string(64, 'a'), "mm", true, 0.001, "centred"};
   part.names = {"can", "lid \xc3\xa9"};
   part.warnings = {"a warning"};
   part.losses = {{"face 2", "no pcurve", 0.25, 2}};
@@ -49,6 +49,9 @@ TEST(PartFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(back.losses[0].face, 2u);
   EXPECT_EQ(back.surfaces.size(), 3u);
   EXPECT_EQ(back.source.unit, "mm");
+  EXPECT_TRUE(back.source.unit_assumed);
+  EXPECT_EQ(back.source.scale, 0.001);
+  EXPECT_EQ(back.source.placed, "centred");
 }
 
 /// Names come from the files of other programs and are shown in terminals.

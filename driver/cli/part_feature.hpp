@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+/// Describes one feature of a part, so that it can be found in the program that drew it.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "kernels/brep/part.hpp"
+
+namespace hapticd::cli {
+
+/// [main] Returns the kind, size and place of a feature, such as "a cylinder of radius 5 mm, 10 x 10 x 20 mm large,
+/// middle at (0, 0, 10) mm". The coordinates are those of the part. @throws std::invalid_argument if the part cannot be
+/// searched
+std::string featureText(const brep::Part& part, std::uint32_t feature);
+
+}  // namespace hapticd::cli

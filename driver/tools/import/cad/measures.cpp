@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include "cad_import/measures.hpp"
+
+#include <map>
+
+#include "kernels/brep/model.hpp"
+#include "kernels/brep/open_borders.hpp"
+
+namespace hapticd::cad {
+namespace {
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+std::string lineOf(const std::string& name, const std::vector<brep::OpenBorder>& borders) {
+  std::size_t edges = 0;
+  for (const brep::OpenBorder& border : borders) edges += border.edges;
+  return "'" + name + "': open, so it is felt from both sides: " + counted(borders.size(), "border of", "borders of") +
+         " " + counted(edges, "free edge", "free edges") + ", " + brep::placesOf(borders);
+}
+
+}  // namespace
+
+Measures measured(const brep::Part& part) {
+  Measures measures;
+  try {
+    const brep::Model model{brep::Part(part)};
+    measures.box = model.bounds();
+    measures.notes = model.warnings();
+  } catch (const std::invalid_argument& error) {
+    measures.notes.emplace_back(error.what());
+  }
+  return measures;
+}
+
+std::vector<std::string> openBodies(const brep::Part& part) {
+  std::map<std::uint32_t, std::vector<brep::OpenBorder>> by_body;
+  for (const brep::OpenBorder& border : brep::openBorders(part))
+    if (part.bodies[border.body].kind != brep::BodyKind::kSolid) by_body[border.body].push_back(border);
+  std::vector<std::string> lines;
+  for (const auto& [body, borders] : by_body) {
+    const std::uint32_t name = part.bodies[body].name;
+    lines.push_back(lineOf(name == brep::kNone ? "" : part.names[name], borders));
+  }
+  return lines;
+}
+
+}  // namespace hapticd::cad
