@@ -101,21 +101,13 @@ void Tracks::set(int index, const Array2d& uv, double bound) noexcept {
   key_[static_cast<std::size_t>(t.slot)] = bound;
 }
 
-/// True if the foot of a record is certainly nearer than a followed foot, so that it is another one, however close the
-/// two are in (u, v). Records without a distance tell nothing.
-bool Tracks::isNearer(double bound, int index) const noexcept {
-  constexpr double kSlack = 1e-7;  // [m]
-  const double distance = bound - way_told_before_, since = way_ - way_told_before_;
-  return distance > 0 && atLeast(index) > distance + since + kSlack;
-}
-
 /// True if a record leads to a foot of the patch that is followed already, or to an older record, which it then
 /// replaces.
 bool Tracks::follows(int patch, const Array2d& uv, double bound) noexcept {
   const Array2d range = model_.patch(patch).hi - model_.patch(patch).lo;
   for (int i = patch; i >= 0; i = (*this)[i].rival) {
     Track& t = (*this)[i];
-    if (!((uv - t.at.uv).abs() < kSameRecord * range).all() || isNearer(bound, i)) continue;
+    if (!((uv - t.at.uv).abs() < kSameRecord * range).all()) continue;
     t.touched = tick_;
     if (t.at.known == Iterate::Known::kParameters) set(i, uv, bound);
     return true;

@@ -137,7 +137,6 @@ class Tracks {
   void noteSearch() noexcept;
   void countAnew() noexcept;
   bool follows(int patch, const Eigen::Array2d& uv, double bound) noexcept;
-  bool isNearer(double bound, int index) const noexcept;
   void set(int index, const Eigen::Array2d& uv, double bound) noexcept;
   bool isSame(int patch, const LocalFoot& one, const LocalFoot& other) const noexcept;
 
