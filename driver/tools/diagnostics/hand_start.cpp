@@ -227,6 +227,7 @@ std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<
   // start.
   if (inside.empty() && far == 0 && may_walk && placed)
     packProblems(warnOfWalk(scene, **world, strays, all_models), found);
+  letThreadsRun();
   return found.take();
 }
 
@@ -347,7 +348,7 @@ document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool
     noteEnd(scene, trail);
     return tryTips(scene, may_walk, strays, all_models);
   };
-  const auto told = host::runInChild(work, kHandLimitMs);
+  const auto told = host::runInChild(work, kHandLimitMs, {&trail, kStepLimitMs, {}});
   if (!told) {
     reportWalkEnd(scene, told.error(), trail, warnings);
     return warnings;

@@ -10,6 +10,7 @@
 #include "base/clock.hpp"
 #include "base/thread_waits.hpp"
 #include "diagnostics/hand_script.hpp"
+#include "diagnostics/walk_end.hpp"
 #include "record/allocation_text.hpp"
 #include "record/contact_warnings.hpp"
 #include "servo/arm/arm.hpp"
@@ -77,6 +78,7 @@ class WalkLog final : public servo::TickLog {
             const servo::Arms& arms) noexcept HSP_RT override {
     constexpr uint64_t kLookEvery = 64;  // ticks
     if (ended_) return;
+    noteTick();
     observeWaits(core);
     telemetry_.tick(t, dt, late, spent, core, arms);
     for (uint32_t i = 0; i < walk_.models.size(); ++i) observeModel(i, core, arms);
