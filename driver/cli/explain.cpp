@@ -19,6 +19,7 @@
 #include "diagnostics/slow_arm.hpp"
 #include "document/reader.hpp"
 #include "servo/loop/lockstep.hpp"
+#include "watch/crash.hpp"
 #include "world/world.hpp"
 
 namespace hapticd::cli {
@@ -210,7 +211,10 @@ void addExplain(const Command& app, int& exit_code) {
   command.footer(
       "Examples:\n  hapticd explain config/scenes/teapot.yaml --cost\n  hapticd explain run.h5    # what happened in "
       "a run that was recorded");
-  command.callback([options, &exit_code] { exit_code = explain(*options); });
+  command.callback([options, &exit_code] {
+    exit_code = explain(*options);
+    watch::guardTheEnd({});  // a destructor of a plugin may crash
+  });
 }
 
 }  // namespace hapticd::cli
