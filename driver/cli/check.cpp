@@ -51,6 +51,7 @@ using Json = nlohmann::ordered_json;
 struct CheckArguments {
   std::vector<std::string> files;
   std::string schema, device;
+  double setup_limit = kSetupSeconds;
   bool quiet = false, files_only = false, json = false;
 };
 
@@ -264,7 +265,8 @@ CheckResult checkOne(const std::string& file, const CheckArguments& options) {
       scene.reset();  // the checks of a whole scene would call these modules in this process
     }
   ModelTrial trial;
-  if (scene && !options.files_only) trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)));
+  if (scene && !options.files_only)
+    trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)), {}, options.setup_limit);
   found.insert(found.end(), trial.problems.begin(), trial.problems.end());
   if (scene && !options.files_only) addRefusals(withArm(*scene), trial.needs_velocity, result);
   if (!scene) checkTheRest(file, options, result);
@@ -344,6 +346,10 @@ void addCheck(const Command& app, int& exit_code) {
                     "check the scenes with this device file instead of their own (as hapticd run --device)");
   command.addOption("--schema", options->schema, "print the JSON Schema of a format instead, for editors")
       .oneOf({"scene", "device", "daemon"});
+  command
+      .addOption("--setup-limit", options->setup_limit,
+                 "longest time that a plugin may take for one call of the set-up of a model [s]; default: 120")
+      .within(0.1, 1e6);
   command.addFlag("--quiet,-q", options->quiet, "print nothing about files without problems");
   command.addFlag("--json", options->json, "print JSON: each problem and warning with file, line, column and key");
   command.addFlag("--files-only", options->files_only, "only read the files; do not set up the models of a scene");
