@@ -19,6 +19,7 @@
 #include "diagnostics/slow_arm.hpp"
 #include "document/reader.hpp"
 #include "servo/loop/lockstep.hpp"
+#include "session/setup_watch.hpp"
 #include "watch/crash.hpp"
 #include "world/world.hpp"
 
@@ -175,6 +176,7 @@ int explain(const ExplainArguments& options) {
   if (!scene) return kBadInput;
   const GuardedCommand guarded;
   const TickWatch watched;
+  const servo::SetupWatch waiting(logToTerminal);
   if (options.cost || options.json) return explainCost(options, *scene);
   const SetupErrors once;
   Details details;

@@ -17,6 +17,7 @@
 #include "document/suggestion.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "servo/velocity/probe_velocity.hpp"
+#include "session/setup_watch.hpp"
 #include "session/silence_reason.hpp"
 #include "watch/crash.hpp"
 #include "world/world.hpp"
@@ -132,6 +133,7 @@ int trace(const TraceArguments& options) {
   const GuardedCommand guarded;
   const TickWatch watched;
   const SetupErrors once;
+  const servo::SetupWatch waiting(logToTerminal);
   auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   auto writer = TraceWriter::open(options.out, *scene, *models);

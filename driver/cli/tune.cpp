@@ -18,6 +18,7 @@
 #include "cli/probe_path.hpp"
 #include "cli/tick_watch.hpp"
 #include "record/recording.hpp"
+#include "session/setup_watch.hpp"
 #include "tune/page.hpp"
 #include "tune/write_scene.hpp"
 #include "watch/crash.hpp"
@@ -176,7 +177,9 @@ int tuneScene(const TuneArguments& options) {
   if (scene->models.empty()) return fail(kBadInput, options.scene + ": the scene has no model, expected one to tune");
   const GuardedCommand guarded;
   const TickWatch watched;
+  std::optional<servo::SetupWatch> waiting(std::in_place, logToTerminal);
   auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
+  waiting.reset();
   if (!world) return fail(kBadInput, world.error());
   const bool uses_velocity = (*world)->needsVelocity();
   world->reset();
