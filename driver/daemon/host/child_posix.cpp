@@ -182,14 +182,14 @@ class Limits {
   /// Returns how long to wait before this is asked again; 0 if the child has taken too long.
   milliseconds left() {
     constexpr milliseconds kLook(1000);
-    const milliseconds left = std::max(whole_.left(), milliseconds(0));
+    const milliseconds left = std::min(std::max(whole_.left(), milliseconds(0)), kLook);
     if (watch_.progress == nullptr || left.count() == 0) return left;
     const uint64_t pieces = watch_.progress->pieces();
     if (pieces == 0 || pieces != seen_) piece_.restart();
     seen_ = pieces;
     late_ = pieces != 0 && watch_.piece_ms > 0 && piece_.left().count() <= 0;
     if (pieces != 0 && watch_.waits) watch_.waits(std::chrono::duration<double>(piece_.taken()).count());
-    return late_ ? milliseconds(0) : std::min(left, kLook);
+    return late_ ? milliseconds(0) : left;
   }
 
   /// Says what took too long, once left() is 0.
@@ -207,16 +207,25 @@ class Limits {
   bool late_ = false;
 };
 
-/// Reads everything that the child writes until it closes the pipe. Returns nothing if the time ends first.
-std::optional<std::string> readAll(int fd, Limits& allowed) {
+/// True if the child has ended. Its status is kept.
+bool hasEnded(pid_t child) {
+  siginfo_t info{};
+  return waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == child;
+}
+
+/// Reads everything that the child writes until it closes the pipe, or has ended: another process that it started may
+/// keep the pipe open. Returns nothing if the time ends first.
+std::optional<std::string> readAll(pid_t child, int fd, Limits& allowed) {
   std::string bytes;
   char buffer[16384];
   while (bytes.size() < kLargestAnswer) {
     const milliseconds left = allowed.left();
     if (left.count() <= 0) return std::nullopt;
+    const bool ended = hasEnded(child);  // what it has written is in the pipe by now
     pollfd waiting{fd, POLLIN, 0};
-    const int ready = poll(&waiting, 1, static_cast<int>(left.count()));
+    const int ready = poll(&waiting, 1, ended ? 0 : static_cast<int>(left.count()));
     if (ready < 0 && errno != EINTR) return std::nullopt;
+    if (ready == 0 && ended) return bytes;
     if (ready <= 0) continue;
     const ssize_t got = read(fd, buffer, sizeof buffer);
     if (got == 0) return bytes;
@@ -257,7 +266,7 @@ int waitFor(pid_t child, Limits& allowed, bool& in_time) {
 /// Returns the child's answer, or an error that says how the child ended. Closes `fd`, the reading end of the pipe.
 Result<std::string> hear(pid_t child, int fd, int limit_ms, const ChildWatch& watch) {
   Limits allowed(child, limit_ms, watch);
-  std::optional<std::string> told = readAll(fd, allowed);
+  std::optional<std::string> told = readAll(child, fd, allowed);
   close(fd);
   bool in_time = told.has_value();
   const int status = waitFor(child, allowed, in_time);

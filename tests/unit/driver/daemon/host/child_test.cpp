@@ -90,6 +90,21 @@ TEST(Child, ThatCrashesAfterItsAnswerHasAnsweredAllTheSame) {
   EXPECT_EQ(*told, "x");
 }
 
+/// The other process keeps the pipe open, through which the answer comes.
+TEST(Child, MayLeaveAnotherProcessBehind) {
+  const auto told = runInChild(
+      []() -> std::string {
+        if (::fork() == 0) {
+          ::alarm(60);
+          for (;;) ::pause();
+        }
+        return "x";
+      },
+      30'000);
+  ASSERT_TRUE(told) << told.error();
+  EXPECT_EQ(*told, "x");
+}
+
 TEST(Child, WhoseAnswerWasClosedSaysSo) {
   const auto told = runInChild(
       []() -> std::string {
