@@ -21,8 +21,8 @@ struct AtTheEnd {
 AtTheEnd at_the_end;
 
 struct Harmful : hapticd::Shape {
-  static constexpr const char* kHows[] = {"good",       "loop",  "pause", "sleep",  "exit",
-                                          "quick_exit", "close", "stack", "thread", "destructor"};
+  static constexpr const char* kHows[] = {"good",  "loop",  "pause",  "sleep",      "exit", "quick_exit",
+                                          "close", "stack", "thread", "destructor", "fork"};
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.harmful", "harmful", "1.0.0", "MIT", "Harms its host."};
   int how, ticks = 0;
   static constexpr auto fields() {
@@ -39,6 +39,10 @@ struct Harmful : hapticd::Shape {
         *nowhere = 1;
       }).detach();
     if (how == 9) at_the_end.crashes = true;
+    if (how == 10 && fork() == 0) {
+      alarm(60);
+      for (;;) pause();
+    }
   }
 
   hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact& out) noexcept HSP_RT {

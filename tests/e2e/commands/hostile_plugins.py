@@ -37,6 +37,8 @@ def walks(folder, hapticd):
         code, out, err = hapticd("check", sceneOf(folder, how))
         check(f"{how}: check names model, end and call, at the name of the plugin",
               code == 0 and ":4:" in out and f"model bad: when the hand was moved, its plugin {words}" in out and "hapticd plugin check " in out, (code, out, err))
+    code, out, err = hapticd("check", sceneOf(folder, "fork"))  # its child lives for 60 s, and is not waited for
+    check("fork: check is not kept waiting", code == 0 and "took longer" not in out + err and "did not return" not in out + err, (code, out, err))
     code, out, err = hapticd("check", sceneOf(folder, "sleep"))
     check("sleep: check says that the steps wait, and in how many ticks",
           code == 0 and re.search(r":4:.*steps of bad wait, in \d+ of \d+ ticks", out) is not None and "hapticd plugin check " in out, (code, out, err))
