@@ -93,6 +93,10 @@ void addCheck(const Command& app, int& exit_code) {
                     "check the scenes with this device file instead of their own (as hapticd run --device)");
   command.addOption("--schema", options->schema, "print the JSON Schema of a format instead, for editors")
       .oneOf({"scene", "device", "daemon"});
+  command
+      .addOption("--setup-limit", options->how.setup_seconds,
+                 "longest time that a plugin may take for one call of the set-up of a model [s]; default: 120")
+      .within(0.1, 1e6);
   command.addFlag("--quiet,-q", options->quiet, "print nothing about files without problems");
   command.addFlag("--json", options->json, "print JSON: each problem and warning with file, line, column and key");
   command.addFlag("--files-only", options->how.files_only, "only read the files; do not set up the models of a scene");

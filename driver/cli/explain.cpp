@@ -19,6 +19,8 @@
 #include "diagnostics/scene/explain_cost.hpp"
 #include "document/reader.hpp"
 #include "servo/loop/lockstep.hpp"
+#include "session/setup_watch.hpp"
+#include "watch/crash.hpp"
 #include "world/world.hpp"
 
 namespace hapticd::cli {
@@ -176,6 +178,7 @@ int explain(const ExplainArguments& options) {
   if (!scene) return kBadInput;
   const GuardedCommand guarded;
   const TickWatch watched;
+  const servo::SetupWatch waiting(logToTerminal);
   if (options.cost || options.json) return explainCost(options, *scene);
   const SetupErrors once;
   Details details;
@@ -212,7 +215,10 @@ void addExplain(const Command& app, int& exit_code) {
   command.footer(
       "Examples:\n  hapticd explain config/scenes/teapot.yaml --cost\n  hapticd explain run.h5    # what happened in "
       "a run that was recorded");
-  command.callback([options, &exit_code] { exit_code = explain(*options); });
+  command.callback([options, &exit_code] {
+    exit_code = explain(*options);
+    watch::guardTheEnd({});  // a destructor of a plugin may crash
+  });
 }
 
 }  // namespace hapticd::cli

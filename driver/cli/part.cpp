@@ -13,6 +13,7 @@
 #include "cli/part_poses.hpp"
 #include "kernels/brep/model.hpp"
 #include "kernels/brep/part_file.hpp"
+#include "kernels/brep/part_limit.hpp"
 #include "kernels/brep/part_names.hpp"
 
 namespace hapticd::cli {
@@ -22,7 +23,6 @@ using brep::kNone;
 using brep::Part;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMaxPartBytes = std::size_t{4} << 30;
 constexpr const char* kSurfaceNames[] = {"plane",    "cylinder",  "cone",       "sphere", "torus",
                                          "B-spline", "extrusion", "revolution", "offset"};
 constexpr const char* kEdgeNames[] = {"unclassified", "smooth", "convex",       "concave",
@@ -230,7 +230,7 @@ int partInfo(const std::string& file, bool json, std::optional<std::uint32_t> fe
                     ": a YAML file, expected a part (.hpart); a model file needs no import: a scene names it "
                     "(geometry: " +
                     file + "), and hapticd check SCENE checks both");
-  const auto bytes = readRegular(file, kMaxPartBytes);
+  const auto bytes = readRegular(file, brep::kMostPartBytes);
   if (!bytes) return fail(kBadInput, file + ": " + bytes.error());
   try {
     Part part = brep::readPart(std::as_bytes(std::span(*bytes)), file);

@@ -19,6 +19,7 @@
 #include "document/node.hpp"
 #include "document/suggestion.hpp"
 #include "record/recording.hpp"
+#include "watch/crash.hpp"
 #include "world/instructions.hpp"
 
 namespace hapticd::cli {
@@ -207,7 +208,10 @@ void addReplay(const Command& app, int& exit_code) {
       "the same\nas far as the run could be replayed: a replay ends where models were added or removed, or where the "
       "file is damaged.\n\nExample:\n  "
       "hapticd run config/scenes/teapot.yaml --for 10 --record run.h5\n  hapticd replay run.h5");
-  command.callback([options, &exit_code] { exit_code = replay(*options); });
+  command.callback([options, &exit_code] {
+    exit_code = replay(*options);
+    watch::guardTheEnd({});  // a destructor of a plugin may crash
+  });
 }
 
 }  // namespace hapticd::cli

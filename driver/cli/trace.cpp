@@ -17,7 +17,9 @@
 #include "document/suggestion.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "servo/velocity/probe_velocity.hpp"
+#include "session/setup_watch.hpp"
 #include "session/silence_reason.hpp"
+#include "watch/crash.hpp"
 #include "world/world.hpp"
 
 namespace hapticd::cli {
@@ -131,6 +133,7 @@ int trace(const TraceArguments& options) {
   const GuardedCommand guarded;
   const TickWatch watched;
   const SetupErrors once;
+  const servo::SetupWatch waiting(logToTerminal);
   auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   auto writer = TraceWriter::open(options.out, *scene, *models);
@@ -164,7 +167,10 @@ void addTrace(const Command& app, int& exit_code) {
       "without limits: limits belong to a "
       "device, and a trace has none.\nThe columns of the foot point are nan while nothing of the model is "
       "traced.\n\nExample:\n  hapticd trace config/scenes/teapot.yaml --probe stroke.csv --out feet.csv");
-  command.callback([options, &exit_code] { exit_code = trace(*options); });
+  command.callback([options, &exit_code] {
+    exit_code = trace(*options);
+    watch::guardTheEnd({});  // a destructor of a plugin may crash
+  });
 }
 
 }  // namespace hapticd::cli

@@ -18,8 +18,10 @@
 #include "cli/probe_path.hpp"
 #include "cli/tick_watch.hpp"
 #include "record/recording.hpp"
+#include "session/setup_watch.hpp"
 #include "tune/page.hpp"
 #include "tune/write_scene.hpp"
+#include "watch/crash.hpp"
 #include "world/world.hpp"
 
 namespace hapticd::cli {
@@ -175,7 +177,9 @@ int tuneScene(const TuneArguments& options) {
   if (scene->models.empty()) return fail(kBadInput, options.scene + ": the scene has no model, expected one to tune");
   const GuardedCommand guarded;
   const TickWatch watched;
+  std::optional<servo::SetupWatch> waiting(std::in_place, logToTerminal);
   auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
+  waiting.reset();
   if (!world) return fail(kBadInput, world.error());
   const bool uses_velocity = (*world)->needsVelocity();
   world->reset();
@@ -263,7 +267,10 @@ void addTune(const Command& app, int& exit_code) {
       "measurement\nand keeps the results so far; a second one ends the command at once. The exit code is 1 if no "
       "setting reaches the goal.\n\nExample:\n  "
       "hapticd tune config/scenes/teapot.yaml --tolerance-um 1 --page tune.html --write");
-  command.callback([options, &exit_code] { exit_code = tuneScene(*options); });
+  command.callback([options, &exit_code] {
+    exit_code = tuneScene(*options);
+    watch::guardTheEnd({});  // a destructor of a plugin may crash
+  });
 }
 
 }  // namespace hapticd::cli

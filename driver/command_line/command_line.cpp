@@ -294,11 +294,17 @@ std::vector<std::string> optionNames(const CLI::App& app) {
   return names;
 }
 
+/// True for a word such as "--other", but not for "-0.005", which is a value.
+bool namesOption(const std::string& word) {
+  double number = 0;
+  return word.size() > 1 && word[0] == '-' && word != "--" && !read(word, number);
+}
+
 /// Describes the first word that no command takes. After the word -- no other one is an option.
 std::string unexpected(const CLI::App& app, const std::vector<std::string>& words) {
   const bool plain = !words.empty() && words.front() == "--";
   const std::string word = words.size() > (plain ? 1 : 0) ? words[plain ? 1 : 0] : "";
-  if (!plain && word.size() > 1 && word[0] == '-') {
+  if (!plain && namesOption(word)) {
     const std::string name = word.substr(0, word.find('='));
     return "there is no option " + name + meant(name, optionNames(app));
   }
@@ -319,8 +325,7 @@ std::string missing(const CLI::App& app, std::string told) {
   std::vector<std::string> rest = app.remaining();
   for (const CLI::App* at = app.get_parent(); rest.empty() && at != nullptr; at = at->get_parent())
     rest = at->remaining();  // a command passes words that it does not know to its parent
-  const bool is_option = !rest.empty() && rest.front().size() > 1 && rest.front()[0] == '-' && rest.front() != "--";
-  if (is_option || (told == "A subcommand" && !rest.empty())) return unexpected(app, rest);
+  if (!rest.empty() && (namesOption(rest.front()) || told == "A subcommand")) return unexpected(app, rest);
   if (told == "A subcommand")
     return fmt::format("no subcommand given, expected one of {}", fmt::join(subcommandNames(app), ", "));
   const CLI::Option* model = app.get_option_no_throw("model");

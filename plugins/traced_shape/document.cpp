@@ -2,10 +2,12 @@
 #include "document.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "document/correction.hpp"
+#include "document/foreign_file.hpp"
 #include "document/node.hpp"
 #include "model_file.hpp"
 
@@ -175,6 +177,11 @@ std::string readModelText(const std::string& path) {
   document::Problems problems;
   auto text = document::readFile(path, kMostJson, problems);
   if (text) return *std::move(text);
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  // A large file of another kind cannot be mended by making it smaller.
+  if (const std::string foreign = document::foreignFile("", path); !error && size > kMostJson && !foreign.empty())
+    throwOne(path, foreign);
   throwOne(path, problems.front().what +
                      "; expected a model file (format hapticd-model/1) of at most 32 MiB, or a part (.hpart), which " +
                      "may be larger: " + kPartWay);

@@ -5,8 +5,11 @@
 #include <span>
 #include <stdexcept>
 
+#include "base/file_beginning.hpp"
+#include "base/regular_file.hpp"
 #include "document.hpp"
 #include "kernels/brep/part_file.hpp"
+#include "kernels/brep/part_limit.hpp"
 #include "model_file.hpp"
 #include "model_warnings.hpp"
 #include "part_mesh.hpp"
@@ -27,13 +30,24 @@ ModelFile readLogged(const std::string& text, const std::string& file, const hsp
   }
 }
 
+/// Returns the bytes of a part, or the text of a model file. The first bytes say which of them it is, because a part
+/// may be larger than any model file. A file that cannot be read is left to readModelText(), which says why.
+std::string readGeometry(const std::string& file) {
+  constexpr size_t kEnough = 64;
+  const auto beginning = readBeginning(file, kEnough);
+  if (!beginning || !brep::looksLikePart(std::as_bytes(std::span(*beginning)))) return readModelText(file);
+  auto bytes = readRegular(file, brep::kMostPartBytes);
+  if (!bytes) throw ModelFileError(file + ": " + bytes.error() + "; divide the part, and import each of the pieces");
+  return *std::move(bytes);
+}
+
 }  // namespace
 
 void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
   part_.reset();
   searches_ = {};
   takeFormerNames();
-  const std::string text = readModelText(geometry_);
+  const std::string text = readGeometry(geometry_);
   if (brep::looksLikePart(std::as_bytes(std::span(text)))) return loadPart(text, activation, report);
   if (sides_ == kAuto) sides_ = kFront;
   ModelFile file = readLogged(text, geometry_, host());

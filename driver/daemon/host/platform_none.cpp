@@ -36,7 +36,17 @@ const char* ChildProgress::call() const noexcept {
   return "";
 }
 
-Result<std::string> runInChild(const std::function<std::string()>& work, int) {
+void ChildProgress::beginPiece() noexcept {}
+void ChildProgress::rest() noexcept {}
+uint64_t ChildProgress::pieces() const noexcept {
+  return 0;
+}
+void ChildProgress::answer() noexcept {}
+bool ChildProgress::answered() const noexcept {
+  return false;
+}
+
+Result<std::string> runInChild(const std::function<std::string()>& work, int, const ChildWatch&) {
   return work();
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/not_real_time.hpp"
 #include "base/offline_tick.hpp"
+#include "session/setup_watch.hpp"
 #include "world/arm_force.hpp"
 
 namespace hapticd::servo {
@@ -329,7 +330,9 @@ Result<std::unique_ptr<Replay>> Replay::prepare(const record::Recording& recordi
   options.probe_count = static_cast<uint32_t>(scene.devices.size());
   options.max_force = maxForceOf(scene, replay->run_.devices);
   options.former_claims = replay->run_.facts.former_claims;
+  std::optional<SetupWatch> waiting(std::in_place, log);
   auto world = World::build(scene, options, log);
+  waiting.reset();
   if (!world) return Error{world.error()};
   replay->world_ = std::move(*world);
   for (size_t i = 0; i < scene.devices.size(); ++i) {

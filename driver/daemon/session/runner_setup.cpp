@@ -9,6 +9,7 @@
 #include "session/about.hpp"
 #include "session/recorded_clock.hpp"
 #include "session/runner.hpp"
+#include "session/setup_watch.hpp"
 #include "world/arm_force.hpp"
 
 namespace hapticd::servo {
@@ -56,6 +57,7 @@ Result<std::unique_ptr<World>> Runner::buildWorld(const scene::Scene& scene, con
   world_options.spare_models = options.spare_models;
   world_options.max_force = maxForceOf(scene);
   world_options.budgets = !options.virtual_time;  // a budget of real time would make two virtual runs differ
+  const SetupWatch waiting(log);
   return World::build(scene, world_options, log);
 }
 

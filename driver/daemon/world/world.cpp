@@ -5,6 +5,7 @@
 
 #include "servo/velocity/probe_velocity.hpp"
 #include "world/instructions.hpp"
+#include "world/setup_calls.hpp"
 
 namespace hapticd::servo {
 
@@ -50,10 +51,13 @@ Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const Wor
   activation = activationFor(scene, options, budget_ns);
   std::vector<host::ShapeInstance*> models;
   std::vector<hsp_pose> poses;
+  const SetupScope setting_up;
   for (const scene::Model& described : scene.models) {
+    noteSetup(&described, "create() or set");
     auto shape = host::ShapeInstance::create(described, log);
     if (!shape) return Error{shape.error()};
     activation.pose = startPose(described);
+    noteSetup(&described, "activate");
     if (auto done = (*shape)->activate(activation); !done) return Error{done.error()};
     const hsp_report& report = (*shape)->report();
     world->needs_ |= report.flags;

@@ -88,6 +88,29 @@ TEST_F(ImportCommands, ImportMakesAPartOfTriangles) {
   EXPECT_EQ(run("part info " + mesh).exit_code, 2);
 }
 
+/// A part may be larger than any model file, which has a limit of 32 MiB.
+TEST_F(ImportCommands, ALargePartIsNoModelFileThatIsTooLarge) {
+  const std::string part = (dir_ / "egg.hpart").string();
+  ASSERT_EQ(run("import " + put("egg.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n") + " -o " + part).exit_code, 0);
+  std::filesystem::resize_file(part, 40u << 20);  // what follows the sections is not read
+  const auto scene = [&](const std::string& plugin, const std::string& file) {
+    return put("scene.yaml", "hapticd: 1\nmodels:\n  - {name: egg, plugin: " + plugin +
+                                 ", parameters: {geometry: " + (dir_ / file).string() + "}}\n");
+  };
+  const Outcome checked = run("check " + scene("nurbs_rigid", "egg.hpart"), kShipped);
+  EXPECT_EQ(checked.exit_code, 0) << checked.text;
+  const std::string path = put("path.csv", "t,x,y,z\n0,0.2,0.2,0.1\n0.001,0.2,0.2,0.05\n");
+  const std::string traced = "trace " + scene("nurbs_rigid", "egg.hpart") + " --out - --probe " + path;
+  EXPECT_TRUE(has(run(traced, kShipped).text, "0.001,egg,0,")) << run(traced, kShipped).text;
+  EXPECT_EQ(run("explain " + scene("nurbs_rigid", "egg.hpart"), kShipped).exit_code, 0);
+  EXPECT_EQ(run("part info " + part).exit_code, 0);
+  const Outcome soft = run("check " + scene("mat_deformable", "egg.hpart"), kShipped);
+  EXPECT_TRUE(has(soft.text, "a part, expected YAML: use it as the geometry of nurbs_rigid")) << soft.text;
+  std::filesystem::resize_file(put("egg.yaml", "format: hapticd-model/1\n"), 40u << 20);
+  const Outcome model = run("check " + scene("nurbs_rigid", "egg.yaml"), kShipped);
+  EXPECT_TRUE(has(model.text, "egg.yaml:1:1: is larger than 32 MiB")) << model.text;
+}
+
 TEST_F(ImportCommands, CheckSaysWhatAPartCannotDo) {
   const std::string part = (dir_ / "egg.hpart").string();
   ASSERT_EQ(run("import " + put("egg.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n") + " -o " + part).exit_code, 0);

@@ -3,13 +3,15 @@
 #pragma once
 #include <string>
 
+#include "diagnostics/scene/model_trial.hpp"
 #include "document/problem.hpp"
 
 namespace hapticd::diagnostics {
 
 struct CheckOptions {
-  std::string device;       ///< device file that takes the place of a scene's devices; "" keeps them
-  bool files_only = false;  ///< true only reads the files; no module is called, and no model is set up
+  std::string device;                    ///< device file that takes the place of a scene's devices; "" keeps them
+  bool files_only = false;               ///< true only reads the files; no module is called, and no model is set up
+  double setup_seconds = kSetupSeconds;  ///< [s] longest time of one call of a plugin in the set-up of a model
 };
 
 struct CheckResult {

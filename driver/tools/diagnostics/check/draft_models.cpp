@@ -52,8 +52,8 @@ DraftModels::DraftModels(const scene::Scene& draft, const UnreadKeys& unread, ho
   }
 }
 
-ModelTrial DraftModels::attempt(double max_force) const {
-  ModelTrial trial = tryModels(draft_, max_force, left_out_);
+ModelTrial DraftModels::attempt(double max_force, double setup_seconds) const {
+  ModelTrial trial = tryModels(draft_, max_force, left_out_, setup_seconds);
   for (document::Problems* told : {&trial.problems, &trial.warnings})
     std::erase_if(*told, [this](const document::Problem& one) { return dependsOnUnread(one); });
   for (size_t i = 0; i < trial.boxes.size(); ++i)

@@ -23,7 +23,8 @@ class DraftModels {
   DraftModels(const scene::Scene& draft, const UnreadKeys& unread, host::Catalog& catalog);
 
   /// [main] Sets up all models that can be set up, with the values that were read.
-  ModelTrial attempt(double max_force) const;
+  /// @param setup_seconds [s] longest time of one call of a plugin
+  ModelTrial attempt(double max_force, double setup_seconds) const;
 
   /// [main] Returns the warnings about hands, and about how the models lie beside each other, with the models that have
   /// no problem.

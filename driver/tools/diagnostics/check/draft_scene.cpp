@@ -111,7 +111,7 @@ document::Problems warningsOfValues(const scene::Scene& draft, host::Catalog& ca
 
 }  // namespace
 
-bool judgeDraftScene(scene::Scene draft, host::Catalog& catalog, document::Problems& problems,
+bool judgeDraftScene(scene::Scene draft, host::Catalog& catalog, double setup_seconds, document::Problems& problems,
                      document::Problems& warnings) {
   const UnreadKeys unread(problems);
   bool arms = armsAreRead(draft, problems);
@@ -120,7 +120,7 @@ bool judgeDraftScene(scene::Scene draft, host::Catalog& catalog, document::Probl
                              [](const scene::Device& device) { return tryModule(device).error.empty(); });
   if (!arms) draft.devices.clear();
   const DraftModels models(draft, unread, catalog);
-  const ModelTrial trial = models.attempt(arms ? servo::maxForceOf(draft) : 0);
+  const ModelTrial trial = models.attempt(arms ? servo::maxForceOf(draft) : 0, setup_seconds);
   document::append(problems, trial.problems);
   document::append(warnings, trial.warnings);
   for (const document::Problem& one : warningsOfValues(draft, catalog))

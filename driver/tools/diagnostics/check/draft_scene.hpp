@@ -11,9 +11,10 @@ namespace hapticd::diagnostics {
 /// is left out.
 /// @return true if the hands of the arms were moved through the models that have no problem
 /// @param draft the part of the scene that could be read
+/// @param setup_seconds [s] longest time of one call of a plugin in the set-up of a model
 /// @param problems problems of the scene; those of its models are added
 /// @param warnings warnings about the scene; those about its models are added
-bool judgeDraftScene(scene::Scene draft, host::Catalog& catalog, document::Problems& problems,
+bool judgeDraftScene(scene::Scene draft, host::Catalog& catalog, double setup_seconds, document::Problems& problems,
                      document::Problems& warnings);
 
 }  // namespace hapticd::diagnostics

@@ -88,7 +88,7 @@ void FileJudge::judgeDraft() {
                                          [](const document::Problem& problem) { return problem.key.empty(); });
   // What was left out after a syntax error may be what another value depends on.
   if (!draft || options_.files_only || document::leavesOut(result_.problems, result_.file)) return;
-  result_.hands_moved = judgeDraftScene(*draft, catalog_, result_.problems, result_.warnings);
+  result_.hands_moved = judgeDraftScene(*draft, catalog_, options_.setup_seconds, result_.problems, result_.warnings);
   document::sortByPlace(result_.problems);
 }
 

@@ -80,8 +80,8 @@ document::Problems warningsOfSettings(const scene::Scene& full, const ModelTrial
 }
 
 /// Sets up the models, and adds the problems that `run` would find then and when it opens the arms.
-ModelTrial addRefusals(const scene::Scene& full, CheckResult& result) {
-  ModelTrial trial = tryModels(full, servo::maxForceOf(full));
+ModelTrial addRefusals(const scene::Scene& full, double setup_seconds, CheckResult& result) {
+  ModelTrial trial = tryModels(full, servo::maxForceOf(full), {}, setup_seconds);
   document::append(result.problems, trial.problems);
   document::append(result.problems, refusedArms(full, trial.needs_velocity));
   document::append(result.problems, refusedVelocity(full, trial.needs_velocity, result.warnings));
@@ -110,7 +110,7 @@ document::Problems badModules(const scene::Scene& scene, host::Catalog& catalog)
 void judgeScene(const scene::Scene& scene, const CheckOptions& options, host::Catalog& catalog, CheckResult& result) {
   const scene::Scene full = withArm(scene, catalog);
   ModelTrial trial;
-  if (!options.files_only) trial = addRefusals(full, result);
+  if (!options.files_only) trial = addRefusals(full, options.setup_seconds, result);
   document::append(result.warnings, trial.warnings);
   document::Problems more = warningsOfSettings(full, trial, catalog);
   if (!options.files_only) {

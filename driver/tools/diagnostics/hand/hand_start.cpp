@@ -15,11 +15,11 @@
 #include "diagnostics/hand/hand_inside.hpp"
 #include "diagnostics/hand/hand_script.hpp"
 #include "diagnostics/hand/radius_advice.hpp"
-#include "diagnostics/hand/walk_end.hpp"
 #include "diagnostics/hand/walk_warnings.hpp"
 #include "diagnostics/reading/key_place.hpp"
 #include "diagnostics/scene/nearest_model.hpp"
 #include "diagnostics/scene/overlapping_models.hpp"
+#include "diagnostics/scene/trial_end.hpp"
 #include "diagnostics/scene/unreachable_models.hpp"
 #include "host/child.hpp"
 #include "host/device_instance.hpp"
@@ -229,6 +229,7 @@ std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<
   // start.
   if (inside.empty() && far == 0 && may_walk && placed)
     packProblems(warnOfWalk(scene, **world, strays, all_models), found);
+  letThreadsRun();
   return found.take();
 }
 
@@ -349,7 +350,7 @@ document::Problems warnOfHands(const scene::Scene& scene, const std::vector<bool
     noteEnd(scene, trail);
     return tryTips(scene, may_walk, strays, all_models);
   };
-  const auto told = host::runInChild(work, kHandLimitMs);
+  const auto told = host::runInChild(work, kHandLimitMs, {&trail, kStepLimitMs, {}});
   if (!told) {
     reportWalkEnd(scene, told.error(), trail, warnings);
     return warnings;

@@ -8,7 +8,9 @@
 
 #include "base/allocation_owner.hpp"
 #include "base/clock.hpp"
+#include "base/thread_waits.hpp"
 #include "diagnostics/hand/hand_script.hpp"
+#include "diagnostics/scene/trial_end.hpp"
 #include "record/allocation_text.hpp"
 #include "record/contact_warnings.hpp"
 #include "servo/arm/arm.hpp"
@@ -27,6 +29,7 @@ constexpr double kMostSeconds = 10;
 /// gives.
 constexpr double kLeastSeconds = 3;
 constexpr uint64_t kMostTicks = 10'000;
+constexpr uint64_t kEnoughWaits = 1000;  ///< ticks with a wait, after which no more are needed
 
 double processorSeconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
@@ -44,6 +47,7 @@ class WalkLog final : public servo::TickLog {
     walk_.models.resize(scene.models.size());
     walk_.arms.resize(scene.devices.size());
     clips_.resize(scene.devices.size());
+    waits_.resize(scene.models.size());
     for (size_t i = 0; i < boxes_.size(); ++i) {
       Eigen::AlignedBox3d box;
       if (world.shapes()[i]->bounds(box.min().data(), box.max().data())) boxes_[i] = box;
@@ -59,10 +63,11 @@ class WalkLog final : public servo::TickLog {
     if (most.owner != nullptr && !most.owner->device && !record::allocationText(report, most).empty())
       walk_.allocates = most.owner->name;
     for (size_t i = 0; i < walk_.models.size(); ++i) judge(core.models()[i], report.models[i]);
+    walk_.waiter = static_cast<uint32_t>(std::max_element(waits_.begin(), waits_.end()) - waits_.begin());
     return std::move(walk_);
   }
 
-  void begin(Nanoseconds, const servo::Arms&) noexcept HSP_RT override {}
+  void begin(Nanoseconds, const servo::Arms&) noexcept HSP_RT override { waited_before_ = os::waitsOfThread(); }
   void order(const servo::Order&) noexcept HSP_RT override {}
   void overrun(uint64_t) noexcept HSP_RT override {}
   void finish(uint64_t ticks, Nanoseconds elapsed, long page_faults, uint64_t allocations) noexcept override {
@@ -73,6 +78,8 @@ class WalkLog final : public servo::TickLog {
             const servo::Arms& arms) noexcept HSP_RT override {
     constexpr uint64_t kLookEvery = 64;  // ticks
     if (ended_) return;
+    noteTick();
+    observeWaits(core);
     telemetry_.tick(t, dt, late, spent, core, arms);
     for (uint32_t i = 0; i < walk_.models.size(); ++i) observeModel(i, core, arms);
     for (uint32_t i = 0; i < arms.size(); ++i) observeArm(i, core, *arms[i]);
@@ -82,8 +89,9 @@ class WalkLog final : public servo::TickLog {
         std::all_of(walk_.arms.begin(), walk_.arms.end(), [](const WalkedArm& arm) { return arm.touched; });
     walk_.whole = t >= once_ || walk_.whole;
     walk_.late = late_ && !walk_.whole;
+    walk_.waited = walk_.waits >= kEnoughWaits && !walk_.whole;
     // A model that moves by itself may still come to a hand that waits for it.
-    if (!late_ && !(walk_.whole && (all || !moves_) && t >= kLeastSeconds)) return;
+    if (!late_ && !walk_.waited && !(walk_.whole && (all || !moves_) && t >= kLeastSeconds)) return;
     ended_ = true;
     loop_->stop();
   }
@@ -98,6 +106,16 @@ class WalkLog final : public servo::TickLog {
     walk_.silenced.push_back(state.guard.quarantined());
     walk_.judged.push_back(record::contactWarnings(report));
     if (!fault.empty()) walk_.judged.back().push_back(fault);
+  }
+
+  /// Counts the tick if the thread waited in it, for the model whose steps took longest.
+  void observeWaits(const servo::Core& core) noexcept HSP_RT {
+    if (os::waitsOfThread() == waited_before_) return;
+    ++walk_.waits;
+    uint32_t longest = 0;
+    for (uint32_t i = 1; i < waits_.size(); ++i)
+      if (core.models()[i].step_ns > core.models()[longest].step_ns) longest = i;
+    if (longest < waits_.size()) ++waits_[longest];
   }
 
   void observeModel(uint32_t index, const servo::Core& core, const servo::Arms& arms) noexcept HSP_RT {
@@ -159,6 +177,8 @@ class WalkLog final : public servo::TickLog {
   std::vector<std::optional<Eigen::AlignedBox3d>> boxes_;
   std::vector<Vector3d> began_at_;
   std::vector<servo::Clips> clips_;
+  std::vector<uint64_t> waits_;  ///< for each model: ticks with a wait in which its steps took longest
+  long waited_before_ = 0;
   servo::Loop* loop_ = nullptr;
   uint64_t ticks_ = 0;
   bool moves_ = false, ended_ = false, late_ = false;

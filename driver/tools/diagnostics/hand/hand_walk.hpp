@@ -51,7 +51,11 @@ struct Walk {
   std::vector<WalkedArm> arms;
   /// What `run` would report about the plugin of each model: why it was silenced, or what is odd in its forces.
   std::vector<std::vector<std::string>> judged;
-  std::vector<bool> silenced;            ///< for each model: true if it was silenced
+  std::vector<bool> silenced;  ///< for each model: true if it was silenced
+  uint64_t waits = 0;          ///< ticks in which the thread waited, for whatever reason
+  uint32_t waiter = 0;         ///< index of the model whose steps took longest in most of these ticks
+  /// true if there were so many of these ticks that the walk was ended; then nothing else is to be judged
+  bool waited = false;
   std::string allocates;                 ///< model whose steps allocate memory, as `run` would report; "" if none does
   std::vector<servo::Limiter> limiters;  ///< limiter of each arm at the end of the walk
 };

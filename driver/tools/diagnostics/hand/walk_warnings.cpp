@@ -12,8 +12,8 @@
 #include "diagnostics/hand/hand_script.hpp"
 #include "diagnostics/hand/hand_walk.hpp"
 #include "diagnostics/hand/radius_advice.hpp"
-#include "diagnostics/hand/walk_end.hpp"
 #include "diagnostics/reading/key_place.hpp"
+#include "diagnostics/scene/trial_end.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -272,6 +272,22 @@ void reportAllocations(const scene::Scene& scene, const Walk& walk, document::Pr
   }
 }
 
+/// Warns of a plugin whose steps wait. A machine that is busy takes the processor away, but does not make a step wait.
+void reportWaits(const scene::Scene& scene, const Walk& walk, document::Problems& warnings) {
+  constexpr uint64_t kFew = 20;     // ticks: a file that is read at its first use waits, too
+  constexpr uint64_t kSeldom = 50;  // one in so many ticks
+  if (walk.waits < kFew || walk.waits * kSeldom < walk.ticks) return;
+  const scene::Model& model = scene.models[walk.waiter];
+  const std::string key = fmt::format("models[{}].plugin", walk.waiter);
+  document::report(
+      warnings, placeInModel(model, key), key,
+      fmt::format("steps of {} wait, in {} of {} ticks{}: they sleep, lock, or read or write a file, so ticks of a run "
+                  "are late; step(), which is touch() of a shape in C++, may not wait; find the call with: hapticd "
+                  "plugin check {}",
+                  model.name, walk.waits, walk.ticks, walk.waited ? ", after which the hand was not moved on" : "",
+                  model.library.string()));
+}
+
 /// Warns that a walk was ended before the hands had done their motion, at the model that took most of the time.
 void reportLate(const scene::Scene& scene, const Walk& walk, document::Problems& warnings) {
   const auto slowest = static_cast<size_t>(
@@ -307,6 +323,8 @@ document::Problems warnOfWalk(const scene::Scene& scene, servo::World& world, co
   }();
   if (!walk) return warnings;
   reportAllocations(scene, *walk, warnings);
+  reportWaits(scene, *walk, warnings);
+  if (walk->waited) return warnings;
   if (walk->late) {
     reportLate(scene, *walk, warnings);
     return warnings;

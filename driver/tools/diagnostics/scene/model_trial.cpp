@@ -10,6 +10,8 @@
 #include <string_view>
 
 #include "diagnostics/reading/key_place.hpp"
+#include "diagnostics/scene/slow_setup.hpp"
+#include "diagnostics/scene/trial_end.hpp"
 #include "host/catalog.hpp"
 #include "host/child.hpp"
 #include "host/class_params.hpp"
@@ -143,14 +145,30 @@ void warnOfMotion(const scene::Model& model, size_t index, document::Problems& w
 void reportEnd(const std::string& how, const host::ChildProgress& trail, const scene::Scene& scene,
                document::Problems& problems) {
   const uint32_t index = trail.item();
-  if (*trail.call() == '\0' || index >= scene.models.size())
-    return document::report(problems, scene.file.string(), 1, 1, "models", "setting up the models " + how);
+  if (index >= scene.models.size())
+    return document::report(problems, scene.file.string(), 1, 1, "models",
+                            "the process in which check sets up the models " + how);
   const scene::Model& model = scene.models[index];
   const bool more = index + 1 < scene.models.size();
+  const bool hangs = how.starts_with("did not return");
   document::report(problems, model.place, "models[" + std::to_string(index) + "]",
-                   "plugin '" + model.plugin + "' of model '" + model.name + "' " + how + ", in its " + trail.call() +
-                       "()" + (more ? "; the models after it were not tried" : "") + "; hapticd plugin check " +
-                       model.library.string() + " looks for the cause");
+                   "plugin '" + model.plugin + "' of model '" + model.name + "' " + how + whereAtEnd(trail.call()) +
+                       (more ? "; the models after it were not tried" : "") +
+                       (hangs ? "; if it only needs longer, give --setup-limit more seconds" : "") +
+                       "; hapticd plugin check " + model.library.string() + " looks for the cause");
+}
+
+/// Warns of a plugin that crashes when the process ends. It was set up and removed without a problem.
+void reportDestructor(const host::ChildProgress& trail, const scene::Scene& scene, document::Problems& warnings) {
+  const uint32_t index = trail.item();
+  if (*trail.call() == '\0' || index >= scene.models.size()) return;
+  const scene::Model& model = scene.models[index];
+  const std::string key = "models[" + std::to_string(index) + "].plugin";
+  document::report(warnings, placeInModel(model, key), key,
+                   "plugin '" + model.plugin + "' of model '" + model.name +
+                       "' crashes when the process ends, in a destructor of one of its static objects; a run ends "
+                       "with this crash after its report; correct it in the source of " +
+                       model.library.string());
 }
 
 /// Packs the box of a model in its own frame; it is empty if the plugin does not report one.
@@ -175,18 +193,24 @@ struct TrialResult {
   Eigen::AlignedBox3d box;
 };
 
+/// Notes that a call of a plugin is about to begin.
+void markCall(host::ChildProgress& trail, uint32_t index, const char* call) {
+  trail.mark(index, call);
+  trail.beginPiece();
+}
+
 using Log = std::function<void(int, const std::string&, const std::string&)>;
 
 TrialResult tryOne(const scene::Scene& scene, const scene::Model& model, uint32_t index, double max_force,
                    const Log& log, host::ChildProgress& trail) {
   TrialResult tried;
-  trail.mark(index, "create() or set");
+  markCall(trail, index, "create() or set");
   auto shape = host::ShapeInstance::create(model, log);
   if (!shape) {
     tried.error = shape.error();
     return tried;
   }
-  trail.mark(index, "activate");
+  markCall(trail, index, "activate");
   const auto activated = (*shape)->activate(activationOf(scene, model, max_force));
   if (!activated) {
     tried.error = activated.error();
@@ -196,9 +220,9 @@ TrialResult tryOne(const scene::Scene& scene, const scene::Model& model, uint32_
   tried.reads_velocity = ((*shape)->report().flags & HSP_R_VELOCITY) != 0;
   const bool may_move = ((*shape)->description().flags & HSP_C_MOVES) != 0;
   tried.idle = may_move && ((*shape)->report().flags & HSP_R_MOVES) == 0;
-  trail.mark(index, "bounds");
+  markCall(trail, index, "bounds");
   if (!(*shape)->bounds(tried.box.min().data(), tried.box.max().data())) tried.box.setEmpty();
-  trail.mark(index, "deactivate() or destroy");
+  markCall(trail, index, "deactivate() or destroy");
   return tried;
 }
 
@@ -308,11 +332,21 @@ std::string tryAll(const scene::Scene& scene, double max_force, const std::vecto
 
 }  // namespace
 
-ModelTrial tryModels(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound) {
+ModelTrial tryModels(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound,
+                     double setup_seconds) {
   ModelTrial trial;
   if (scene.models.empty()) return trial;
   host::ChildProgress trail;
-  const auto told = host::runInChild([&] { return tryAll(scene, max_force, unsound, trail); }, kTrialLimitMs);
+  SlowSetup slow(scene, trail, setup_seconds);
+  const auto work = [&] {
+    noteEnd(scene, trail);
+    std::string found = tryAll(scene, max_force, unsound, trail);
+    trail.mark(static_cast<uint32_t>(scene.models.size()), "");
+    return found;
+  };
+  const int piece_ms = static_cast<int>(setup_seconds * 1e3);
+  const host::ChildWatch watch{&trail, piece_ms, [&slow](double seconds) { slow.look(seconds); }, true};
+  const auto told = host::runInChild(work, std::max(kTrialLimitMs, 2 * piece_ms), watch);
   if (!told) {
     reportEnd(told.error(), trail, scene, trial.problems);
     return trial;
@@ -320,6 +354,7 @@ ModelTrial tryModels(const scene::Scene& scene, double max_force, const std::vec
   host::Unpacker in(*told);
   trial.problems = PackedTexts::read(in, scene);
   trial.warnings = PackedTexts::read(in, scene);
+  reportDestructor(trail, scene, trial.warnings);
   for (size_t i = 0; i < scene.models.size() && in.good(); ++i) {
     trial.stiffness.push_back(in.real());
     if (in.count() != 0) warnOfMotion(scene.models[i], i, trial.warnings);

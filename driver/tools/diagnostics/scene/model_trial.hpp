@@ -22,11 +22,16 @@ struct ModelTrial {
   ModelBoxes boxes;
 };
 
+constexpr double kSetupSeconds = 120;  ///< [s] most time of one call of a plugin, if nothing else is asked
+
 /// [main] Creates and activates every model in a child process, one after the other, and collects the objections of the
 /// plugins. A crash or a hang becomes a problem too.
 /// @param max_force [N] largest force that any arm of the run lets through to the hand (servo::maxForceOf); 0 if
 /// unknown
 /// @param unsound true for each model that is left out because it has problems already; its stiffness counts as 0
-ModelTrial tryModels(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound = {});
+/// @param setup_seconds [s] a call that takes longer is a problem. Time in which it waits for a processor does not
+/// count
+ModelTrial tryModels(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound = {},
+                     double setup_seconds = kSetupSeconds);
 
 }  // namespace hapticd::diagnostics

@@ -124,6 +124,8 @@ TEST(CommandLine, RefusesWordsThatAreMissingOrTooMany) {
       {{"draw", "a", "-q", "--copies", "2"}, "is given together with"},
       {{"draw", "a", "--weights", "1", "2"}, "2"},
       {{"draw", "a", "--other"}, "error: there is no option --other; see example draw --help"},
+      {{"move", "a", "-0.005", "0.003"}, "error: --to is missing, expected `example move FILE --to X Y Z`;"},
+      {{"draw", "a", "-0.5"}, "error: unexpected word \"-0.5\": `example draw` takes only FILE and options"},
       {{"move", "--", "-a"}, "error: --to is missing, expected `example move FILE --to X Y Z`;"},
       {{"draw", "--", "-a", "-b"}, "error: unexpected word \"-b\": `example draw` takes only FILE and options"},
   });
