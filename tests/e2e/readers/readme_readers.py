@@ -190,7 +190,7 @@ def program_of_the_readme(environment):
     check("the README's move is obeyed", said[0] == 0 and '"ok": true' in said[1], said)
     said = run(sys.executable, "-c", code.replace("sleep(5)", "sleep(1)"),
                environment=dict(environment, PYTHONPATH=os.path.join(SOURCE, "driver/doors/client/python")))
-    check("and its program in Python reads and pushes", said[0] == 0 and "Parameter(id='stiffness'" in said[1], said)
+    check("and its program in Python reads and pushes", said[0] == 0 and said[1].startswith("800.0 "), said)
     daemon.terminate()
     rest = daemon.communicate(timeout=30)[1]
     check("the log tells of the push", "pushes on it" in rest, rest)
