@@ -165,8 +165,8 @@ inline bool inside(V2 uv, const spline::TableCell& cell) {
 /// cusp. @param near 1 / |n| at a point
 /// close by
 inline double shrinkTo(V4 n, double near) {
-  constexpr double kLittle = 1e-4;     // the error of the series below is less than the cube of this
-  constexpr double kMost2 = 2;         // largest squared ratio of the lengths
+  constexpr double kLittle = 1e-4;  // the error of the series below is less than the cube of this
+  constexpr double kMost2 = 2;      // largest squared ratio of the lengths
   const double n2 = dots(n, n, n)[0], e = 1 - n2 * (near * near);
   if (!(e * e < kLittle * kLittle)) [[unlikely]]
     return n2 * (near * near) > 1 / kMost2 && n2 * (near * near) < kMost2 ? 1 / __builtin_sqrt(n2) : 0;
