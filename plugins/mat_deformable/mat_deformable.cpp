@@ -237,9 +237,9 @@ MatDeformable::LocatedSurface MatDeformable::locate(const hsp_probe& probe, cons
   const Vector3d p(probe.position);
   if (!track.active || (probe.flags & HSP_IN_INVALID) != 0 || !p.allFinite()) {
     track.friction.reset();
-    track.counted = track.pressed = track.met = false;
-    track.exerted.setZero();
+    track.counted = false;
     track.missed = true;
+    track.forgetPress();
     const bool said = !track.active || (probe.flags & HSP_IN_INVALID) != 0;
     return {said ? HSP_OK : HSP_E_NUMERIC, false, {}, {}};
   }
@@ -248,8 +248,7 @@ MatDeformable::LocatedSurface MatDeformable::locate(const hsp_probe& probe, cons
   if (jumped) {
     track.side = 0;
     track.pushed.setZero();
-    track.met = track.pressed = false;
-    track.exerted.setZero();
+    track.forgetPress();
   }
   const Vector3d moved = track.known ? Vector3d(p - track.last) : Vector3d(Vector3d::Zero());
   const Vector3d center = track.foot.center, rival = track.rival.center;

@@ -55,6 +55,12 @@ struct Track {
   uint32_t scanned = 0;  ///< index of the sample that the search for a rival examined last
   bool hopped = false;   ///< true if the foot jumped to another part of the surface in this tick
   double inside = 0;     ///< [m] depth of the probe below the displaced surface
+
+  /// [rt] Where the probe is met next, it counts as put there.
+  void forgetPress() noexcept {
+    met = pressed = false;
+    exerted.setZero();
+  }
 };
 
 /// [rt] Returns the work [J] of a hand in the first tick of a contact, for its account: at most the energy of the
