@@ -11,32 +11,16 @@ import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 from e2e import check, finish
-from wire import fed, table_of
+from wire import TORQUES, fed, own_arm, table_of
 
-ARM = """hapticd-device: 1
-module: usb_hid
-name: own arm
-limits: {force: 2}
-parameters:
-  usb: {id: "1209:0a0a"}
-  arm: {kind: phantom, lengths: [0.2, 0.2, 0, 0, 0], masses: [0, 0, 0, 0], max_torque: [0.5]}
-  wire:
-    rate: 1000
-    watchdog: 0.02
-    input:
+ARM = own_arm("""    input:
       size: 13
       fields:
         - {is: position, joint: 1, at: 0, type: i32, scale: 3.0e-4}
         - {is: position, joint: 2, at: 4, type: i32, scale: 3.0e-4}
         - {is: position, joint: 3, at: 8, type: i32, scale: 3.0e-4}
         - {is: button, button: 1, at: 12, type: u1}
-    output:
-      size: 6
-      fields:
-        - {is: torque, joint: 1, at: 0, type: i16, scale: 2.0e-5}
-        - {is: torque, joint: 2, at: 2, type: i16, scale: 2.0e-5}
-        - {is: torque, joint: 3, at: 4, type: i16, scale: 2.0e-5}
-"""
+""" + TORQUES)
 SCALE = 3.0e-4
 COUNT = 200
 REPORTS = [b"".join(round(a / SCALE).to_bytes(4, "little", signed=True) for a in

@@ -15,34 +15,19 @@ import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 from e2e import check, finish
+from wire import TORQUES, own_arm
 
 HAPTICD = sys.argv[1]
 TURN = 65536  # counts of a joint turn
 SCALE = 2 * math.pi / TURN
 
-ARM = """hapticd-device: 1
-module: usb_hid
-name: own arm
-limits: {force: 2, workspace: 0.3}
-parameters:
-  usb: {id: "1209:0a0a"}
-  arm: {kind: phantom, lengths: [0.2, 0.2, 0, 0, 0], masses: [0, 0, 0, 0], max_torque: [0.5], limits: [[-1.2, 1.2], [-0.3, 0.9], [-1, 1]]}
-  wire:
-    rate: 1000
-    watchdog: 0.02
-    input:
+ARM = own_arm("""    input:
       size: 6
       fields:
         - {is: position, joint: 1, at: 0, type: i16, scale: @}
         - {is: position, joint: 2, at: 2, type: i16, scale: @}
         - {is: position, joint: 3, at: 4, type: i16, scale: @}
-    output:
-      size: 6
-      fields:
-        - {is: torque, joint: 1, at: 0, type: i16, scale: 2.0e-5}
-        - {is: torque, joint: 2, at: 2, type: i16, scale: 2.0e-5}
-        - {is: torque, joint: 3, at: 4, type: i16, scale: 2.0e-5}
-""".replace("@", f"{SCALE:.9g}")
+""".replace("@", f"{SCALE:.9g}") + TORQUES, limits="{force: 2, workspace: 0.3}", stops="[[-1.2, 1.2], [-0.3, 0.9], [-1, 1]]")
 FIRST, SECOND, THIRD = (f"joint: {i + 1}, at: {2 * i}, type: i16, scale: {SCALE:.9g}" for i in range(3))
 
 

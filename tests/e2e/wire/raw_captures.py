@@ -14,22 +14,13 @@ import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 from e2e import check, finish
+from wire import TORQUES, own_arm
 
 HAPTICD = sys.argv[1]
 
 SCALE = 2 * math.pi / (4096 * 40)  # counts of a motor turn, motor turns of one joint turn
 SUM = "at: 18, type: u16, method: crc16, from: 0, to: 18, over_id: true"
-ARM = """hapticd-device: 1
-module: usb_hid
-name: own arm
-limits: {force: 2}
-parameters:
-  usb: {id: "1209:0a0a"}
-  arm: {kind: phantom, lengths: [0.2, 0.2, 0, 0, 0], masses: [0, 0, 0, 0], max_torque: [0.5], limits: [[-1.2, 1.2], [-0.8, 0.8], [-1, 1]]}
-  wire:
-    rate: 1000
-    watchdog: 0.02
-    input:
+ARM = own_arm("""    input:
       id: 1
       size: 20
       fields:
@@ -39,13 +30,7 @@ parameters:
         - {is: position, joint: 2, at: 8, type: i24, scale: @}
         - {is: position, joint: 3, at: 12, type: i24, scale: @}
         - {is: checksum, #}
-    output:
-      size: 6
-      fields:
-        - {is: torque, joint: 1, at: 0, type: i16, scale: 2.0e-5}
-        - {is: torque, joint: 2, at: 2, type: i16, scale: 2.0e-5}
-        - {is: torque, joint: 3, at: 4, type: i16, scale: 2.0e-5}
-""".replace("@", f"{SCALE:.9g}").replace("#", SUM)
+""".replace("@", f"{SCALE:.9g}").replace("#", SUM) + TORQUES, stops="[[-1.2, 1.2], [-0.8, 0.8], [-1, 1]]")
 
 
 def crc16(data):

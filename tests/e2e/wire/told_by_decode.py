@@ -10,23 +10,12 @@ import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 from e2e import check, finish
-from wire import fed, modbus, table_of
+from wire import TORQUES, fed, modbus, own_arm, table_of
 
 HAPTICD = sys.argv[1]
 SCALE = 4.0e-5
 
-HEAD = """hapticd-device: 1
-module: usb_MODULE
-name: own arm
-limits: {force: 2}
-parameters:
-  usb: {id: "1209:0a0a"}
-  arm: {kind: phantom, lengths: [0.2, 0.2, 0, 0, 0], masses: [0, 0, 0, 0], max_torque: [0.5]}
-  wire:
-    rate: 1000
-    watchdog: 0.02
-"""
-HID = HEAD.replace("MODULE", "hid") + """    input:
+HID = own_arm("""    input:
       id: 1
       size: 12
       fields:
@@ -38,14 +27,8 @@ HID = HEAD.replace("MODULE", "hid") + """    input:
         - {is: calibrated, at: 8, bit_offset: 1, type: u1}
         - {is: starts, at: 9, type: u8}
         - {is: checksum, at: 10, type: u16, method: crc16-modbus, from: 0, to: 10}
-    output:
-      size: 6
-      fields:
-        - {is: torque, joint: 1, at: 0, type: i16, scale: 2.0e-5}
-        - {is: torque, joint: 2, at: 2, type: i16, scale: 2.0e-5}
-        - {is: torque, joint: 3, at: 4, type: i16, scale: 2.0e-5}
-"""
-SERIAL = HEAD.replace("MODULE", "bulk") + """    framing: {start: 0x7e, end: 0x7e, escape: {mark: 0x7d, xor: 0x20}}
+""" + TORQUES)
+SERIAL = own_arm("""    framing: {start: 0x7e, end: 0x7e, escape: {mark: 0x7d, xor: 0x20}}
     input:
       size: 10
       fields:
@@ -60,7 +43,7 @@ SERIAL = HEAD.replace("MODULE", "bulk") + """    framing: {start: 0x7e, end: 0x7
         - {is: torque, joint: 1, at: 1, type: i16, scale: 2.0e-5}
         - {is: torque, joint: 2, at: 3, type: i16, scale: 2.0e-5}
         - {is: torque, joint: 3, at: 5, type: i16, scale: 2.0e-5}
-"""
+""", module="usb_bulk")
 COUNT = 400
 
 
