@@ -110,7 +110,12 @@ int sendScene(const CtlArguments& options, Json request) {
   if (!files) request.erase("file");  // the daemon may read its own scene, even if only the daemon's user may
   if (files) request["files"] = files->names;
   const std::vector<int> numbers = files ? files->numbers() : std::vector<int>();
-  return show(options, client->askWith(document::jsonLine(request), numbers), scene);
+  const auto waits = [] {
+    std::fprintf(stderr,
+                 "the daemon still sets up the models; its log says what it waits for (Ctrl-C ends this command, not the "
+                 "set-up)\n");
+  };
+  return show(options, client->askPatiently(document::jsonLine(request), numbers, waits), scene);
 }
 
 /// Returns the exit code after a stream of answers has ended. Reports an error if the daemon was killed or crashed.

@@ -18,6 +18,8 @@ namespace hapticd::control {
 namespace {
 
 constexpr time_t kSendSeconds = 5;
+constexpr const char* kBusy =
+    "\n  it may be setting up a model: its log says what it waits for; hapticd top shows whether its servo runs";
 
 /// Returns a connected socket, or -1 with errno.
 int connected(const std::string& file) {
@@ -120,7 +122,8 @@ Result<Reply> Client::receive(double seconds) {
     pollfd polled{fd_, POLLIN, 0};
     const int ready = poll(&polled, 1, static_cast<int>((left + 999'999) / 1'000'000));
     if (ready < 0 && errno == EINTR) continue;  // a signal handler of the program interrupted the call
-    if (ready != 1 || !receiveMore()) return Error{"the daemon at " + file_ + " did not answer"};
+    if (ready != 1) return Error{"the daemon at " + file_ + " did not answer in time" + kBusy};
+    if (!receiveMore()) return Error{"the daemon at " + file_ + " has ended without an answer"};
   }
   Reply reply = std::move(lines_.front());
   lines_.pop_front();
@@ -162,6 +165,18 @@ Result<std::string> Client::askWith(const std::string& line, std::span<const int
   auto reply = answer(seconds);
   if (!reply) return Error{reply.error()};
   return std::move(reply->line);
+}
+
+Result<std::string> Client::askPatiently(const std::string& line, std::span<const int> descriptors,
+                                         const std::function<void()>& waits) {
+  constexpr double kEvery = 10;  // [s]
+  if (auto said = sendLine(line, descriptors); !said) return Error{said.error()};
+  for (;;) {
+    auto reply = answer(kEvery);
+    if (reply) return std::move(reply->line);
+    if (ended()) return Error{reply.error()};
+    waits();
+  }
 }
 
 Result<std::string> Client::receiveLine(double seconds) {

@@ -4,6 +4,7 @@
 #include <sys/un.h>
 
 #include <deque>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -45,6 +46,9 @@ class Client {
   Result<std::string> ask(const std::string& line, double seconds = 10);
   /// [main] Like ask(), but sends descriptors with the line; they stay open in this process.
   Result<std::string> askWith(const std::string& line, std::span<const int> descriptors, double seconds = 10);
+  /// [main] Like askWith(), but waits until the answer comes or the daemon ends, and calls `waits` every 10 s.
+  Result<std::string> askPatiently(const std::string& line, std::span<const int> descriptors,
+                                   const std::function<void()>& waits);
   /// [main] Like ask(), but also returns the descriptor that came with the answer.
   Result<Reply> askForMore(const std::string& line, double seconds = 10);
   /// [main] Sends one line without waiting for its answer.

@@ -17,6 +17,7 @@
 #include "session/foreign_files.hpp"
 #include "session/kept_settings.hpp"
 #include "session/request_handler.hpp"
+#include "session/setup_watch.hpp"
 #include "session/wait_until.hpp"
 #include "watch/quarantine.hpp"
 
@@ -164,6 +165,7 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
                     empty.size(), models.size()));
   if (auto trusted = refuseQuarantined(models); !trusted) return trusted;
   std::vector<std::unique_ptr<host::ShapeInstance>> shapes;
+  const SetupWatch waiting(log_, 5, "the other models are felt, but no request is answered until it returns");
   for (const scene::Model& model : models) {
     auto shape = runner_.world().prepare(passed_ ? withPaths(model, *passed_) : model, log_);
     if (!shape) return Error{shape.error()};

@@ -10,7 +10,8 @@
 
 namespace hapticd::servo {
 
-SetupWatch::SetupWatch(host::Services::Log log, double first_s) : log_(std::move(log)), first_s_(first_s) {
+SetupWatch::SetupWatch(host::Services::Log log, double first_s, std::string advice)
+    : log_(std::move(log)), first_s_(first_s), advice_(std::move(advice)) {
   // Without the thread the models are set up all the same, only silently.
   if (thread_.start("hapticd-setup", [this] { loop(); })) return;
   observeSetup([this](const scene::Model* model, const char* call) { enters(model, call); });
@@ -48,10 +49,9 @@ void SetupWatch::loop() {
       continue;
     }
     if (plugin_.empty()) continue;  // no plugin is called
-    char text[160];
-    std::snprintf(text, sizeof text, "has been in its %s() for %.0f s; a large model may need long; to end it: Ctrl-C",
-                  call_, seconds);
-    log_(HSP_LOG_WARNING, model_, "plugin '" + plugin_ + "' " + text);
+    char text[80];
+    std::snprintf(text, sizeof text, "has been in its %s() for %.0f s; ", call_, seconds);
+    log_(HSP_LOG_WARNING, model_, "plugin '" + plugin_ + "' " + text + advice_);
     before = seconds;
     seconds *= 2;
   }

@@ -40,6 +40,17 @@ hsp_activation activationFor(const scene::Scene& scene, const WorldOptions& opti
   return activation;
 }
 
+/// Creates and activates a shape. Observers hear of the calls, which may take long.
+Result<std::unique_ptr<host::ShapeInstance>> setUp(const scene::Model& model, const hsp_activation& activation,
+                                                   const host::Services::Log& log) {
+  noteSetup(&model, "create() or set");
+  auto shape = host::ShapeInstance::create(model, log);
+  if (!shape) return Error{shape.error()};
+  noteSetup(&model, "activate");
+  if (auto done = (*shape)->activate(activation); !done) return Error{done.error()};
+  return shape;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const WorldOptions& options,
@@ -53,12 +64,9 @@ Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const Wor
   std::vector<hsp_pose> poses;
   const SetupScope setting_up;
   for (const scene::Model& described : scene.models) {
-    noteSetup(&described, "create() or set");
-    auto shape = host::ShapeInstance::create(described, log);
-    if (!shape) return Error{shape.error()};
     activation.pose = startPose(described);
-    noteSetup(&described, "activate");
-    if (auto done = (*shape)->activate(activation); !done) return Error{done.error()};
+    auto shape = setUp(described, activation, log);
+    if (!shape) return Error{shape.error()};
     const hsp_report& report = (*shape)->report();
     world->needs_ |= report.flags;
     world->max_stiffness_ = std::max(world->max_stiffness_, report.max_stiffness);
@@ -85,11 +93,11 @@ Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const Wor
 
 Result<std::unique_ptr<host::ShapeInstance>> World::prepare(const scene::Model& model,
                                                             const host::Services::Log& log) const {
-  auto shape = host::ShapeInstance::create(model, log);
-  if (!shape) return Error{shape.error()};
+  const SetupScope setting_up;
   hsp_activation activation = activation_;
   activation.pose = startPose(model);
-  if (auto done = (*shape)->activate(activation); !done) return Error{done.error()};
+  auto shape = setUp(model, activation, log);
+  if (!shape) return Error{shape.error()};
   const uint32_t needs = (*shape)->report().flags;
   if ((needs & HSP_R_VELOCITY) != 0 && !needsVelocity())
     return Error{"model '" + model.name +

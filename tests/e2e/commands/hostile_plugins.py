@@ -78,6 +78,25 @@ def setUps(folder, environment, hapticd):
         run.wait()
 
 
+def heldUp(folder, environment, hapticd):
+    """A model that is added to a run, and whose set-up never returns."""
+    log = os.path.join(folder, "held_up.log")
+    run = subprocess.Popen([HAPTICD, "run", sceneOf(folder, "good"), "--name", "held_up"], env=environment, stdout=subprocess.DEVNULL, stderr=open(log, "w"))
+    check("the run is ready", until(lambda: hapticd("ctl", "status", "--name", "held_up")[0] == 0), open(log).read())
+    scene = os.path.join(folder, "added.yaml")
+    open(scene, "w").write("hapticd: 1\nmodels:\n  - {name: late, plugin: harmful, parameters: {how: loop}}\n")
+    add = subprocess.Popen([HAPTICD, "ctl", "add", scene, "--name", "held_up"], env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    check("added: the log of the run says what it waits for", until(lambda: "late: plugin 'harmful' has been in its activate() for 5 s; the other models are felt" in open(log).read(), 60), open(log).read())
+    code, out, err = hapticd("ctl", "hold", "--name", "held_up")
+    check("added: the arms can be held meanwhile", code == 0, (code, out, err))
+    code, out, err = hapticd("ctl", "list", "--name", "held_up")
+    check("added: another request says what it may wait for", code == 1 and "did not answer in time" in err and "setting up a model" in err, (code, out, err))
+    code, out, err = hapticd("ctl", "stop", "--name", "held_up")
+    told = add.communicate(timeout=60)[0]
+    check("added: the run can be stopped", until(lambda: run.poll() is not None, 60), run.poll())
+    check("added: the one who waits hears why, and that the run has ended", add.returncode == 1 and "still sets up the models" in told and "has ended without an answer" in told, told)
+
+
 def orphan(folder, environment):
     """check is killed while its child moves the hand."""
     scene = sceneOf(folder, "pause")
@@ -112,5 +131,6 @@ with tempfile.TemporaryDirectory() as scratch:
     walks(scratch, caller)
     destructor(scratch, caller)
     setUps(scratch, surroundings, caller)
+    heldUp(scratch, surroundings, caller)
     orphan(scratch, surroundings)
 finish()
