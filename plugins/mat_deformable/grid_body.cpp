@@ -37,7 +37,7 @@ constexpr double kOtherFoot = 0.02;
 class GridBody final : public SoftBody {
  public:
   GridBody(const medial::BodyData& data, const medial::BodyOptions& options)
-      : body_(data, options), felt_(body_.feltSurface() != nullptr) {
+      : body_(data, options), envelope_(options.envelope), felt_(body_.feltSurface() != nullptr) {
     if (felt_) scan_.emplace(body_.skeleton());
   }
 
@@ -124,18 +124,29 @@ class GridBody final : public SoftBody {
           file.c_str(), check.u, check.v, check.ratio, check.limit);
     }
     Description description{text, !check.holds()};
-    if (const medial::Steepness steep = body_.skeleton().steepest(); steep.slope >= 1) {
-      std::snprintf(text, sizeof text,
-                    "%s: near u = %.3g, v = %.3g the radius changes by %.3g m per metre of skeleton, but must change "
-                    "by less than 1: some spheres there are inside others, and only the union of all spheres is felt; "
-                    "place the points farther apart, or make the radii more equal",
-                    file.c_str(), steep.u, steep.v, steep.slope);
-      description = {description.warning ? description.text + "; " + text : text, true};
-    }
+    if (const std::string steep = describeSlope(file); !steep.empty())
+      description = {description.warning ? description.text + "; " + steep : steep, true};
     return description;
   }
 
  private:
+  /// Returns a warning if the radius changes too fast along the skeleton, else "".
+  std::string describeSlope(const std::string& file) const {
+    constexpr double kFootSlope = 0.1;  // [m/m] the foot's normal is then off by 6 degrees
+    const medial::Steepness steep = body_.skeleton().steepest();
+    const bool nested = steep.slope >= 1;
+    if (!nested && !(envelope_ == medial::Envelope::kFoot && steep.slope > kFootSlope)) return "";
+    char place[128];
+    std::snprintf(place, sizeof place, ": near u = %.3g, v = %.3g the radius changes by %.3g m per metre of skeleton",
+                  steep.u, steep.v, steep.slope);
+    const char* what =
+        nested ? ", but must change by less than 1: some spheres there are inside others, and only the union of all "
+                 "spheres is felt; place the points farther apart, or make the radii more equal"
+               : ": with envelope: foot the force is aslant there, and a hand that strokes over it feels much less of "
+                 "it; use envelope: exact";
+    return file + place + what;
+  }
+
   /// Presses the contour above a point of the skeleton, on the side of the normal Su x Sv.
   FeltMaterial materialAt(double u, double v) const {
     const medial::Skeleton& skeleton = body_.skeleton();
@@ -213,6 +224,7 @@ class GridBody final : public SoftBody {
 
   medial::Body body_;
   std::optional<FootScan> scan_;  ///< only for a felt body
+  medial::Envelope envelope_;
   bool felt_;  ///< the newer rules for creases and for a push through the body apply only to felt bodies
 };
 

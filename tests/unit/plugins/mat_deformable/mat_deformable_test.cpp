@@ -32,7 +32,7 @@ TEST(MatDeformable, ClaimsAndFeelsWhatTheFileSaysWithShearDistance) {
 }
 
 /// Messages of a body when it is activated.
-std::string told(const std::string& file, double distance) {
+std::string told(const std::string& file, double distance, const char* envelope = "exact") {
   static std::string all;
   all.clear();
   hsp_host host{};
@@ -46,6 +46,7 @@ std::string told(const std::string& file, double distance) {
   };
   set("geometry", {0, 0, 0, file.c_str(), nullptr});
   set("shear_distance", {0, 0, distance, nullptr, nullptr});
+  set("envelope", {0, 0, std::string_view(envelope) == "foot" ? 1.0 : 0.0, nullptr, nullptr});
   hsp_activation activation{};
   activation.struct_size = sizeof activation;
   hsp_report report{};
@@ -64,6 +65,15 @@ TEST(MatDeformable, SaysWhatIsFeltAndHintsWhereTheFileSaysOtherwise) {
   EXPECT_NE(now.find("0 felt 961 N/m 1 mm deep, 961 N/m 5 mm deep; the file says 961 N/m: (15.47, -11.87"),
             std::string::npos)
       << now;
+}
+
+/// With `envelope: foot` a stroke over the pebble feels less than a fifth of the force.
+TEST(MatDeformable, WarnsOfTheFootWhereTheRadiusChanges) {
+  const std::string folder = HAPTICD_SOURCE_DIR "/config/models/";
+  const char* warning = "use envelope: exact";
+  EXPECT_NE(told(folder + "pebble.yaml", .006, "foot").find(warning), std::string::npos);
+  EXPECT_EQ(told(folder + "pebble.yaml", .006).find(warning), std::string::npos);
+  EXPECT_EQ(told(folder + "soft-plate.yaml", .006, "foot").find(warning), std::string::npos);
 }
 
 /// The numbers of a hapticd-model/2 file are those that are felt.
