@@ -69,6 +69,7 @@ TOLD = [
     (scene(model("door", "box", below="    path: turns.csv\n")), {}, "qw", "the quaternion has length 2"),
     (BUTTON, {"[]": "[[0, 0], [4, 0.003], [2, 0.004], [3, 0.005]]"}, "models[0].parameters.detent[2]", "the columns seem to be swapped"),
     (BUTTON, {"[]": "[[0, 1], [0.003, 4], [0.004, 2]]"}, "models[0].parameters.detent[0]", "[0, 1], expected [0, 0]"),
+    (scene(model(more="stiffness: 800, contact_hysteresis: 1.0e-5")), {}, "models[0].parameters.contact_hysteresis", "feels the force turn from face to face"),
     (scene(model(), top=ARM + "hand: {script: press, path: rise.csv, radius: 0.053}\n"), {}, "hand.path", "replace the script in line 3 by script: path"),
 ]
 # What must not be told of a file, whatever else is.
@@ -77,6 +78,7 @@ UNTOLD = [
     (scene(model("door", "box", below="    motion: kinetic\n    path: rise.csv\n")), "does not follow its path"),
     (scene(model(more="stiffness: 800, texture: {amplitude: 0.1, wavelength: 0.002}")), "cannot be set up"),
     (WIRED.replace('{id: "1209:0a0a"}', "{vendor: 1209, product: 0486}"), "begins with a zero"),
+    (scene(model(more="stiffness: 800, contact_hysteresis: 0.0001")), "from face to face"),
     (scene(model(below=at(0)), model("box", "box", below=at(0.1))), "in one another"),
     (scene(model(below=at(0)), model("box", "box", below=at(0.0995))), "in one another"),
     (scene(model(below=at(0), more="sides: both"), model("box", "box", below=at(0.08))), "in one another"),

@@ -91,17 +91,27 @@ void checkColumns(const GivenModel& given, const scene::Value& value) {
   given.warn({value.id}, "the columns seem to be swapped; expected [travel in m, force in N] in each row");
 }
 
+/// Warns of a contact hysteresis below the noise of an arm and a hand. A metre is allowed: it means that the contact
+/// never changes its face.
+void checkHysteresis(const GivenModel& given, const scene::Value& value) {
+  constexpr double kNoise = 1e-4;  // [m]
+  if (!(value.number < kNoise)) return;
+  given.warn({value.id}, fmt::format("with {:g} m a hand that rests near an edge, or in the middle of a wall, feels the "
+                                     "force turn from face to face with the noise of the arm; leave this out, or "
+                                     "expected {:g} m or more",
+                                     value.number, kNoise));
+}
+
 void checkLength(const GivenModel& given, const scene::Value& value, const host::ParamInfo& param) {
-  // A contact hysteresis of a metre is allowed: it means that the contact never changes its face. A pendulum may be
-  // longer than its bob.
   for (const char* id : {"contact_hysteresis", "hold"})
-    if (value.id == id) return;
+    if (value.id == id) return checkHysteresis(given, value);
   const double most = mostIn(value, param, "m");
   // for plugins that ship, lengths are known to be those of the model
   const bool own = host::ships(given.model().library);
   // a wave that is longer than a side makes less than one bump
   const bool wave = value.id == "texture.wavelength";
   const double size = given.box() && wave ? given.box()->sizes().maxCoeff() : given.size();
+  // a pendulum may be longer than its bob
   const double bound = given.box() && value.id != "length" ? (wave ? 1 : own ? 2 : 10) * size : kOutOfReach;
   if (most <= bound) return;
   const std::string than = given.box() && value.id != "length" ? fmt::format("the model, which is {:.3g} m large", size)
