@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 
 namespace hapticd::conformance {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/conformance_subject.hpp"
+#include "conformance/subject.hpp"
 #include "conformance/verdict.hpp"
 
 namespace hapticd::conformance {

@@ -12,7 +12,7 @@
 #include <cerrno>
 #include <new>
 
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 
 namespace hapticd::conformance {
 namespace {

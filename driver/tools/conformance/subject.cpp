@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "conformance/conformance_subject.hpp"
+#include "conformance/subject.hpp"
 
 #include <sys/resource.h>
 
@@ -12,7 +12,7 @@
 #include "base/clock.hpp"
 #include "base/thread_usage.hpp"
 #include "conformance/allocation_place.hpp"
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 #include "conformance/lock_count.hpp"
 #include "conformance/step_watch.hpp"
 #include "host/class_table.hpp"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 
 namespace hapticd::conformance {
 namespace {

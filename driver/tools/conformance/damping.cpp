@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 #include "servo/safety/claim.hpp"
 
 namespace hapticd::conformance {

@@ -6,7 +6,7 @@
 
 #include "base/clock.hpp"
 #include "conformance/allocation_place.hpp"
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 #include "conformance/lock_count.hpp"
 #include "conformance/step_watch.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 
 namespace hapticd::conformance {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 
 #include <cmath>
 #include <cstdio>

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 #include "servo/safety/claim.hpp"
 
 namespace hapticd::conformance {

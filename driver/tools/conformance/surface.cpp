@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 
 namespace hapticd::conformance {
 namespace {

@@ -2,7 +2,7 @@
 /// Tests eight probes, as many as a run may have: a shape must keep the state of each separately.
 #include <vector>
 
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 #include "conformance/guarded_memory.hpp"
 #include "conformance/step_watch.hpp"
 

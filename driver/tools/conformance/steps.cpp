@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 #include "servo/safety/claim.hpp"
 #include "servo/safety/guard.hpp"
 

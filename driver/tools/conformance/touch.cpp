@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "conformance/conformance_touch.hpp"
+#include "conformance/touch.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <random>
 #include <sstream>
 
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 
 namespace hapticd::conformance {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 
 namespace hapticd::conformance {
 namespace {

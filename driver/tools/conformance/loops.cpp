@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "conformance/conformance_parts.hpp"
+#include "conformance/building_blocks.hpp"
 
 namespace hapticd::conformance {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/result.hpp"
-#include "conformance/conformance_touch.hpp"
+#include "conformance/touch.hpp"
 #include "description/scene.hpp"
 #include "hapticd/shape.h"
 #include "host/library.hpp"
