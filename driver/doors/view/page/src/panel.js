@@ -30,7 +30,7 @@ export class Panel {
     this.ask = ask;
     this.control = false;
     this.models = [];
-    this.undrawn = new Map(); // name -> why a model is felt but not seen
+    this.drawings = new Map(); // name -> why a model is not drawn, or drawn coarser than it is felt
     this.folder = ''; // folder of the scene file
     this.signature = '';
     $('add-form').addEventListener('submit', (event) => {
@@ -75,18 +75,18 @@ export class Panel {
     }
   }
 
-  /** Shows beside a model why it is not drawn. @param why the reason, or '' if the model is drawn */
-  notDrawn(name, why) {
-    if ((this.undrawn.get(name) ?? '') === why) return;
-    this.undrawn.set(name, why);
-    this.#showUndrawn(document.querySelector(`[data-model="${CSS.escape(name)}"]`));
+  /** Shows words about the drawing of a model beside its name; '' hides them. */
+  drawing(name, words) {
+    if ((this.drawings.get(name) ?? '') === words) return;
+    this.drawings.set(name, words);
+    this.#showDrawing(document.querySelector(`[data-model="${CSS.escape(name)}"]`));
   }
 
-  #showUndrawn(article) {
-    const why = this.undrawn.get(article?.dataset.model) ?? '', words = article?.querySelector('.undrawn');
-    if (!words) return;
-    words.hidden = why === '';
-    words.textContent = `Not drawn: ${why}`;
+  #showDrawing(article) {
+    const words = this.drawings.get(article?.dataset.model) ?? '', place = article?.querySelector('.drawing');
+    if (!place) return;
+    place.hidden = words === '';
+    place.textContent = words;
   }
 
   async #do(request) {
@@ -111,9 +111,9 @@ export class Panel {
     const body = this.models.length > kOpenModels && fields.length > 0
       ? [element('details', {}, element('summary', {}, `${fields.length} parameters`), ...fields)] : fields;
     const silenced = element('p', {class: 'wrong silenced', hidden: true, role: 'status'});
-    const undrawn = element('p', {class: 'quiet undrawn', hidden: true});
-    const article = element('article', {class: 'model', data: {model: model.name}}, head, silenced, undrawn, ...body);
-    this.#showUndrawn(article);
+    const drawing = element('p', {class: 'quiet drawing', hidden: true});
+    const article = element('article', {class: 'model', data: {model: model.name}}, head, silenced, drawing, ...body);
+    this.#showDrawing(article);
     return article;
   }
 
