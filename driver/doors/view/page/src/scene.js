@@ -12,8 +12,8 @@ const kSlowMs = 55, kFastMs = 24, kCoarsest = 0.56;
 const kMostSquares = 120; // of the floor's grid, in one direction
 const kRulerPlace = 8; // pixels from the lower left corner of a saved picture
 /** Triangles of the whole scene. A processor that plays the graphics card draws
- * 20 000 of them 20 times a second. With more than kTriangles, searching for the one under the pointer delays the hand. */
-const kTriangles = 300000, kSoftwareTriangles = 40000, kFewestTriangles = 2000;
+ * 50 000 of them some 10 times a second. With more than kTriangles, searching for the one under the pointer delays the hand. */
+const kTriangles = 300000, kSoftwareTriangles = 80000, kFewestTriangles = 2000;
 const kEmptyExtent = 0.15; // m: size of a scene without a model
 
 /** Tells whether the processor draws instead of a graphics card. */
