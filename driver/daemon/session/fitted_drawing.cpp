@@ -51,6 +51,7 @@ class Fitting {
       return Error{fmt::format("the plugin of the model gives no valid triangles for a chord error of {:g} m", chord)};
     if (mesh_.triangle_count == 0) return Error{kNoTriangles};
     if (!room_.normals || !finiteNormals()) mesh_.normals = nullptr;
+    if (first_.struct_size == 0) first_ = mesh_;
     return {};
   }
 
@@ -106,9 +107,8 @@ class Fitting {
 
   /// Says that nothing fits within a tolerance, and which one works. That one was tried.
   Error tooMany(double tolerance) {
-    const std::size_t vertices = mesh_.vertex_count, triangles = mesh_.triangle_count;
-    std::string text = fmt::format("{} vertices and {} triangles do not fit into the {} bytes of an answer", vertices,
-                                   triangles, room_.bytes);
+    const std::string text = fmt::format("{} vertices and {} triangles do not fit into the {} bytes of an answer",
+                                         first_.vertex_count, first_.triangle_count, room_.bytes);
     while (tolerance < kLargestChord) {
       tolerance = std::min(roundedUp(std::max(2 * tolerance, 2 * off_)), kLargestChord);
       const auto drawing = tried(tolerance);
@@ -122,6 +122,7 @@ class Fitting {
   const DrawingWish& wish_;
   const DrawingRoom& room_;
   hsp_mesh mesh_{};
+  hsp_mesh first_{};  ///< counts of what the request asked for
   double chord_ = 0;  ///< [m] chord error of mesh_
   double off_ = 0;    ///< [m] how far the last reduction was off
 };
