@@ -10,10 +10,13 @@
 namespace hapticd::servo {
 namespace {
 
-constexpr double kChordShare = 0.005;  ///< default chord error as a share of the model's size: fine enough for a screen
-constexpr double kDefaultChord = 1e-3;  ///< [m] default chord error if the model does not report its size
-constexpr double kLargestChord = 1;     ///< [m] largest tolerance that a request may ask for
-constexpr std::size_t kFewest = 100;    ///< any model can be reduced to so few triangles
+/// Default chord error as a share of the model's size; and the one that is tried first if the client says how many
+/// triangles it can use: less than a pixel of a screen that the model fills.
+constexpr double kChordShare = 0.005, kFineChordShare = 0.001;
+constexpr std::size_t kFineTriangles = 4;  ///< a fine drawing takes at most one in so many of the triangles allowed
+constexpr double kDefaultChord = 1e-3;     ///< [m] default chord error if the model does not report its size
+constexpr double kLargestChord = 1;        ///< [m] largest tolerance that a request may ask for
+constexpr std::size_t kFewest = 100;       ///< any model can be reduced to so few triangles
 constexpr const char* kNoTriangles =
     "the model cannot be drawn, because its plugin gives no triangles (extension hsp.geometry/1); it can still be felt";
 
@@ -33,6 +36,9 @@ class Fitting {
     if (wish_.tolerance > 0) return within(wish_.tolerance);
     const double size = shape_.report().size_m;
     const double usual = size > 0 ? kChordShare * size : kDefaultChord;
+    if (wish_.triangles > 0 && rigid() && size > 0 && cutBy(kFineChordShare * size) &&
+        mesh_.triangle_count <= wish_.triangles / kFineTriangles && fits(mesh_))
+      return whole();
     if (const auto cut = cutBy(shape_.contour() != nullptr ? 0 : usual); !cut) return Error{cut.error()};
     if (fits(mesh_)) return whole();
     if (!rigid()) return shape_.contour() != nullptr ? tooMany(usual) : doubled(usual);

@@ -14,8 +14,10 @@ namespace hapticd::servo {
 
 /// What a client asked for.
 struct DrawingWish {
-  double tolerance = 0;       ///< [m] largest distance from the model; 0: 5/1000 of the model's size, or more if needed
-  std::size_t triangles = 0;  ///< most triangles; 0: any number. A body that deforms keeps its triangles.
+  double tolerance = 0;  ///< [m] largest distance from the model; 0: 5/1000 of the model's size, or more if needed
+  /// Most triangles; 0: any number. A body that deforms keeps its triangles. If the tolerance is 0, a rigid model that
+  /// needs few of them is drawn five times finer.
+  std::size_t triangles = 0;
 };
 
 /// What a drawing must fit into.

@@ -79,6 +79,13 @@ with tempfile.TemporaryDirectory() as folder:
             sealed = True
         check("which nobody makes shorter", sealed)
         os.close(descriptors[0])
+        with socket.socket(socket.AF_UNIX) as client:
+            client.settimeout(30)
+            client.connect(os.path.join(folder, "drawn.sock"))
+            client.sendall(b'{"do":"geometry","model":"teapot","as":"memory","triangles":80000}\n')
+            fine = json.loads(socket.recv_fds(client, 1 << 16, 4)[0])
+        check("for a client with room for more it is finer", abs(text["tolerance"] / fine["tolerance"] - 5) < 1e-3 and
+              answer["triangles"] < fine["triangles"] <= 20000 and "note" not in fine, fine)
 
     scene = os.path.join(folder, "pressed.yaml")  # the front of the plate is at z = 30 mm
     with open(scene, "w", encoding="utf-8") as out:

@@ -40,7 +40,7 @@ async function checkDrawing(page, picture) {
   await shown(page);
   await page.locator('[data-model="ball"] .drawing').waitFor();
   const {words, triangles, notice} = await drawn(page);
-  assert.ok(triangles > 40000 && triangles <= 80000, `a browser without a graphics card draws ${triangles} triangles`);
+  assert.ok(triangles > 62500 && triangles <= 125000, `a browser without a graphics card draws ${triangles} triangles`);
   const [, some, all, off] = words.match(/^Drawn with ([\d\s]+) of ([\d\s]+) triangles, at most ([\d.]+) mm off. It is felt exactly.$/) ?? assert.fail(words);
   assert.deepEqual([some, all].map((count) => Number(count.replace(/\s/g, ''))), [triangles, kFull]);
   assert.ok(Number(off) > 0 && Number(off) < 2, words);

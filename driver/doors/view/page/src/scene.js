@@ -11,9 +11,9 @@ import {Ruler} from './ruler.js';
 const kSlowMs = 55, kFastMs = 24, kCoarsest = 0.56;
 const kMostSquares = 120; // of the floor's grid, in one direction
 const kRulerPlace = 8; // pixels from the lower left corner of a saved picture
-/** Triangles of the whole scene. A processor that plays the graphics card draws
- * 50 000 of them some 10 times a second. With more than kTriangles, searching for the one under the pointer delays the hand. */
-const kTriangles = 300000, kSoftwareTriangles = 80000, kFewestTriangles = 2000;
+/** Triangles of the whole scene. A processor that plays the graphics card draws 120 000 of them some 7 times a second; a
+ * part of 10 000 faces has so many. With more than kTriangles, searching for the one under the pointer delays the hand. */
+const kTriangles = 300000, kSoftwareTriangles = 125000, kFewestTriangles = 2000;
 const kEmptyExtent = 0.15; // m: size of a scene without a model
 
 /** Tells whether the processor draws instead of a graphics card. */
