@@ -4,7 +4,7 @@ import {ArmModel} from './arm.js';
 import {Connection} from './connection.js';
 import {Events} from './events.js';
 import {Features} from './features.js';
-import {element, fileName, grouped, norm, save, short, themeColor} from './format.js';
+import {element, fileName, norm, save, short, themeColor} from './format.js';
 import {Hand} from './hand.js';
 import {Panel} from './panel.js';
 import {Plots} from './plots.js';
@@ -34,12 +34,6 @@ function greatestForce(about, arm) {
 function handReach(device, limit) {
   const stiffness = Number(device?.parameters?.find((p) => p.id === 'hand.stiffness')?.number ?? kHandStiffness);
   return limit > 0 && stiffness > 0 ? kShareOfLimit * limit / stiffness : Infinity;
-}
-
-/** Returns what the panel says about a model that is not drawn, or drawn coarser than it is felt; '' about any other. */
-function wordsOfDrawing({mesh, error, note, triangles, full_triangles: full, off}) {
-  if (!mesh) return `Not drawn: ${error}`;
-  return note ? `Drawn with ${grouped(triangles)} of ${grouped(full)} triangles, at most ${Number((off * 1e3).toPrecision(2))} mm off. It is felt exactly.` : '';
 }
 
 class Page {
@@ -175,7 +169,7 @@ class Page {
     for (const model of fresh) { // one after the other, so that few bytes wait in the server
       const answer = await this.ask({do: 'geometry', model: model.name, triangles: this.view.trianglesOfOne(models.length)});
       if (begun !== this.now) return;
-      this.panel.drawing(model.name, wordsOfDrawing(answer));
+      this.panel.drawing(model.name, answer);
       if (!answer.mesh) this.notice(`${model.name} is not drawn: ${answer.error}`);
       const pose = this.now.poses.get(model.index) ?? model.pose ?? scene.find((s) => s.name === model.name)?.pose;
       if (answer.mesh) this.view.models.add(model.index, {...model, pose}, answer.mesh);

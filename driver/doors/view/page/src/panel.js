@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /** The list of models, with a form for their live parameters. The fields come from the plugin's own table, with unit,
  * range and documentation. A change that a hand may feel suddenly needs consent. */
-import {element, exact, short} from './format.js';
+import {element, exact, grouped, short} from './format.js';
 import {colorOf} from './models.js';
 
 const kOpenModels = 3; // if there are more models, their parameters are folded
@@ -22,6 +22,12 @@ function consent(text) {
 function sliderSpan(parameter, value) {
   const about = Math.max(Math.abs(value), (parameter.max - parameter.min) * 1e-3, 1e-9);
   return {min: Math.max(parameter.min, value < 0 ? -4 * about : 0, parameter.min), max: Math.min(parameter.max, 4 * about)};
+}
+
+/** Returns the words about a model that is not drawn, or drawn coarser than it is felt; '' about any other. */
+function wordsOfDrawing({mesh, error, note, triangles, full_triangles: full, off}) {
+  if (!mesh) return `Not drawn: ${error}`;
+  return note ? `Drawn with ${grouped(triangles)} of ${grouped(full)} triangles, at most ${Number((off * 1e3).toPrecision(2))} mm off. It is felt exactly.` : '';
 }
 
 export class Panel {
@@ -75,8 +81,9 @@ export class Panel {
     }
   }
 
-  /** Shows words about the drawing of a model beside its name; '' hides them. */
-  drawing(name, words) {
+  /** Shows beside a model what its drawing lacks. @param answer the answer to `geometry` */
+  drawing(name, answer) {
+    const words = wordsOfDrawing(answer);
     if ((this.drawings.get(name) ?? '') === words) return;
     this.drawings.set(name, words);
     this.#showDrawing(document.querySelector(`[data-model="${CSS.escape(name)}"]`));
