@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "drawing/clusters.hpp"
 #include "drawing/triangle_distance.hpp"
