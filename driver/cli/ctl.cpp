@@ -2,7 +2,6 @@
 /// `hapticd ctl`: sends requests to a running daemon.
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,9 +10,9 @@
 
 #include "base/clock.hpp"
 #include "cli/command.hpp"
+#include "cli/ctl_geometry.hpp"
 #include "cli/ctl_lead.hpp"
 #include "cli/named_files.hpp"
-#include "cli/output_file.hpp"
 #include "control/client.hpp"
 #include "control/liveness.hpp"
 #include "document/absent_file.hpp"
@@ -35,23 +34,6 @@ struct CtlArguments {
   uint32_t number = 0;
   bool consent = false, follow = false, tells_socket = false;
 };
-
-/// Writes the triangles of an answer as an OBJ file.
-int saveObj(const Json& json, const std::string& file) {
-  if (const std::string wrong = whyNotWritten(file, objKind()); !wrong.empty()) return fail(kBadInput, wrong);
-  std::ofstream out(file);
-  out << kObjBeginning << "\n";
-  const Json &xyz = json.at("xyz"), &corners = json.at("triangles");
-  for (std::size_t i = 0; i + 2 < xyz.size(); i += 3)
-    out << "v " << xyz[i].dump() << " " << xyz[i + 1].dump() << " " << xyz[i + 2].dump() << "\n";
-  for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
-    out << "f " << corners[i].get<uint32_t>() + 1 << " " << corners[i + 1].get<uint32_t>() + 1 << " "
-        << corners[i + 2].get<uint32_t>() + 1 << "\n";
-  if (!(out << std::flush))
-    return fail(kFailed, file + ": cannot be written, expected a file in a folder that you may write to");
-  std::printf("%s: %zu vertices, %zu triangles\n", file.c_str(), xyz.size() / 3, corners.size() / 3);
-  return kWorked;
-}
 
 std::string socketOf(const CtlArguments& options) {
   return status::runtimeFolderOf(options.name) + "/" + options.name + ".sock";
@@ -82,7 +64,7 @@ int show(const CtlArguments& options, const Result<std::string>& answer, const s
   if (!json.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + *answer);
   if (!json.value("ok", false))
     return fail(kFailed, document::withAbsentFiles(json.value("error", std::string("refused")), scene));
-  if (!options.obj.empty()) return saveObj(json, options.obj);
+  printNote(json);
   if (options.tells_socket) json["name"] = options.name, json["socket"] = socketOf(options);
   std::printf("%s\n", json.dump(2).c_str());
   return kWorked;
@@ -204,10 +186,11 @@ const Command addRequest(const Command& parent, const char* word, const char* do
     awaitDaemon(*options);
     const bool scene = std::string(word) == "add" || std::string(word) == "reload";
     const bool stops = std::string(word) == "stop";
-    exit_code = options->follow ? follow(*options)
-                : scene         ? sendScene(*options, json)
-                : stops         ? stop(*options, document::jsonLine(json))
-                                : send(*options, document::jsonLine(json));
+    exit_code = options->follow         ? follow(*options)
+                : !options->obj.empty() ? saveGeometry(socketOf(*options), json, options->obj)
+                : scene                 ? sendScene(*options, json)
+                : stops                 ? stop(*options, document::jsonLine(json))
+                                        : send(*options, document::jsonLine(json));
   });
   return command;
 }
@@ -220,7 +203,9 @@ void addGeometryRequest(const Command& ctl, const std::shared_ptr<CtlArguments>&
                                       });
   geometry.addOption("model", options->model, "name of the model").required();
   geometry.addOption("--obj", options->obj, "write an OBJ file, in the model's frame, instead of printing JSON");
-  geometry.addOption("--tolerance", options->tolerance, "chord error [m]; 0: 0.5 % of the model's size")
+  geometry
+      .addOption("--tolerance", options->tolerance,
+                 "chord error [m]; 0: 0.5 % of the model's size, or more if that is too much for an answer")
       .within(0, 1e9);  // the daemon knows which frames it draws
   geometry
       .addFlag("--follow", options->follow,

@@ -114,8 +114,8 @@ class RecordedModelsImpl final : public RecordedModels {
     if (at && model->rerun) model->rerun->goTo(*at);
     const host::ShapeInstance& shape = *model->world->shapes()[0];
     if (names) return servo::featureAnswer(shape, request->number);
-    auto drawn = request->as_memory ? servo::geometryInMemory(shape, request->tolerance, memory)
-                                    : servo::geometryAnswer(shape, request->tolerance);
+    const servo::DrawingWish wish{request->tolerance, request->triangles};
+    auto drawn = request->as_memory ? servo::geometryInMemory(shape, wish, memory) : servo::geometryAnswer(shape, wish);
     return drawn ? *drawn : control::refusal(drawn.error());
   }
 

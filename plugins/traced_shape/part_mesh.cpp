@@ -204,6 +204,11 @@ void addTriangles(const brep::Model& model, const brep::Placement& place, const 
 
 Mesh tessellate(const brep::Model& model, double chord_error) {
   Mesh mesh;
+  std::size_t triangles = 0;  // those of meshes are known before, and may be millions
+  for (const brep::Placement& place : model.placements()) triangles += model.part().bodies[place.body].triangle_count;
+  mesh.xyz.reserve(9 * triangles);
+  mesh.normals.reserve(9 * triangles);
+  mesh.indices.reserve(3 * triangles);
   for (const brep::Placement& place : model.placements()) {
     const brep::Body& body = model.part().bodies[place.body];
     for (std::uint32_t f = 0; f < body.face_count; ++f)

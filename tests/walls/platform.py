@@ -10,7 +10,7 @@ import re
 import sys
 
 ROOMS = ["driver/base", "driver/document", "driver/elementary", "driver/include", "driver/daemon/description",
-         "driver/daemon/host", "driver/daemon/link", "driver/daemon/scene", "driver/daemon/servo", "driver/daemon/sim",
+         "driver/daemon/drawing", "driver/daemon/host", "driver/daemon/link", "driver/daemon/scene", "driver/daemon/servo", "driver/daemon/sim",
          "driver/daemon/world", "plugins", "devices/simulated", "devices/support/kinematics"]
 # First part of an #include "..." that leads into another folder than these rooms.
 FOREIGN = {"control", "log", "record", "session", "status", "watch", "cli", "wire_arm", "codec", "vendor_arm"}

@@ -23,7 +23,8 @@ constexpr int kMaxDepth = 8;
 constexpr size_t kMaxText = 4096;
 constexpr double kMaxPlace = 10;         ///< [m] largest coordinate: no arm reaches farther
 constexpr double kFinestDrawing = 1e-5;  ///< [m] smallest tolerance: no screen shows less
-constexpr double kMostFrames = 1e15;     ///< largest number of a frame: a double holds it exactly
+constexpr double kFewestTriangles = 1000, kMostTriangles = 16777216;
+constexpr double kMostFrames = 1e15;  ///< largest number of a frame: a double holds it exactly
 
 /// A kind of request: its word, the keys that it must have, and the keys that it may have.
 struct RequestForm {
@@ -50,7 +51,7 @@ const std::array<RequestForm, 24>& forms() {
        {"hold", Kind::kHold, {}, {"device"}},
        {"clear", Kind::kClear, {}, {"device"}},
        {"dump", Kind::kDump, {}, {}},
-       {"geometry", Kind::kGeometry, {"model"}, {"tolerance", "as"}},
+       {"geometry", Kind::kGeometry, {"model"}, {"tolerance", "triangles", "as"}},
        {"vertices", Kind::kVertices, {"model"}, {"after"}},
        {"feature", Kind::kFeature, {"model", "number"}, {}},
        {"lead", Kind::kLead, {}, {"model", "hand", "force"}},
@@ -103,6 +104,7 @@ std::string expected(const char* key) {
       {"files", "a list of at most 250 absolute paths, every path once"},
       {"value", "a number without quotes, or a word in quotes such as \"true\""},
       {"tolerance", "a number from 0.00001 to 1 m"},
+      {"triangles", "a whole number from 1000 to 16777216"},
       {"after", "a whole number from 0 to 10^15"},
       {"number", "the number of a surface or feature, a whole number from 0 to 4294967295"},
       {"position", "a list of 3 numbers [x, y, z] from -10 to 10 m, world frame"},
@@ -110,7 +112,8 @@ std::string expected(const char* key) {
       {"seconds", "a number from 0.05 to 600 s"}};
   return all.at(key);
 }
-static_assert(kMostDescriptors == 250 && kMaxPlace == 10 && kFinestDrawing == 1e-5 && kMostFrames == 1e15,
+static_assert(kMostDescriptors == 250 && kMaxPlace == 10 && kFinestDrawing == 1e-5 && kMostFrames == 1e15 &&
+                  kFewestTriangles == 1000 && kMostTriangles == 16777216,
               "the ranges in expected() are those that are checked");
 
 /// Returns a hint if the line contains what many programs write for a number that is not finite: JSON has no such
@@ -156,11 +159,11 @@ class FieldReader {
     if (!(given >= low && given <= high)) return complain(key, expected(key));
     to = given;
   }
-  void whole(const char* key, double high, double& to) {
+  void whole(const char* key, double low, double high, double& to) {
     const Json* value = find(key);
     if (value == nullptr) return;
     const double given = value->is_number() ? value->get<double>() : NAN;
-    if (!(given >= 0 && given <= high && given == std::floor(given))) return complain(key, expected(key));
+    if (!(given >= low && given <= high && given == std::floor(given))) return complain(key, expected(key));
     to = given;
   }
   void numberOrWord(const char* key, double low, double high, double& to, std::string& word) {
@@ -303,10 +306,12 @@ void readValues(FieldReader& take, Request& request) {
   take.numberOrWord("value", -1e300, 1e300, request.value, request.word);
   take.number("tolerance", kFinestDrawing, 1, request.tolerance);
   take.word("as", "memory", request.as_memory);
-  take.whole("after", kMostFrames, request.after);
-  double number = 0;
-  take.whole("number", 4294967295.0, number);
+  take.whole("after", 0, kMostFrames, request.after);
+  double number = 0, triangles = 0;
+  take.whole("number", 0, 4294967295.0, number);
+  take.whole("triangles", kFewestTriangles, kMostTriangles, triangles);
   request.number = static_cast<uint32_t>(number);
+  request.triangles = static_cast<uint32_t>(triangles);
   take.flag("consent", request.consent);
   take.numbers("position", kMaxPlace, request.position);
   readOrientation(take, request);

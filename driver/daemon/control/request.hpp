@@ -50,8 +50,9 @@ struct Request {
   bool as_memory = false;                      ///< kGeometry: true to get the lists in shared memory
   /// kVertices: number of the last frame that the client has; kEvents: number of the first event that it wants
   double after = 0;
-  uint32_t number = 0;   ///< kFeature: number of the feature, as in a contact
-  bool consent = false;  ///< kSet: the person who holds the arm agrees to a change that may be felt suddenly
+  uint32_t triangles = 0;  ///< kGeometry: most triangles of the drawing; 0: any number
+  uint32_t number = 0;     ///< kFeature: number of the feature, as in a contact
+  bool consent = false;    ///< kSet: the person who holds the arm agrees to a change that may be felt suddenly
   std::array<double, 3> position{};               ///< [m] kMove, world frame
   std::array<double, 4> orientation{1, 0, 0, 0};  ///< kMove: unit quaternion w,x,y,z
   bool turns = false;                             ///< kMove: an orientation was given

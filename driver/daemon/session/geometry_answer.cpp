@@ -16,9 +16,10 @@
 namespace hapticd::servo {
 namespace {
 
-constexpr double kChordShare = 0.005;  ///< default chord error as a share of the model's size: fine enough for a screen
 constexpr std::size_t kMostMemory = std::size_t{64} << 20;  ///< [bytes] largest memory for the triangles of one drawing
-constexpr double kDefaultChord = 1e-3;  ///< [m] default chord error if the model does not report its size
+/// [bytes] that a triangle and its share of the vertices usually need as text and in memory
+constexpr std::size_t kTextPerTriangle = 34, kMemoryPerTriangle = 26;
+constexpr std::size_t kHeadBytes = 512;  ///< [bytes] room for the rest of an answer
 
 bool tooLong(const std::string& text) {
   return text.size() > control::Server::kMaxWaiting;
@@ -33,31 +34,17 @@ bool appendPlaces(std::string& text, const float* xyz, std::size_t count) {
   return true;
 }
 
-constexpr const char* kNoTriangles =
-    "the model cannot be drawn, because its plugin gives no triangles (extension hsp.geometry/1); it can still be felt";
 constexpr const char* kNotANumber = "a vertex of the model is not a finite number";
 
-bool allFinite(const float* numbers, std::size_t count) {
-  return std::all_of(numbers, numbers + count, [](float number) { return std::isfinite(number); });
-}
-
-/// Makes the triangles of a shape. @param tolerance chord error [m] that was asked for; becomes the one that was used
-Result<hsp_mesh> cut(const host::ShapeInstance& shape, double& tolerance) {
-  if (shape.geometry() == nullptr) return Error{kNoTriangles};
-  const double size = shape.report().size_m;
-  if (!(tolerance > 0) && shape.contour() == nullptr) tolerance = size > 0 ? kChordShare * size : kDefaultChord;
-  hsp_mesh mesh{};
-  if (shape.tessellate(tolerance, mesh) < 0)
-    return Error{
-        fmt::format("the plugin of the model gives no valid triangles for a chord error of {:g} m", tolerance)};
-  return mesh;
-}
-
-Error tooMany(const hsp_mesh& mesh, std::size_t most, double tolerance) {
-  return Error{
-      fmt::format("{} vertices and {} triangles do not fit into the {} bytes of an answer\n"
-                  "  fix: ask for a tolerance larger than {:g} m",
-                  mesh.vertex_count, mesh.triangle_count, most, tolerance)};
+/// Returns what the answer says about a drawing, beside its lists.
+std::string keysOf(const Drawing& drawing) {
+  constexpr double kJoined = 1e-9;  // [m] below this, the reduction has only joined corners at the same place
+  if (!drawing.reduced || drawing.reduced->off < kJoined) return fmt::format(R"("tolerance":{:g})", drawing.tolerance);
+  const std::string note =
+      fmt::format("drawn with {} of {} triangles, at most {:.2g} mm off the model's own: coarser than what is felt",
+                  drawing.mesh().triangle_count, drawing.of_plugin.triangle_count, 1e3 * drawing.reduced->off);
+  return fmt::format(R"("tolerance":{:g},"full_triangles":{},"off":{:.3g},"note":"{}")", drawing.tolerance,
+                     drawing.of_plugin.triangle_count, drawing.reduced->off, note);
 }
 
 std::string featureName(const host::ShapeInstance& shape, uint32_t feature) {
@@ -77,28 +64,34 @@ std::string featureName(const host::ShapeInstance& shape, uint32_t feature) {
 
 }  // namespace
 
-Result<std::string> geometryAnswer(const host::ShapeInstance& shape, double tolerance) {
-  const auto mesh = cut(shape, tolerance);
-  if (!mesh) return Error{mesh.error()};
-  std::string text = fmt::format(R"({{"ok":true,"tolerance":{:g},"xyz":[)", tolerance);
-  if (!appendPlaces(text, mesh->xyz, 3 * std::size_t{mesh->vertex_count})) return Error{kNotANumber};
-  text += R"(],"triangles":[)";
-  for (std::size_t i = 0; i < 3 * std::size_t{mesh->triangle_count} && !tooLong(text); ++i)
-    text += fmt::format("{}{}", i == 0 ? "" : ",", mesh->indices[i]);
-  text += "]}";
-  if (tooLong(text)) return tooMany(*mesh, control::Server::kMaxWaiting, tolerance);
-  return text;
+Result<std::string> geometryAnswer(const host::ShapeInstance& shape, const DrawingWish& wish) {
+  std::string lists;
+  const std::size_t most = control::Server::kMaxWaiting - kHeadBytes;
+  const auto fits = [&](const hsp_mesh& mesh) {
+    lists = R"("xyz":[)";
+    appendPlaces(lists, mesh.xyz, 3 * std::size_t{mesh.vertex_count});
+    lists += R"(],"triangles":[)";
+    for (std::size_t i = 0; i < 3 * std::size_t{mesh.triangle_count} && !tooLong(lists); ++i)
+      lists += fmt::format("{}{}", i == 0 ? "" : ",", mesh.indices[i]);
+    lists += "]";
+    return lists.size() <= most;
+  };
+  const auto drawing = drawnToFit(shape, wish, {most, kTextPerTriangle, false, fits});
+  if (!drawing) return Error{drawing.error()};
+  return fmt::format(R"({{"ok":true,{},{}}})", keysOf(*drawing), lists);
 }
 
-Result<std::string> geometryInMemory(const host::ShapeInstance& shape, double tolerance, Descriptor& memory) {
-  const auto mesh = cut(shape, tolerance);
-  if (!mesh) return Error{mesh.error()};
-  const std::size_t places = 3 * std::size_t{mesh->vertex_count}, corners = 3 * std::size_t{mesh->triangle_count};
-  if (!allFinite(mesh->xyz, places)) return Error{kNotANumber};
-  const bool normals = mesh->normals != nullptr && allFinite(mesh->normals, places);
-  const std::size_t bytes = 4 * (places * (normals ? 2 : 1) + corners);
-  if (bytes == 0) return Error{kNoTriangles};
-  if (bytes > kMostMemory) return tooMany(*mesh, kMostMemory, tolerance);
+Result<std::string> geometryInMemory(const host::ShapeInstance& shape, const DrawingWish& wish, Descriptor& memory) {
+  const auto bytesOf = [](const hsp_mesh& mesh) {
+    const std::size_t per_vertex = mesh.normals != nullptr ? 6 : 3;
+    return 4 * (per_vertex * mesh.vertex_count + 3 * std::size_t{mesh.triangle_count});
+  };
+  const auto drawing = drawnToFit(shape, wish, {kMostMemory, kMemoryPerTriangle, true, [&](const hsp_mesh& mesh) {
+                                                  return bytesOf(mesh) <= kMostMemory;
+                                                }});
+  if (!drawing) return Error{drawing.error()};
+  const hsp_mesh mesh = drawing->mesh();
+  const std::size_t places = 3 * std::size_t{mesh.vertex_count}, bytes = bytesOf(mesh);
   const auto shared = SealedMemory::create("hapticd-geometry", bytes, SealedMemory::Writers::kOne);
   if (!shared) return Error{shared.error()};
   std::byte* at = (*shared)->data();
@@ -106,14 +99,14 @@ Result<std::string> geometryInMemory(const host::ShapeInstance& shape, double to
     std::memcpy(at, from, 4 * count);
     at += 4 * count;
   };
-  append(mesh->xyz, places);
-  if (normals) append(mesh->normals, places);
-  append(mesh->indices, corners);
+  append(mesh.xyz, places);
+  if (mesh.normals != nullptr) append(mesh.normals, places);
+  append(mesh.indices, 3 * std::size_t{mesh.triangle_count});
   auto descriptor = (*shared)->share();
   if (!descriptor) return Error{descriptor.error()};
   memory = std::move(*descriptor);
-  return fmt::format(R"({{"ok":true,"bytes":{},"vertices":{},"triangles":{},"normals":{},"tolerance":{:g}}})", bytes,
-                     mesh->vertex_count, mesh->triangle_count, normals, tolerance);
+  return fmt::format(R"({{"ok":true,"bytes":{},"vertices":{},"triangles":{},"normals":{},{}}})", bytes,
+                     mesh.vertex_count, mesh.triangle_count, mesh.normals != nullptr, keysOf(*drawing));
 }
 
 Result<std::string> verticesAnswer(const host::ShapeInstance& shape, double after) {

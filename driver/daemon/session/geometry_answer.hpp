@@ -6,18 +6,19 @@
 #include "base/descriptors.hpp"
 #include "base/result.hpp"
 #include "host/shape_instance.hpp"
+#include "session/fitted_drawing.hpp"
 
 namespace hapticd::servo {
 
 /// [main] Returns the triangles of an active model in its own frame (those of a soft body in its present deformation):
-/// one line of JSON with xyz [m] and triangles, both flat lists. Fails if the model has no triangles, or more than fit
-/// into one answer. @param tolerance chord error [m]; 0: 5/1000 of the model's size
-Result<std::string> geometryAnswer(const host::ShapeInstance& shape, double tolerance);
+/// one line of JSON with xyz [m] and triangles, both flat lists. A model with more triangles than fit into one answer
+/// is drawn coarser, and a "note" says so. Fails if the model has no triangles, or if no drawing fits.
+Result<std::string> geometryAnswer(const host::ShapeInstance& shape, const DrawingWish& wish);
 
-/// [main] Returns the triangles in read-only memory, for models of any size: f32 xyz [m], then f32 unit normals if the
-/// model has them ("normals" in the answer), then u32 triangles. The answer is one line of JSON: bytes, vertices,
-/// triangles, normals, tolerance. @param memory gets the descriptor of the memory
-Result<std::string> geometryInMemory(const host::ShapeInstance& shape, double tolerance, Descriptor& memory);
+/// [main] Returns the triangles in read-only memory, 64 MiB at most: f32 xyz [m], then f32 unit normals if the model
+/// has them ("normals" in the answer), then u32 triangles. The answer is one line of JSON: bytes, vertices, triangles,
+/// normals, tolerance, and a "note" as in geometryAnswer(). @param memory gets the descriptor of the memory
+Result<std::string> geometryInMemory(const host::ShapeInstance& shape, const DrawingWish& wish, Descriptor& memory);
 
 /// [main] Returns the newest vertices of an active model that deforms: one line of JSON with the number of the drawing
 /// ("frame", counted from 1) and xyz [m], in the model's coordinates and in the order of geometryAnswer() at tolerance

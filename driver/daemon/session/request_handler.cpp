@@ -105,8 +105,8 @@ Result<std::string> RequestHandler::answerQuery(const control::Peer& peer, const
       const auto place = placeOf(request.model);
       if (!place) return Error{place.error()};
       const host::ShapeInstance& shape = *runner_.world().shapes()[*place];
-      return request.as_memory ? geometryInMemory(shape, request.tolerance, attached_)
-                               : geometryAnswer(shape, request.tolerance);
+      const DrawingWish wish{request.tolerance, request.triangles};
+      return request.as_memory ? geometryInMemory(shape, wish, attached_) : geometryAnswer(shape, wish);
     }
     case Request::Kind::kVertices: {
       const auto place = placeOf(request.model);

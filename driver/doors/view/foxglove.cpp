@@ -8,6 +8,7 @@
 
 #include "document/json_text.hpp"
 #include "export/ros_message.hpp"
+#include "mesh.hpp"
 #include "transforms.hpp"
 
 namespace hapticd::view {
@@ -15,7 +16,9 @@ namespace hapticd::view {
 namespace {
 
 constexpr uint64_t kTickBytes = 1u << 20;  ///< [bytes] largest size of the rows of one stream that are sent at once
-constexpr char kMessageData = 1;           ///< op code of a message to a subscription
+/// Triangles of all models together in /scene. They go as text, about 50 bytes each, and all at once.
+constexpr uint32_t kSceneTriangles = 200000;
+constexpr char kMessageData = 1;  ///< op code of a message to a subscription
 
 uint64_t wallNow() {
   return static_cast<uint64_t>(
@@ -190,11 +193,15 @@ void FoxgloveSession::sendScene() {
   const uint32_t subscription = subscriptionOf(sceneChannel());
   if (subscription == 0 || list_number_ == stage_.listNumber() || stage_.list().empty()) return;
   list_number_ = stage_.listNumber();
-  for (const Json& model : stage_.list().value("models", Json::array())) {
+  const Json models = stage_.list().value("models", Json::array());
+  const auto share = kSceneTriangles / std::max(static_cast<uint32_t>(models.size()), 1u);
+  for (const Json& model : models) {
     const std::string name = model.value("name", "");
-    stage_.draw(name, [this, name, subscription, alive = alive_](const DrawnModel& drawn) {
-      if (*alive && drawn.mesh) send(subscription - 1, newest_, "", sceneUpdate(name, *drawn.mesh, newest_));
-    });
+    stage_.draw(name, std::max(share, kFewestTriangles),
+                [this, name, subscription, alive = alive_](const DrawnModel& drawn) {
+                  if (*alive && drawn.mesh)
+                    send(subscription - 1, newest_, "", sceneUpdate(name, *drawn.mesh, newest_));
+                });
   }
 }
 

@@ -13,6 +13,10 @@
 
 namespace hapticd::view {
 
+/// Triangles that may be asked for in a drawing. The most take 50 MB if no two share a corner, which is less than may
+/// wait for a page.
+constexpr uint32_t kFewestTriangles = 1000, kMostTriangles = 600000;
+
 constexpr uint32_t kMeshMessage = 0x80000000u, kVerticesMessage = 0x100;
 
 /// [main] Makes a message from the daemon's answer to `geometry`, whose triangles are in `memory`. Returns nullptr if

@@ -24,7 +24,8 @@ constexpr double kBacklogSeconds = 10;
 constexpr std::array<std::string_view, 4> kReads = {"status", "list", "geometry", "feature"};
 constexpr std::array<std::string_view, 14> kControls = {"enable", "disable", "move", "set",  "add", "remove", "reload",
                                                         "hold",   "clear",   "dump", "stop", "get", "lead",   "unlead"};
-constexpr size_t kMostLeads = 4;  ///< largest number of leads of one page
+constexpr double kUsualTriangles = 200000;  ///< most triangles of a drawing if the page does not say
+constexpr size_t kMostLeads = 4;            ///< largest number of leads of one page
 
 template <class Words>
 bool contains(const Words& words, std::string_view word) {
@@ -273,11 +274,17 @@ void NativeSession::answer(const Json& id, Json answer) {
 void NativeSession::draw(const Json& id, const Json& request) {
   if (!request.contains("model") || !request["model"].is_string())
     return answer(id, {{"ok", false}, {"error", "\"model\" is missing in \"geometry\", expected the name of a model"}});
-  stage_.draw(request["model"], [this, id, alive = alive_](const DrawnModel& drawn) {
+  const auto wish = request.find("triangles");
+  const double most = wish != request.end() && wish->is_number() ? wish->get<double>() : kUsualTriangles;
+  if (!(most >= kFewestTriangles && most <= kMostTriangles))
+    return answer(id, {{"ok", false}, {"error", "\"triangles\": expected a whole number from 1000 to 600000"}});
+  stage_.draw(request["model"], static_cast<uint32_t>(most), [this, id, alive = alive_](const DrawnModel& drawn) {
     if (!*alive) return;
     if (!drawn.mesh) return answer(id, {{"ok", false}, {"error", drawn.error}});
     peer_.binary(drawn.mesh);
-    answer(id, {{"ok", true}});
+    Json said = drawn.facts;
+    said["ok"] = true;
+    answer(id, std::move(said));
   });
 }
 

@@ -181,17 +181,20 @@ void Stage::findTouched() {
   }
 }
 
-void Stage::draw(const std::string& model, std::function<void(const DrawnModel&)> drawn) {
+void Stage::draw(const std::string& model, uint32_t most, std::function<void(const DrawnModel&)> drawn) {
   const auto known = meshes_.find(model);
-  if (known != meshes_.end()) return drawn(known->second);
-  const uint64_t run = run_;
-  daemon_->ask(geometryRequest(model),
-               [this, model, run, drawn = std::move(drawn)](const Json& answer, const Descriptor& memory) {
+  if (known != meshes_.end() && known->second.most == most) return drawn(known->second.drawn);
+  Json request = geometryRequest(model);
+  request["triangles"] = most;
+  daemon_->ask(request,
+               [this, model, most, run = run_, drawn = std::move(drawn)](const Json& answer, const Descriptor& memory) {
                  DrawnModel result;
                  if (answer.value("ok", false)) result.mesh = meshMessage(answer, memory.get());
                  if (!result.mesh)
                    result.error = answer.value("error", std::string("the model's triangles cannot be read"));
-                 if (run == run_ && result.mesh && !soft_.contains(model)) meshes_[model] = result;
+                 for (const char* key : {"tolerance", "triangles", "full_triangles", "off", "note"})
+                   if (answer.contains(key)) result.facts[key] = answer[key];
+                 if (run == run_ && result.mesh && !soft_.contains(model)) meshes_[model] = {most, result};
                  drawn(result);
                });
 }

@@ -27,6 +27,7 @@ struct StageOptions {
 /// The triangles of a model, or the reason why there are none.
 struct DrawnModel {
   Message mesh;  ///< message for pages with the triangles (see mesh.hpp)
+  Json facts;    ///< what the daemon said about them: the tolerance and, if it drew coarser, a note
   std::string error;
 };
 
@@ -53,7 +54,8 @@ class Stage {
   boost::asio::io_context& io() { return io_; }
 
   /// [main] Calls `drawn` with the triangles of a model, which come from the cache if the model does not deform.
-  void draw(const std::string& model, std::function<void(const DrawnModel&)> drawn);
+  /// @param most largest number of triangles; a body that deforms may have more
+  void draw(const std::string& model, uint32_t most, std::function<void(const DrawnModel&)> drawn);
 
   /// [main] Calls `drawn` with the vertices that a body of the recording had at time t [s], or with nullptr if they are
   /// not available. If the run changes before they come, `drawn` is not called.
@@ -93,7 +95,12 @@ class Stage {
   uint64_t run_ = 0, list_number_ = 0, status_number_ = 0;
   bool was_connected_ = false;
   Clock::time_point next_find_{}, next_poll_{};
-  std::map<std::string, DrawnModel> meshes_;
+  /// The newest drawing of a model, and the largest number of triangles that it was allowed.
+  struct CachedDrawing {
+    uint32_t most = 0;
+    DrawnModel drawn;
+  };
+  std::map<std::string, CachedDrawing> meshes_;
   std::map<std::string, Live> live_;
   std::map<std::string, Soft> soft_;
   uint64_t next_contact_ = 0;  ///< next row to read of the stream of contacts

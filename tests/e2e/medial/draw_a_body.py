@@ -5,6 +5,7 @@ Usage: draw_a_body.py HAPTICD CONFIG     prints one line per case; exit 1 when o
 """
 import json
 import os
+import re
 import socket
 import struct
 import subprocess
@@ -78,12 +79,21 @@ with tempfile.TemporaryDirectory() as folder:
             sealed = True
         check("which nobody makes shorter", sealed)
         os.close(descriptors[0])
+        with socket.socket(socket.AF_UNIX) as client:
+            client.settimeout(30)
+            client.connect(os.path.join(folder, "drawn.sock"))
+            client.sendall(b'{"do":"geometry","model":"teapot","as":"memory","triangles":80000}\n')
+            fine = json.loads(socket.recv_fds(client, 1 << 16, 4)[0])
+        check("for a client with room for more it is finer", abs(text["tolerance"] / fine["tolerance"] - 5) < 1e-3 and
+              answer["triangles"] < fine["triangles"] <= 20000 and "note" not in fine, fine)
 
     scene = os.path.join(folder, "pressed.yaml")  # the front of the plate is at z = 30 mm
     with open(scene, "w", encoding="utf-8") as out:
         out.write(f"hapticd: 1\nservo: {{rate: 1000}}\nhand: {{script: press, radius: 0.033, rise: 0.01, rate: 0.5}}\n"
                   f"models:\n  - name: plate\n    plugin: mat_deformable\n    pose: {{position: [0, 0, 0.02]}}\n"
-                  f"    parameters: {{geometry: {os.path.join(CONFIG, 'models', 'soft-plate.yaml')}, display_tolerance: 0.001}}\n")
+                  f"    parameters: {{geometry: {os.path.join(CONFIG, 'models', 'soft-plate.yaml')}, display_tolerance: 0.001}}\n"
+                  f"  - name: branch\n    plugin: mat_deformable\n    pose: {{position: [0.5, 0, 0]}}\n"
+                  f"    parameters: {{geometry: {os.path.join(CONFIG, 'models', 'branch.ma')}, display_tolerance: 0.001}}\n")
     said = os.path.join(folder, "said.txt")
     run = subprocess.Popen([HAPTICD, "run", scene, "--for", "100", "--name", "drawn"],
                            env=environment, stdout=open(said, "w", encoding="utf-8"), stderr=subprocess.STDOUT)
@@ -116,13 +126,18 @@ with tempfile.TemporaryDirectory() as folder:
         check("a rigid model is added", ctl("add", os.path.join(CONFIG, "scenes", "teapot.yaml"))[0] == 0)
         check("it is drawn as well", len(json.loads(ctl("geometry", "teapot")[1] or "{}").get("triangles", [])) > 1000)
         in_memory()
-        check("the list says which deform", {m["name"]: m["deforms"] for m in json.loads(ctl("list")[1])["models"]} == {"plate": True, "teapot": False})
+        check("the list says which deform", {m["name"]: m["deforms"] for m in json.loads(ctl("list")[1])["models"]} == {"plate": True, "branch": True, "teapot": False})
         code, out, err = ctl("geometry", "teapot", "--follow")
         check("following what does not deform is refused with its cure", code == 1 and "display_tolerance" in err, err)
         for arguments, why in ((("geometry", "nobody"), "no model"), (("geometry", "plate", "--tolerance", "2"), "from 0.00001 to 1 m"),
                                (("geometry", "teapot", "--tolerance", "0.00001"), "larger")):
             code, out, err = ctl(*arguments)
             check(" ".join(arguments) + " is refused with its reason", code == 1 and why in err, (code, out[:200], err))
+        code, out, err = ctl("geometry", "branch", "--tolerance", "0.00001")
+        works = re.search(r"larger tolerance, such as ([0-9.e-]+) m", err)
+        check("a tolerance that needs too many triangles of it is refused with one that works", code == 1 and works is not None, err)
+        code, out, err = ctl("geometry", "branch", "--tolerance", works[1] if works else "1")
+        check("which works, without a reduction: its frames belong to its own triangles", code == 0 and "note" not in json.loads(out), err)
         code, out, err = ctl("stop")
         check("the run ends in order", code == 0 and run.wait(timeout=30) == 0, err + open(said, encoding="utf-8").read())
     finally:

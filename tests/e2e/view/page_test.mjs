@@ -124,7 +124,7 @@ test('beside a model without triangles stands why it is not drawn, for as long a
     const [url] = await sandbox.start(['view', '--name', 'test', '--control']).says(/http:\S+/);
     page = await browser.page(url);
     const told = (name) => page.evaluate((model) => {
-      const words = document.querySelector(`[data-model="${model}"] .undrawn`);
+      const words = document.querySelector(`[data-model="${model}"] .drawing`);
       return words ? {hidden: words.hidden, text: words.textContent} : null;
     }, name);
     await until(async () => (await told('unseen'))?.hidden === false, kPatience, 'a word beside the model');

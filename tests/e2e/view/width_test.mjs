@@ -13,7 +13,7 @@ function mistakes(page) {
   return page.evaluate((read) => {
     const seen = [...document.querySelectorAll(read)].filter((e) => e.getClientRects().length > 0);
     const cut = seen.filter((e) => e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).display !== 'inline').map((e) => e.textContent);
-    const boxes = [...document.querySelectorAll('.readouts > div, .views button')].map((e) => ({text: e.textContent, box: e.getBoundingClientRect()}));
+    const boxes = [...document.querySelectorAll('.readouts > div, .views button, .ruler, .hint')].map((e) => ({text: e.textContent, box: e.getBoundingClientRect()}));
     const covered = [];
     for (const [i, a] of boxes.entries())
       for (const b of boxes.slice(i + 1))

@@ -13,6 +13,9 @@ export function short(value, digits = 3) {
   return Number(text) === 0 ? (0).toFixed(decimals) : text;
 }
 
+/** Returns a whole number with its digits in groups: 1 000 000. */
+export const grouped = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, '\u202f');
+
 /** Returns a bound as people write it: 1e-12, 0.001, 10000. */
 export const exact = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(6))) : '–');
 

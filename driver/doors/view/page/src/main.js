@@ -63,7 +63,7 @@ class Page {
 
   #startView() {
     try {
-      this.view = new View($('canvas'));
+      this.view = new View($('canvas'), $('ruler'));
     } catch (error) {
       this.notice(`This browser cannot draw 3D (WebGL 2): ${error.message}`);
       return;
@@ -166,15 +166,14 @@ class Page {
     const fresh = models.filter((m) => this.drawn.get(m.name) !== m.index);
     if (fresh.length === 0) return;
     for (const model of fresh) this.drawn.set(model.name, model.index);
-    await Promise.all(fresh.map(async (model) => {
-      const answer = await this.ask({do: 'geometry', model: model.name});
+    for (const model of fresh) { // one after the other, so that few bytes wait in the server
+      const answer = await this.ask({do: 'geometry', model: model.name, triangles: this.view.trianglesOfOne(models.length)});
       if (begun !== this.now) return;
-      this.panel.notDrawn(model.name, answer.mesh ? '' : answer.error);
-      if (!answer.mesh) return this.notice(`${model.name} is not drawn: ${answer.error}`);
+      this.panel.drawing(model.name, answer);
+      if (!answer.mesh) this.notice(`${model.name} is not drawn: ${answer.error}`);
       const pose = this.now.poses.get(model.index) ?? model.pose ?? scene.find((s) => s.name === model.name)?.pose;
-      return this.view.models.add(model.index, {...model, pose}, answer.mesh);
-    }));
-    if (begun !== this.now) return;
+      if (answer.mesh) this.view.models.add(model.index, {...model, pose}, answer.mesh);
+    }
     this.view.measure();
     if (this.fitted) return;
     if (!this.hand.used) this.view.fit();
@@ -382,7 +381,7 @@ class Page {
     document.documentElement.dataset.theme = name;
     if (keep) localStorage.setItem('theme', name);
     const dark = name === 'dark';
-    this.view?.theme({panel: themeColor('--panel'), line: themeColor('--line'), accent: themeColor('--accent'), force: themeColor('--force'), tip: dark ? '#f2f5f8' : '#1d2730', link: dark ? '#5b6a7a' : '#c3ccd6'});
+    this.view?.theme({panel: themeColor('--panel'), line: themeColor('--line'), accent: themeColor('--accent'), force: themeColor('--force'), ruler: {x: themeColor('--bad'), y: themeColor('--good'), z: themeColor('--depth'), text: themeColor('--soft')}, tip: dark ? '#f2f5f8' : '#1d2730', link: dark ? '#5b6a7a' : '#c3ccd6'});
   }
 
   /** Returns a report of what the page shows: the status, the models and the extremes of the plots. */

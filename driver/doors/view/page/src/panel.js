@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /** The list of models, with a form for their live parameters. The fields come from the plugin's own table, with unit,
  * range and documentation. A change that a hand may feel suddenly needs consent. */
-import {element, exact, short} from './format.js';
+import {element, exact, grouped, short} from './format.js';
 import {colorOf} from './models.js';
 
 const kOpenModels = 3; // if there are more models, their parameters are folded
@@ -24,13 +24,19 @@ function sliderSpan(parameter, value) {
   return {min: Math.max(parameter.min, value < 0 ? -4 * about : 0, parameter.min), max: Math.min(parameter.max, 4 * about)};
 }
 
+/** Returns the words about a model that is not drawn, or drawn coarser than it is felt; '' about any other. */
+function wordsOfDrawing({mesh, error, note, triangles, full_triangles: full, off}) {
+  if (!mesh) return `Not drawn: ${error}`;
+  return note ? `Drawn with ${grouped(triangles)} of ${grouped(full)} triangles, at most ${Number((off * 1e3).toPrecision(2))} mm off. It is felt exactly.` : '';
+}
+
 export class Panel {
   /** @param ask function that sends a request and returns a promise of the answer */
   constructor(ask) {
     this.ask = ask;
     this.control = false;
     this.models = [];
-    this.undrawn = new Map(); // name -> why a model is felt but not seen
+    this.drawings = new Map(); // name -> why a model is not drawn, or drawn coarser than it is felt
     this.folder = ''; // folder of the scene file
     this.signature = '';
     $('add-form').addEventListener('submit', (event) => {
@@ -75,18 +81,19 @@ export class Panel {
     }
   }
 
-  /** Shows beside a model why it is not drawn. @param why the reason, or '' if the model is drawn */
-  notDrawn(name, why) {
-    if ((this.undrawn.get(name) ?? '') === why) return;
-    this.undrawn.set(name, why);
-    this.#showUndrawn(document.querySelector(`[data-model="${CSS.escape(name)}"]`));
+  /** Shows beside a model what its drawing lacks. @param answer the answer to `geometry` */
+  drawing(name, answer) {
+    const words = wordsOfDrawing(answer);
+    if ((this.drawings.get(name) ?? '') === words) return;
+    this.drawings.set(name, words);
+    this.#showDrawing(document.querySelector(`[data-model="${CSS.escape(name)}"]`));
   }
 
-  #showUndrawn(article) {
-    const why = this.undrawn.get(article?.dataset.model) ?? '', words = article?.querySelector('.undrawn');
-    if (!words) return;
-    words.hidden = why === '';
-    words.textContent = `Not drawn: ${why}`;
+  #showDrawing(article) {
+    const words = this.drawings.get(article?.dataset.model) ?? '', place = article?.querySelector('.drawing');
+    if (!place) return;
+    place.hidden = words === '';
+    place.textContent = words;
   }
 
   async #do(request) {
@@ -111,9 +118,9 @@ export class Panel {
     const body = this.models.length > kOpenModels && fields.length > 0
       ? [element('details', {}, element('summary', {}, `${fields.length} parameters`), ...fields)] : fields;
     const silenced = element('p', {class: 'wrong silenced', hidden: true, role: 'status'});
-    const undrawn = element('p', {class: 'quiet undrawn', hidden: true});
-    const article = element('article', {class: 'model', data: {model: model.name}}, head, silenced, undrawn, ...body);
-    this.#showUndrawn(article);
+    const drawing = element('p', {class: 'quiet drawing', hidden: true});
+    const article = element('article', {class: 'model', data: {model: model.name}}, head, silenced, drawing, ...body);
+    this.#showDrawing(article);
     return article;
   }
 

@@ -6,9 +6,14 @@ import {Box3, Box3Helper, BufferGeometry, Color, DirectionalLight, GridHelper, G
 import {OrbitCamera} from './camera.js';
 import {Models} from './models.js';
 import {Probe} from './probe.js';
+import {Ruler} from './ruler.js';
 
 const kSlowMs = 55, kFastMs = 24, kCoarsest = 0.56;
-const kGridStep = 0.02; // m
+const kMostSquares = 120; // of the floor's grid, in one direction
+const kRulerPlace = 8; // pixels from the lower left corner of a saved picture
+/** Triangles of the whole scene. A processor that plays the graphics card draws 120 000 of them some 7 times a second; a
+ * part of 10 000 faces has so many. With more than kTriangles, searching for the one under the pointer delays the hand. */
+const kTriangles = 300000, kSoftwareTriangles = 125000, kFewestTriangles = 2000;
 const kEmptyExtent = 0.15; // m: size of a scene without a model
 
 /** Tells whether the processor draws instead of a graphics card. */
@@ -21,8 +26,10 @@ function drawsInSoftware() {
 }
 
 export class View {
-  constructor(canvas) {
+  /** @param canvas for the scene @param ruler canvas for the axes and the scale */
+  constructor(canvas, ruler) {
     this.canvas = canvas;
+    this.ruler = new Ruler(ruler);
     this.software = drawsInSoftware();
     this.renderer = new WebGLRenderer({canvas, antialias: !this.software, powerPreference: 'high-performance', preserveDrawingBuffer: false});
     this.ratio = this.software ? 1 : Math.min(devicePixelRatio, 2);
@@ -40,6 +47,11 @@ export class View {
     this.average = (kSlowMs + kFastMs) / 2;
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
     this.resize();
+  }
+
+  /** Returns how many triangles one of so many models may have. */
+  trianglesOfOne(models) {
+    return Math.max(kFewestTriangles, Math.floor((this.software ? kSoftwareTriangles : kTriangles) / Math.max(models, 1)));
   }
 
   /** Notes the new size of the canvas. It is applied directly before the next picture, because a canvas is empty after
@@ -63,7 +75,7 @@ export class View {
     this.scene.background = new Color(colors.panel);
     for (const probe of this.probes) probe.colors(colors);
     this.workspaceMaterial.color.set(colors.accent);
-    this.#floor();
+    this.floor = '';
     this.dirty = true;
   }
 
@@ -84,19 +96,25 @@ export class View {
     this.extent = box.isEmpty() ? kEmptyExtent : box.getSize(new Vector3()).length();
     for (const probe of this.probes) probe.resize(Math.min(Math.max(this.extent / 60, 0.002), 0.006));
     this.models.stainRadius(Math.min(this.extent / 26, 0.02));
-    this.#floor();
+    this.floor = '';
     this.show('wire', this.shown.wire);
   }
 
+  /** Draws the grid of the floor about the middle of the picture, if it is not there yet. Its lines are at multiples of
+   * its pitch. */
   #floor() {
+    const {pitch} = this.ruler, squares = 2 * Math.min(Math.ceil(0.65 * Math.max(this.extent, 0.2) / pitch), kMostSquares / 2);
+    const [x, z] = [this.orbit.center.x, this.orbit.center.z].map((place) => Math.round(place / pitch) * pitch);
+    const floor = [pitch, squares, x, z].join();
+    if (floor === this.floor) return;
+    this.floor = floor;
     if (this.grid) {
       this.scene.remove(this.grid);
       this.grid.geometry.dispose();
     }
-    const box = this.models.box(), step = kGridStep * Math.max(1, Math.round(this.extent / 0.4));
-    const lines = 2 * Math.ceil(1.3 * Math.max(this.extent, 0.2) / step / 2);
-    this.grid = new GridHelper(lines * step, lines, this.colors?.line, this.colors?.line);
-    this.grid.position.y = box.isEmpty() ? -0.08 : box.min.y - 0.004;
+    const box = this.models.box();
+    this.grid = new GridHelper(squares * pitch, squares, this.colors?.line, this.colors?.line);
+    this.grid.position.set(x, box.isEmpty() ? -0.08 : box.min.y - 0.004, z);
     this.grid.visible = this.shown.grid;
     this.scene.add(this.grid);
   }
@@ -157,6 +175,9 @@ export class View {
       .addScaledVector(this.orbit.right(), -spherical.radius * 0.55);
     this.light.target.position.copy(center);
     this.light.target.updateMatrixWorld();
+    this.ruler.look(this.orbit, this.canvas.clientHeight, this.shown.grid);
+    this.#floor();
+    if (this.colors) this.ruler.draw(this.colors.ruler);
     this.renderer.render(this.scene, camera);
     ++this.frames;
     return true;
@@ -180,10 +201,22 @@ export class View {
     return {x: (p.x + 1) / 2 * this.canvas.clientWidth, y: (1 - p.y) / 2 * this.canvas.clientHeight, inFront: p.z < 1};
   }
 
-  /** Returns a picture of the present scene (PNG). */
+  /** Returns a picture of the present scene with its axes and scale (PNG). It is sharp, also where the page draws with
+   * fewer pixels because it is slow. */
   picture() {
+    const usual = this.ratio;
+    this.ratio = Math.min(Math.max(devicePixelRatio, 1), 2);
+    this.resize();
     this.#applySize();
     this.renderer.render(this.scene, this.orbit.camera);
-    return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
+    this.ratio = usual;
+    this.resize();
+    const {width, height} = this.canvas, picture = Object.assign(document.createElement('canvas'), {width, height});
+    const context = picture.getContext('2d'), ratio = height / this.canvas.clientHeight;
+    context.drawImage(this.canvas, 0, 0);
+    context.scale(ratio, ratio);
+    context.translate(kRulerPlace, this.canvas.clientHeight - this.ruler.canvas.clientHeight - kRulerPlace);
+    this.ruler.paint(context, this.colors.ruler);
+    return new Promise((resolve) => picture.toBlob(resolve, 'image/png'));
   }
 }

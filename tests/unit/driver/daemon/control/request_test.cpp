@@ -15,8 +15,9 @@ TEST(Request, TakesWhatTheManualSays) {
         R"({"do":"enable","model":"a"})", R"({"do":"disable","model":"a"})", R"({"do":"remove","model":"a"})",
         R"({"do":"add","file":"/a.yaml"})", R"({"do":"add","file":"/a.yaml","model":"b"})", R"({"do":"hold"})",
         R"({"do":"clear","device":"arm"})", R"({"do":"geometry","model":"a"})",
-        R"({"do":"geometry","model":"a","tolerance":0.001})", R"({"do":"vertices","model":"a"})",
-        R"({"do":"vertices","model":"a","after":3})", R"({"do":"feature","model":"a","number":7})"})
+        R"({"do":"geometry","model":"a","tolerance":0.001})", R"({"do":"geometry","model":"a","triangles":1000})",
+        R"({"do":"vertices","model":"a"})", R"({"do":"vertices","model":"a","after":3})",
+        R"({"do":"feature","model":"a","number":7})"})
     EXPECT_TRUE(parseRequest(line)) << line;
   const auto set = parseRequest(R"({"do":"set","model":"a","parameter":"k","value":600,"consent":true})");
   ASSERT_TRUE(set);
@@ -67,6 +68,8 @@ TEST(Request, SaysWhatIsWrongAndWhatWasExpected) {
       {R"({"do":"add","file":"a.yaml"})", "absolute path"},
       {R"({"do":"geometry"})", "\"model\" is missing"},
       {R"({"do":"geometry","model":"a","tolerance":0})", "\"tolerance\": expected a number"},
+      {R"({"do":"geometry","model":"a","triangles":999})", "\"triangles\": expected a whole number from 1000"},
+      {R"({"do":"geometry","model":"a","triangles":1000.5})", "\"triangles\": expected a whole number from 1000"},
       {R"({"do":"vertices"})", "\"model\" is missing"},
       {R"({"do":"feature","model":"a"})", "\"number\" is missing"},
       {R"({"do":"feature","model":"a","number":-1})",

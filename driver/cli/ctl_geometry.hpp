@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd ctl geometry --obj`: writes the triangles of a model to a file.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace hapticd::cli {
+
+/// [main] Asks the daemon for triangles in memory, which has room for more of them than an answer, and writes them as
+/// an OBJ file. @param request of the word "geometry" @return exit code
+int saveGeometry(const std::string& socket, nlohmann::ordered_json request, const std::string& file);
+
+/// [main] Prints the note of an answer, if it has one, where it is not taken for output.
+void printNote(const nlohmann::ordered_json& answer);
+
+}  // namespace hapticd::cli
