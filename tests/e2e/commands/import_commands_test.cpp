@@ -86,6 +86,9 @@ TEST_F(ImportCommands, ImportMakesAPartOfTriangles) {
   EXPECT_TRUE(has(info.text, "size: 100 x 100 x 0 mm, least corner at (0, 0, 0) mm")) << info.text;
   EXPECT_TRUE(has(run("part info " + part + " --json").text, "\"box_m\"")) << info.text;
   EXPECT_EQ(run("part info " + mesh).exit_code, 2);
+  EXPECT_EQ(run("import " + mesh + " --fit 0.2 --up z --center -o " + part).exit_code, 0);
+  const Outcome placed = run("part info " + part);
+  EXPECT_TRUE(has(placed.text, "fit into 0.2 m, turned, z is up, centred")) << placed.text;
 }
 
 /// A part may be larger than any model file, which has a limit of 32 MiB.
