@@ -81,6 +81,14 @@ std::string unitOf(const importing::Placement& placement) {
   return placement.fit > 0 ? text : unitName(placement.scale, text);
 }
 
+/// Returns how the points were turned and centred, as it is noted in the part; "" if they were not.
+std::string placedText(const importing::Placement& placement) {
+  std::string text;
+  if (placement.up != 'y') text = std::string("turned, ") + placement.up + " is up";
+  if (placement.center) text += text.empty() ? "centred" : ", centred";
+  return text;
+}
+
 void print(const importing::MeshReport& r, const std::string& out) {
   std::printf("%s: %zu triangle%s, %zu points, %.4g x %.4g x %.4g m, %s\n", out.c_str(), r.triangles,
               r.triangles == 1 ? "" : "s", r.points, r.size.x(), r.size.y(), r.size.z(),
@@ -134,7 +142,7 @@ int importMesh(const MeshImport& options) {
   std::string part;
   try {
     const importing::MeshOptions how{placed ? 1 : placement.scale, options.smooth_angle * std::numbers::pi / 180,
-                                     unitOf(placement)};
+                                     unitOf(placement), placedText(placement)};
     const std::string name = std::filesystem::path(options.file).filename().string();
     part = brep::writePart(importing::meshPart(*mesh, how, name, report));
   } catch (const std::exception& error) {

@@ -15,6 +15,7 @@
 #include "kernels/brep/part_file.hpp"
 #include "kernels/brep/part_limit.hpp"
 #include "kernels/brep/part_names.hpp"
+#include "kernels/brep/tight_bounds.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -103,11 +104,12 @@ Json describe(const Part& part, std::size_t bytes) {
 void addMeasures(Json& info, Part part) {
   try {
     const brep::Model model(std::move(part));
-    const Eigen::Vector3d low = model.bounds().min(), size = model.bounds().sizes();
+    const Eigen::AlignedBox3d box = brep::tightBounds(model);
+    const Eigen::Vector3d low = box.min(), size = box.sizes();
     info["box_m"] = {{"low", {low.x(), low.y(), low.z()}}, {"size", {size.x(), size.y(), size.z()}}};
-    const Eigen::Vector3d middle = model.bounds().center();
+    const Eigen::Vector3d middle = box.center();
     info["middle_m"] = {middle.x(), middle.y(), middle.z()};
-    for (const PartPose& pose : centringPoses(model.bounds())) info["poses"][pose.name] = poseText(pose);
+    for (const PartPose& pose : centringPoses(box)) info["poses"][pose.name] = poseText(pose);
     for (const std::string& warning : model.warnings()) info["warnings"].push_back(warning);
   } catch (const std::invalid_argument& error) {
     info["warnings"].push_back(error.what());

@@ -10,6 +10,8 @@
 #include <cstddef>
 #include <cstring>
 
+#include "base/regular_file.hpp"
+
 namespace hapticd::record {
 
 Result<std::unique_ptr<RecordingFile>> RecordingFile::create(const std::string& file,
@@ -20,7 +22,9 @@ Result<std::unique_ptr<RecordingFile>> RecordingFile::create(const std::string& 
   std::unique_ptr<RecordingFile> recording(new RecordingFile(file, fd));
   // The lock is held while the file is open, because two writers would make the file unreadable.
   if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    return Error{file + ": another run records into it, expected the name of another file"};
+    return Error{file +
+                 ": another run records into it, or a program that reads it keeps it open; expected the name of "
+                 "another file"};
   if (ftruncate(fd, 0) != 0 && errno != EINVAL) return Error{file + ": cannot be written: " + std::strerror(errno)};
   std::vector<uint32_t> chunk_rows;
   for (const StreamSpec& stream : streams) {
@@ -33,8 +37,9 @@ Result<std::unique_ptr<RecordingFile>> RecordingFile::create(const std::string& 
   recording->write(0, recording->skeleton_.bytes);
   recording->end_ = recording->skeleton_.bytes.size();
   recording->skeleton_.bytes.clear();
-  if (auto good = recording->state(); !good) return Error{good.error()};
-  return recording;
+  if (recording->error_ == 0) return recording;
+  removeIncomplete(file);
+  return Error{file + ": cannot be written: " + std::strerror(recording->error_)};
 }
 
 RecordingFile::~RecordingFile() {

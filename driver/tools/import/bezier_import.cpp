@@ -161,13 +161,6 @@ Result<BezierModel> parseBpt(const std::string& text, const std::string& file) {
   return model;
 }
 
-Eigen::AlignedBox3d boundsOf(const BezierModel& model) {
-  Eigen::AlignedBox3d box;
-  for (const BezierPatch& patch : model.patches)
-    for (const Vector3d& point : patch.points) box.extend(point);
-  return box;
-}
-
 void placeModel(BezierModel& model, const Placement& placement) {
   for (BezierPatch& patch : model.patches)
     for (Vector3d& point : patch.points) point = turned(point, placement.up);

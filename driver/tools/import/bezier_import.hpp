@@ -24,7 +24,7 @@ struct BezierModel {
 /// How a model is brought into the arm's workspace.
 struct Placement {
   double scale = 1;     ///< metres per unit of the file
-  double fit = 0;       ///< [m] largest extent of the control points; replaces scale; 0 if not used
+  double fit = 0;       ///< [m] largest extent of the surfaces; replaces scale; 0 if not used
   bool center = false;  ///< true moves the middle of the bounding box to the origin
   char up = 'y';        ///< axis of the file that points up; the world's is y
 };
@@ -32,7 +32,7 @@ struct Placement {
 /// [main] Reads patches: a count, then for each patch two degrees and its points; # begins a comment line.
 Result<BezierModel> parseBpt(const std::string& text, const std::string& file);
 
-/// [main] Returns the box around the control points, in the unit of the model.
+/// [main] Returns the box around the surfaces to within a millionth of its size, in the unit of the model.
 Eigen::AlignedBox3d boundsOf(const BezierModel& model);
 
 /// [main] Turns, scales and centres all points.

@@ -6,9 +6,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <vector>
 
+#include "base/regular_file.hpp"
 #include "document/csv.hpp"
 #include "document/node.hpp"
 #include "import/active_model.hpp"
@@ -190,13 +190,6 @@ Result<std::vector<double>> feltForces(const Calibration& options, const std::ve
   return forces;
 }
 
-Result<void> save(const std::string& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text << std::flush;
-  if (!out) return Error{file + ": cannot be written, expected a file in a folder that you may write to"};
-  return {};
-}
-
 void printFit(const std::vector<Answer>& answers, const std::vector<double>& forces, const Calibration& options) {
   double worst = 0, squares = 0;
   for (std::size_t j = 0; j < answers.size(); ++j) {
@@ -220,7 +213,7 @@ Result<std::vector<double>> fitStiffness(const Body& body, const std::vector<Ans
   std::vector<double> forces;
   stiffness.assign(body.points.size(), answers.front().force / answers.front().depth);
   for (int round = 0; round < kRounds; ++round) {
-    if (const auto done = save(options.out, written(body, fitted, options)); !done) return Error{done.error()};
+    if (const auto done = writeWhole(options.out, written(body, fitted, options)); !done) return Error{done.error()};
     auto felt = feltForces(options, answers, catalog);
     if (!felt) return Error{felt.error()};
     forces = std::move(*felt);
@@ -246,7 +239,7 @@ Result<void> fitShear(const Body& body, const std::vector<Indentation>& dents, c
   Fitted tried{fitted.stiffness, 0, true};
   const auto write = [&](double reach) {
     tried.reach = reach;
-    return save(options.out, written(body, tried, options));
+    return writeWhole(options.out, written(body, tried, options));
   };
   const double spacing = spacingOf(body);
   const auto fit = fitReach(options.out, kFarthestReach * spacing, dents, write, catalog);
@@ -271,7 +264,7 @@ Result<void> fitShear(const Body& body, const std::vector<Indentation>& dents, c
                  spacing);
   std::printf("%s: shear_reach %.4g m, dent at %zu places within %.3f of the depth, rms %.3f\n", options.out.c_str(),
               fitted.reach, dents.size(), worst, std::sqrt(squares));
-  return save(options.out, written(body, fitted, options));
+  return writeWhole(options.out, written(body, fitted, options));
 }
 
 }  // namespace

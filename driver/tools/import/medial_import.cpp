@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
+#include "base/regular_file.hpp"
 #include "document/node.hpp"
 #include "host/shape_instance.hpp"
 #include "import/active_model.hpp"
@@ -179,10 +179,8 @@ Result<void> importMedial(const MedialImport& options, const Triangles& mesh, ho
       medialAxis(samples, settings, [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); });
   if (!axis) return Error{options.file + ": " + axis.error()};
   const std::string source = fs::path(options.file).filename().string();
-  std::ofstream out(options.out, std::ios::binary);
-  out << (endsWith(options.out, ".ma") ? toMa(*axis, source) : toYaml(*axis, options, source)) << std::flush;
-  if (!out) return Error{options.out + ": cannot be written, expected a file in a folder that you may write to"};
-  out.close();
+  const std::string text = endsWith(options.out, ".ma") ? toMa(*axis, source) : toYaml(*axis, options, source);
+  if (auto written = writeWhole(options.out, text); !written) return written;
   return report(options, settings, *axis, samples, catalog);
 }
 

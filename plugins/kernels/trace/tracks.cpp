@@ -101,18 +101,28 @@ void Tracks::set(int index, const Array2d& uv, double bound) noexcept {
   key_[static_cast<std::size_t>(t.slot)] = bound;
 }
 
-/// True if a record leads to a foot of the patch that is followed already, or to an older record, which it then
-/// replaces.
+/// True if a record leads to a foot of the patch that is followed already, or to another record. It replaces an older
+/// record, and one of the same search that is farther away: beside a hairline fold of a border two feet may be that
+/// near to each other.
 bool Tracks::follows(int patch, const Array2d& uv, double bound) noexcept {
   const Array2d range = model_.patch(patch).hi - model_.patch(patch).lo;
   for (int i = patch; i >= 0; i = (*this)[i].rival) {
     Track& t = (*this)[i];
     if (!((uv - t.at.uv).abs() < kSameRecord * range).all()) continue;
+    const bool computed = t.at.known != Iterate::Known::kParameters, of_this_search = t.touched == tick_;
+    if (computed && isCertainlyFarther(i, bound)) continue;
     t.touched = tick_;
-    if (t.at.known == Iterate::Known::kParameters) set(i, uv, bound);
+    if (!computed && (!of_this_search || bound < key_[static_cast<std::size_t>(t.slot)])) set(i, uv, bound);
     return true;
   }
   return false;
+}
+
+/// True if a foot is farther away than a record, however the probe has moved since the search of the record began.
+bool Tracks::isCertainlyFarther(int index, double bound) const noexcept {
+  constexpr double kSlack = 1e-9;  // [m]
+  const double moved = way_ - way_told_before_, most = bound - way_told_before_ + moved;
+  return most + kSlack < atLeast(index);
 }
 
 void Tracks::keepAsRival(int patch, const Iterate& at, const LocalFoot& foot) noexcept {

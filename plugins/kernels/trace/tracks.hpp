@@ -137,6 +137,7 @@ class Tracks {
   void noteSearch() noexcept;
   void countAnew() noexcept;
   bool follows(int patch, const Eigen::Array2d& uv, double bound) noexcept;
+  bool isCertainlyFarther(int index, double bound) const noexcept;
   void set(int index, const Eigen::Array2d& uv, double bound) noexcept;
   bool isSame(int patch, const LocalFoot& one, const LocalFoot& other) const noexcept;
 

@@ -51,8 +51,19 @@ def sizes():
     check("one too small too", "0.0539 mm large from corner to corner, too small for a hand" in err, err)
     report = json.loads(told("box.step", "--json", "--fit", "0.1")[0])
     check("--fit gives the largest extent", max(abs(a - b) for a, b in zip(report["size_m"], (0.1, 0.075, 0.05))) < 1e-9, report["size_m"])
+    # The control points of a sphere's quarter reach half as far again as it does.
+    out, err, info = told("spline_quarter.brep", "--fit", "0.1", "--center")
+    check("the size is that of the surface", "100 x 50 x 50 mm" in out.splitlines()[0] and "size: 100 x 50 x 50 mm" in info and
+          "middle at (0, 0, 0) mm" in info, out + info)
     out, err, info = told("box.step", "--up", "z", "--center")
     check("the part is turned", "40 x 20 x 30 mm, unit mm, turned, z is up, centred" in out and "least corner at (-20, -10, -15) mm" in info, out + info)
+
+
+def full_disks():
+    for arguments in ((), ("--json",), ("--check",)):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([HAPTICD, "import", join("box.step"), "-o", PART, *arguments], stdout=full, stderr=subprocess.PIPE, text=True, timeout=300)
+        check(f"{arguments}: a report that is not complete is told", done.returncode == 1 and "standard output cannot be written" in done.stderr, done)
 
 
 def check_of_scene(*arguments):
@@ -138,6 +149,6 @@ def placed_parts():
 
 
 subprocess.run([MAKE_PARTS, folder], check=True, timeout=300)
-for part_of_the_test in (units, sizes, sizes_in_scenes, open_bodies, counts, poses, features, placed_parts):
+for part_of_the_test in (units, sizes, full_disks, sizes_in_scenes, open_bodies, counts, poses, features, placed_parts):
     part_of_the_test()
 finish()

@@ -35,6 +35,15 @@ TEST_F(ImportCommands, ImportScalesCentresAndKeepsTheCredit) {
   EXPECT_TRUE(has(part.text, "Bezier patches become a model file, expected a name that ends in .yaml or .json"));
 }
 
+/// A bow whose middle control points are twice as high as it is.
+TEST_F(ImportCommands, ImportFitsTheSurfaceAndNotItsControlPoints) {
+  const std::string bow = put("bow.bpt", "1\n2 1\n0 0 0\n0 0 1\n1 8 0\n1 8 1\n2 0 0\n2 0 1\n");
+  const Outcome outcome = run("import " + bow + " --fit 0.1 --center -o " + (dir_ / "bow.yaml").string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "1 surface, 0.05 x 0.1 x 0.025 m")) << outcome.text;
+  EXPECT_TRUE(has(get("bow.yaml"), "[0, 0.15")) << get("bow.yaml");  // the highest control point
+}
+
 TEST_F(ImportCommands, ImportKeepsItsInputsAndFilesOfOtherKinds) {
   const std::string text = "1\n1 1\n0 0 0\n0 0 2\n4 0 0\n4 0 2\n", scene = "format: hapticd-scene/1\n";
   const std::string patch = put("patch.bpt", text), other = put("scene.yaml", scene);
@@ -86,6 +95,9 @@ TEST_F(ImportCommands, ImportMakesAPartOfTriangles) {
   EXPECT_TRUE(has(info.text, "size: 100 x 100 x 0 mm, least corner at (0, 0, 0) mm")) << info.text;
   EXPECT_TRUE(has(run("part info " + part + " --json").text, "\"box_m\"")) << info.text;
   EXPECT_EQ(run("part info " + mesh).exit_code, 2);
+  EXPECT_EQ(run("import " + mesh + " --fit 0.2 --up z --center -o " + part).exit_code, 0);
+  const Outcome placed = run("part info " + part);
+  EXPECT_TRUE(has(placed.text, "fit into 0.2 m, turned, z is up, centred")) << placed.text;
 }
 
 /// A part may be larger than any model file, which has a limit of 32 MiB.

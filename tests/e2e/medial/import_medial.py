@@ -7,7 +7,10 @@ Usage: import_medial.py HAPTICD CONFIG     prints one line per case; exit 1 when
 import math
 import os
 import re
+import resource
+import signal
 import struct
+import subprocess
 import sys
 import tempfile
 
@@ -305,7 +308,25 @@ def refuse(folder):
     check("an output of another kind is refused", code == 2 and ".ma or .yaml" in said, said)
 
 
+def fullDisk(folder):
+    """No file may grow, as on a full disk: a body that was made before stays, and nothing incomplete is left."""
+    def full():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+
+    name = save(os.path.join(folder, "small.obj"), box(0.03, 0.02, 0.01))
+    for kept, out in (("# made before\n", "kept.ma"), (None, "new.ma"), (None, "new.yaml")):
+        file = os.path.join(folder, out)
+        if kept:
+            save(file, kept)
+        done = subprocess.run([HAPTICD, "import", "--medial", name, file, "--samples", "1000"], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True, timeout=300, preexec_fn=full)
+        check(f"{out}: a full disk is told", done.returncode == 1 and "cannot be written: File too large" in done.stderr, done)
+        check(f"{out}: is as before", (open(file).read() if os.path.exists(file) else None) == kept)
+    check("nothing else is left", not [n for n in os.listdir(folder) if n.endswith(".part")], os.listdir(folder))
+
+
 with tempfile.TemporaryDirectory() as work:
-    for case in (recoverTorus, recoverCapsule, recoverEllipsoid, recoverCube, recoverBranches, recoverNurbs, recoverBox, refuse):
+    for case in (recoverTorus, recoverCapsule, recoverEllipsoid, recoverCube, recoverBranches, recoverNurbs, recoverBox, refuse, fullDisk):
         case(work)
 finish()

@@ -3,14 +3,18 @@
 /// reports that the file is damaged.
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Standard_ErrorHandler.hxx>
 #include <Standard_Failure.hxx>
 #include <Standard_OutOfMemory.hxx>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -63,6 +67,18 @@ int failOfMemory(const Options& options) {
                              " MB of memory that are allowed\n  fix: allow more: --memory MEGABYTES");
 }
 
+/// Prints a text. @return kFailed if a file that standard output was sent to is not complete. A pipe is not judged,
+/// because its reader may end when it has read enough.
+int print(const std::string& text) {
+  errno = 0;
+  const bool whole = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  struct stat file{};
+  const bool pipe = fstat(STDOUT_FILENO, &file) != 0 || S_ISFIFO(file.st_mode) || S_ISSOCK(file.st_mode);
+  if (whole || pipe) return kWorked;
+  return fail(kFailed,
+              std::string("standard output cannot be written: ") + std::strerror(errno) + "; it is not complete");
+}
+
 /// Prints the report and writes the part, with the steps of the import among its warnings.
 int finish(const Options& options, brep::Part& part, const Report& report) {
   const std::string out = options.check ? options.file : options.out;
@@ -72,10 +88,9 @@ int finish(const Options& options, brep::Part& part, const Report& report) {
   const std::string bytes = brep::writePart(part);
   if (!options.check)
     if (const auto written = writeWhole(options.out, bytes); !written) return fail(kFailed, written.error());
-  std::fputs(text.c_str(), stdout);
-  std::fflush(stdout);
+  const int code = print(text);
   std::fputs(oddSizeOf(part, report, out).c_str(), stderr);
-  return kWorked;
+  return code;
 }
 
 int import(const Options& options) {

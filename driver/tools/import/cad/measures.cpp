@@ -5,6 +5,7 @@
 
 #include "kernels/brep/model.hpp"
 #include "kernels/brep/open_borders.hpp"
+#include "kernels/brep/tight_bounds.hpp"
 
 namespace hapticd::cad {
 namespace {
@@ -26,7 +27,7 @@ Measures measured(const brep::Part& part) {
   Measures measures;
   try {
     const brep::Model model{brep::Part(part)};
-    measures.box = model.bounds();
+    measures.box = brep::tightBounds(model);
     measures.notes = model.warnings();
   } catch (const std::invalid_argument& error) {
     measures.notes.emplace_back(error.what());

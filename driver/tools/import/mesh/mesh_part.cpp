@@ -98,6 +98,7 @@ brep::Part meshPart(const MeshFile& mesh, const MeshOptions& options, const std:
   brep::Part part;
   part.source.file = file_name;
   part.source.unit = options.unit;
+  part.source.placed = options.placed;
   addObjects(objectsOf(mesh, report.remarks), options, file_name.substr(0, file_name.rfind('.')), part, report);
   if (part.triangles.empty()) throw std::invalid_argument("all triangles have zero area");
   Eigen::AlignedBox3d box;

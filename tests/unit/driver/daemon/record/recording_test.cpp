@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -162,6 +164,22 @@ TEST(RecordingFile, SaysThatTheDiskIsFull) {
   auto file = RecordingFile::create("/dev/full", specs(), about());
   EXPECT_FALSE(file);
   EXPECT_NE(file.error().find("/dev/full"), std::string::npos);
+}
+
+/// As if the disk were full: no file of this process may grow.
+TEST(RecordingFile, LeavesNoFileOnAFullDisk) {
+  const std::string name = temporary("full");
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit none{0, before.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &none);
+  auto file = RecordingFile::create(name, specs(), about());
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  ASSERT_FALSE(file);
+  EXPECT_EQ(file.error().find("the file ends"), std::string::npos) << file.error();
+  EXPECT_FALSE(std::filesystem::exists(name));
 }
 
 TEST(FlightRing, KeepsTheNewestRowsInOrder) {

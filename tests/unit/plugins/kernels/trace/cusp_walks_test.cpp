@@ -102,6 +102,59 @@ TEST(Cusp, FeetBesideUnevenWeightsAreTheNearest) {
       }
 }
 
+/// A flat sheet, 80 mm square, whose second row of control points lies a little beyond its first one, so that the sheet
+/// is folded there by less than that. The first span is short. @param apart [m]
+spline::SurfaceData sheetWithFoldedBorder(int degree, double first_span, double apart) {
+  spline::SurfaceData data;
+  data.degree = {1, degree};
+  data.knots[0] = {0, 0, 1, 1};
+  data.knots[1].assign(static_cast<std::size_t>(degree) + 1, 0);
+  data.knots[1].push_back(first_span);
+  data.knots[1].insert(data.knots[1].end(), static_cast<std::size_t>(degree) + 1, 1);
+  for (const double x : {-0.04, 0.04})
+    for (int row = 0; row < degree + 2; ++row)
+      data.points.emplace_back(x, row == 0 ? 0 : row == 1 ? -apart : 0.08 * (row - 1) / degree, 0);
+  return data;
+}
+
+void expectFootBelow(Hand& hand, const Vector3d& p, const std::string& what) {
+  const Foot foot = hand.at(p);
+  EXPECT_NEAR((foot.point - p).norm(), std::abs(p.z()), 1e-7) << what << " at " << p.transpose();
+}
+
+/// The border is a foot as well, and its parameter is near that of the nearest one. It was taken for the same.
+TEST(Cusp, FeetBesideABorderOfNearRowsAreTheNearest) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(-0.035, 0.035), decade(-4, -1.3), height(-1e-3, 1e-3);
+  for (const int degree : {3, 4, 5})
+    for (const double first_span : {0.5, 0.05, 0.013, 0.001})
+      for (const double apart : {1e-9, 1e-7, 1e-6, 1e-5, 8e-5}) {
+        const Model model({sheetWithFoldedBorder(degree, first_span, apart)});
+        const std::string what = "degree " + std::to_string(degree) + " span " + std::to_string(first_span) +
+                                 " apart " + std::to_string(1e9 * apart) + " nm";
+        for (int i = 0; i < 30; ++i) {
+          Hand hand{model};
+          hand.options = holding(contact::Sides::kFront, 0);
+          expectFootBelow(hand, {place(random), std::pow(10, decade(random)), height(random)}, what);
+        }
+      }
+}
+
+/// The foot of a hand that was in front of the border is on it. When the hand comes over the sheet, and rests, the
+/// search finds the foot below it.
+TEST(Cusp, AFootLeavesABorderOfNearRows) {
+  for (const double first_span : {0.05, 0.013, 0.001})
+    for (const double apart : {1e-6, 1e-5, 8e-5}) {
+      const Model model({sheetWithFoldedBorder(3, first_span, apart)});
+      Hand hand{model};
+      hand.options = holding(contact::Sides::kFront, 0);
+      const Vector3d rest(0.01, 8e-4, 1e-4);
+      hand.walk({0.01, -3e-3, 1e-4}, rest, 1e-5, [](const Foot&, const Vector3d&) {});
+      for (int i = 0; i < 20; ++i) hand.at(rest);
+      expectFootBelow(hand, rest, "span " + std::to_string(first_span) + " apart " + std::to_string(apart));
+    }
+}
+
 /// Slow strokes past a ridge, in front of it: nothing may be felt. With one weight of 1.5, the hand felt 1 N there.
 TEST(Cusp, NothingIsFeltInFrontOfARidge) {
   for (const double weight : {1.0, 1.5}) {
