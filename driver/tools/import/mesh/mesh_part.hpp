@@ -15,7 +15,7 @@ struct MeshOptions {
   double scale = 1;         ///< metres per unit of the file
   double smooth_angle = 0;  ///< [rad] normals are interpolated over edges that bend by less than this
   std::string unit{"m"};    ///< the unit that was assumed for the file's numbers; it is written into the part
-  std::string placed;       ///< how the points were turned and centred, such as "turned, z is up"; written as well
+  std::string placed{};     ///< how the points were turned and centred, such as "turned, z is up"; written as well
 };
 
 /// A body of a mesh with several.
