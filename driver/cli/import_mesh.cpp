@@ -42,6 +42,7 @@ std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
                                          {"points", r.points},
                                          {"shells", r.shells},
                                          {"crossing_triangles", r.crossings.pairs},
+                                         {"overlapping_triangles", r.overlaps.pairs},
                                          {"closed", r.closed},
                                          {"volume_m3", r.volume},
                                          {"size_m", {r.size.x(), r.size.y(), r.size.z()}},

@@ -49,6 +49,8 @@ def sizes():
     check("part info tells the scale", "unit mm, scaled by 1000" in info, info)
     out, err, info = told("box.step", "--scale", "0.001")
     check("one too small too", "0.0539 mm large from corner to corner, too small for a hand" in err, err)
+    code, out, err = run("import", join("box.step"), "-o", PART, "--scale", "1e9")
+    check("a size that no part may have names the scale", code == 2 and "the part is 4e+07 m large with the factor 1e+09, expected at most 1000000 m" in err and "a smaller --scale" in err, (code, err))
     report = json.loads(told("box.step", "--json", "--fit", "0.1")[0])
     check("--fit gives the largest extent", max(abs(a - b) for a, b in zip(report["size_m"], (0.1, 0.075, 0.05))) < 1e-9, report["size_m"])
     # The control points of a sphere's quarter reach half as far again as it does.

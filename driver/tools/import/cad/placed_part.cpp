@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cad_import/placed_part.hpp"
 
+#include <cstdio>
 #include <set>
+#include <stdexcept>
 #include <string>
 
 namespace hapticd::cad {
@@ -77,6 +79,16 @@ void movePart(Part& part, const Matrix3d& turn, const Vector3d& by) {
   }
 }
 
+/// [m] Larger numbers are refused by the reader of parts.
+constexpr double kLargest = 1e6;
+
+std::string tooLarge(double scale, double extent) {
+  char text[160];
+  std::snprintf(text, sizeof text, "the part is %.4g m large with the factor %.4g, expected at most %.0f m\n  fix: %s",
+                scale * extent, scale, kLargest, "give a smaller --scale, or --fit METRES");
+  return text;
+}
+
 std::string wordsOf(const Placement& placement) {
   std::string words;
   if (placement.up != 'y') words = std::string("turned, ") + placement.up + " is up";
@@ -93,6 +105,7 @@ void scalePart(Part& part, double scale) {
 void placePart(Part& part, const Placement& placement, const Eigen::AlignedBox3d& box) {
   const double extent = box.sizes().maxCoeff();
   const double scale = placement.fit > 0 && extent > 0 ? placement.fit / extent : placement.scale;
+  if (scale * extent > kLargest) throw std::runtime_error(tooLarge(scale, extent));
   if (scale != 1) scalePart(part, scale);
   const Matrix3d turn = turnOf(placement.up);
   const Vector3d by = placement.center ? Vector3d(turn * (-scale * box.center())) : Vector3d(0, 0, 0);

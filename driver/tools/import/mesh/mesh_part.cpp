@@ -89,6 +89,22 @@ void addObjects(const std::vector<MeshObject>& objects, const MeshOptions& optio
   }
 }
 
+/// Returns where bodies pass through each other.
+Crossings overlapsOf(const brep::Part& part) {
+  std::vector<Vector3d> points;
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  std::vector<std::uint32_t> body;
+  points.reserve(part.points.size());
+  corners.reserve(part.triangles.size());
+  body.reserve(part.triangles.size());
+  for (const brep::Point& p : part.points) points.emplace_back(p.data());
+  for (const brep::Triangle& triangle : part.triangles)
+    corners.push_back({triangle.corner[0], triangle.corner[1], triangle.corner[2]});
+  for (std::size_t i = 0; i < part.bodies.size(); ++i)
+    body.insert(body.end(), part.bodies[i].triangle_count, static_cast<std::uint32_t>(i));
+  return crossingsOf(points, corners, body, part.bodies.size());
+}
+
 }  // namespace
 
 brep::Part meshPart(const MeshFile& mesh, const MeshOptions& options, const std::string& file_name,
@@ -104,6 +120,7 @@ brep::Part meshPart(const MeshFile& mesh, const MeshOptions& options, const std:
   Eigen::AlignedBox3d box;
   for (const brep::Point& p : part.points) box.extend(Vector3d(p.data()));
   report.size = box.sizes();
+  report.overlaps = overlapsOf(part);
   report.borders = brep::openBorders(part);
   for (const std::string& line : linesOf(report)) part.warnings.push_back(line);
   return part;

@@ -44,7 +44,8 @@ struct MeshReport {
   Eigen::Vector3d size{0, 0, 0};          ///< [m] size of the bounding box
   std::vector<brep::OpenBorder> borders;  ///< where the holes are
   std::vector<MeshBody> bodies;           ///< if there are several
-  Crossings crossings;                    ///< shells that pass through each other
+  Crossings crossings;                    ///< shells of one body that pass through each other
+  Crossings overlaps;                     ///< bodies that pass through each other
   std::vector<std::string> remarks;       ///< what the reader of the file found odd
 
   /// Adds the report of one body.

@@ -23,6 +23,20 @@ std::string where(const Vector3d& p) {
   return text + " m";
 }
 
+/// Tells that shells, or bodies, pass through each other.
+void tellCrossings(const Crossings& found, std::size_t count, const char* one, const char* many,
+                   std::vector<std::string>& lines) {
+  if (found.pairs > 0)
+    lines.push_back(
+        counted(count, one, many) +
+        " pass through each other: " + counted(found.pairs, "pair of triangles crosses", "pairs of triangles cross") +
+        ", the first at " + where(found.first) +
+        "; the faces inside are felt as well: unite the bodies in the program that wrote the file (boolean union)");
+  if (!found.all_tried)
+    lines.push_back(std::string("not all pairs of triangles were tried, so its ") + many +
+                    " may pass through each other");
+}
+
 }  // namespace
 
 void MeshReport::add(const MeshReport& body) {
@@ -55,13 +69,8 @@ std::vector<std::string> linesOf(const MeshReport& r) {
   say(r.non_manifold, "edge has more than two triangles", "edges have more than two triangles");
   say(r.unorientable, "edge has triangles with contradictory outward sides",
       "edges have triangles with contradictory outward sides");
-  if (const Crossings& c = r.crossings; c.pairs > 0)
-    lines.push_back(
-        counted(r.shells, "shell", "shells") + " pass through each other: " +
-        counted(c.pairs, "pair of triangles crosses", "pairs of triangles cross") + ", the first at " + where(c.first) +
-        "; the faces inside are felt as well: unite the bodies in the program that wrote the file (boolean union)");
-  if (!r.crossings.all_tried)
-    lines.emplace_back("not all pairs of triangles were tried, so its shells may pass through each other");
+  tellCrossings(r.crossings, r.shells, "shell", "shells", lines);
+  tellCrossings(r.overlaps, r.bodies.size(), "body", "bodies", lines);
   say(r.solids_inside, "shell lies inside another one and faces outward as well: a body in a body, no cavity",
       "shells lie inside others and face outward as well: bodies in a body, no cavities");
   if (r.holes > 0)

@@ -10,13 +10,13 @@
 namespace hapticd::importing {
 namespace {
 
-/// A cube whose points are moved along x; `first` is the number of its first point.
-std::string cubeAt(double x, int first, bool lid = true) {
+/// A cube whose points are moved along x, and all axes by `aside`; `first` is the number of its first point.
+std::string cubeAt(double x, int first, bool lid = true, double aside = 0) {
   std::string text;
   for (int i = 0; i < 8; ++i) {
     const int bit = i % 4;
-    text += "v " + std::to_string(x + (bit == 1 || bit == 2 ? 1 : 0)) + (bit >= 2 ? " 1 " : " 0 ") +
-            (i >= 4 ? "1\n" : "0\n");
+    text += "v " + std::to_string(x + aside + (bit == 1 || bit == 2 ? 1 : 0)) + " " +
+            std::to_string(aside + (bit >= 2 ? 1 : 0)) + " " + std::to_string(aside + (i >= 4 ? 1 : 0)) + "\n";
   }
   const int faces[6][4] = {{4, 3, 2, 1}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}, {5, 6, 7, 8}};
   for (int f = 0; f < (lid ? 6 : 5); ++f) {
@@ -49,6 +49,17 @@ TEST(MeshImport, ObjectsThatTouchStayApart) {
   EXPECT_EQ(part.bodies.size(), 2u);
   EXPECT_TRUE(report.closed);
   EXPECT_NEAR(report.volume, 2, 1e-12);
+  EXPECT_EQ(report.overlaps.pairs, 0u);
+}
+
+TEST(MeshImport, ObjectsThatPassThroughEachOtherAreTold) {
+  MeshReport report;
+  const brep::Part part = partOf("o a\n" + cubeAt(0, 1) + "o b\n" + cubeAt(0, 9, true, 0.25), report);
+  EXPECT_EQ(part.bodies.size(), 2u);
+  EXPECT_EQ(report.crossings.pairs, 0u) << "each is sound";
+  EXPECT_GT(report.overlaps.pairs, 0u);
+  ASSERT_EQ(part.warnings.size(), 1u);
+  EXPECT_EQ(part.warnings[0].rfind("2 bodies pass through each other: ", 0), 0u) << part.warnings[0];
 }
 
 TEST(MeshImport, ObjectsThatCloseEachOtherAreOneBody) {
