@@ -216,6 +216,15 @@ TEST_F(Commands, ExplainNamesWhatMovesAKinematicModel) {
   EXPECT_FALSE(has(outcome.text, "it is static")) << outcome.text;
 }
 
+TEST_F(Commands, ARunThatCannotBeginLeavesNoRecording) {
+  const std::string file = (dir_ / "run.h5").string();
+  const std::string scene = put("far.yaml", "hapticd: 1\nhand: {center: [0, 3, 0]}\nmodels: []\n");
+  const Outcome ran = run("run " + scene + " --for 1 --virtual-time --record " + file, kShipped);
+  EXPECT_EQ(ran.exit_code, 1) << ran.text;
+  EXPECT_TRUE(has(ran.text, "which the arm cannot reach")) << ran.text;
+  EXPECT_FALSE(std::filesystem::exists(file)) << "it would look like that of a killed run";
+}
+
 TEST_F(Commands, DaemonFileIsCheckedBeforeAnythingRuns) {
   const std::string daemon = put("daemon.yaml", "hapticd-daemon: 1\nservo: {priority: 200}\n");
   const Outcome outcome = run("--config " + daemon + " plugin list");
