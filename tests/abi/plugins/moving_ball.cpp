@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A ball that moves to and fro along its x axis: a whole shape that moves by itself, for driver/docs/writing_a_shape.md.
+/// A ball that moves to and fro along its x axis: a whole shape that moves by itself, for
+/// driver/docs/writing_a_shape.md.
 #include <array>
 #include <cmath>
 
@@ -18,10 +19,11 @@ struct MovingBall : hapticd::Shape {
                                             HSP_C_MOVES};
   static constexpr auto fields() {
     using F = hapticd::Fields<MovingBall>;
-    return std::array{F::real("radius", &MovingBall::radius, "m", 0.001, 1, 0.03, "Radius of the ball."),
-                      F::real("stiffness", &MovingBall::stiffness, "N/m", 0, 5000, 500, "Force for each metre of depth."),
-                      F::real("amplitude", &MovingBall::amplitude, "m", 0, 0.2, 0.02, "Way to either side."),
-                      F::real("rate", &MovingBall::rate, "Hz", 0, 2, 0.5, "Ways to and fro per second.")};
+    return std::array{
+        F::real("radius", &MovingBall::radius, "m", 0.001, 1, 0.03, "Radius of the ball."),
+        F::real("stiffness", &MovingBall::stiffness, "N/m", 0, 5000, 500, "Force for each metre of depth."),
+        F::real("amplitude", &MovingBall::amplitude, "m", 0, 0.2, 0.02, "Way to either side."),
+        F::real("rate", &MovingBall::rate, "Hz", 0, 2, 0.5, "Ways to and fro per second.")};
   }
 
   void activate(const hsp_activation& activation, hsp_report& report) {
@@ -70,7 +72,7 @@ struct MovingBall : hapticd::Shape {
     }
   }
 
-  hsp_pose home_{};             // pose at the start
+  hsp_pose home_{};            // pose at the start
   double time_ = 0, way_ = 0;  // s, m
 };
 

@@ -48,8 +48,8 @@ struct Late : Lift<Late, false> {
       "org.example.shape.lift_late", "lift_late", "1.0.0", "MIT", "To be tested.", HSP_C_MOVES};
 };
 struct Unsaid : Lift<Unsaid, true> {
-  static constexpr hapticd::ShapeInfo kInfo{
-      "org.example.shape.lift_unsaid", "lift_unsaid", "1.0.0", "MIT", "To be tested."};
+  static constexpr hapticd::ShapeInfo kInfo{"org.example.shape.lift_unsaid", "lift_unsaid", "1.0.0", "MIT",
+                                            "To be tested."};
 };
 
 }  // namespace
