@@ -110,6 +110,13 @@ TEST(Choice, OfABudgetIsTheMostAccurateThatFits) {
   EXPECT_TRUE(reached);
 }
 
+TEST(Choice, OfABudgetPaysNothingForErrorsThatAreRounding) {
+  Goal goal;
+  goal.budget_ns = 1000;
+  EXPECT_EQ(choose({candidate(100, 8e-12), candidate(200, 0)}, goal).first, 0u);
+  EXPECT_EQ(choose({candidate(200, 0), candidate(100, 8e-12)}, goal).first, 1u);
+}
+
 Answer answerAt(double x, double depth) {
   Answer answer;
   answer.point = {x, 0, 0};
