@@ -216,6 +216,8 @@ TEST_F(ImportCommands, TheFirstSlipOfAnImportIsTold) {
   EXPECT_TRUE(has(told(put("x.stl", triangle)), "is a mesh (OBJ), by its first bytes, and its name ends in '.stl'"));
   EXPECT_TRUE(
       has(told("--medial " + put("x.step", "ISO-10303-21;\n") + " x.ma"), "--medial takes a closed surface of"));
+  EXPECT_TRUE(
+      has(told("--medial " HAPTICD_SOURCE_DIR "/config/models/dm1.hpart x.ma"), "not a part\n  fix: give it the mesh"));
   const std::string open = told("--medial " + put("x.obj", triangle) + " " + (dir_ / "x.ma").string());
   EXPECT_TRUE(has(open, "the surface is not closed: 3 edges are at a hole")) << open;
   EXPECT_TRUE(has(open, "without --medial, import lists the holes")) << open;
