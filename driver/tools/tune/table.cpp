@@ -38,7 +38,9 @@ std::string servoText(const Findings& findings) {
   for (const RateRow& row : findings.rates)
     text += fmt::format("{} {:>8.0f} {:>8.2f} % {:>8.3g}\n", row.current ? '*' : ' ', row.rate, row.load * 100,
                         row.hold_error_n);
-  text += "\n    radius m   tick ns    foot um   activation radius (errors against the widest one)\n";
+  text +=
+      "\n    radius m   tick ns    foot um   activation radius (errors against the widest one; untraced: "
+      "a surface within 10 mm of the tip)\n";
   for (const RadiusRow& row : findings.radii)
     text += fmt::format("{} {:>9.3g} {:>9.0f} {:>10}\n", row.current ? '*' : ' ', row.radius, row.tick_ns,
                         row.error.untraced > 0 ? "untraced" : errorText(row.error));

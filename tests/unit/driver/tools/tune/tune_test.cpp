@@ -149,6 +149,17 @@ TEST(Comparison, TakesALostTrackForTheWorstError) {
   EXPECT_EQ(compare(run, reference).geometry(), 1);
 }
 
+TEST(Comparison, DoesNotAskForAFootThatIsFarAway) {
+  tune::Run run, reference;
+  run.models = reference.models = 1;
+  run.answers = {Answer{}};
+  run.answers[0].force.setZero();
+  reference.answers = {answerAt(0, -0.15)};
+  EXPECT_EQ(compare(run, reference, 0.01).untraced, 0u) << "a smaller radius leaves it out on purpose";
+  reference.answers = {answerAt(0, -0.005)};
+  EXPECT_EQ(compare(run, reference, 0.01).untraced, 1u);
+}
+
 TEST(Motion, AtAnotherRateGoesThroughTheSamePlaces) {
   std::vector<Eigen::Vector3d> position;
   for (int i = 0; i < 500; ++i) position.emplace_back(std::sin(0.02 * i), std::cos(0.02 * i), 0.001 * i);
