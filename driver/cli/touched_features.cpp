@@ -20,16 +20,40 @@ constexpr std::size_t kMostNamed = 5;
 
 using Ticks = std::map<std::uint32_t, std::uint64_t>;  // of each feature
 
+/// Tells whether an arm had a fault in a tick: then no force pushed back, so it is no contact, as in the report of a
+/// run. Ticks are asked for in their order.
+class Faults {
+ public:
+  explicit Faults(const record::RecordedStream* ticks) : ticks_(ticks) {
+    if (ticks_ != nullptr) number_ = ticks_->find("tick");
+  }
+
+  bool at(double tick, std::uint32_t arm) {
+    if (number_ == nullptr) return false;
+    while (row_ < ticks_->rows() && ticks_->number(row_, *number_) < tick) ++row_;
+    const record::Column* fault = ticks_->find("arm" + std::to_string(arm) + "_fault");
+    return row_ < ticks_->rows() && fault != nullptr && ticks_->number(row_, *fault) != 0;
+  }
+
+ private:
+  const record::RecordedStream* ticks_;
+  const record::Column* number_ = nullptr;
+  std::uint64_t row_ = 0;
+};
+
 /// Counts the ticks of contact of each feature, for each place of a model.
-std::map<std::uint32_t, Ticks> contactTicks(const record::RecordedStream& contacts) {
+std::map<std::uint32_t, Ticks> contactTicks(const record::RecordedStream& contacts, const record::RecordedStream* all) {
   std::map<std::uint32_t, Ticks> ticks;
-  const record::Column *model = contacts.find("model"), *feature = contacts.find("feature"),
-                       *depth = contacts.find("depth");
-  if (model == nullptr || feature == nullptr || depth == nullptr) return ticks;
+  const record::Column *tick = contacts.find("tick"), *model = contacts.find("model"), *probe = contacts.find("probe"),
+                       *feature = contacts.find("feature"), *depth = contacts.find("depth");
+  if (tick == nullptr || model == nullptr || probe == nullptr || feature == nullptr || depth == nullptr) return ticks;
+  const auto whole = [&](std::uint64_t row, const record::Column& column) {
+    return static_cast<std::uint32_t>(contacts.number(row, column));
+  };
+  Faults faults(all);
   for (std::uint64_t row = 0; row < contacts.rows(); ++row)
-    if (contacts.number(row, *depth) > 0)
-      ++ticks[static_cast<std::uint32_t>(contacts.number(row, *model))]
-             [static_cast<std::uint32_t>(contacts.number(row, *feature))];
+    if (contacts.number(row, *depth) > 0 && !faults.at(contacts.number(row, *tick), whole(row, *probe)))
+      ++ticks[whole(row, *model)][whole(row, *feature)];
   return ticks;
 }
 
@@ -71,7 +95,7 @@ std::vector<std::string> touchedFeatures(const record::Recording& recording, con
   std::vector<std::string> lines;
   const record::RecordedStream* contacts = recording.stream("contacts");
   if (contacts == nullptr) return lines;
-  for (const auto& [place, ticks] : contactTicks(*contacts)) {
+  for (const auto& [place, ticks] : contactTicks(*contacts, recording.stream("ticks"))) {
     const bool known = place < scene.models.size();  // others were added during the run
     const std::string name = known ? scene.models[place].name : "model " + std::to_string(place);
     const auto part = known ? partOf(scene.models[place]) : std::nullopt;
