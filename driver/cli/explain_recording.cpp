@@ -6,6 +6,7 @@
 #include <map>
 
 #include "cli/command.hpp"
+#include "cli/touched_features.hpp"
 #include "hapticd/abi.h"
 #include "session/recorded_events.hpp"
 
@@ -53,7 +54,8 @@ void printEvents(const std::vector<servo::RecordedMessage>& messages) {
   if (left > 0) std::printf("  and %zu more; for all, run: hapticd export FILE --csv OUT --stream events\n", left);
   if (lines == 0) std::printf("  no fault, and nothing else that the log would have told\n");
   for (const auto& [model, count] : touched)
-    std::printf("  %s was touched or clicked %llu times\n", model.c_str(), static_cast<unsigned long long>(count));
+    std::printf("  %s was touched or clicked %llu time%s\n", model.c_str(), static_cast<unsigned long long>(count),
+                count == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -71,6 +73,9 @@ int explainRecording(const std::string& file) {
   if (!run) return fail(kBadInput, file + ": " + run.error());
   printRun(file, **recording, *run);
   printEvents(servo::messagesOf(**recording, *run));
+  const auto touched = touchedFeatures(**recording, run->scene, run->facts.rate);
+  if (!touched.empty()) std::printf("touched\n");
+  for (const std::string& line : touched) std::printf("  %s\n", line.c_str());
   return kWorked;
 }
 

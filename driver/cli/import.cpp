@@ -136,7 +136,12 @@ int importPatches(const ImportArguments& options, const Placement& placement) {
 }
 
 int importModel(const ImportArguments& options) {
-  if (std::filesystem::path(options.file).extension() == ".hpart")
+  const bool part = std::filesystem::path(options.file).extension() == ".hpart";
+  if (part && options.medial)
+    return fail(kBadInput, options.file +
+                               ": --medial takes a closed surface of triangles, not a part\n  fix: give it the mesh of "
+                               "which the part was made, or one that a CAD program exports");
+  if (part)
     return fail(kBadInput, options.file + ": is a part already, as import writes it: name it in a scene (geometry: " +
                                options.file + "); hapticd part info shows what it holds");
   if (const std::string way = otherWay(options.file); !way.empty()) return fail(kBadInput, way);

@@ -63,6 +63,26 @@ void addInside(const Model& model, const brep::Placement& place, std::uint32_t i
   }
 }
 
+/// Returns where the axis of a round face is, and the keys of a scene that let a body turn about it; the centre of a
+/// sphere; "" for other faces. @param near [m] the axis is told at its point nearest to this
+std::string axisText(const brep::Surface& surface, const brep::Placement& place, const Vector3d& near) {
+  const Vector3d origin = place.rotation * brep::vec(surface.o) + place.position;
+  if (surface.kind == SurfaceKind::kSphere) return ", centre at " + pointText(origin, kMm) + " mm";
+  const bool round = surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kCone ||
+                     surface.kind == SurfaceKind::kTorus || surface.kind == SurfaceKind::kRevolution;
+  if (!round) return "";
+  const Vector3d along = (place.rotation * brep::vec(surface.z)).normalized();
+  const Vector3d through = origin + along.dot(near - origin) * along;
+  const auto listed = [](const Vector3d& v) {
+    const auto rounded = [](double x) { return std::round(x * 1e9) * 1e-9 + 0.0; };
+    char text[100];
+    std::snprintf(text, sizeof text, "[%.9g, %.9g, %.9g]", rounded(v.x()), rounded(v.y()), rounded(v.z()));
+    return std::string(text);
+  };
+  return ", axis through " + pointText(through, kMm) + " mm along " + pointText(along, 1) +
+         "\n  to turn about it in a scene:    joint: hinge, pivot: " + listed(through) + ", axis: " + listed(along);
+}
+
 std::string faceText(const Model& model, const brep::Placement& place, std::uint32_t index) {
   const brep::Face& face = model.part().faces[index];
   Eigen::AlignedBox3d box;
@@ -76,9 +96,10 @@ std::string faceText(const Model& model, const brep::Placement& place, std::uint
   }
   if (box.isEmpty()) return text;
   char size[100];
-  std::snprintf(size, sizeof size, ", %.4g x %.4g x %.4g mm large", kMm * box.sizes().x(), kMm * box.sizes().y(),
-                kMm * box.sizes().z());
-  return text + size + ", middle at " + pointText(box.center(), kMm) + " mm";
+  const Vector3d sizes = (box.sizes() * kMm * 1e6).array().round() * 1e-6;  // 1e-14 mm of a plane is rounding
+  std::snprintf(size, sizeof size, ", %.4g x %.4g x %.4g mm large", sizes.x(), sizes.y(), sizes.z());
+  return text + size + ", middle at " + pointText(box.center(), kMm) + " mm" +
+         axisText(model.part().surfaces[face.surface], place, box.center());
 }
 
 std::string triangleText(const Model& model, const brep::Placement& place, std::uint32_t index) {

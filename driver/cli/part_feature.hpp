@@ -9,8 +9,9 @@
 namespace hapticd::cli {
 
 /// [main] Returns the kind, size and place of a feature, such as "a cylinder of radius 5 mm, 10 x 10 x 20 mm large,
-/// middle at (0, 0, 10) mm". The coordinates are those of the part. @throws std::invalid_argument if the part cannot be
-/// searched
+/// middle at (0, 0, 10) mm, axis through (0, 0, 10) mm along (0, 0, 1)". If it has an axis, a second line gives the
+/// keys of a scene that make a hinge of it. The coordinates are those of the part. @throws std::invalid_argument if the
+/// part cannot be searched
 std::string featureText(const brep::Part& part, std::uint32_t feature);
 
 }  // namespace hapticd::cli

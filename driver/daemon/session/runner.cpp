@@ -2,6 +2,7 @@
 #include "session/runner.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 
 #include "base/os.hpp"
@@ -94,7 +95,10 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
   if (needsGuard()) startGuard();
   const Nanoseconds now = clock_->now();
   for (const auto& arm : arms_)
-    if (auto started = arm->start(now, scene_.servo.gravity); !started) return started;
+    if (auto started = arm->start(now, scene_.servo.gravity); !started) {
+      dropRecording();
+      return started;
+    }
   Result<void> done;
   if (recorder_)
     if (const auto code = recorder_->start()) return Error{"cannot start the recording thread: " + code.message()};
@@ -118,6 +122,14 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
   if (recorder_)
     if (auto recorded = recorder_->finish(); !recorded && done) done = recorded;
   return done;
+}
+
+/// Removes the recording of a run that did not begin: it has no tick, and would look like that of a killed run.
+void Runner::dropRecording() {
+  if (!recorder_) return;
+  recorder_.reset();
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(options_.record, ignored)) std::filesystem::remove(options_.record, ignored);
 }
 
 void Runner::stopArms() {

@@ -134,6 +134,7 @@ class Runner {
   Result<void> startServo(os::Thread& servo, bool anyhow);
   void serve(bool runs);
   void lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::function<void(const Runner&)>& every);
+  void dropRecording();
   void stopArms();
   void stopArmsWatched(watch::WatchTarget& watched);
   void stopProcess();

@@ -365,6 +365,8 @@ std::vector<ConformanceTest> contactTests() {
       {"damping-sign", "a damper brakes the hand: moving in it pushes no less than moving out", &dampingSign, kFinite},
       {"long-loops-give-no-energy", "nor does one of 10 or 20 mm, between places of different stiffness",
        &longLoopsGiveNoEnergy, "loops-give-no-energy"},
+      {"contacts-of-new-pose", "the contacts of a shape that moves belong to the pose that it writes",
+       &contactsOfTheNewPose, kFinite},
       {"contact-flags", "HSP_OUT_TRACED and HSP_OUT_CONTACT agree with depth and normal", &contactFlags, kFinite},
       {"force-from-zero", "the force grows from zero where the surface is met", &noStep, kFinite},
       {"stiffness-vs-claim", "forces are no steeper than claimed", &stiffnessClaim, kFinite},

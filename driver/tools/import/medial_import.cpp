@@ -15,6 +15,7 @@
 #include "import/medial_axis.hpp"
 #include "import/nearest_points.hpp"
 #include "mesh_import/mesh_file.hpp"
+#include "mesh_import/mesh_repair.hpp"
 
 namespace hapticd::importing {
 namespace {
@@ -136,6 +137,17 @@ void printSize(const Eigen::AlignedBox3d& box, const std::string& file) {
                  file.c_str(), size.maxCoeff());
 }
 
+/// Repairs a mesh as for a part, and tells what was done: a file whose cracks are rounding bounds a volume all the
+/// same.
+Result<Triangles> closedSurface(const MeshFile& file, const MedialImport& options) {
+  MeshReport done;
+  RepairedMesh repaired_mesh = repaired(file, options.scale, done);
+  Triangles mesh{std::move(repaired_mesh.points), std::move(repaired_mesh.corners)};
+  if (const auto closed = orientClosed(mesh, options.file); !closed) return Error{closed.error()};
+  for (const std::string& line : linesOf(done)) std::fprintf(stderr, "%s: %s\n", options.file.c_str(), line.c_str());
+  return mesh;
+}
+
 }  // namespace
 
 Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalog) {
@@ -158,12 +170,7 @@ Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalo
                  ".json) with surfaces"};
   auto read = parseMesh(*text, options.file);
   if (!read) return Error{read.error()};
-  Triangles mesh{std::move(read->points), {}};
-  for (const auto& c : read->corners)
-    if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0]) mesh.corners.push_back(c);
-  for (Vector3d& p : mesh.points) p *= options.scale;
-  if (const auto closed = orientClosed(mesh, options.file); !closed) return Error{closed.error()};
-  return mesh;
+  return closedSurface(*read, options);
 }
 
 Result<void> importMedial(const MedialImport& options, const Triangles& mesh, host::Catalog& catalog) {

@@ -16,7 +16,7 @@ std::string notClosed(const std::string& file, std::size_t edges, const Eigen::V
   std::snprintf(text, sizeof text,
                 ": the surface is not closed: %zu edge%s at a hole, or %s triangles turned against each other, the "
                 "first at (%.4g, %.4g, %.4g) m; expected a closed surface\n  fix: without --medial, import lists the "
-                "holes and turns the triangles: hapticd import ",
+                "holes: hapticd import ",
                 edges, edges == 1 ? " is" : "s are", edges == 1 ? "has" : "have", first.x(), first.y(), first.z());
   return file + text + file + " -o part.hpart";
 }

@@ -110,14 +110,14 @@ Result<Run> measure(const scene::Scene& scene, const Motion& motion, int passes,
   return run;
 }
 
-Difference compare(const Run& run, const Run& reference) {
+Difference compare(const Run& run, const Run& reference, double near) {
   Difference difference;
   for (size_t i = 0; i < std::min(run.answers.size(), reference.answers.size()); ++i) {
     const Answer &a = run.answers[i], &b = reference.answers[i];
     const bool either = ambiguous(a, b);
     const double force = either ? std::abs(a.force.norm() - b.force.norm()) : (a.force - b.force).norm();
     difference.force_n = std::max(difference.force_n, force);
-    if (a.traced != b.traced) ++difference.untraced;
+    if (a.traced != b.traced && (a.traced ? a : b).depth > -near) ++difference.untraced;
     if (!a.traced || !b.traced) continue;
     difference.depth_m = std::max(difference.depth_m, std::abs(a.depth - b.depth));
     difference.ambiguous += either;

@@ -3,6 +3,7 @@
 /// with a reference.
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 #include "base/result.hpp"
@@ -63,7 +64,8 @@ Result<Run> answer(const scene::Scene& scene, const Motion& motion, VelocityFrom
 /// estimator, as the shortest of `passes` measurements.
 Result<Run> measure(const scene::Scene& scene, const Motion& motion, int passes, const host::Services::Log& log);
 
-/// [main] Compares two runs over the same motion with the same models.
-Difference compare(const Run& run, const Run& reference);
+/// [main] Compares two runs over the same motion with the same models. @param near [m] a foot farther away than this
+/// need not be traced in both runs
+Difference compare(const Run& run, const Run& reference, double near = HUGE_VAL);
 
 }  // namespace hapticd::tune

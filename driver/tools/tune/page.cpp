@@ -42,7 +42,7 @@ std::string frontTable(const Findings& findings) {
 
 std::string servoTables(const Findings& findings) {
   const auto kind = [](bool current) { return current ? "now" : ""; };
-  std::string text = head("Servo rate", {"rate Hz", "load %", "force missed between ticks N"});
+  std::string text = head("Servo rate", {"rate Hz", "load %", "force missed between ticks, against 10000 Hz: N"});
   for (const RateRow& r : findings.rates)
     text +=
         row({fmt::format("{:.0f}", r.rate), fmt::format("{:.2f}", r.load * 100), fmt::format("{:.3g}", r.hold_error_n)},

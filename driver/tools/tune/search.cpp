@@ -38,9 +38,9 @@ bool preferred(const Candidate& a, const Candidate& b, const Goal& goal, bool me
   const bool by_cost = goal.budget_ns ? !met : met;
   if (by_cost) return clearlyCheaper(a, b);
   const auto badness = [&](const Candidate& c) {
-    return std::max(c.error.geometry() / goal.tolerance_m, c.error.force_n / goal.force_tolerance_n);
+    return std::max(geometryErrorOf(c) / goal.tolerance_m, forceErrorOf(c) / goal.force_tolerance_n);
   };
-  return badness(a) < badness(b);
+  return badness(a) < badness(b) || (badness(a) == badness(b) && clearlyCheaper(a, b));
 }
 
 class Search {

@@ -32,6 +32,18 @@ int windowOf(const scene::Velocity& velocity) {
   return velocity.estimator == "window" ? static_cast<int>(velocity.parameter) : 1;
 }
 
+/// Returns the advice to take a shorter window, if one bears the stiffness: a long window is late, as the hand feels
+/// it.
+std::string shorterWindow(const scene::Servo& servo, double mass, double stiffness) {
+  const int now = windowOf(servo.velocity);
+  constexpr int kLongest = 100;  // samples; longer ones are of no use at any rate
+  for (int n = std::min(now - 1, kLongest); n >= 1; --n)
+    if (passivity::maxStiffnessAlone(mass, n, 1 / servo.rate) >= stiffness)
+      return ", or servo.velocity.parameter: " + std::to_string(n) + " (a window of " + std::to_string(now) +
+             " samples gives the velocity too late)";
+  return "";
+}
+
 void checkModel(const scene::Scene& scene, size_t index, const scene::Device& device, const hdv_info& info,
                 double alone, double stiffness, document::Problems& problems) {
   const scene::Model& model = scene.models[index];
@@ -54,7 +66,8 @@ void checkModel(const scene::Scene& scene, size_t index, const scene::Device& de
     warn(claim + ", and at " + text(scene.servo.rate) + " Hz a felt mass of " + text(info.mass_kg) +
          " kg is stable up to " + text(alone) + " N/m without damping of the arm; expected at most " +
          text(roundedDown(alone)) + " N/m, or a rate of " +
-         text(std::ceil(scene.servo.rate * std::sqrt(stiffness / alone) / 100) * 100) + " Hz");
+         text(std::ceil(scene.servo.rate * std::sqrt(stiffness / alone) / 100) * 100) + " Hz" +
+         shorterWindow(scene.servo, info.mass_kg, stiffness));
   if (info.resolution_m > 0 && stiffness * info.resolution_m > kBuzz)
     warn(claim + ", so one count of " + text(info.resolution_m * 1e6) + " um is a step of " +
          text(stiffness * info.resolution_m) + " N, which a hand feels as buzz; expected at most " +

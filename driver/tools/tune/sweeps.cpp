@@ -9,6 +9,7 @@
 namespace hapticd::tune {
 namespace {
 
+constexpr double kNear = 0.01;  // [m] as far as a fast hand moves between two searches; what is nearer must be traced
 constexpr double kFastest = 10'000;  // [Hz] the rate with whose forces those of other rates are compared
 
 /// Returns the sum of the forces of all models, which the hand feels.
@@ -72,7 +73,7 @@ Result<std::vector<RadiusRow>> measureRadii(const scene::Scene& scene, const Mot
     auto run = answer(other, motion, VelocityFrom::kMotion, log);
     if (!run) return Error{run.error()};
     if (!widest) widest = *run;
-    rows.push_back({radius, run->cost.p50_ns, compare(*run, *widest), radius == scene.servo.activation_radius});
+    rows.push_back({radius, run->cost.p50_ns, compare(*run, *widest, kNear), radius == scene.servo.activation_radius});
   }
   return rows;
 }

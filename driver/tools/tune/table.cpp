@@ -33,12 +33,14 @@ std::string frontText(const Findings& findings) {
 
 std::string servoText(const Findings& findings) {
   std::string text =
-      "\n   rate Hz      load    hold N   (load: share of a processor; hold: error of a force that is held for a tick, "
-      "p99)\n";
+      "\n   rate Hz      load    hold N   (load: share of a processor; hold: p99 of the difference between the force "
+      "held for a tick and that at 10000 Hz)\n";
   for (const RateRow& row : findings.rates)
     text += fmt::format("{} {:>8.0f} {:>8.2f} % {:>8.3g}\n", row.current ? '*' : ' ', row.rate, row.load * 100,
                         row.hold_error_n);
-  text += "\n    radius m   tick ns    foot um   activation radius (errors against the widest one)\n";
+  text +=
+      "\n    radius m   tick ns    foot um   activation radius (errors against the widest one; untraced: "
+      "a surface within 10 mm of the tip)\n";
   for (const RadiusRow& row : findings.radii)
     text += fmt::format("{} {:>9.3g} {:>9.0f} {:>10}\n", row.current ? '*' : ' ', row.radius, row.tick_ns,
                         row.error.untraced > 0 ? "untraced" : errorText(row.error));

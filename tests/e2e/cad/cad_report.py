@@ -119,7 +119,7 @@ def features():
     check("a face is told with kind, size and place", any("a plane that looks along (0, 0, 1), 40 x 40 x 0 mm large, middle at (20, 20, 10) mm" in line for line in lines), lines)
     told("sphere.step")
     line = run("part", "info", PART, "--feature", "0")[1]
-    check("a sphere with its radius", "a sphere of radius 20 mm, 40 x 40 x 40 mm large, middle at (0, 0, 0) mm" in line, line)
+    check("a sphere with its radius", "a sphere of radius 20 mm, 40 x 40 x 40 mm large, middle at (0, 0, 0) mm, centre at (0, 0, 0) mm" in line, line)
 
 
 def depths(points, metres):

@@ -208,6 +208,18 @@ for shape in ("first_right", *WARNED):
     check(f"{shape}: {want[0] + ' warns' if want else 'passes'}", len(mine) == (1 if want else 0) and
           (not want or (mine[0][:2] == (want[0], "warn") and want[1] in mine[0][2])), mine)
 
+# A shape that moves: its class says so, and its contacts belong to the pose that it writes.
+code, tests, failed, err = examined(os.path.join(BROKEN, "moving_slips.so"), "--timeout", "60")
+MOVING = {"lift_right": None, "lift_late": "off by 1e-05 m; expected point and depth in the frame of the pose that step() writes",
+          "lift_unsaid": "expected HSP_C_MOVES in the flags of the class"}
+for shape, words in MOVING.items():
+    mine = [(t["name"], t["why"]) for t in tests if t["plugin"] == shape and t["result"] == "fail"]
+    right = not mine if words is None else len(mine) == 1 and mine[0][0] == "contacts-of-new-pose" and words in mine[0][1]
+    check(f"{shape}: {'passes' if words is None else 'fails by contacts-of-new-pose alone'}", right, mine)
+code, tests, failed, err = examined(os.path.join(BROKEN, "moving_ball.so"), "--timeout", "60")
+check("the moving ball of the guide passes, and its motion was judged", code == 0 and
+      any(t["name"] == "contacts-of-new-pose" and t["result"] == "pass" for t in tests), tests)
+
 # What is drawn is compared with what is felt.
 code, tests, failed, err = examined(os.path.join(BROKEN, "drawn.so"), "--timeout", "60")
 DRAWN = {"drawn_small_bounds": "a vertex at ", "drawn_millimetres": "lie away from the surface that is felt", "drawn_turned": "lie away from the surface",

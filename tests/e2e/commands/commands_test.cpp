@@ -216,6 +216,26 @@ TEST_F(Commands, ExplainNamesWhatMovesAKinematicModel) {
   EXPECT_FALSE(has(outcome.text, "it is static")) << outcome.text;
 }
 
+TEST_F(Commands, CheckNamesTheJointThatKeepsTheTipFromAModel) {
+  const Outcome told =
+      run("check " + put("scene.yaml",
+                         "hapticd: 1\nhand: {script: press, center: [0, 0, -0.09], radius: 0, rise: 0.02}\n"
+                         "models:\n  - {name: ball, plugin: nurbs_rigid, pose: {position: [0, 0, -0.1]}, "
+                         "parameters: {geometry: " HAPTICD_SOURCE_DIR "/config/models/sphere.yaml}}\n"),
+          kShipped);
+  EXPECT_TRUE(has(told.text, "joint 3 is at the end of its range there, so the tip cannot follow the hand"))
+      << told.text;
+}
+
+TEST_F(Commands, ARunThatCannotBeginLeavesNoRecording) {
+  const std::string file = (dir_ / "run.h5").string();
+  const std::string scene = put("far.yaml", "hapticd: 1\nhand: {center: [0, 3, 0]}\nmodels: []\n");
+  const Outcome ran = run("run " + scene + " --for 1 --virtual-time --record " + file, kShipped);
+  EXPECT_EQ(ran.exit_code, 1) << ran.text;
+  EXPECT_TRUE(has(ran.text, "which the arm cannot reach")) << ran.text;
+  EXPECT_FALSE(std::filesystem::exists(file)) << "it would look like that of a killed run";
+}
+
 TEST_F(Commands, DaemonFileIsCheckedBeforeAnythingRuns) {
   const std::string daemon = put("daemon.yaml", "hapticd-daemon: 1\nservo: {priority: 200}\n");
   const Outcome outcome = run("--config " + daemon + " plugin list");

@@ -157,10 +157,13 @@ TEST_F(ImportCommands, ANameThatSeveralInstancesHaveNeedsAPath) {
 
 TEST_F(ImportCommands, NamesInstanceAndFaceOfAFeature) {
   const std::string part = HAPTICD_SOURCE_DIR "/config/models/as1.hpart";
-  EXPECT_TRUE(has(run("part info " + part).text, "instance 'rod_1': body 1, features 16 to 19"));
-  EXPECT_EQ(run("part info " + part + " --feature 17").text,
-            "as1/rod-assembly_1/rod_1: face 1\n  a cylinder of radius 5 mm, 200 x 5 x 10 mm large, middle at (90, "
-            "72.5, 60) mm\n");
+  EXPECT_TRUE(has(run("part info " + part).text,
+                  "instance 'rod_1': body 1, features 16 to 19, 200 x 10 x 10 mm, middle at (90, 75, 60) mm"));
+  EXPECT_EQ(
+      run("part info " + part + " --feature 17").text,
+      "as1/rod-assembly_1/rod_1: face 1\n  a cylinder of radius 5 mm, 200 x 5 x 10 mm large, middle at (90, "
+      "72.5, 60) mm, axis through (90, 75, 60) mm along (1, 0, 0)\n  to turn about it in a scene:    joint: hinge, "
+      "pivot: [0.09, 0.075, 0.06], axis: [1, 0, 0]\n");
   EXPECT_TRUE(has(run("part info " + part + " --feature 18").text, "middle at (90, 77.5, 60) mm")) << "the other half";
   EXPECT_EQ(run("part info " + part + " --feature 160").exit_code, 2);
   const std::string scene =
@@ -169,6 +172,14 @@ TEST_F(ImportCommands, NamesInstanceAndFaceOfAFeature) {
   const Outcome told = run("explain " + scene, kShipped);
   EXPECT_TRUE(has(told.text, "features 16 to 19: as1/rod-assembly_1/rod_1, faces")) << told.text;
   EXPECT_FALSE(has(told.text, "plate_1")) << told.text;
+}
+
+TEST_F(ImportCommands, ExplainNamesTheFacesThatWereTouchedInARecording) {
+  const std::string file = (dir_ / "run.h5").string(), scene = HAPTICD_SOURCE_DIR "/config/scenes/as1.yaml";
+  const Outcome ran = run("run " + scene + " --for 3 --virtual-time --record " + file, kShipped);
+  ASSERT_EQ(ran.exit_code, 0) << ran.text;
+  const Outcome told = run("explain " + file);
+  EXPECT_TRUE(has(told.text, "touched\n  rod: as1/rod-assembly_1/rod_1: face ")) << told.text;
 }
 
 TEST_F(ImportCommands, CheckWarnsOfAWallThatAPressGoesThrough) {
@@ -217,6 +228,8 @@ TEST_F(ImportCommands, TheFirstSlipOfAnImportIsTold) {
   EXPECT_TRUE(has(told(put("x.stl", triangle)), "is a mesh (OBJ), by its first bytes, and its name ends in '.stl'"));
   EXPECT_TRUE(
       has(told("--medial " + put("x.step", "ISO-10303-21;\n") + " x.ma"), "--medial takes a closed surface of"));
+  EXPECT_TRUE(
+      has(told("--medial " HAPTICD_SOURCE_DIR "/config/models/dm1.hpart x.ma"), "not a part\n  fix: give it the mesh"));
   const std::string open = told("--medial " + put("x.obj", triangle) + " " + (dir_ / "x.ma").string());
   EXPECT_TRUE(has(open, "the surface is not closed: 3 edges are at a hole")) << open;
   EXPECT_TRUE(has(open, "without --medial, import lists the holes")) << open;

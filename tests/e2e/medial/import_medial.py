@@ -290,6 +290,29 @@ def recoverBox(folder):
               there <= 2.25e-3 and parts == 1 and len(read(out)[2]) > 10, text)
 
 
+def cracked(text):
+    """The same surface as CAD programs write it: each face with points of its own, which differ by rounding, and every
+    seventh face turned round."""
+    points = [[float(c) for c in line.split()[1:]] for line in text.splitlines() if line[0] == "v"]
+    faces = [[int(i) - 1 for i in line.split()[1:]] for line in text.splitlines() if line[0] == "f"]
+    lines, count = [], 0
+    for n, face in enumerate(faces):
+        for i in face:
+            lines.append("v " + " ".join(repr(c + n % 3 * 1e-12) for c in points[i]))
+        corners = [count + k + 1 for k in range(len(face))]
+        lines.append("f " + " ".join(map(str, corners[::-1] if n % 7 == 0 else corners)))
+        count += len(face)
+    return "\n".join(lines) + "\n"
+
+
+def repairFirst(folder):
+    """What is repaired for a part is repaired for a soft body as well."""
+    mesh, out = save(os.path.join(folder, "cracked.obj"), cracked(torus(.05, .012, 24, 12))), os.path.join(folder, "cracked.ma")
+    code, text = hapticd("import", "--medial", mesh, "--tolerance", "0.002", out, *FEWER)
+    check("a surface with cracks of rounding and turned faces is imported", code == 0, text)
+    check("and what was repaired is told", "points were joined" in text and "triangles were reversed" in text, text)
+
+
 def refuse(folder):
     def refused(name, text, expected, *more):
         code, said = hapticd("import", "--medial", save(os.path.join(folder, name), text),
@@ -327,6 +350,6 @@ def fullDisk(folder):
 
 
 with tempfile.TemporaryDirectory() as work:
-    for case in (recoverTorus, recoverCapsule, recoverEllipsoid, recoverCube, recoverBranches, recoverNurbs, recoverBox, refuse, fullDisk):
+    for case in (recoverTorus, recoverCapsule, recoverEllipsoid, recoverCube, recoverBranches, recoverNurbs, recoverBox, repairFirst, refuse, fullDisk):
         case(work)
 finish()

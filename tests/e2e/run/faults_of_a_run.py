@@ -59,7 +59,8 @@ def told_by_a_recording(folder, ask):
     ask("run", SCENE, "--device", arm(folder, "velocity: 0.05"), "--virtual-time", "--for", "1", "--record", file)
     code, out, err = ask("explain", file)
     check("explain tells of the fault in words", code == 0 and "limits.velocity (measured: 0.05" in out and "1000 ticks" in out
-          and "sphere was touched or clicked 1 times" in out, (code, out, err))
+          and "sphere was touched or clicked 1 time\n" in out, (code, out, err))
+    check("ticks of a fault are no contact there either", "touched\n" not in out, out)
     with open(file, "r+b") as damaged:
         damaged.truncate(300)
     code, out, err = ask("explain", file)

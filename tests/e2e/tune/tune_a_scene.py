@@ -49,6 +49,7 @@ def keeps_its_word(told, text, picture):
         assert re.search(rf"^ *{number}[> ][* ] +\d+-\d+ ", text, re.M), f"no row {number} in the table:\n{text}"
         assert f">{number}</text>" in picture, f"no point {number} in the picture"
     assert "noise:" in text and "(chosen)</text>" in picture
+    assert "and that at 10000 Hz)" in text, "the error of a held force is one against another rate, not against truth"
     axis = picture.index("median of a tick [ns]")
     assert picture[:axis].count('text-anchor="middle"') >= 3, "the axis of the costs has hardly a tick"
 

@@ -111,6 +111,30 @@ test('a part file of 20 000 triangles is drawn with its normals', async () => {
   }
 });
 
+test('the parts of an assembly can be told apart, and an arm at the end of its range says so', async () => {
+  const sandbox = new Sandbox();
+  let page;
+  try {
+    const file = join(sandbox.folder, 'far.yaml'), sphere = join(root, 'config', 'models', 'sphere.yaml');
+    // The hand pulls the tip toward the base of the arm, to where joint 3 ends.
+    writeFileSync(file, `hapticd: 1\ndevice: ${join(root, 'config', 'devices', 'simulated-premium15.yaml')}\n` +
+      'hand: {script: hold, center: [0, 0.09, -0.14], radius: 0.011, approach: 0.06}\nmodels:\n' +
+      ['one', 'two'].map((name, i) => `  - {name: ${name}, plugin: nurbs_rigid, pose: {position: [${0.2 * i}, -0.2, 0]}, parameters: {geometry: ${sphere}}}\n`).join(''));
+    sandbox.start(['run', file, '--name', 'test']);
+    const [url] = await sandbox.start(['view', '--name', 'test']).says(/http:\S+/);
+    page = await browser.page(url);
+    await shown(page, 2);
+    const colors = await page.evaluate(() => [0, 1].map((i) => window.hapticdView.view.models.byIndex.get(i).mesh.material.color.getHexString()));
+    assert.notEqual(colors[0], colors[1]);
+    const said = () => page.locator('#foot').textContent();
+    await until(async () => /joint 3 is at the end of the range/.test(await said()), kPatience, 'a word about joint 3');
+    assert.deepEqual(page.wrong, []);
+  } finally {
+    await page?.close();
+    await sandbox.close();
+  }
+});
+
 test('beside a model without triangles stands why it is not drawn, for as long as it is there', async () => {
   const sandbox = new Sandbox();
   let page;

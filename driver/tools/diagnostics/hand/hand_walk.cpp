@@ -16,6 +16,7 @@
 #include "servo/arm/arm.hpp"
 #include "servo/loop/loop.hpp"
 #include "session/silence_reason.hpp"
+#include "session/stop_counts.hpp"
 #include "session/telemetry.hpp"
 
 namespace hapticd::diagnostics {
@@ -33,6 +34,15 @@ constexpr uint64_t kEnoughWaits = 1000;  ///< ticks with a wait, after which no 
 
 double processorSeconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+/// Returns the number of the first joint that is at an end of its range, from 1, or 0.
+uint32_t jointAtEnd(const hdv_info& info, const hdv_sample& sample) noexcept HSP_RT {
+  servo::StopCounts once;
+  once.add(info, sample);
+  for (uint32_t i = 0; i < info.joint_count && i < HDV_MAX_JOINTS; ++i)
+    if (once.ticks(i) > 0) return i + 1;
+  return 0;
 }
 
 /// Looks at every tick, and ends the loop once everything was seen.
@@ -135,7 +145,10 @@ class WalkLog final : public servo::TickLog {
         away = -contact.world.depth_m;
       else if (const auto& box = boxes_[index])
         away = box->exteriorDistance(state.frame.pointToModel(tip));
-      if (away < arm.away) arm.away = away, arm.nearest = index;
+      if (away < arm.away) {
+        arm.away = away, arm.nearest = index;
+        arm.end = jointAtEnd(arms[probe]->info(), arms[probe]->sample());
+      }
       const double force = Vector3d(contact.world.force).norm();
       seen.clicked = seen.clicked || (contact.world.flags & HSP_OUT_EVENT) != 0;
       if (force > seen.force) {

@@ -38,6 +38,7 @@ struct WalkedArm {
   bool began_inside = false;  ///< the tip was inside a model at the first tick
   double away = HUGE_VAL;     ///< [m] least distance from any model, or from a box around it
   uint32_t nearest = 0;       ///< index of the model at the least distance
+  uint32_t end = 0;           ///< number of the first joint that was at an end of its range there, from 1; 0 for none
 };
 
 struct Walk {

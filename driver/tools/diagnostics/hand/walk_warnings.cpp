@@ -94,6 +94,26 @@ Eigen::Vector3d middleOf(const scene::Model& model, const host::ShapeInstance& s
   return model.pose.position + model.pose.orientation * box.center();
 }
 
+/// Returns what to do about a hand that comes near no model. @param middle of the nearest model, in the world
+std::string mendOf(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen,
+                   const Eigen::Vector3d& middle) {
+  const scene::Device& device = scene.devices[index];
+  const std::string& nearest = scene.models[seen.nearest].name;
+  if (seen.end > 0)
+    return fmt::format(
+        "a model within the arm's reach: joint {} is at the end of its range there, so the tip cannot follow the hand; "
+        "the middle of {} is at [{:.3g}, {:.3g}, {:.3g}] in the world; move the model (pose.position) or the arm "
+        "(mount.position)",
+        seen.end, nearest, middle.x(), middle.y(), middle.z());
+  const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
+  return fmt::format(
+      "a hand that moves near a model: its centre (hand.center) is at [{:.3g}, {:.3g}, {:.3g}] in "
+      "the world, it moves {:.3g} m from there (hand.radius), and the middle of {} is at [{:.3g}, {:.3g}, {:.3g}]; "
+      "move the arm (mount.position), hand.center or the model (pose.position){}",
+      center.x(), center.y(), center.z(), hand.radius, nearest, middle.x(), middle.y(), middle.z(),
+      adviceOf(scene, index, hand, seen, middle));
+}
+
 void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen,
                 const servo::World& world, document::Problems& warnings) {
   const scene::Device& device = scene.devices[index];
@@ -103,16 +123,9 @@ void reportAway(const scene::Scene& scene, uint32_t index, const HandScript& han
                                               seen.away * 1e3, nearest.name)
                                 : fmt::format("moves where {} is, but touches no surface", nearest.name);
   const std::string what = fmt::format("the hand of {} {}: it feels nothing; expected ", device.name, where);
-  if (reportAstray(scene, index, hand, seen, world, what, warnings)) return;
-  const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
+  if (seen.end == 0 && reportAstray(scene, index, hand, seen, world, what, warnings)) return;
   const Eigen::Vector3d middle = middleOf(nearest, *world.shapes()[seen.nearest]);
-  const std::string at = fmt::format(
-      "a hand that moves near a model: its centre (hand.center) is at [{:.3g}, {:.3g}, {:.3g}] in "
-      "the world, it moves {:.3g} m from there (hand.radius), and the middle of {} is at [{:.3g}, {:.3g}, {:.3g}]; "
-      "move "
-      "the arm (mount.position), hand.center or the model (pose.position){}",
-      center.x(), center.y(), center.z(), hand.radius, nearest.name, middle.x(), middle.y(), middle.z(),
-      adviceOf(scene, index, hand, seen, middle));
+  const std::string at = mendOf(scene, index, hand, seen, middle);
   const std::string in_list = fmt::format("devices[{}].mount.position", index);
   for (const std::string& id : {std::string("device.mount.position"), in_list})
     if (const auto place = placeOfKey(scene.file, id)) return document::report(warnings, *place, id, what + at);

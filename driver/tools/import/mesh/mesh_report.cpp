@@ -12,15 +12,15 @@ std::string counted(std::size_t count, const char* one, const char* many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
-/// Returns a point as text, such as "0.01, 0, 0.02 m".
+/// Returns a point as text, such as "(10, 0, 20) mm".
 std::string where(const Vector3d& p) {
   std::string text;
   for (int k = 0; k < 3; ++k) {
     char number[32];
-    std::snprintf(number, sizeof number, "%s%.4g", k > 0 ? ", " : "", p[k]);
+    std::snprintf(number, sizeof number, "%s%.4g", k > 0 ? ", " : "(", 1e3 * p[k]);
     text += number;
   }
-  return text + " m";
+  return text + ") mm";
 }
 
 /// Tells that shells, or bodies, pass through each other.

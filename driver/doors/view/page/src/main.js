@@ -11,6 +11,7 @@ import {Plots} from './plots.js';
 import {Now} from './rows.js';
 import {View} from './scene.js';
 import {Sound} from './sound.js';
+import {endText} from './stops.js';
 import {Timeline} from './timeline.js';
 
 const $ = (id) => document.getElementById(id);
@@ -256,12 +257,13 @@ class Page {
     if (this.hand.leads) $('hint').hidden = true;
   }
 
-  /** Shows on which instance and face the deepest contact is, if the plugin has names for them. */
+  /** Shows on which instance and face the deepest contact is, if the plugin has names for them, and which arm cannot go
+   * farther. */
   #showFoot(contacts) {
     const deepest = contacts.reduce((a, b) => (b.depth > (a?.depth ?? 0) ? b : a), null);
     const name = deepest ? this.features.name(this.events.names[deepest.model], deepest.feature) : '';
-    $('foot').textContent = name;
-    $('foot').hidden = name === '';
+    $('foot').textContent = [name, endText(this.now.arms)].filter((text) => text !== '').join(' · ');
+    $('foot').hidden = $('foot').textContent === '';
   }
 
   /** Returns the speed of the tip [m/s]. It is computed from positions, because the daemon estimates a velocity only if

@@ -5,13 +5,15 @@ import {Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineBas
   MeshLambertMaterial, Vector4, WireframeGeometry} from 'three';
 import {toCreasedNormals} from 'three/addons/utils/BufferGeometryUtils.js';
 
-const kColors = {nurbs_rigid: '#a3b8c9', mat_deformable: '#e0a08c', push_button: '#8fb0dc', pendulum: '#cdb27a'};
+const kColors = {mat_deformable: '#e0a08c', push_button: '#8fb0dc', pendulum: '#cdb27a'};
+const kRigid = ['#a3b8c9', '#c9b49c', '#a5c2a6', '#bfaacb', '#9cc0c4']; // parts of an assembly must be told apart
 const kOther = ['#a7c4a0', '#c3a6cf', '#9fc6c4', '#d3bd94'];
 const kCrease = Math.PI / 5; // rad: if a plugin gives no normals, edges that bend by more than this stay sharp
 const kStains = 4; // largest number of contacts that colour one surface at a time
 
-/** Returns the colour of a model, which depends on its plugin. */
+/** Returns the colour of a model, which depends on its plugin; rigid models take turns. */
 export function colorOf(plugin, index) {
+  if (plugin === 'nurbs_rigid') return kRigid[index % kRigid.length];
   return kColors[plugin] ?? kOther[index % kOther.length];
 }
 

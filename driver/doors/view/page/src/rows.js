@@ -56,6 +56,7 @@ export class Table {
 function armReaders(columns, prefix, device) {
   return {
     name: device.name,
+    info: device.info,
     joints: Array.from({length: device.info?.joint_count ?? 0}, (_, i) => reader(columns, `${prefix}q${i}`)),
     position: vectorReader(columns, prefix),
     orientation: vectorReader(columns, `${prefix}q`, kQuaternion),

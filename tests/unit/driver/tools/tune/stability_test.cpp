@@ -104,7 +104,10 @@ TEST(UnstableSettings, SayThatAWindowIsTooLong) {
   slow.scene.servo.velocity = {"window", 15};
   const std::string text = slow.told(2000);
   EXPECT_NE(text.find("without damping of the arm"), std::string::npos) << text;
-  slow.scene.servo.velocity.parameter = 3;
+  EXPECT_NE(text.find("Hz, or servo.velocity.parameter: 12 (a window of 15 samples"), std::string::npos) << text;
+  slow.scene.servo.velocity.parameter = 13;
+  EXPECT_NE(slow.told(2000), "") << "one sample more than it names is too long";
+  slow.scene.servo.velocity.parameter = 12;
   EXPECT_EQ(slow.told(2000), "");
 }
 

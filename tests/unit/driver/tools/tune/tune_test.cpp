@@ -110,6 +110,13 @@ TEST(Choice, OfABudgetIsTheMostAccurateThatFits) {
   EXPECT_TRUE(reached);
 }
 
+TEST(Choice, OfABudgetPaysNothingForErrorsThatAreRounding) {
+  Goal goal;
+  goal.budget_ns = 1000;
+  EXPECT_EQ(choose({candidate(100, 8e-12), candidate(200, 0)}, goal).first, 0u);
+  EXPECT_EQ(choose({candidate(200, 0), candidate(100, 8e-12)}, goal).first, 1u);
+}
+
 Answer answerAt(double x, double depth) {
   Answer answer;
   answer.point = {x, 0, 0};
@@ -140,6 +147,17 @@ TEST(Comparison, TakesALostTrackForTheWorstError) {
   reference.answers = {answerAt(0, 0.001)};
   EXPECT_EQ(compare(run, reference).untraced, 1u);
   EXPECT_EQ(compare(run, reference).geometry(), 1);
+}
+
+TEST(Comparison, DoesNotAskForAFootThatIsFarAway) {
+  tune::Run run, reference;
+  run.models = reference.models = 1;
+  run.answers = {Answer{}};
+  run.answers[0].force.setZero();
+  reference.answers = {answerAt(0, -0.15)};
+  EXPECT_EQ(compare(run, reference, 0.01).untraced, 0u) << "a smaller radius leaves it out on purpose";
+  reference.answers = {answerAt(0, -0.005)};
+  EXPECT_EQ(compare(run, reference, 0.01).untraced, 1u);
 }
 
 TEST(Motion, AtAnotherRateGoesThroughTheSamePlaces) {

@@ -31,6 +31,9 @@ std::vector<Matrix3d> turns() {
 void expectBox(const Model& model, const Vector3d& low, const Vector3d& high) {
   const Eigen::AlignedBox3d box = tightBounds(model), loose = model.bounds();
   const double slack = 1e-5 * (high - low).norm();
+  const Eigen::AlignedBox3d alone = tightBounds(model, 0);
+  EXPECT_LT((alone.min() - low).cwiseAbs().maxCoeff(), slack) << "as the only body";
+  EXPECT_LT((alone.max() - high).cwiseAbs().maxCoeff(), slack) << "as the only body";
   EXPECT_LT((box.min() - low).cwiseAbs().maxCoeff(), slack) << box.min().transpose() << " not " << low.transpose();
   EXPECT_LT((box.max() - high).cwiseAbs().maxCoeff(), slack) << box.max().transpose() << " not " << high.transpose();
   EXPECT_TRUE(loose.contains(box));

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+/// Tests a shape that moves: its class says so, and its contacts belong to the pose that it writes.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "conformance/building_blocks.hpp"
+
+namespace hapticd::conformance {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kLeastWay = 1e-6;  ///< [m] a shorter way in one step is not told from the error of a search
+constexpr double kNoTime = 1e-9;    ///< [s] nothing moves in this time
+
+/// Returns a point of the world in the frame of a pose.
+Vector3d inFrame(const hsp_pose& pose, const Vector3d& world) {
+  const double* q = pose.orientation;
+  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).conjugate() *
+         (world - Vector3d(pose.position[0], pose.position[1], pose.position[2]));
+}
+
+/// How often the contacts of a step were those of the frame before the step, and an example.
+struct Lag {
+  int judged = 0, late = 0;
+  double way = 0, off = 0;  ///< [m] of the worst step: how far the shape moved, how far its contact was off
+};
+
+/// Rests the probe in the world while the shape moves. Asks each step again with the probe in the frame of the new
+/// pose, and without time to move: both answers must be the same contact.
+void follow(Subject& subject, const Vector3d& world, Lag& lag) {
+  constexpr int kSteps = 600;
+  constexpr double kPart = 0.2;  // of the way: an answer in the wrong frame is off by all of it
+  hsp_pose pose{};
+  pose.orientation[0] = 1;
+  for (int i = 0; i < kSteps; ++i) {
+    const Vector3d before = inFrame(pose, world);
+    const Answer first = subject.step({before}, kConformanceDt, i == 0 ? uint32_t{HSP_IN_JUMP} : 0);
+    pose = first.pose;
+    const Vector3d after = inFrame(pose, world);
+    const double way = (after - before).norm();
+    if (i == 0 || !(way > kLeastWay) || first.status != HSP_OK) continue;
+    hsp_probe probe{};
+    Eigen::Map<Vector3d>(probe.position) = after;
+    probe.orientation[0] = 1;
+    const Answer again = subject.stepRaw(probe, kNoTime);
+    pose = again.pose;
+    const hsp_contact &a = first.contacts[0], &b = again.contacts[0];
+    if ((a.flags & b.flags & HSP_OUT_TRACED) == 0 || again.status != HSP_OK) continue;
+    const double off = std::max(std::fabs(a.depth_m - b.depth_m), (Vector3d(a.point) - Vector3d(b.point)).norm());
+    ++lag.judged;
+    if (!(off > kPart * way)) continue;
+    ++lag.late;
+    if (off > lag.off) lag.way = way, lag.off = off;
+  }
+}
+
+/// The class must say that its instances may move, because the host reads it before an instance exists.
+std::string classSaysSo(const Subject& subject) {
+  return (subject.description().flags & HSP_C_MOVES) != 0
+             ? ""
+             : "activate() reports HSP_R_MOVES, but the class does not say that its instances may move; expected "
+               "HSP_C_MOVES in the flags of the class (in C++ the last entry of kInfo)";
+}
+
+}  // namespace
+
+Verdict contactsOfTheNewPose(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  if (!made.subject->moves()) return skipped("it does not move by itself");
+  if (std::string wrong = classSaysSo(*made.subject); !wrong.empty()) return wrong;
+  constexpr double kDeep = 5e-4;  // [m]
+  Lag lag;
+  const Verdict verdict = atEachPlace(recipe, [&](Subject& subject, const Place& place) {
+    follow(subject, place.foot - place.out * std::min(kDeep, place.through / 2), lag);
+    return std::string();
+  });
+  if (!verdict.clean()) return verdict;
+  if (lag.judged == 0) return skipped("it did not move where it was touched");
+  if (2 * lag.late < lag.judged) return "";
+  return "it moved by " + text(lag.way) + " m in a step, and its contact was off by " + text(lag.off) +
+         " m; expected point and depth in the frame of the pose that step() writes: the probes come in the frame of "
+         "the pose before, so move them first";
+}
+
+}  // namespace hapticd::conformance

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+/// Plates that move upward, with one mistake each, for `hapticd plugin check`.
+#include <array>
+
+#include "hapticd/shape.hpp"
+
+namespace {
+
+constexpr double kSpring = 500, kSpeed = 0.01;  // [N/m], [m/s]
+
+/// A plate whose upper side is y = 0 of its frame. It rises with constant speed.
+/// @tparam kShifts the probe is brought into the frame of the new pose
+template <class Derived, bool kShifts>
+struct Lift : hapticd::Shape {
+  double number = 0;
+  static constexpr auto fields() {
+    return std::array{hapticd::Fields<Derived>::real("number", &Derived::number, "", 0, 1, 0, "None.")};
+  }
+  void activate(const hsp_activation&, hsp_report& report) {
+    report.max_stiffness = kSpring;
+    report.size_m = 0.1;
+    report.flags |= HSP_R_MOVES | HSP_R_PUSHES;
+  }
+  hsp_status step(const hsp_step& step) noexcept HSP_RT {
+    const double way = kSpeed * step.dt_s;
+    step.pose->position[1] += way;
+    step.pose->linear[1] = kSpeed;
+    for (uint32_t i = 0; i < step.count; ++i) {
+      const hsp_probe& in = *HSP_AT(const hsp_probe, step.in, step.in_stride, i);
+      hsp_contact& out = *HSP_AT(hsp_contact, step.out, step.out_stride, i);
+      if ((in.flags & HSP_IN_INVALID) != 0) continue;
+      out.depth_m = (kShifts ? way : 0) - in.position[1];
+      out.flags = HSP_OUT_TRACED | (out.depth_m > 0 ? HSP_OUT_CONTACT : 0);
+      out.normal[1] = 1;
+      out.point[0] = in.position[0], out.point[2] = in.position[2];
+      if (out.depth_m > 0) out.force[1] = kSpring * out.depth_m;
+    }
+    return HSP_OK;
+  }
+};
+
+struct Right : Lift<Right, true> {
+  static constexpr hapticd::ShapeInfo kInfo{
+      "org.example.shape.lift_right", "lift_right", "1.0.0", "MIT", "To be tested.", HSP_C_MOVES};
+};
+struct Late : Lift<Late, false> {
+  static constexpr hapticd::ShapeInfo kInfo{
+      "org.example.shape.lift_late", "lift_late", "1.0.0", "MIT", "To be tested.", HSP_C_MOVES};
+};
+struct Unsaid : Lift<Unsaid, true> {
+  static constexpr hapticd::ShapeInfo kInfo{"org.example.shape.lift_unsaid", "lift_unsaid", "1.0.0", "MIT",
+                                            "To be tested."};
+};
+
+}  // namespace
+
+HAPTICD_SHAPES(Right, Late, Unsaid)
