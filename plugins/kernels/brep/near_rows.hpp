@@ -17,6 +17,7 @@ struct ElementLimits {
   static constexpr int kMostFours = 8;         ///< most groups of four rows
   static constexpr int kMostCandidates = 128;  ///< most rows within reach, from which the nearest are taken
   static constexpr int kMostNodes = 32;        ///< most nodes of the tree that gather() examines
+  static constexpr int kMostRowsOfTree = 0;    ///< meshes: most rows of the tree whose boxes are within reach
   static constexpr int kMostLooks = 80;        ///< most elements whose own boxes gather() measures
   static constexpr int kFew = 8, kMany = 20;   ///< the reach grows below kFew rows and shrinks above kMany
   /// Gathering pays only if the reach is at least this many times the probe's motion per tick.
@@ -27,8 +28,9 @@ struct ElementLimits {
 /// The same limits for meshes. They are higher, because the foot on a triangle costs little.
 struct TriangleLimits {
   using Shape = RowDisc;
-  static constexpr int kMostFours = 24, kMostCandidates = 96, kMostNodes = 128, kMostLooks = 0, kFew = 16, kMany = 32;
-  static constexpr double kWorthIt = 4;
+  static constexpr int kMostFours = 24, kMostCandidates = 96, kMostNodes = 128, kMostRowsOfTree = 192, kMostLooks = 0,
+                       kFew = 16, kMany = 32;
+  static constexpr double kWorthIt = 2;
   static constexpr bool kLearns = false;
 };
 
@@ -84,8 +86,10 @@ class NearRows {
   bool consider(const Candidate& next, double reach2, double& beyond2) noexcept;
   bool considerRow(const BodyTree& body, const BoxProbe& probe, const Candidate& row, double reach2,
                    double& beyond2) noexcept;
+  bool considerDiscs(const BodyTree& body, const BoxProbe& probe, double reach2, double& beyond2) noexcept;
+  bool openBoxes(const BodyTree& body, const BoxProbe& probe, double reach2, double& beyond2) noexcept;
   bool collect(const BodyTree& body, const Eigen::Vector3d& p, double reach2, double& beyond2) noexcept;
-  void add(const Shape& shape, std::int32_t child) noexcept;
+  void add(const BodyTree& body, int first) noexcept;
 
   std::array<Four, Limits::kMostFours> fours_;
   std::array<Float4, Limits::kMostFours> known_{};  ///< [m] measured distance, plus the value of moved_ at that time
@@ -94,8 +98,10 @@ class NearRows {
   double beyond_ = -1;
   double moved_ = 0;  ///< [m] distance moved by the probe since the rows were gathered
   int rows_ = 0;
-  std::array<Candidate, Limits::kMostCandidates> candidates_;
+  std::array<Candidate, Limits::kMostCandidates + 1> candidates_;
   int candidate_count_ = 0;
+  std::array<Candidate, Limits::kMostRowsOfTree + 4> rows_of_tree_{};  ///< rows whose boxes are within reach
+  int rows_of_tree_count_ = 0;
   int looks_ = 0;  ///< elements whose boxes were measured to gather the rows
 };
 

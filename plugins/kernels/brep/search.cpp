@@ -157,6 +157,22 @@ double Search::examine(std::uint32_t place, Element element, const Vector3d& p, 
   const double d2 = evaluate(element, p, examination, best.hit);
   if (!examination.proved) run.open2 = std::min(run.open2, bound2);
   if (examination.starts > 1) --run.restarts;
+  compare(place, element, p, before, d2, run);
+  return lowerBoundOf(d2, examination);
+}
+
+/// Examines a triangle of a mesh as examine() does.
+void Search::examineTriangle(std::uint32_t place, Element element, const Vector3d& p, Run& run) noexcept {
+  const double before = run.best.hit.d2;
+  ++run.best.elements;
+  compare(place, element, p, before, meshFoot(model_.part(), element.index(), p, run.best.hit), run);
+}
+
+/// Notes whether an element, whose examination returned d2, has the best foot now. @param before [m^2] squared distance
+/// of the best foot before this examination
+void Search::compare(std::uint32_t place, Element element, const Vector3d& p, double before, double d2,
+                     Run& run) const noexcept {
+  Nearest& best = run.best;
   if (best.hit.d2 < before) {
     run.others2 = std::min(run.others2, before);
     run.tied = false;
@@ -167,7 +183,6 @@ double Search::examine(std::uint32_t place, Element element, const Vector3d& p, 
       run.tied = run.tied || isAsNear(element, p, before);
     run.others2 = std::min(run.others2, d2);
   }
-  return lowerBoundOf(d2, examination);
 }
 
 void Search::searchWhole(const Vector3d& p, Run& run) noexcept {

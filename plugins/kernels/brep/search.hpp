@@ -116,6 +116,8 @@ class Search {
   template <class Near>
   bool searchNear(Near& near, const Eigen::Vector3d& p, double way, Run& run) noexcept;
   template <class Near>
+  void adaptReach(const Near& near, const Eigen::Vector3d& p, double distance) noexcept;
+  template <class Near>
   bool gatherNear(Near& near, const Eigen::Vector3d& p, double way, double distance) noexcept;
   template <class Near>
   void examineRows(Near& near, std::uint32_t place, const Eigen::Vector3d& p, Run& run) noexcept;
@@ -132,6 +134,9 @@ class Search {
   template <class Whole>
   static void searchWithin(Run& run, const Whole& whole) noexcept;
   double examine(std::uint32_t place, Element element, const Eigen::Vector3d& p, double bound2, Run& run) noexcept;
+  void examineTriangle(std::uint32_t place, Element element, const Eigen::Vector3d& p, Run& run) noexcept;
+  void compare(std::uint32_t place, Element element, const Eigen::Vector3d& p, double before, double d2,
+               Run& run) const noexcept;
   bool isAsNear(Element element, const Eigen::Vector3d& p, double d2) const noexcept;
   static double lowerBoundOf(double d2, const Examination& examination) noexcept;
   double edgeFoot(Element element, const Eigen::Vector3d& p, Hit& hit) const noexcept;
@@ -148,6 +153,7 @@ class Search {
   NearPlaces near_places_;        ///< used if there are several placements, in the frame of the model
   int whole_nodes_ = 0;           ///< nodes that the last search of the whole model examined
   double reach_ = 0;              ///< [m] gathered rows may be farther than the nearest point by this
+  int crowded_ticks_ = 0;         ///< ticks in which near_triangles_ would be so many that a search is quicker
 };
 
 }  // namespace hapticd::brep

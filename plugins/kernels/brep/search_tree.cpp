@@ -30,7 +30,7 @@ void Search::examineTriangles(const Descent& at, const DescentEntry& entry, Run&
   const ElementRow row = BoxTree::rowOf(entry.child);
   for (std::uint32_t i = row.first; i < row.first + row.count; ++i)
     if (const Element element = at.body.elements[i]; !(element == at.first))
-      examine(at.place, element, at.p, bound, run);
+      examineTriangle(at.place, element, at.p, run);
 }
 
 /// Examines those elements of a row whose own boxes are near enough, the nearest box first.
@@ -90,7 +90,9 @@ void Search::searchTree(const BodyTree& body, std::int32_t root, std::uint32_t p
     }
     ++best.nodes;
     const BoxNode& node = body.tree.node(entry.child);
-    const int count = sortChildren(node, boxDistances(node, at.probe), run.within2(), children, run.others2);
+    const Float4 bounds = boxDistances(node, at.probe);
+    const int count = body.discs.empty() ? sortChildren(node, bounds, run.within2(), children, run.others2)
+                                         : sortChildrenAtOnce(node, bounds, run.within2(), children, run.others2);
     for (int i = 0; i < count; ++i) {
       const DescentEntry& child = children[static_cast<std::size_t>(i)];
       stack[static_cast<std::size_t>(depth++)] = child;

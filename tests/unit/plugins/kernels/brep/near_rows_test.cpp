@@ -4,9 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <random>
+#include <vector>
 
+#include "kernels/brep/descent.hpp"
 #include "kernels/brep/geometry.hpp"
 #include "kernels/brep/search.hpp"
 #include "kernels/brep/triangle_foot.hpp"
@@ -107,6 +113,19 @@ TEST(RowDisc, BoundsNoTriangleFromAbove) {
   EXPECT_GT(close, 20000);
 }
 
+/// Returns the least distance from p to a triangle that is in none of the gathered rows.
+double leastOfOthers(const Model& model, const NearTriangles& rows, const Vector3d& p) {
+  std::vector<char> gathered(model.part().triangles.size(), 0);
+  for (int r = 0; r < rows.rows(); ++r) {
+    const ElementRow row = rows.row(r / 4, r % 4);
+    for (std::uint32_t i = row.first; i < row.first + row.count; ++i) gathered[model.body(0).elements[i].index()] = 1;
+  }
+  double least = 1e300;
+  for (std::uint32_t t = 0; t < gathered.size(); ++t)
+    if (gathered[t] == 0) least = std::min(least, distanceTo(model.part(), t, p));
+  return least;
+}
+
 /// Walks at several speeds, with rests and jumps, and compares with a search whose budget is too small for gathered
 /// rows. @param spares true to check that gathering saves nodes
 void walkBeside(const Model& model, unsigned seed, bool spares) {
@@ -142,6 +161,86 @@ void walkBeside(const Model& model, unsigned seed, bool spares) {
 TEST(NearRows, ChangeNoBitOfAnyAnswer) {
   walkBeside(Model(sheet(150, 0.004)), 1, true);
   walkBeside(Model(sheet(60, 0)), 2, false);  // flat, so that many triangles are equally near
+}
+
+/// No triangle outside the gathered rows is nearer than beyond() says, also after the probe has moved.
+TEST(NearRows, BoundWhatTheyLeaveOut) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> share(-0.06, 0.06);
+  const Model model(scattered(random));
+  int gathered = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vector3d center(share(random), share(random), share(random));
+    NearTriangles rows;
+    if (!rows.gather(model.body(0), center, std::array{0.001, 0.004, 0.01}[static_cast<std::size_t>(i % 3)])) continue;
+    ++gathered;
+    const Vector3d p = center + 0.01 * Vector3d(share(random), share(random), share(random));
+    ASSERT_GE(leastOfOthers(model, rows, p), rows.beyond(p)) << i;
+    ASSERT_GE(leastOfOthers(model, rows, center), rows.beyond(center)) << i;
+  }
+  EXPECT_GT(gathered, 200);
+}
+
+/// A probe that goes half of a triangle a tick finds its foot in gathered rows, and so examines fewer groups of four
+/// boxes than a search from the root.
+TEST(NearRows, ServeAProbeThatGoesHalfATriangleATick) {
+  const SearchBudget whole{2048, NearTriangles::kMostRows * BodyTree::kMeshRow};
+  const Model model(sheet(300, 0.004));
+  Search near(model), all(model);
+  std::int64_t near_nodes = 0, all_nodes = 0;
+  for (int i = 0; i < 500; ++i) {
+    const double x = 0.01 + 0.00015 * i, y = 0.03 + 0.00004 * i;
+    const Vector3d p(x, y, 0.004 * std::sin(200 * x) * std::cos(170 * y) + 0.0005);
+    near_nodes += near.nearest(p).nodes;
+    all_nodes += all.nearest(p, whole).nodes;
+    ASSERT_EQ(near.last().hit.element.code, all.last().hit.element.code) << i;
+  }
+  EXPECT_LT(2 * near_nodes, all_nodes);
+}
+
+/// fourOf() places the numbers of discs as put() does, one by one.
+TEST(RowDisc, FourSideBySideKeepTheirNumbers) {
+  std::mt19937 random(9);
+  const Model model(scattered(random));
+  const std::vector<RowDisc>& discs = model.body(0).discs;
+  for (std::size_t i = 0; i + 4 <= discs.size(); i += 4) {
+    FourDiscs one_by_one = emptyFour(discs[i]);
+    for (int lane = 0; lane < 4; ++lane) put(discs[i + static_cast<std::size_t>(lane)], lane, one_by_one);
+    const FourDiscs four = fourOf(discs[i], discs[i + 1], discs[i + 2], discs[i + 3]);
+    ASSERT_EQ(std::memcmp(&four, &one_by_one, sizeof four), 0) << i;
+  }
+}
+
+/// sortChildrenAtOnce() against a stable sort, with equal bounds, bounds at the limit and unused places.
+TEST(Descent, ChildrenComeFarthestFirst) {
+  std::mt19937 random(10);
+  std::uniform_int_distribution<int> digit(0, 5);
+  constexpr float kEndless = std::numeric_limits<float>::infinity();
+  int within = 0;
+  for (int i = 0; i < 20000; ++i) {
+    Float4 bounds;
+    BoxNode node;
+    for (int lane = 0; lane < 4; ++lane) {
+      const int number = digit(random);
+      bounds[lane] = number == 5 ? kEndless : 0.1F * static_cast<float>(number);
+      node.child[static_cast<std::size_t>(lane)] = node.row[static_cast<std::size_t>(lane)] = lane;
+    }
+    const double limit = std::array<double, 4>{0.2, static_cast<double>(0.2F), 0, kEndless}[i % 4u];
+    std::vector<DescentEntry> expected;
+    double beyond = 1, expected_beyond = 1;
+    for (int lane = 0; lane < 4; ++lane) {
+      const auto bound = static_cast<double>(bounds[lane]);
+      if (bound <= limit && bounds[lane] < kEndless) expected.push_back({bounds[lane], lane, lane});
+      if (!(bound <= limit)) expected_beyond = std::min(expected_beyond, bound);
+    }
+    std::stable_sort(expected.begin(), expected.end(), [](auto& a, auto& b) { return a.bound > b.bound; });
+    std::array<DescentEntry, 4> children;
+    ASSERT_EQ(sortChildrenAtOnce(node, bounds, limit, children, beyond), static_cast<int>(expected.size())) << i;
+    ASSERT_EQ(beyond, expected_beyond) << i;
+    for (std::size_t k = 0; k < expected.size(); ++k) ASSERT_EQ(children[k].child, expected[k].child) << i;
+    within += static_cast<int>(expected.size());
+  }
+  EXPECT_GT(within, 20000);
 }
 
 /// Near a corner of a cube, six triangles on three faces are equally near.
