@@ -39,7 +39,8 @@ void Tracer::activate(int surface, double u, double v, double distance) noexcept
   if (surface < 0 || surface >= model_.surfaceCount() || !std::isfinite(u) || !std::isfinite(v)) return;
   for (int i = model_.firstPatch(surface); i < model_.lastPatch(surface); ++i) {
     const int nearest = parts_[static_cast<std::size_t>(tracks_[i].part)].nearest;
-    tracks_.offer(i, {u, v}, distance, nearest >= 0 ? tracks_[nearest].foot.distance : kInfinity, true);
+    const double best = nearest >= 0 ? tracks_[nearest].foot.distance : kInfinity;
+    tracks_.offer(i, {u, v}, distance, {last_p_, has_last_, best}, true);
   }
 }
 

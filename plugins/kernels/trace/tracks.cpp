@@ -38,7 +38,7 @@ void Tracks::append(int index, double bound) noexcept {
   key_.push_back(bound);
 }
 
-void Tracks::offer(int patch, const Array2d& uv, double distance, double best, bool asked) noexcept {
+void Tracks::offer(int patch, const Array2d& uv, double distance, const Probe& probe, bool asked) noexcept {
   noteSearch();
   const Patch& piece = model_.patch(patch);
   const Array2d inside = uv.max(piece.lo).min(piece.hi);
@@ -51,12 +51,12 @@ void Tracks::offer(int patch, const Array2d& uv, double distance, double best, b
     return;
   }
   // a foot that is too far away, or that is outside this patch and so belongs to another patch of the surface
-  if (distance > best + Model::kSoon || (inside != uv).any()) return;
-  if (follows(patch, inside, bound)) return;
+  if (distance > probe.best + Model::kSoon || (inside != uv).any()) return;
+  if (follows(patch, inside, bound, probe)) return;
   for (int i = patch; i >= 0; i = (*this)[i].rival)
     if ((*this)[i].touched < told_before_ && !(*this)[i].held) return set(i, inside, bound);
   // If the distance falls beyond a common side, the neighbour has its own record of that minimum.
-  if (!(distance < best) && piece.continuesBeyond(piece.sidesAt(inside))) return;
+  if (!(distance < probe.best) && piece.continuesBeyond(piece.sidesAt(inside))) return;
   if (const Track* rival = newRival(patch)) set(static_cast<int>(rival - tracks_.data()), inside, bound);
 }
 
@@ -104,13 +104,13 @@ void Tracks::set(int index, const Array2d& uv, double bound) noexcept {
 /// True if a record leads to a foot of the patch that is followed already, or to another record. It replaces an older
 /// record, and one of the same search that is farther away: beside a hairline fold of a border two feet may be that
 /// near to each other.
-bool Tracks::follows(int patch, const Array2d& uv, double bound) noexcept {
+bool Tracks::follows(int patch, const Array2d& uv, double bound, const Probe& probe) noexcept {
   const Array2d range = model_.patch(patch).hi - model_.patch(patch).lo;
   for (int i = patch; i >= 0; i = (*this)[i].rival) {
     Track& t = (*this)[i];
     if (!((uv - t.at.uv).abs() < kSameRecord * range).all()) continue;
     const bool computed = t.at.known != Iterate::Known::kParameters, of_this_search = t.touched == tick_;
-    if (computed && isCertainlyFarther(i, bound)) continue;
+    if (computed && isCertainlyFarther(i, uv, bound, probe)) continue;
     t.touched = tick_;
     if (!computed && (!of_this_search || bound < key_[static_cast<std::size_t>(t.slot)])) set(i, uv, bound);
     return true;
@@ -118,11 +118,15 @@ bool Tracks::follows(int patch, const Array2d& uv, double bound) noexcept {
   return false;
 }
 
-/// True if a foot is farther away than a record, however the probe has moved since the search of the record began.
-bool Tracks::isCertainlyFarther(int index, double bound) const noexcept {
+/// True if a followed foot is farther from the probe than the place of a record. The distance that came with the record
+/// may be a lower bound, so where it leaves a doubt, the surface is evaluated.
+bool Tracks::isCertainlyFarther(int index, const Array2d& uv, double bound, const Probe& probe) const noexcept {
   constexpr double kSlack = 1e-9;  // [m]
-  const double moved = way_ - way_told_before_, most = bound - way_told_before_ + moved;
-  return most + kSlack < atLeast(index);
+  const double least = atLeast(index) - kSlack;
+  if (!probe.known || !(bound - way_told_before_ < least + (way_ - way_told_before_))) return false;
+  spline::SurfacePoint at;
+  model_.patch((*this)[index].patch).surface.evaluate1(uv[0], uv[1], at);
+  return (at.S - probe.p).norm() < least;
 }
 
 void Tracks::keepAsRival(int patch, const Iterate& at, const LocalFoot& foot) noexcept {

@@ -26,6 +26,13 @@ struct Track {
   bool held = false;  ///< true if this foot point holds a contact; the tracer then does not drop it by itself
 };
 
+/// The probe in the tick before a record comes.
+struct Probe {
+  Eigen::Vector3d p{0, 0, 0};
+  bool known = false;  ///< false before the first tick
+  double best = 0;     ///< [m] distance of the nearest foot point
+};
+
 /// The list of followed foot points, with a lower bound of the distance to each. If the probe moves by a length, no
 /// distance changes by more than that length. So the bounds stay valid without any evaluation.
 class Tracks {
@@ -42,11 +49,10 @@ class Tracks {
 
   /// [rt] Follows a patch from the result (u, v) of a search. If the patch is already followed, (u, v) becomes a rival,
   /// or replaces a foot point that no recent search has found. The result is ignored if it leads to a foot point that
-  /// is followed already, or is more than kSoon [m] farther away than `best`.
+  /// is followed already, or is more than kSoon [m] farther away than `probe.best`.
   /// @param distance [m] lower bound of the distance from the probe to the patch
-  /// @param best [m] distance of the nearest foot point
   /// @param asked true if the host activated the patch
-  void offer(int patch, const Eigen::Array2d& uv, double distance, double best, bool asked) noexcept;
+  void offer(int patch, const Eigen::Array2d& uv, double distance, const Probe& probe, bool asked) noexcept;
   /// [rt] Starts following a patch at (u, v), where a neighbour's foot has reached the common side. Does nothing if the
   /// patch is followed already.
   void follow(int patch, const Eigen::Array2d& uv) noexcept;
@@ -136,8 +142,8 @@ class Tracks {
   Track* newRival(int patch) noexcept;
   void noteSearch() noexcept;
   void countAnew() noexcept;
-  bool follows(int patch, const Eigen::Array2d& uv, double bound) noexcept;
-  bool isCertainlyFarther(int index, double bound) const noexcept;
+  bool follows(int patch, const Eigen::Array2d& uv, double bound, const Probe& probe) noexcept;
+  bool isCertainlyFarther(int index, const Eigen::Array2d& uv, double bound, const Probe& probe) const noexcept;
   void set(int index, const Eigen::Array2d& uv, double bound) noexcept;
   bool isSame(int patch, const LocalFoot& one, const LocalFoot& other) const noexcept;
 
