@@ -100,8 +100,8 @@ Verdict drawingWhereFelt(const Recipe& recipe, uint64_t);
 /// Warns if the shape is felt outside of its bounds(). Skips a shape that gives none.
 Verdict boundsWhereFelt(const Recipe& recipe, uint64_t);
 
-/// Fails if a shape that moves gives its contacts in the frame of the pose before the step, or if its class does not say
-/// that it may move. Skips a shape that does not move.
+/// Fails if a shape that moves gives its contacts in the frame of the pose before the step, or if its class does not
+/// say that it may move. Skips a shape that does not move.
 Verdict contactsOfTheNewPose(const Recipe& recipe, uint64_t);
 
 /// Returns what goes wrong with eight probes, as many as a run may have, in guarded memory, or "".

@@ -96,10 +96,11 @@ void checkColumns(const GivenModel& given, const scene::Value& value) {
 void checkHysteresis(const GivenModel& given, const scene::Value& value) {
   constexpr double kNoise = 1e-4;  // [m]
   if (!(value.number < kNoise)) return;
-  given.warn({value.id}, fmt::format("with {:g} m a hand that rests near an edge, or in the middle of a wall, feels the "
-                                     "force turn from face to face with the noise of the arm; leave this out, or "
-                                     "expected {:g} m or more",
-                                     value.number, kNoise));
+  given.warn({value.id},
+             fmt::format("with {:g} m a hand that rests near an edge, or in the middle of a wall, feels the "
+                         "force turn from face to face with the noise of the arm; leave this out, or "
+                         "expected {:g} m or more",
+                         value.number, kNoise));
 }
 
 void checkLength(const GivenModel& given, const scene::Value& value, const host::ParamInfo& param) {
