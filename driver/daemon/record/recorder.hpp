@@ -21,6 +21,8 @@ class Recorder {
   static Result<std::unique_ptr<Recorder>> create(const FlightRing& ring, const std::string& file);
   ~Recorder() { stop(); }
 
+  void discard() { recording_->discard(); }  ///< [main] gives up the file, before start()
+
   std::error_code start();  ///< [main] starts the thread that copies rows
 
   /// [main] Copies all rows that are there now. Runs in virtual time call it between ticks, often enough to lose no

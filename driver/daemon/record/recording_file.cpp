@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -25,7 +26,6 @@ Result<std::unique_ptr<RecordingFile>> RecordingFile::create(const std::string& 
     return Error{file +
                  ": another run records into it, or a program that reads it keeps it open; expected the name of "
                  "another file"};
-  if (ftruncate(fd, 0) != 0 && errno != EINVAL) return Error{file + ": cannot be written: " + std::strerror(errno)};
   std::vector<uint32_t> chunk_rows;
   for (const StreamSpec& stream : streams) {
     const uint32_t bytes = stream.layout.rowBytes();
@@ -34,12 +34,25 @@ Result<std::unique_ptr<RecordingFile>> RecordingFile::create(const std::string& 
     recording->streams_.push_back({bytes, rows, hdf5::ChunkIndex(rows, uint64_t{rows} * bytes)});
   }
   recording->skeleton_ = makeSkeleton(streams, chunk_rows, about, false);
-  recording->write(0, recording->skeleton_.bytes);
-  recording->end_ = recording->skeleton_.bytes.size();
-  recording->skeleton_.bytes.clear();
+  struct stat there{};
+  if (fstat(fd, &there) != 0 || there.st_size == 0) recording->begin();
   if (recording->error_ == 0) return recording;
   removeIncomplete(file);
   return Error{file + ": cannot be written: " + std::strerror(recording->error_)};
+}
+
+/// Replaces what is in the file by the skeleton, once.
+void RecordingFile::begin() {
+  if (begun_) return;
+  begun_ = true;
+  if (ftruncate(fd_, 0) != 0 && errno != EINVAL) error_ = errno;
+  write(0, skeleton_.bytes);
+  end_ = skeleton_.bytes.size();
+  skeleton_.bytes.clear();
+}
+
+void RecordingFile::discard() {
+  if (begun_) removeIncomplete(file_);
 }
 
 RecordingFile::~RecordingFile() {
@@ -48,6 +61,7 @@ RecordingFile::~RecordingFile() {
 
 Result<void> RecordingFile::append(size_t number, const std::byte* rows, uint64_t count) {
   Stream& stream = streams_[number];
+  begin();
   while (count > 0) {
     const uint64_t in_chunk = stream.rows % stream.chunk_rows;
     if (in_chunk == 0)
@@ -85,6 +99,7 @@ uint64_t RecordingFile::newBlock(uint32_t stream, uint64_t bytes) {
 }
 
 Result<void> RecordingFile::publish() {
+  begin();
   for (size_t i = 0; i < streams_.size() && error_ == 0; ++i) {
     Stream& stream = streams_[i];
     const uint64_t at = kHeaderAt + offsetof(FileHeader, streams) + i * sizeof(StreamHeader);

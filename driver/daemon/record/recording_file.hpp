@@ -16,8 +16,9 @@ class RecordingFile {
  public:
   static constexpr uint64_t kChunkBytes = 256 * 1024;
 
-  /// [main] Creates the file, or replaces it. @param chunk_bytes approximate size of the chunks in which rows are
-  /// stored
+  /// [main] Creates the file. A file that is there already is locked, and stays as it is until the first rows come: a
+  /// run that cannot start loses no former recording. @param chunk_bytes approximate size of the chunks in which rows
+  /// are stored
   static Result<std::unique_ptr<RecordingFile>> create(const std::string& file, const std::vector<StreamSpec>& streams,
                                                        const About& about, uint64_t chunk_bytes = kChunkBytes);
   ~RecordingFile();  ///< [main] closes the file without marking it as complete
@@ -30,6 +31,7 @@ class RecordingFile {
   /// [main] Notes that rows are missing between the last appended row and the next.
   void lost(size_t stream, uint64_t count) { streams_[stream].lost += count; }
 
+  void discard();          ///< [main] gives up a file without rows: what was there before stays, and an empty file goes
   Result<void> publish();  ///< [main] makes the appended rows part of the file
   Result<void> close();    ///< [main] publishes, marks the file as complete and closes it
 
@@ -43,6 +45,7 @@ class RecordingFile {
     uint64_t rows = 0, published = 0, lost = 0, chunk_address = 0;
   };
   RecordingFile(std::string file, int fd) : file_(std::move(file)), fd_(fd) {}
+  void begin();
   Result<void> beginChunk(Stream& stream, uint32_t number);
   uint64_t newBlock(uint32_t stream, uint64_t bytes);
   void write(uint64_t address, const void* bytes, size_t size);
@@ -52,6 +55,7 @@ class RecordingFile {
   std::string file_;
   int fd_;
   int error_ = 0;
+  bool begun_ = false;  ///< the file has the skeleton, and nothing of what was there before
   uint64_t end_ = 0;
   Skeleton skeleton_;
   std::vector<Stream> streams_;

@@ -2,7 +2,6 @@
 #include "session/runner.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
 
 #include "base/os.hpp"
@@ -124,12 +123,10 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
   return done;
 }
 
-/// Removes the recording of a run that did not begin: it has no tick, and would look like that of a killed run.
+/// Gives up the recording of a run that did not begin: it has no tick, and would look like that of a killed run.
 void Runner::dropRecording() {
-  if (!recorder_) return;
+  if (recorder_) recorder_->discard();
   recorder_.reset();
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(options_.record, ignored)) std::filesystem::remove(options_.record, ignored);
 }
 
 void Runner::stopArms() {

@@ -236,6 +236,21 @@ TEST_F(Commands, ARunThatCannotBeginLeavesNoRecording) {
   EXPECT_FALSE(std::filesystem::exists(file)) << "it would look like that of a killed run";
 }
 
+TEST_F(Commands, ARunThatCannotBeginLeavesTheFormerRecordingAsItWas) {
+  const std::string file = (dir_ / "run.h5").string(), models = "models: []\n";
+  const std::string good = put("good.yaml", "hapticd: 1\nhand: {script: none}\n" + models);
+  const std::string far = put("far.yaml", "hapticd: 1\nhand: {center: [0, 3, 0]}\n" + models);
+  ASSERT_EQ(run("run " + good + " --for 0.1 --virtual-time --record " + file, kShipped).exit_code, 0);
+  const auto before = std::filesystem::file_size(file);
+  EXPECT_EQ(run("run " + far + " --for 1 --virtual-time --record " + file, kShipped).exit_code, 1);
+  ASSERT_TRUE(std::filesystem::exists(file));
+  EXPECT_EQ(std::filesystem::file_size(file), before);
+  const Outcome replayed = run("replay " + file, kShipped);
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.text;
+  EXPECT_EQ(run("run " + good + " --for 9 --virtual-time --record " + file, kShipped).exit_code, 0);
+  EXPECT_GT(std::filesystem::file_size(file), before) << "a run that begins replaces it";
+}
+
 TEST_F(Commands, DaemonFileIsCheckedBeforeAnythingRuns) {
   const std::string daemon = put("daemon.yaml", "hapticd-daemon: 1\nservo: {priority: 200}\n");
   const Outcome outcome = run("--config " + daemon + " plugin list");
