@@ -29,9 +29,11 @@ models:
 """
 
 
-def example(name, *arguments):
+def example(name, *arguments, without=()):
+    """@param without variables of the environment that the example does not get"""
+    given = {key: value for key, value in environment.items() if key not in without}
     done = subprocess.run([sys.executable, os.path.join(CLIENT, "examples", name), "--name", "lib", *arguments],
-                          env=dict(environment, PYTHONPATH=CLIENT), capture_output=True, text=True, timeout=120)
+                          env=dict(given, PYTHONPATH=CLIENT), capture_output=True, text=True, timeout=120)
     return done.returncode, done.stdout, done.stderr
 
 
@@ -120,6 +122,8 @@ def examples(folder):
     picture = os.path.join(folder, "live.png")
     code, out, err = example("plot_live.py", "arm0_sent_fx", "depth", "--save", picture, "--window", "0.5")
     check("plot_live.py", code == 0 and open(picture, "rb").read(4) == b"\x89PNG" and os.path.getsize(picture) > 5000, (out, err))
+    code, out, err = example("plot_live.py", without=("DISPLAY", "WAYLAND_DISPLAY"))
+    check("plot_live.py without a display says what to do", code == 1 and "there is no display" in err and "--save FILE" in err, (code, err))
     code, out, err = example("plot_live.py", "--list")
     check("plot_live.py lists columns", code == 0 and re.search(r"arm0_sent_fx +N ", out), out[:300])
     code, out, err = example("plot_live.py", "no_such_column")

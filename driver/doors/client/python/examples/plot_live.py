@@ -38,6 +38,8 @@ with h:
         import matplotlib
         matplotlib.use("Agg")
     from matplotlib import animation, pyplot
+    if not options.save and pyplot.get_backend().lower() == "agg":
+        raise SystemExit("error: there is no display to open a window on; write a picture with --save FILE")
 
     figure, axes = pyplot.subplots()
     lines = [axes.plot([], [], label=f"{name} [{units[name]}]")[0] for name in options.columns]
