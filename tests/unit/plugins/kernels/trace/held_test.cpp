@@ -255,11 +255,13 @@ TEST(Held, InAThickSolidIsTheNearestPoint) {
     std::normal_distribution<double> turn(0, 0.15);
     Vector3d p(0, 0.055, 0), heading(1, 0, 0);
     if (std::string(name) == "torus") p = {0.05, 0.025, 0};
-    int wrong = 0;
+    int wrong = 0, held = 0;
     for (int tick = 0; tick < 20000; ++tick) {
       const double distance = signedDistance(name, p);
       const Foot foot = hand.at(p);
-      wrong += std::abs(-foot.depth - distance) > 1e-6 ? 1 : 0;
+      const bool other = std::abs(-foot.depth - distance) > 1e-6, says_so = foot.status == FootStatus::kHeld;
+      wrong += other && !says_so ? 1 : 0;
+      held += other && says_so ? 1 : 0;
       const double goal = 0.0005 * std::sin(1e-3 * tick);
       Vector3d turned;  // one number after another, since compilers order the arguments of a call differently
       for (double& one : turned) one = turn(random);
@@ -267,7 +269,8 @@ TEST(Held, InAThickSolidIsTheNearestPoint) {
       heading.normalize();
       p += 1e-4 * heading;
     }
-    EXPECT_LE(wrong, 300) << name;  // near sharp edges of the box and the cylinder, where the contact is held
+    EXPECT_EQ(wrong, 0) << name;
+    EXPECT_LE(held, 1000) << name;  // near sharp edges of the box and the cylinder; compilers make other walks
   }
 }
 
