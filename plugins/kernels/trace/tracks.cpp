@@ -123,7 +123,7 @@ bool Tracks::follows(int patch, const Array2d& uv, double bound, const Probe& pr
 bool Tracks::isCertainlyFarther(int index, const Array2d& uv, double bound, const Probe& probe) const noexcept {
   constexpr double kSlack = 1e-9;  // [m]
   const double least = atLeast(index) - kSlack;
-  if (!probe.known || !(bound - way_told_before_ < least + (way_ - way_told_before_))) return false;
+  if (!probe.known || !(bound - way_ < least)) return false;
   spline::SurfacePoint at;
   model_.patch((*this)[index].patch).surface.evaluate1(uv[0], uv[1], at);
   return (at.S - probe.p).norm() < least;

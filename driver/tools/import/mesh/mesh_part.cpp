@@ -91,6 +91,7 @@ void addObjects(const std::vector<MeshObject>& objects, const MeshOptions& optio
 
 /// Returns where bodies pass through each other.
 Crossings overlapsOf(const brep::Part& part) {
+  if (part.bodies.size() < 2) return {};
   std::vector<Vector3d> points;
   std::vector<std::array<std::uint32_t, 3>> corners;
   std::vector<std::uint32_t> body;
