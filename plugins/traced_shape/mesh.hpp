@@ -10,6 +10,7 @@ namespace hapticd {
 struct Mesh {
   std::vector<float> xyz, normals;
   std::vector<uint32_t> indices;
+  std::vector<uint32_t> colours;  ///< of each vertex, as in hsp_mesh; empty if the model has none
 };
 
 }  // namespace hapticd

@@ -200,6 +200,18 @@ void addTriangles(const brep::Model& model, const brep::Placement& place, const 
   }
 }
 
+/// Returns the colour of all that has none of its own at a place.
+std::uint32_t colourOf(const brep::Part& part, const brep::Placement& place) {
+  const std::uint32_t own = part.instances[place.instance].colour;
+  return own != 0 ? own : part.bodies[place.body].colour;
+}
+
+/// Gives the vertices that were added last a colour. The alpha of a CAD file is left out: what can be felt is opaque.
+void paint(std::uint32_t colour, Mesh& mesh) {
+  constexpr std::uint32_t kOpaque = 0xff000000u;
+  mesh.colours.resize(mesh.xyz.size() / 3, colour != 0 ? colour | kOpaque : 0);
+}
+
 }  // namespace
 
 Mesh tessellate(const brep::Model& model, double chord_error) {
@@ -211,10 +223,17 @@ Mesh tessellate(const brep::Model& model, double chord_error) {
   mesh.indices.reserve(3 * triangles);
   for (const brep::Placement& place : model.placements()) {
     const brep::Body& body = model.part().bodies[place.body];
-    for (std::uint32_t f = 0; f < body.face_count; ++f)
-      FaceMesh(model, place, body.first_face + f, chord_error, mesh).run();
+    const std::uint32_t colour = colourOf(model.part(), place);
+    for (std::uint32_t f = body.first_face; f < body.first_face + body.face_count; ++f) {
+      FaceMesh(model, place, f, chord_error, mesh).run();
+      const std::uint32_t own = model.part().faces[f].colour;
+      paint(own != 0 ? own : colour, mesh);
+    }
     addTriangles(model, place, body, mesh);
+    paint(colour, mesh);
   }
+  if (std::all_of(mesh.colours.begin(), mesh.colours.end(), [](std::uint32_t colour) { return colour == 0; }))
+    mesh.colours = {};
   return mesh;
 }
 

@@ -245,6 +245,7 @@ hsp_status TracedShape::mesh(double chord_error, hsp_mesh& out) {
   out.xyz = mesh_.xyz.data();
   out.normals = mesh_.normals.data();
   out.indices = mesh_.indices.data();
+  if (HSP_HAS(&out, colours) && !mesh_.colours.empty()) out.colours = mesh_.colours.data();
   return HSP_OK;
 }
 

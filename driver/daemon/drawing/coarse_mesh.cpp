@@ -68,7 +68,8 @@ std::vector<std::uint32_t> representatives(const WeldedMesh& mesh, const Cluster
   return best;
 }
 
-/// Builds the lists of a drawing. A cluster has a vertex for each direction in which its surface looks.
+/// Builds the lists of a drawing. A cluster has a vertex for each direction in which its surface looks, and each
+/// colour.
 class Builder {
  public:
   Builder(const hsp_mesh& mesh, const WeldedMesh& welded, const Clusters& clusters)
@@ -91,7 +92,7 @@ class Builder {
       std::array<std::uint32_t, 3> at{};
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t corner = 3 * std::size_t{t} + k;
-        at[k] = addVertex(welded_.places[welded_.corners[corner]], normalAt(corner));
+        at[k] = addVertex(welded_.places[welded_.corners[corner]], normalAt(corner), colourAt(corner));
       }
       add(at, t);
     }
@@ -100,9 +101,10 @@ class Builder {
   }
 
  private:
-  /// The corners of a cluster whose normals are nearly the same.
+  /// The corners of a cluster that have one colour and nearly the same normal.
   struct Side {
-    std::uint32_t cluster, next;   ///< next: another side of the cluster, or kNone
+    std::uint32_t cluster, next;  ///< next: another side of the cluster, or kNone
+    std::uint32_t colour;
     Eigen::Vector3f first, sum;    ///< normal of the first corner, sum of all normals
     std::uint32_t vertex = kNone;  ///< vertex of the drawing
   };
@@ -113,25 +115,30 @@ class Builder {
     return Eigen::Map<const Eigen::Vector3f>(mesh_.normals + 3 * std::size_t{mesh_.indices[corner]});
   }
 
+  std::uint32_t colourAt(std::size_t corner) const {
+    return mesh_.colours != nullptr ? mesh_.colours[mesh_.indices[corner]] : 0;
+  }
+
   std::uint32_t sideOf(std::size_t corner) {
-    const std::uint32_t cluster = clusters_.of[welded_.corners[corner]];
+    const std::uint32_t cluster = clusters_.of[welded_.corners[corner]], colour = colourAt(corner);
     const Eigen::Vector3f normal = normalAt(corner);
     for (std::uint32_t s = first_[cluster]; s != kNone; s = sides_[s].next)
-      if (!hasNormals() || sides_[s].first.dot(normal) >= kSmooth) {
+      if (sides_[s].colour == colour && (!hasNormals() || sides_[s].first.dot(normal) >= kSmooth)) {
         sides_[s].sum += normal;
         return s;
       }
-    sides_.push_back({cluster, first_[cluster], normal, normal});
+    sides_.push_back({cluster, first_[cluster], colour, normal, normal});
     return first_[cluster] = static_cast<std::uint32_t>(sides_.size() - 1);
   }
 
   std::uint32_t vertexOf(std::size_t corner) {
     Side& side = sides_[side_of_[corner]];
-    if (side.vertex == kNone) side.vertex = addVertex(welded_.places[places_[side.cluster]], side.sum);
+    if (side.vertex == kNone) side.vertex = addVertex(welded_.places[places_[side.cluster]], side.sum, side.colour);
     return side.vertex;
   }
 
-  std::uint32_t addVertex(const Eigen::Vector3f& place, const Eigen::Vector3f& normal) {
+  std::uint32_t addVertex(const Eigen::Vector3f& place, const Eigen::Vector3f& normal, std::uint32_t colour) {
+    if (mesh_.colours != nullptr) out_.colours.push_back(colour);
     out_.xyz.insert(out_.xyz.end(), place.begin(), place.end());
     const Eigen::Vector3f unit = normal.normalized();
     if (hasNormals()) out_.normals.insert(out_.normals.end(), unit.begin(), unit.end());
@@ -212,6 +219,7 @@ hsp_mesh CoarseMesh::view() const {
   mesh.xyz = xyz.data();
   mesh.normals = normals.empty() ? nullptr : normals.data();
   mesh.indices = indices.data();
+  mesh.colours = colours.empty() ? nullptr : colours.data();
   return mesh;
 }
 

@@ -14,6 +14,7 @@ namespace hapticd::drawing {
 struct CoarseMesh {
   std::vector<float> xyz, normals;     ///< as in hsp_mesh; no normals if the plugin gave none
   std::vector<std::uint32_t> indices;  ///< as in hsp_mesh
+  std::vector<std::uint32_t> colours;  ///< as in hsp_mesh; empty if the plugin gave none
   /// [m] Each corner of the plugin's triangles is that near to the drawing. Each corner of the drawing is one of the
   /// plugin's.
   double off = 0;

@@ -83,7 +83,7 @@ Result<std::string> geometryAnswer(const host::ShapeInstance& shape, const Drawi
 
 Result<std::string> geometryInMemory(const host::ShapeInstance& shape, const DrawingWish& wish, Descriptor& memory) {
   const auto bytesOf = [](const hsp_mesh& mesh) {
-    const std::size_t per_vertex = mesh.normals != nullptr ? 6 : 3;
+    const std::size_t per_vertex = (mesh.normals != nullptr ? 6 : 3) + (mesh.colours != nullptr ? 1 : 0);
     return 4 * (per_vertex * mesh.vertex_count + 3 * std::size_t{mesh.triangle_count});
   };
   const auto drawing = drawnToFit(shape, wish, {kMostMemory, kMemoryPerTriangle, true, [&](const hsp_mesh& mesh) {
@@ -102,11 +102,13 @@ Result<std::string> geometryInMemory(const host::ShapeInstance& shape, const Dra
   append(mesh.xyz, places);
   if (mesh.normals != nullptr) append(mesh.normals, places);
   append(mesh.indices, 3 * std::size_t{mesh.triangle_count});
+  if (mesh.colours != nullptr) append(mesh.colours, mesh.vertex_count);
   auto descriptor = (*shared)->share();
   if (!descriptor) return Error{descriptor.error()};
   memory = std::move(*descriptor);
-  return fmt::format(R"({{"ok":true,"bytes":{},"vertices":{},"triangles":{},"normals":{},{}}})", bytes,
-                     mesh.vertex_count, mesh.triangle_count, mesh.normals != nullptr, keysOf(*drawing));
+  return fmt::format(R"({{"ok":true,"bytes":{},"vertices":{},"triangles":{},"normals":{},"colours":{},{}}})", bytes,
+                     mesh.vertex_count, mesh.triangle_count, mesh.normals != nullptr, mesh.colours != nullptr,
+                     keysOf(*drawing));
 }
 
 Result<std::string> verticesAnswer(const host::ShapeInstance& shape, double after) {

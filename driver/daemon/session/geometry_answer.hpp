@@ -16,8 +16,9 @@ namespace hapticd::servo {
 Result<std::string> geometryAnswer(const host::ShapeInstance& shape, const DrawingWish& wish);
 
 /// [main] Returns the triangles in read-only memory, 64 MiB at most: f32 xyz [m], then f32 unit normals if the model
-/// has them ("normals" in the answer), then u32 triangles. The answer is one line of JSON: bytes, vertices, triangles,
-/// normals, tolerance, and a "note" as in geometryAnswer(). @param memory gets the descriptor of the memory
+/// has them ("normals" in the answer), then u32 triangles, then u32 colours of the vertices if it has them ("colours").
+/// The answer is one line of JSON: bytes, vertices, triangles, normals, colours, tolerance, and a "note" as in
+/// geometryAnswer(). @param memory gets the descriptor of the memory
 Result<std::string> geometryInMemory(const host::ShapeInstance& shape, const DrawingWish& wish, Descriptor& memory);
 
 /// [main] Returns the newest vertices of an active model that deforms: one line of JSON with the number of the drawing

@@ -39,7 +39,7 @@ constexpr size_t kMost = size_t{1} << 24;  ///< largest number of vertices, and 
 
 struct Counts {
   size_t vertices = 0, triangles = 0;
-  bool normals = false;
+  bool normals = false, colours = false;
 };
 
 /// Returns what an answer says about its memory, or nothing if the numbers are impossible.
@@ -48,8 +48,11 @@ Counts countsOf(const Json& answer) {
     const auto it = answer.find(key);
     return it != answer.end() && it->is_number_unsigned() ? it->get<size_t>() : kMost + 1;
   };
-  const auto normals = answer.find("normals");
-  const Counts counts{count("vertices"), count("triangles"), normals != answer.end() && *normals == true};
+  const auto has = [&](const char* key) {
+    const auto it = answer.find(key);
+    return it != answer.end() && *it == true;
+  };
+  const Counts counts{count("vertices"), count("triangles"), has("normals"), has("colours")};
   return counts.vertices <= kMost && counts.triangles <= kMost ? counts : Counts{};
 }
 
@@ -79,9 +82,11 @@ std::string headed(uint32_t a, uint32_t b, uint32_t c, uint32_t d, size_t reserv
 
 Message meshMessage(const Json& answer, int memory) {
   const Counts counts = countsOf(answer);
-  const size_t numbers = 3 * (counts.vertices * (counts.normals ? 2 : 1) + counts.triangles);
-  std::string bytes = headed(kMeshMessage, static_cast<uint32_t>(counts.vertices),
-                             static_cast<uint32_t>(counts.triangles), counts.normals ? 1 : 0);
+  const size_t per_vertex = (counts.normals ? 6 : 3) + (counts.colours ? 1 : 0);
+  const size_t numbers = per_vertex * counts.vertices + 3 * counts.triangles;
+  const uint32_t flags = (counts.normals ? kHasNormals : 0) | (counts.colours ? kHasColours : 0);
+  std::string bytes =
+      headed(kMeshMessage, static_cast<uint32_t>(counts.vertices), static_cast<uint32_t>(counts.triangles), flags);
   if (counts.vertices == 0 || !appendFrom(memory, 4 * numbers, bytes)) return nullptr;
   return std::make_shared<const std::string>(std::move(bytes));
 }

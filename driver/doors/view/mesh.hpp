@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// Messages with meshes and vertices for a page. They are binary: little-endian words, then the numbers.
 ///
-///     mesh:      u32 0x80000000, vertices, triangles, flags (1: normals follow), f32 xyz, [f32 normals], u32 corners
+///     mesh:      u32 0x80000000, vertices, triangles, flags (1: normals, 2: colours), f32 xyz, [f32 normals],
+///                u32 corners, [u32 colours of the vertices]
 ///     vertices:  u32 0x100 + model, frame, vertices, 0, f32 xyz
 ///     rows:      u32 stream, row_bytes, count, 0, rows
 #pragma once
@@ -18,6 +19,7 @@ namespace hapticd::view {
 constexpr uint32_t kFewestTriangles = 1000, kMostTriangles = 600000;
 
 constexpr uint32_t kMeshMessage = 0x80000000u, kVerticesMessage = 0x100;
+constexpr uint32_t kHasNormals = 1, kHasColours = 2;  ///< flags of a mesh
 
 /// [main] Makes a message from the daemon's answer to `geometry`, whose triangles are in `memory`. Returns nullptr if
 /// the answer is wrong, or if the memory is shorter than the answer says.

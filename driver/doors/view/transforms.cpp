@@ -49,6 +49,20 @@ void readFrame(const std::byte* at, Frame& frame) {
 
 constexpr size_t kFrameBytes = 7 * sizeof(double);
 
+constexpr const char* kOwnColour = R"({"r":0.64,"g":0.72,"b":0.79,"a":1})";  ///< of models without colours
+
+/// Returns the elements of a list of colours. @param words as in hsp_mesh
+std::string coloursOf(const uint32_t* words, uint32_t count) {
+  std::string text;
+  for (uint32_t i = 0; i < count; ++i) {
+    const auto share = [&](int byte) { return static_cast<double>(words[i] >> (8 * byte) & 255) / 255; };
+    text += i == 0 ? "" : ",";
+    text += words[i] == 0 ? kOwnColour
+                          : fmt::format(R"({{"r":{:.4g},"g":{:.4g},"b":{:.4g},"a":1}})", share(0), share(1), share(2));
+  }
+  return text;
+}
+
 }  // namespace
 
 Frames::Frames(const Json& about) {
@@ -132,17 +146,20 @@ const char* const kSceneDefinition =
 std::string sceneUpdate(const std::string& model, const std::string& mesh, uint64_t time_ns) {
   uint32_t head[4];
   std::memcpy(head, mesh.data(), sizeof head);
-  const uint32_t vertices = head[1], triangles = head[2], normals = head[3] & 1;
+  const uint32_t vertices = head[1], triangles = head[2];
   const auto* xyz = reinterpret_cast<const float*>(mesh.data() + sizeof head);
-  const auto* corners = reinterpret_cast<const uint32_t*>(xyz + std::size_t{3} * vertices * (1 + normals));
+  const std::size_t per_vertex = (head[3] & kHasNormals) != 0 ? 6 : 3;
+  const auto* corners = reinterpret_cast<const uint32_t*>(xyz + per_vertex * vertices);
   const std::string time = fmt::format(R"({{"sec":{},"nsec":{}}})", time_ns / kNanoseconds, time_ns % kNanoseconds);
   const std::string name = Json(model).dump();
   std::string text = fmt::format(
       R"({{"deletions":[],"entities":[{{"timestamp":{},"frame_id":{},"id":{},"lifetime":{{"sec":0,"nsec":0}},)"
       R"("frame_locked":true,"metadata":[],"arrows":[],"cubes":[],"spheres":[],"cylinders":[],"lines":[],"texts":[],)"
       R"("models":[],"triangles":[{{"pose":{{"position":{{"x":0,"y":0,"z":0}},"orientation":{{"x":0,"y":0,"z":0,"w":1}}}},)"
-      R"("color":{{"r":0.64,"g":0.72,"b":0.79,"a":1}},"colors":[],"points":[)",
-      time, name, name);
+      R"("color":{},"colors":[)",
+      time, name, name, kOwnColour);
+  if ((head[3] & kHasColours) != 0) text += coloursOf(corners + std::size_t{3} * triangles, vertices);
+  text += R"(],"points":[)";
   for (uint32_t i = 0; i < vertices; ++i)
     text += fmt::format(R"({}{{"x":{:.7g},"y":{:.7g},"z":{:.7g}}})", i == 0 ? "" : ",", xyz[3 * i], xyz[3 * i + 1],
                         xyz[3 * i + 2]);

@@ -119,6 +119,7 @@ typedef struct hsp_mesh {
   uint32_t struct_size, vertex_count, triangle_count, reserved;
   const float *xyz, *normals; /* m; unit vectors, or NULL; 3 floats per vertex */
   const uint32_t* indices;    /* 3 per triangle, counter-clockwise seen from outside */
+  const uint32_t* colours;    /* one per vertex: red | green << 8 | blue << 16 | 255 << 24; 0: none; or NULL */
 } hsp_mesh;
 typedef struct hsp_ext_geometry {
   uint32_t struct_size, reserved;

@@ -87,5 +87,6 @@ function parseMesh(buffer, head) {
   };
   const xyz = take(Float32Array, 3 * vertices);
   const normals = (flags & 1) !== 0 ? take(Float32Array, 3 * vertices) : null;
-  return {xyz, normals, corners: take(Uint32Array, 3 * triangles)};
+  const corners = take(Uint32Array, 3 * triangles);
+  return {xyz, normals, corners, colours: (flags & 2) !== 0 ? take(Uint32Array, vertices) : null};
 }

@@ -4,18 +4,10 @@
 import {Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh,
   MeshLambertMaterial, Vector4, WireframeGeometry} from 'three';
 import {toCreasedNormals} from 'three/addons/utils/BufferGeometryUtils.js';
+import {colourOf, vertexColours} from './colours.js';
 
-const kColors = {mat_deformable: '#e0a08c', push_button: '#8fb0dc', pendulum: '#cdb27a'};
-const kRigid = ['#a3b8c9', '#c9b49c', '#a5c2a6', '#bfaacb', '#9cc0c4']; // parts of an assembly must be told apart
-const kOther = ['#a7c4a0', '#c3a6cf', '#9fc6c4', '#d3bd94'];
 const kCrease = Math.PI / 5; // rad: if a plugin gives no normals, edges that bend by more than this stay sharp
 const kStains = 4; // largest number of contacts that colour one surface at a time
-
-/** Returns the colour of a model, which depends on its plugin; rigid models take turns. */
-export function colorOf(plugin, index) {
-  if (plugin === 'nurbs_rigid') return kRigid[index % kRigid.length];
-  return kColors[plugin] ?? kOther[index % kOther.length];
-}
 
 const kFragmentHead = `varying vec3 vPlace;
 uniform vec4 stains[${kStains}];
@@ -32,9 +24,9 @@ const kFragmentStain = `
   #include <opaque_fragment>`;
 
 /** Makes a material with Lambert's shading and a warm stain about each contact. A stain has a place in the world and a
- * strength. */
-function stainedMaterial(color) {
-  const material = new MeshLambertMaterial({color, side: DoubleSide});
+ * strength. @param colour one `color`, or `vertexColors` */
+function stainedMaterial(colour) {
+  const material = new MeshLambertMaterial({side: DoubleSide, ...colour});
   const uniforms = {
     stains: {value: Array.from({length: kStains}, () => new Vector4(0, 0, 0, 0))},
     stainRadius: {value: 0.01},
@@ -70,7 +62,7 @@ export class Models {
     this.byIndex.delete(index);
   }
 
-  /** Adds a model with its triangles {xyz, normals, corners} and pose {position, orientation}. */
+  /** Adds a model with its triangles {xyz, normals, corners, colours} and pose {position, orientation}. */
   add(index, {name, plugin, pose}, triangles) {
     this.remove(index);
     const live = new BufferGeometry(); // gets the new vertices of a body that deforms
@@ -78,7 +70,10 @@ export class Models {
     live.setIndex(new BufferAttribute(triangles.corners, 1));
     if (triangles.normals) live.setAttribute('normal', new BufferAttribute(triangles.normals, 3));
     else live.computeVertexNormals();
-    const mesh = new Mesh(triangles.normals ? live : toCreasedNormals(live, kCrease), stainedMaterial(colorOf(plugin, index)));
+    const own = colourOf(plugin, index);
+    if (triangles.colours) live.setAttribute('color', new BufferAttribute(vertexColours(triangles.colours, own), 3));
+    const material = stainedMaterial(triangles.colours ? {vertexColors: true} : {color: own});
+    const mesh = new Mesh(triangles.normals ? live : toCreasedNormals(live, kCrease), material);
     mesh.name = name;
     if (pose) placeMesh(mesh, pose);
     this.byIndex.set(index, {name, plugin, mesh, live, edges: null, triangles: triangles.corners.length / 3});

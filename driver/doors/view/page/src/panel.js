@@ -2,7 +2,7 @@
 /** The list of models, with a form for their live parameters. The fields come from the plugin's own table, with unit,
  * range and documentation. A change that a hand may feel suddenly needs consent. */
 import {element, exact, grouped, short} from './format.js';
-import {colorOf} from './models.js';
+import {colourOf, swatchOf} from './colours.js';
 
 const kOpenModels = 3; // if there are more models, their parameters are folded
 
@@ -36,7 +36,7 @@ export class Panel {
     this.ask = ask;
     this.control = false;
     this.models = [];
-    this.drawings = new Map(); // name -> why a model is not drawn, or drawn coarser than it is felt
+    this.drawings = new Map(); // name -> colours of a model, and words: why it is not drawn, or drawn coarser than it is felt
     this.folder = ''; // folder of the scene file
     this.signature = '';
     $('add-form').addEventListener('submit', (event) => {
@@ -81,19 +81,19 @@ export class Panel {
     }
   }
 
-  /** Shows beside a model what its drawing lacks. @param answer the answer to `geometry` */
+  /** Shows beside a model its colours and what its drawing lacks. @param answer the answer to `geometry` */
   drawing(name, answer) {
-    const words = wordsOfDrawing(answer);
-    if ((this.drawings.get(name) ?? '') === words) return;
-    this.drawings.set(name, words);
+    this.drawings.set(name, {words: wordsOfDrawing(answer), colours: answer.mesh?.colours ?? null});
     this.#showDrawing(document.querySelector(`[data-model="${CSS.escape(name)}"]`));
   }
 
   #showDrawing(article) {
-    const words = this.drawings.get(article?.dataset.model) ?? '', place = article?.querySelector('.drawing');
-    if (!place) return;
+    if (!article) return;
+    const {words, colours} = this.drawings.get(article.dataset.model) ?? {words: '', colours: null};
+    article.querySelector('.swatch').style.background = swatchOf(colours, article.dataset.colour);
+    const place = article.querySelector('.drawing');
     place.hidden = words === '';
-    place.textContent = words;
+    if (place.textContent !== words) place.textContent = words;
   }
 
   async #do(request) {
@@ -104,7 +104,6 @@ export class Panel {
 
   #model(model, i) {
     const swatch = element('i', {class: 'swatch'});
-    swatch.style.background = colorOf(model.plugin, model.number ?? i);
     const head = element('header', {}, swatch, element('h3', {title: model.name}, model.name, element('small', {}, model.plugin)));
     if (this.control) {
       const able = element('button', {type: 'button', title: model.enabled ? 'Fade its force out; it is still traced' : 'Fade its force in'}, model.enabled ? 'Disable' : 'Enable');
@@ -119,7 +118,7 @@ export class Panel {
       ? [element('details', {}, element('summary', {}, `${fields.length} parameters`), ...fields)] : fields;
     const silenced = element('p', {class: 'wrong silenced', hidden: true, role: 'status'});
     const drawing = element('p', {class: 'quiet drawing', hidden: true});
-    const article = element('article', {class: 'model', data: {model: model.name}}, head, silenced, drawing, ...body);
+    const article = element('article', {class: 'model', data: {model: model.name, colour: colourOf(model.plugin, model.number ?? i)}}, head, silenced, drawing, ...body);
     this.#showDrawing(article);
     return article;
   }

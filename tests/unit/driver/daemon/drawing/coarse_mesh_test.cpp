@@ -24,6 +24,7 @@ using Eigen::Vector3f;
 struct Mesh {
   std::vector<float> xyz, normals;
   std::vector<uint32_t> indices;
+  std::vector<uint32_t> colours;  ///< empty, or one per vertex
 
   void add(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
     const Vector3f n = (b - a).cross(c - a).normalized().cast<float>();
@@ -42,7 +43,8 @@ struct Mesh {
             0,
             xyz.data(),
             normals.data(),
-            indices.data()};
+            indices.data(),
+            colours.empty() ? nullptr : colours.data()};
   }
 };
 
@@ -229,6 +231,30 @@ TEST(CoarseMesh, CornersThatShareAVertexMakeNoDifference) {
   EXPECT_TRUE(apart.normals.empty());
   EXPECT_EQ(apart.xyz, together.xyz);
   EXPECT_EQ(apart.indices, together.indices);
+}
+
+TEST(CoarseMesh, ColoursDoNotMix) {
+  Mesh plate;
+  addGrid(plate, 100, [](double u, double v) { return Vector3d(0.1 * u, 0.1 * v, 0); });
+  for (size_t i = 0; i < plate.indices.size(); i += 3) {
+    double x = 0;  // of the triangle's middle
+    for (size_t k = 0; k < 3; ++k) x += plate.xyz[3 * (i + k)] / 3;
+    plate.colours.insert(plate.colours.end(), 3, x < 0.05 ? 0xff0000ffu : 0xff00ff00u);
+  }
+  const CoarseMesh coarse = reduced(plate, 500);
+  const hsp_mesh drawn = coarse.view();
+  ASSERT_EQ(coarse.colours.size(), drawn.vertex_count);
+  double red = 0, green = 0;
+  for (uint32_t t = 0; t < drawn.triangle_count; ++t) {
+    const uint32_t* at = drawn.indices + 3 * t;
+    ASSERT_EQ(drawn.colours[at[0]], drawn.colours[at[1]]);
+    ASSERT_EQ(drawn.colours[at[0]], drawn.colours[at[2]]);
+    const Vector3d a = placeOf(drawn, at[0]);
+    const double area = 0.5 * (placeOf(drawn, at[1]) - a).cross(placeOf(drawn, at[2]) - a).norm();
+    (drawn.colours[at[0]] == 0xff0000ffu ? red : green) += area;
+  }
+  EXPECT_NEAR(red, 0.005, 5e-4);
+  EXPECT_NEAR(green, 0.005, 5e-4);
 }
 
 TEST(CoarseMesh, EnoughRoomChangesNothing) {

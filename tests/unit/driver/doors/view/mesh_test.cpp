@@ -53,6 +53,18 @@ TEST(MeshMessage, BringsTheNormalsOfTheModel) {
   EXPECT_EQ(at<float>(*message, 16 + 4 * 4), 1.0f);
 }
 
+TEST(MeshMessage, BringsTheColoursOfTheModel) {
+  const Descriptor memory = memoryOf({0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2, 0xff0000ffu, 0, 0xff00ff00u});
+  Json answer = answerOf(3, 1, false);
+  answer["colours"] = true;
+  const Message message = meshMessage(answer, memory.get());
+  ASSERT_NE(message, nullptr);
+  ASSERT_EQ(message->size(), 16u + 9 * 4 + 3 * 4 + 3 * 4);
+  EXPECT_EQ(at<uint32_t>(*message, 12), kHasColours);
+  EXPECT_EQ(at<uint32_t>(*message, 16 + 12 * 4), 0xff0000ffu);
+  EXPECT_EQ(at<uint32_t>(*message, 16 + 14 * 4), 0xff00ff00u);
+}
+
 TEST(MeshMessage, IsNoneOfWhatIsNoMesh) {
   const Descriptor memory = memoryOf({0, 0, 0}, {});
   EXPECT_NE(meshMessage(answerOf(1, 0, false), memory.get()), nullptr);

@@ -62,5 +62,19 @@ TEST(SceneUpdate, IsJsonWithEveryTriangle) {
   EXPECT_EQ(update["entities"][0]["triangles"][0]["points"][1]["x"], 1);
 }
 
+TEST(SceneUpdate, HasTheColoursOfTheModel) {
+  std::string mesh = headed(kMeshMessage, 3, 1, kHasColours);
+  const std::array<float, 9> places = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  const std::array<uint32_t, 6> words = {0, 1, 2, 0xff0033ffu, 0, 0xff990000u};  // corners, then colours
+  mesh.append(reinterpret_cast<const char*>(places.data()), sizeof places);
+  mesh.append(reinterpret_cast<const char*>(words.data()), sizeof words);
+  const Json triangles = Json::parse(sceneUpdate("part", mesh, 0))["entities"][0]["triangles"][0];
+  EXPECT_EQ(triangles["indices"], Json::parse("[0,1,2]"));
+  ASSERT_EQ(triangles["colors"].size(), 3u);
+  EXPECT_EQ(triangles["colors"][0], Json::parse(R"({"r":1,"g":0.2,"b":0,"a":1})"));
+  EXPECT_EQ(triangles["colors"][1], triangles["color"]) << "a vertex without a colour has the model's";
+  EXPECT_EQ(triangles["colors"][2], Json::parse(R"({"r":0,"g":0,"b":0.6,"a":1})"));
+}
+
 }  // namespace
 }  // namespace hapticd::view
