@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/colour.hpp"
-#include "cli/command.hpp"
+#include "cli/support/colour.hpp"
+#include "cli/support/command.hpp"
 #include "diagnostics/check/judge_file.hpp"
 #include "scene/load.hpp"
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "base/os.hpp"
-#include "cli/command.hpp"
+#include "cli/support/command.hpp"
 #include "status/page_file.hpp"
 
 namespace hapticd::cli {

@@ -2,7 +2,7 @@
 /// Every subcommand of `hapticd`, in the order of `--help`. A new command needs a file of its own and a line in each
 /// list.
 #pragma once
-#include "cli/command.hpp"
+#include "cli/support/command.hpp"
 
 namespace hapticd::cli {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.hpp"
+#include "cli/support/command.hpp"
 #include "control/client.hpp"
 #include "status/page_file.hpp"
 

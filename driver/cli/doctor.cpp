@@ -6,8 +6,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cli/colour.hpp"
-#include "cli/command.hpp"
+#include "cli/support/colour.hpp"
+#include "cli/support/command.hpp"
 #include "diagnostics/machine/arm_checks.hpp"
 #include "diagnostics/machine/client_warnings.hpp"
 #include "diagnostics/machine/doctor_checks.hpp"

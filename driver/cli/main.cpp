@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/command.hpp"
 #include "cli/commands.hpp"
+#include "cli/support/command.hpp"
 #include "document/suggestion.hpp"
 #include "host/describe.hpp"
 #include "watch/guard_process.hpp"

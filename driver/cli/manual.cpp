@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "cli/command.hpp"
+#include "cli/support/command.hpp"
 #include "scene/format.hpp"
 
 namespace hapticd::cli {

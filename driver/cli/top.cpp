@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "base/clock.hpp"
-#include "cli/command.hpp"
+#include "cli/support/command.hpp"
 #include "control/liveness.hpp"
 #include "live_status/live_status.hpp"
 #include "status/page_file.hpp"

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "base/os.hpp"
-#include "cli/command.hpp"
-#include "cli/recorded_models.hpp"
-#include "cli/view_process.hpp"
+#include "cli/recording/recorded_models.hpp"
+#include "cli/run/view_process.hpp"
+#include "cli/support/command.hpp"
 #include "control/liveness.hpp"
 #include "status/page_file.hpp"
 

@@ -31,14 +31,14 @@ WALLS = [
     ("driver/daemon/watch/watchdog.cpp", "watch/watch_target.hpp", ["servo/loop/loop.hpp", "session/runner.hpp"]),
     ("driver/daemon/control/server.cpp", "base/os.hpp", ["session/request_handler.hpp", "servo/core/core.hpp"]),
     ("driver/daemon/world/world.cpp", "servo/core/core.hpp", ["session/runner.hpp", "record/recording.hpp", "scene/load.hpp"]),
-    ("driver/command_line/command_line.cpp", "command_line/command_line.hpp", ["cli/command.hpp", "base/result.hpp", "host/catalog.hpp"]),
+    ("driver/command_line/command_line.cpp", "command_line/command_line.hpp", ["cli/support/command.hpp", "base/result.hpp", "host/catalog.hpp"]),
     ("driver/daemon/drawing/coarse_mesh.cpp", "hapticd/shape.h", ["host/shape_instance.hpp", "session/runner.hpp", "control/server.hpp"]),
-    ("driver/daemon/session/runner.cpp", "servo/loop/loop.hpp", ["cli/command.hpp", "tune/knob.hpp", "kernels/trace/model.hpp"]),
+    ("driver/daemon/session/runner.cpp", "servo/loop/loop.hpp", ["cli/support/command.hpp", "tune/knob.hpp", "kernels/trace/model.hpp"]),
     ("driver/tools/diagnostics/reading/unread_keys.cpp", "description/class_info.hpp", ["diagnostics/scene/given_model.hpp", "host/catalog.hpp", "scene/load.hpp"]),
     ("driver/tools/diagnostics/device/device_warnings.cpp", "diagnostics/reading/given_values.hpp", ["diagnostics/scene/model_trial.hpp", "diagnostics/hand/hand_script.hpp", "session/runner.hpp"]),
     ("driver/tools/diagnostics/scene/value_plausibility.cpp", "diagnostics/reading/key_place.hpp", ["diagnostics/device/arm_reach.hpp", "diagnostics/hand/hand_script.hpp"]),
-    ("driver/tools/diagnostics/hand/hand_start.cpp", "diagnostics/scene/nearest_model.hpp", ["diagnostics/check/judge_file.hpp", "cli/command.hpp"]),
-    ("driver/tools/diagnostics/check/judge_file.cpp", "diagnostics/hand/hand_start.hpp", ["diagnostics/machine/doctor_checks.hpp", "cli/command.hpp"]),
+    ("driver/tools/diagnostics/hand/hand_start.cpp", "diagnostics/scene/nearest_model.hpp", ["diagnostics/check/judge_file.hpp", "cli/support/command.hpp"]),
+    ("driver/tools/diagnostics/check/judge_file.cpp", "diagnostics/hand/hand_start.hpp", ["diagnostics/machine/doctor_checks.hpp", "cli/support/command.hpp"]),
 ]
 
 

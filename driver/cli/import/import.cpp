@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd import`: converts CAD files and triangle meshes into parts, Bezier patches into a model file, and closed
+/// surfaces into soft bodies.
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <memory>
+
+#include "base/regular_file.hpp"
+#include "cli/import/cad.hpp"
+#include "cli/import/file_content.hpp"
+#include "cli/import/mesh.hpp"
+#include "cli/support/command.hpp"
+#include "cli/support/output_file.hpp"
+#include "document/node.hpp"
+#include "import/bezier_import.hpp"
+#include "import/calibrate.hpp"
+#include "import/medial_import.hpp"
+#include "mesh_import/mesh_file.hpp"
+
+namespace hapticd::cli {
+
+using namespace importing;
+namespace {
+
+struct ImportArguments {
+  std::string file, out, up = "y", outward = "auto";
+  Placement placement;
+  bool medial = false;
+  MedialImport body;
+  std::string answers, dents;  ///< input for the calibration of a soft body
+  double smooth_angle = 0;
+  CadImport cad;
+  bool json = false;
+};
+
+std::string lowerEnding(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+/// Returns how to convert a file of a common format that hapticd does not read, or "" for any other file.
+std::string otherWay(const std::string& file) {
+  const std::string ending = lowerEnding(file);
+  const auto is = [&](std::initializer_list<const char*> endings) {
+    return std::any_of(endings.begin(), endings.end(), [&](const char* one) { return ending == one; });
+  };
+  if (is({".fcstd", ".sldprt", ".x_t", ".3dm"}))
+    return file + ": " + ending +
+           " files are not read\n  in a CAD program save it as STEP, then: hapticd import PART.step -o PART.hpart";
+  if (is({".gltf", ".glb", ".fbx", ".dae", ".blend", ".3mf", ".off", ".wrl", ".x3d"}))
+    return file + ": " + ending +
+           " files are not read\n  export the mesh as .obj, .stl or .ply, then: hapticd import PART.stl -o PART.hpart";
+  return "";
+}
+
+/// Returns a message about options that have no effect with this format, or "".
+std::string misplaced(const ImportArguments& options, bool cad) {
+  const bool turned = options.placement.fit > 0 || options.placement.center || options.up != "y";
+  if (options.medial && turned)
+    return "--fit, --center and --up have no effect with --medial, expected only --scale (metres per unit of the file)";
+  if (options.outward != "auto" && (cad || options.medial || isMeshFile(options.file)))
+    return "--outward has an effect only with .bpt files; triangles and CAD faces are turned outward by the volume "
+           "that they enclose";
+  if (!cad && options.cad.check) return "--check has an effect only with CAD files (.step, .iges, .brep)";
+  if (options.out.empty() && !options.cad.check)
+    return "--out is required: the name of the file to write, such as part.hpart, or model.yaml for patches";
+  return "";
+}
+
+/// Returns why the file to write must not be replaced, or "". A medial mesh (.ma) begins like any list of numbers, so
+/// it has no kind and only the inputs are kept.
+std::string whyKept(const ImportArguments& options) {
+  const std::string ending = std::filesystem::path(options.out).extension().string();
+  const OutputKind any{"a file", {""}};
+  const OutputKind& kind = ending == ".hpart" ? partKind() : ending == ".ma" ? any : modelKind();
+  return whyNotWritten(
+      options.out, kind,
+      {{options.file, "the input"}, {options.answers, "the file of presses"}, {options.dents, "the file of dents"}});
+}
+
+int importCadFile(const ImportArguments& options) {
+  CadImport how = options.cad;
+  how.file = options.file;
+  how.out = options.out;
+  how.json = options.json;
+  how.placement = options.placement;
+  how.placement.up = options.up[0];
+  return importCad(how);
+}
+
+int importSoftBody(const ImportArguments& options) {
+  MedialImport body = options.body;
+  body.file = options.file;
+  body.out = options.out;
+  body.scale = options.placement.scale;
+  const auto mesh = readSurface(body, catalog());
+  if (!mesh) return failLines(kBadInput, mesh.error());
+  const auto done = importMedial(body, *mesh, catalog());
+  return done ? kWorked : fail(kFailed, done.error());
+}
+
+int writeModel(const BezierModel& model, const std::string& out) {
+  const std::string text = std::filesystem::path(out).extension() == ".json" ? toModelJson(model) : toModelYaml(model);
+  const Eigen::Vector3d size = boundsOf(model).sizes();
+  if (out == "-") {
+    std::fputs(text.c_str(), stdout);
+  } else {
+    if (const auto written = writeWhole(out, text); !written) return fail(kFailed, written.error());
+    std::printf("%s: %zu surface%s, %.4g x %.4g x %.4g m%s\n", out.c_str(), model.patches.size(),
+                model.patches.size() == 1 ? "" : "s", size.x(), size.y(), size.z(),
+                model.reversed ? ", outward reversed" : "");
+  }
+  warnOfSize(out, size.norm());
+  return kWorked;
+}
+
+int importPatches(const ImportArguments& options, const Placement& placement) {
+  document::Problems problems;
+  const auto text = document::readFile(options.file, document::kMaxFileBytes, problems);
+  printProblems(problems, stderr);
+  if (!text) return kBadInput;
+  auto model = parseBpt(*text, options.file);
+  if (!model && std::filesystem::path(options.file).extension() != ".bpt")
+    return fail(kBadInput, options.file +
+                               ": its name does not say what it holds, and it holds no Bezier patches; expected "
+                               "the ending .bpt, .stl, .obj, .ply, .step, .stp, .iges, .igs, .brep, .brp or .rle");
+  if (!model) return fail(kBadInput, model.error());
+  placeModel(*model, placement);
+  if (options.outward != "auto") model->reversed = options.outward == "reversed";
+  if (std::filesystem::path(options.out).extension() == ".hpart")
+    return fail(kBadInput,
+                options.out + ": Bezier patches become a model file, expected a name that ends in .yaml or .json");
+  return writeModel(*model, options.out);
+}
+
+int importModel(const ImportArguments& options) {
+  const bool part = std::filesystem::path(options.file).extension() == ".hpart";
+  if (part && options.medial)
+    return fail(kBadInput, options.file +
+                               ": --medial takes a closed surface of triangles, not a part\n  fix: give it the mesh of "
+                               "which the part was made, or one that a CAD program exports");
+  if (part)
+    return fail(kBadInput, options.file + ": is a part already, as import writes it: name it in a scene (geometry: " +
+                               options.file + "); hapticd part info shows what it holds");
+  if (const std::string way = otherWay(options.file); !way.empty()) return fail(kBadInput, way);
+  if (const std::string other = misnamed(options.file); !other.empty()) return fail(kBadInput, other);
+  if (std::error_code error; !std::filesystem::exists(options.file, error))
+    return fail(kBadInput, options.file + ": there is no such file");
+  if (options.medial && isCadFile(options.file))
+    return fail(kBadInput, options.file +
+                               ": --medial takes a closed surface of triangles, not CAD\n  fix: export a mesh in a CAD "
+                               "program, then: hapticd import --medial BODY.stl BODY.ma");
+  const bool from_cad = isCadFile(options.file);
+  if (const std::string wrong = misplaced(options, from_cad); !wrong.empty())
+    return fail(kBadInput, options.file + ": " + wrong);
+  for (const std::string& wrong : {whyKept(options), options.out == "-" ? "" : whyNotWritable(options.out)})
+    if (!wrong.empty()) return fail(kBadInput, wrong);
+  if (from_cad) return importCadFile(options);
+  if (options.medial) return importSoftBody(options);
+  if (!options.answers.empty()) {
+    const auto done = calibrate({options.file, options.answers, options.dents, options.out}, catalog());
+    return done ? kWorked : fail(kBadInput, done.error());
+  }
+  Placement placement = options.placement;
+  placement.up = options.up[0];
+  if (isMeshFile(options.file))
+    return importMesh({options.file, options.out, placement, options.smooth_angle, options.json});
+  return importPatches(options, placement);
+}
+
+void addMedialOptions(const Command& command, ImportArguments& options) {
+  MedialImport& body = options.body;
+  const Option medial = command.addFlag("--medial", options.medial,
+                                        "make a soft body of cones and slabs from the medial axis of a closed surface");
+  command.addOption("--tolerance", body.tolerance, "largest error of the body [m]; default: 1 % of its size")
+      .within(1e-7, 1.0)
+      .needs(medial);
+  command.addOption("--samples", body.samples, "number of points on the surface; default: 20000")
+      .wholeWithin(100, 1'000'000)
+      .needs(medial);
+  command.addOption("--spheres", body.most_spheres, "largest number of spheres; default: 2000")
+      .wholeWithin(1, 100'000)
+      .needs(medial);
+  command
+      .addOption("--angle", body.least_angle,
+                 "smallest angle between the feet of a medial point [degrees]; larger values give fewer branches "
+                 "toward edges; default: 60")
+      .within(0.0, 180.0)
+      .needs(medial);
+  command.addOption("--stiffness", body.stiffness, "stiffness [N/m], written to a .yaml file")
+      .within(0.0, 1e6)
+      .needs(medial);
+  command.addOption("--damping", body.damping, "damping [N s/m], written to a .yaml file")
+      .within(0.0, 1e6)
+      .needs(medial);
+  command.addOption("--mass", body.mass, "mass of a vertex [kg], written to a .yaml file")
+      .within(0.0, 1e6)
+      .needs(medial);
+  const Option calibrate =
+      command
+          .addOption("--calibrate", options.answers,
+                     "fit the stiffness of a soft body (a model file with points or vertices) to measured or computed "
+                     "presses of small strain: CSV x,y,z,depth,force [m, N]")
+          .excludes(medial);
+  command
+      .addOption("--dents", options.dents,
+                 "with --calibrate: also fit shear_reach, from a CSV x,y,z,x2,y2,z2,dent; dent is how far the second "
+                 "point sinks when the first is pressed, divided by the depth of the press")
+      .needs(calibrate);
+}
+
+void addPlacementOptions(const Command& command, ImportArguments& options) {
+  Placement& placement = options.placement;
+  const Option scale =
+      command
+          .addOption("--scale", placement.scale,
+                     "metres per unit of the file; CAD: a factor on top of the unit that the file states")
+          .within(1e-9, 1e9);
+  command.addOption("--fit", placement.fit, "scale so that the largest extent is this many metres")
+      .within(1e-6, 1e3)
+      .excludes(scale);
+  command.addFlag("--center", placement.center, "move the centre of the bounding box to the origin");
+  command.addOption("--up", options.up, "axis that points up in the file; it becomes y, which points up in the world")
+      .oneOf({"x", "y", "z"});
+  command
+      .addOption("--outward", options.outward,
+                 "which side is outside: auto (by enclosed volume), normal (Su x Sv) or reversed")
+      .oneOf({"auto", "normal", "reversed"});
+}
+
+}  // namespace
+
+void addImport(const Command& app, int& exit_code) {
+  auto options = std::make_shared<ImportArguments>();
+  const Command command = app.addSubcommand(
+      "import",
+      "Convert CAD files and triangle meshes into parts, Bezier patches (.bpt) into a model file, or a closed surface "
+      "into a soft body.");
+  command
+      .addOption("file", options->file,
+                 "Bezier patches (.bpt), triangles (.obj, .stl, .ply) or CAD (.step, .stp, .iges, .igs, .brep, .brp, "
+                 ".rle). With "
+                 "--medial: .obj, .stl, .ply, or a model file with surfaces")
+      .required();
+  command.addOption(
+      "-o,--out,out", options->out,
+      "file to write. From patches: a model file, .yaml or .json, or - for standard output. From triangles and CAD: a "
+      "part, .hpart. With --medial: .ma or .yaml");
+  addPlacementOptions(command, *options);
+  command
+      .addOption("--smooth-angle", options->smooth_angle,
+                 "triangles: interpolate normals over edges that bend by less than this [degrees]; default: 0")
+      .within(0.0, 180.0);
+  command.addFlag("--json", options->json, "triangles and CAD: write the report as JSON");
+  command.addFlag("--check", options->cad.check, "CAD: write nothing; print what would be lost");
+  command.addOption("--time", options->cad.time_s, "CAD: longest time [s]; default: 600").within(1.0, 1e6);
+  command.addOption("--memory", options->cad.memory_mb, "CAD: most memory [MB]; default: 4096").within(64.0, 1e7);
+  addMedialOptions(command, *options);
+  command.footer(
+      "A .bpt file holds the number of patches, then for each its two degrees and its points; # begins a comment.\n"
+      "Comments are copied to the model file, so that credit and licence are kept.\n\nExamples:\n  hapticd import "
+      "config/models/teapot.bpt --up z --fit 0.13 --center -o teapot.yaml\n  hapticd import bracket.stl --scale 0.001 "
+      "-o bracket.hpart\n  hapticd import engine.step -o engine.hpart\n  hapticd import --medial hand.stl --scale "
+      "0.001 --tolerance 0.001 hand.ma");
+  command.callback([options, &exit_code] { exit_code = importModel(*options); });
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "cli/import/mesh.hpp"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "base/regular_file.hpp"
+#include "cli/support/command.hpp"
+#include "kernels/brep/part_file.hpp"
+#include "mesh_import/mesh_part.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+constexpr std::size_t kMaxMeshBytes = std::size_t{4} << 30;
+// The limits and the measure, the diagonal of the box, are those of the warnings of `check`.
+constexpr double kTooLarge = 5;     ///< [m] a model larger than this was probably given in millimetres
+constexpr double kTooSmall = 1e-3;  ///< [m] a smaller part was probably scaled twice: no fingertip feels its form
+
+nlohmann::ordered_json holePlaces(const std::vector<brep::OpenBorder>& borders) {
+  nlohmann::ordered_json places = nlohmann::ordered_json::array();
+  for (const brep::OpenBorder& border : borders) {
+    const Eigen::Vector3d middle = border.box.center();
+    places.push_back({{"middle_m", {middle.x(), middle.y(), middle.z()}},
+                      {"width_m", border.box.diagonal().norm()},
+                      {"free_edges", border.edges}});
+  }
+  return places;
+}
+
+nlohmann::ordered_json bodyList(const importing::MeshReport& report) {
+  nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
+  for (const importing::MeshBody& body : report.bodies)
+    bodies.push_back({{"name", body.name}, {"triangles", body.triangles}, {"closed", body.closed}});
+  return bodies;
+}
+
+std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
+  const nlohmann::ordered_json report = {{"part", out},
+                                         {"triangles", r.triangles},
+                                         {"points", r.points},
+                                         {"shells", r.shells},
+                                         {"crossing_triangles", r.crossings.pairs},
+                                         {"overlapping_triangles", r.overlaps.pairs},
+                                         {"closed", r.closed},
+                                         {"volume_m3", r.volume},
+                                         {"size_m", {r.size.x(), r.size.y(), r.size.z()}},
+                                         {"joined_points", r.joined},
+                                         {"slivers", r.slivers},
+                                         {"solids_inside", r.solids_inside},
+                                         {"degenerate", r.degenerate},
+                                         {"duplicates", r.duplicates},
+                                         {"flipped", r.flipped},
+                                         {"touching_edges", r.touching},
+                                         {"non_manifold_edges", r.non_manifold},
+                                         {"unorientable_edges", r.unorientable},
+                                         {"holes", r.holes},
+                                         {"free_edges", r.free_edges},
+                                         {"hole_places", holePlaces(r.borders)},
+                                         {"bodies", bodyList(r)},
+                                         {"remarks", r.remarks}};
+  return report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+/// Returns the name of a unit of so many metres; `otherwise` if it has none.
+std::string unitName(double metres, const char* otherwise) {
+  constexpr std::pair<double, const char*> kUnits[] = {{1, "m"},     {0.01, "cm"},   {0.001, "mm"},
+                                                       {1e-6, "um"}, {0.0254, "in"}, {0.3048, "ft"}};
+  for (const auto& [size, name] : kUnits)
+    if (metres == size) return name;
+  return otherwise;
+}
+
+/// Returns the unit of the file, as it is noted in the part.
+std::string unitOf(const importing::Placement& placement) {
+  char text[64];
+  if (placement.fit > 0)
+    std::snprintf(text, sizeof text, "whatever makes it fit into %.6g m", placement.fit);
+  else
+    std::snprintf(text, sizeof text, "%.6g m", placement.scale);
+  return placement.fit > 0 ? text : unitName(placement.scale, text);
+}
+
+/// Returns how the points were turned and centred, as it is noted in the part; "" if they were not.
+std::string placedText(const importing::Placement& placement) {
+  std::string text;
+  if (placement.up != 'y') text = std::string("turned, ") + placement.up + " is up";
+  if (placement.center) text += text.empty() ? "centred" : ", centred";
+  return text;
+}
+
+void print(const importing::MeshReport& r, const std::string& out) {
+  std::printf("%s: %zu triangle%s, %zu points, %.4g x %.4g x %.4g m, %s\n", out.c_str(), r.triangles,
+              r.triangles == 1 ? "" : "s", r.points, r.size.x(), r.size.y(), r.size.z(),
+              r.closed ? "closed" : "open: a shell that is felt from both sides unless the scene says sides: front");
+  for (const importing::MeshBody& body : r.bodies)
+    std::printf("  body '%s': %zu triangle%s, %s\n", body.name.c_str(), body.triangles, body.triangles == 1 ? "" : "s",
+                body.closed ? "closed" : "open");
+  for (const std::string& line : importing::linesOf(r)) std::printf("  %s\n", line.c_str());
+  warnOfSize(out, r.size.norm());
+}
+
+}  // namespace
+
+void warnOfSize(const std::string& out, double size) {
+  if (size > kTooLarge)
+    std::fprintf(
+        stderr,
+        "warning: %s: %.3g m large from corner to corner; if the imported file counts millimetres, add --scale 0.001\n",
+        out.c_str(), size);
+  else if (size < kTooSmall)
+    std::fprintf(stderr,
+                 "warning: %s: %.3g mm large from corner to corner, too small to be felt; is --scale (metres per unit "
+                 "of the imported file) "
+                 "right?\n",
+                 out.c_str(), size * 1e3);
+}
+
+int failLines(int exit_code, const std::string& lines) {
+  for (std::size_t begin = 0; begin < lines.size();) {
+    std::size_t end = lines.find('\n', begin);
+    while (end != std::string::npos && end + 1 < lines.size() && lines[end + 1] == ' ') end = lines.find('\n', end + 1);
+    fail(exit_code, lines.substr(begin, end - begin));
+    begin = end == std::string::npos ? lines.size() : end + 1;
+  }
+  return exit_code;
+}
+
+int importMesh(const MeshImport& options) {
+  if (std::filesystem::path(options.out).extension() != ".hpart")
+    return fail(kBadInput, options.out +
+                               ": triangles become a part, expected a name that ends in .hpart\n  fix: for a "
+                               "soft body (.ma, .yaml) add --medial");
+  const auto bytes = readRegular(options.file, kMaxMeshBytes);
+  if (!bytes) return fail(kBadInput, options.file + ": " + bytes.error());
+  auto mesh = importing::parseMesh(*bytes, options.file);
+  if (!mesh) return failLines(kBadInput, mesh.error());
+  const importing::Placement& placement = options.placement;
+  const bool placed = placement.fit > 0 || placement.center || placement.up != 'y';
+  if (placed) importing::placePoints(mesh->points, mesh->corners, placement);
+  importing::MeshReport report;
+  std::string part;
+  try {
+    const importing::MeshOptions how{placed ? 1 : placement.scale, options.smooth_angle * std::numbers::pi / 180,
+                                     unitOf(placement), placedText(placement)};
+    const std::string name = std::filesystem::path(options.file).filename().string();
+    part = brep::writePart(importing::meshPart(*mesh, how, name, report));
+  } catch (const std::exception& error) {
+    return fail(kBadInput, options.file + ": " + error.what());
+  }
+  if (const auto written = writeWhole(options.out, part); !written) return fail(kFailed, written.error());
+  if (options.json)
+    std::printf("%s\n", jsonOf(report, options.out).c_str());
+  else
+    print(report, options.out);
+  return kWorked;
+}
+
+}  // namespace hapticd::cli

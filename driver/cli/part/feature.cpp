@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "cli/part/feature.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "kernels/brep/model.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+using brep::Model;
+using brep::SurfaceKind;
+using Eigen::Vector3d;
+
+constexpr double kMm = 1e3;
+
+std::string pointText(const Vector3d& p, double unit) {
+  const auto rounded = [unit](double x) { return std::round(unit * x * 1e6) * 1e-6 + 0.0; };
+  char text[100];
+  std::snprintf(text, sizeof text, "(%.4g, %.4g, %.4g)", rounded(p.x()), rounded(p.y()), rounded(p.z()));
+  return text;
+}
+
+std::string kindText(const brep::Surface& surface) {
+  constexpr const char* kNames[] = {"a plane",  "a cylinder",   "a cone",       "a sphere", "a torus",
+                                    "a spline", "an extrusion", "a revolution", "an offset"};
+  char text[80] = "";
+  if (surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kSphere)
+    std::snprintf(text, sizeof text, " of radius %.4g mm", kMm * surface.r[0]);
+  if (surface.kind == SurfaceKind::kTorus)
+    std::snprintf(text, sizeof text, " of radii %.4g and %.4g mm", kMm * surface.r[0], kMm * surface.r[1]);
+  return std::string(kNames[static_cast<std::size_t>(surface.kind)]) + text;
+}
+
+/// Adds points on the edges of a face to a box.
+void addEdges(const Model& model, const brep::Placement& place, const brep::Face& face, Eigen::AlignedBox3d& box) {
+  constexpr int kPieces = 16;
+  const brep::Part& part = model.part();
+  spline::CurvePoint at;
+  for (std::uint32_t l = face.first_loop; l < face.first_loop + face.loop_count; ++l)
+    for (std::uint32_t c = part.loops[l].first; c < part.loops[l].first + part.loops[l].count; ++c) {
+      const brep::Edge& edge = part.edges[part.coedges[c].edge];
+      if (edge.curve == brep::kNone) continue;
+      for (int i = 0; i <= kPieces; ++i) {
+        model.geometry().curve(edge.curve, edge.t0 + (edge.t1 - edge.t0) * i / kPieces, at);
+        box.extend(place.rotation * at.C + place.position);
+      }
+    }
+}
+
+/// Adds points between the loops of a face to a box.
+void addInside(const Model& model, const brep::Placement& place, std::uint32_t index, Eigen::AlignedBox3d& box) {
+  constexpr int kPieces = 32;
+  const brep::Face& face = model.part().faces[index];
+  spline::SurfacePoint at;
+  for (int i = 0; i <= kPieces * (kPieces + 2); ++i) {
+    const double u = face.lo[0] + (face.hi[0] - face.lo[0]) * (i % (kPieces + 1)) / kPieces;
+    const double v = face.lo[1] + (face.hi[1] - face.lo[1]) * (i / (kPieces + 1)) / kPieces;
+    if (!model.face(index).trim.inside(u, v)) continue;
+    model.geometry().surface(face.surface, u, v, at);
+    box.extend(place.rotation * at.S + place.position);
+  }
+}
+
+/// Returns where the axis of a round face is, and the keys of a scene that let a body turn about it; the centre of a
+/// sphere; "" for other faces. @param near [m] the axis is told at its point nearest to this
+std::string axisText(const brep::Surface& surface, const brep::Placement& place, const Vector3d& near) {
+  const Vector3d origin = place.rotation * brep::vec(surface.o) + place.position;
+  if (surface.kind == SurfaceKind::kSphere) return ", centre at " + pointText(origin, kMm) + " mm";
+  const bool round = surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kCone ||
+                     surface.kind == SurfaceKind::kTorus || surface.kind == SurfaceKind::kRevolution;
+  if (!round) return "";
+  const Vector3d along = (place.rotation * brep::vec(surface.z)).normalized();
+  const Vector3d through = origin + along.dot(near - origin) * along;
+  const auto listed = [](const Vector3d& v) {
+    const auto rounded = [](double x) { return std::round(x * 1e9) * 1e-9 + 0.0; };
+    char text[100];
+    std::snprintf(text, sizeof text, "[%.9g, %.9g, %.9g]", rounded(v.x()), rounded(v.y()), rounded(v.z()));
+    return std::string(text);
+  };
+  return ", axis through " + pointText(through, kMm) + " mm along " + pointText(along, 1) +
+         "\n  to turn about it in a scene:    joint: hinge, pivot: " + listed(through) + ", axis: " + listed(along);
+}
+
+std::string faceText(const Model& model, const brep::Placement& place, std::uint32_t index) {
+  const brep::Face& face = model.part().faces[index];
+  Eigen::AlignedBox3d box;
+  addEdges(model, place, face, box);
+  addInside(model, place, index, box);
+  std::string text = kindText(model.part().surfaces[face.surface]);
+  if (model.part().surfaces[face.surface].kind == SurfaceKind::kPlane) {
+    const Vector3d normal = model.geometry().normal(face, 0.5 * (brep::vec(face.lo) + brep::vec(face.hi)));
+    const double side = (face.flags & brep::kReversed) != 0 ? -1 : 1;
+    text += " that looks along " + pointText(side * (place.rotation * normal), 1);
+  }
+  if (box.isEmpty()) return text;
+  char size[100];
+  const Vector3d sizes = (box.sizes() * kMm * 1e6).array().round() * 1e-6;  // 1e-14 mm of a plane is rounding
+  std::snprintf(size, sizeof size, ", %.4g x %.4g x %.4g mm large", sizes.x(), sizes.y(), sizes.z());
+  return text + size + ", middle at " + pointText(box.center(), kMm) + " mm" +
+         axisText(model.part().surfaces[face.surface], place, box.center());
+}
+
+std::string triangleText(const Model& model, const brep::Placement& place, std::uint32_t index) {
+  std::string text = "corners at ";
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3d corner = brep::vec(model.part().points[model.part().triangles[index].corner[k]]);
+    text += (k == 0 ? "" : ", ") + pointText(place.rotation * corner + place.position, kMm);
+  }
+  return text + " mm";
+}
+
+}  // namespace
+
+std::string featureText(const brep::Part& part, std::uint32_t feature) {
+  const Model model{brep::Part(part)};
+  for (const brep::Placement& place : model.placements()) {
+    const brep::Body& body = model.part().bodies[place.body];
+    if (feature < place.first_feature) continue;
+    const std::uint32_t at = feature - place.first_feature;
+    if (at < body.face_count) return faceText(model, place, body.first_face + at);
+    if (at - body.face_count < body.triangle_count)
+      return triangleText(model, place, body.first_triangle + at - body.face_count);
+  }
+  return "";
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "cli/recording/explain_recording.hpp"
+
+#include <cstdio>
+#include <fstream>
+#include <map>
+
+#include "cli/recording/touched_features.hpp"
+#include "cli/support/command.hpp"
+#include "hapticd/abi.h"
+#include "session/recorded_events.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+constexpr size_t kMostLines = 200;
+
+const char* levelName(int level) {
+  return level >= HSP_LOG_ERROR ? "error" : level == HSP_LOG_WARNING ? "warning" : "info";
+}
+
+void printRun(const std::string& file, const record::Recording& recording, const servo::RecordedRun& run) {
+  const record::RecordedStream* ticks = recording.stream("ticks");
+  const uint64_t rows = ticks != nullptr ? ticks->rows() : 0;
+  std::printf("%s: a %s of hapticd %s, begun %s\n", file.c_str(), recording.blackBox() ? "black box" : "recording",
+              run.version.c_str(), run.started.c_str());
+  std::printf("  scene     %s\n", run.scene.file.string().c_str());
+  std::printf("  time      %.2f s: %llu ticks at %g Hz, in %s time%s\n", static_cast<double>(rows) / run.facts.rate,
+              static_cast<unsigned long long>(rows), run.facts.rate, run.facts.virtual_time ? "virtual" : "real",
+              recording.closed() || recording.blackBox() ? "" : "; its writer did not end normally");
+  if (!recording.damage().empty()) std::printf("  damage    %s\n", recording.damage().c_str());
+  for (const scene::Device& device : run.scene.devices)
+    std::printf("  arm       %s (%s)\n", device.name.c_str(), device.module.c_str());
+  for (const scene::Model& model : run.scene.models)
+    std::printf("  model     %s (%s)\n", model.name.c_str(), model.plugin.c_str());
+}
+
+/// Prints the events that the log of the run had. Touches and clicks are many, so only their number is printed.
+void printEvents(const std::vector<servo::RecordedMessage>& messages) {
+  std::map<std::string, uint64_t> touched;
+  size_t lines = 0, left = 0;
+  std::printf("events\n");
+  for (const servo::RecordedMessage& message : messages) {
+    if (message.level <= HSP_LOG_DEBUG) {
+      ++touched[message.who];
+    } else if (lines++ < kMostLines) {
+      std::printf("  %9.4f s  %-7s  %s%s%s\n", message.t, levelName(message.level), message.who.c_str(),
+                  message.who.empty() ? "" : ": ", message.text.c_str());
+    } else {
+      ++left;
+    }
+  }
+  if (left > 0) std::printf("  and %zu more; for all, run: hapticd export FILE --csv OUT --stream events\n", left);
+  if (lines == 0) std::printf("  no fault, and nothing else that the log would have told\n");
+  for (const auto& [model, count] : touched)
+    std::printf("  %s was touched or clicked %llu time%s\n", model.c_str(), static_cast<unsigned long long>(count),
+                count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+bool isRecording(const std::string& file) {
+  char first[4] = {};
+  std::ifstream in(file, std::ios::binary);
+  return in.read(first, sizeof first) && std::string(first, sizeof first) == "\x89HDF";
+}
+
+int explainRecording(const std::string& file) {
+  const auto recording = record::Recording::open(file);
+  if (!recording) return fail(kBadInput, recording.error());
+  const auto run = servo::readAbout((*recording)->aboutJson());
+  if (!run) return fail(kBadInput, file + ": " + run.error());
+  printRun(file, **recording, *run);
+  printEvents(servo::messagesOf(**recording, *run));
+  const auto touched = touchedFeatures(**recording, run->scene, run->facts.rate);
+  if (!touched.empty()) std::printf("touched\n");
+  for (const std::string& line : touched) std::printf("  %s\n", line.c_str());
+  return kWorked;
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd replay`: runs a recording again and says where it first differs.
+#include "session/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/support/command.hpp"
+#include "cli/support/guarded_command.hpp"
+#include "cli/support/open_end.hpp"
+#include "cli/support/tick_watch.hpp"
+#include "document/node.hpp"
+#include "document/suggestion.hpp"
+#include "record/recording.hpp"
+#include "watch/crash.hpp"
+#include "world/instructions.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+constexpr int kPartly = 3;  ///< exit code: what was replayed is the same, but not all can be replayed
+
+using Json = nlohmann::ordered_json;
+
+struct ReplayArguments {
+  std::string file;
+  std::vector<std::string> changes;
+  bool json = false;
+};
+
+/// Finds plugins and modules on this machine, because the recording may come from another one.
+Result<void> findLibraries(scene::Scene& scene) {
+  for (scene::Model& model : scene.models) {
+    auto found = catalog().shape(model.plugin);
+    if (!found) return Error{"model '" + model.name + "': " + found.error()};
+    model.library = (*found)->file;
+  }
+  for (scene::Device& device : scene.devices) {
+    auto found = catalog().device(device.module);
+    if (!found) return Error{"device '" + device.name + "': " + found.error()};
+    device.library = (*found)->file;
+  }
+  return {};
+}
+
+constexpr const char* kForm = "expected MODEL.PARAMETER=NUMBER";
+
+/// Returns "; did you mean ball.stiffness=3?" with the first model that has the parameter of "stiffness=3"; "" if none
+/// has it.
+std::string meantModel(const scene::Scene& scene, const std::string& text) {
+  const std::string id = text.substr(0, text.find('='));
+  for (const scene::Model& model : scene.models)
+    if (auto found = catalog().shape(model.plugin); found && (*found)->indexOf(id) >= 0)
+      return "; did you mean " + model.name + "." + text + "?";
+  return "";
+}
+
+/// Returns what is wrong with a change as a text, such as "teapot.stiffness900"; "" if nothing is.
+std::string wrongForm(const scene::Scene& scene, const std::string& text) {
+  const size_t equals = text.find('='), dot = text.find('.');
+  if (equals == std::string::npos) return std::string("no value is given, ") + kForm;
+  if (dot == std::string::npos || dot > equals)
+    return std::string("no model is named, ") + kForm + meantModel(scene, text);
+  const std::string value = text.substr(equals + 1);
+  return document::toNumber(value) ? "" : "\"" + value + "\" is not a number, " + kForm;
+}
+
+std::vector<std::string> modelNames(const scene::Scene& scene) {
+  std::vector<std::string> names;
+  for (const scene::Model& model : scene.models) names.push_back(model.name);
+  return names;
+}
+
+/// Parses a change such as "teapot.stiffness=900" and applies it to a parameter of a model.
+Result<void> change(scene::Scene& scene, const std::string& text) {
+  if (const std::string wrong = wrongForm(scene, text); !wrong.empty()) return Error{"--set " + text + ": " + wrong};
+  const size_t equals = text.find('='), dot = text.find('.');
+  const double number = document::toNumber(text.substr(equals + 1)).value_or(NAN);  // wrongForm() has checked it
+  const std::string name = text.substr(0, dot), id = text.substr(dot + 1, equals - dot - 1);
+  const auto model =
+      std::find_if(scene.models.begin(), scene.models.end(), [&](const auto& m) { return m.name == name; });
+  if (model == scene.models.end())
+    return Error{"--set " + text + ": the recording has no model \"" + name + "\", expected one of " +
+                 document::listed(modelNames(scene)) + document::suggestionOfName(name, modelNames(scene))};
+  auto found = catalog().shape(model->plugin);
+  const int index = found ? (*found)->indexOf(id) : -1;
+  if (index < 0)
+    return Error{"--set " + text + ": plugin " + model->plugin + " has no parameter \"" + id + "\"" +
+                 (found ? document::suggestionOfName(id, (*found)->paramIds()) : "")};
+  const host::ParamInfo& param = (*found)->params[static_cast<size_t>(index)];
+  const bool is_number = param.kind >= HSP_REAL && param.kind <= HSP_ENUM;
+  if (!is_number) return Error{"--set " + text + ": \"" + id + "\" has no number that could be changed"};
+  if (!(number >= param.min && number <= param.max))
+    return Error{fmt::format("--set {}: {:g} is out of range, expected {:g} to {:g} {}", text, number, param.min,
+                             param.max, param.unit)};
+  const auto same = [&](const scene::Value& v) { return v.index == static_cast<uint32_t>(index); };
+  auto value = std::find_if(model->parameters.begin(), model->parameters.end(), same);
+  if (value == model->parameters.end()) value = model->parameters.insert(value, scene::Value{});
+  value->id = id;
+  value->index = static_cast<uint32_t>(index);
+  value->kind = param.kind;
+  value->number = number;
+  return {};
+}
+
+void warnOfChanges(const servo::RecordedRun& run) {
+  if (run.version != HAPTICD_VERSION)
+    std::fprintf(stderr, "warning: hapticd %s recorded this run, and this is hapticd %s: the results may differ\n",
+                 run.version.c_str(), HAPTICD_VERSION);
+  for (const servo::Fingerprint& file : run.files)
+    if (const std::string now = servo::fingerprint(file.path); !now.empty() && now != file.hash)
+      std::fprintf(stderr, "warning: %s has changed since the recording, so the results may differ\n",
+                   file.path.c_str());
+}
+
+/// Uses the processor instructions of the recorded run if this machine has them; otherwise prints a note.
+void takeInstructions(servo::RecordedRun& run) {
+  if (run.instructions.empty()) return;
+  if (run.instructions == "portable") run.scene.servo.instructions = scene::Instructions::kPortable;
+  if (const std::string now = servo::takenInstructions(run.scene.servo); now != run.instructions)
+    std::fprintf(
+        stderr,
+        "note: the run used the processor instructions %s, which are not available here: the last bits will differ\n"
+        "  fix: record with servo: {instructions: portable}, which replays on every machine\n",
+        run.instructions.c_str());
+}
+
+int verdictOf(const servo::ReplayOutcome& outcome) {
+  if (outcome.first) return kFailed;
+  if (outcome.ticks == outcome.recorded_ticks) return kWorked;
+  return outcome.note.empty() ? kFailed : kPartly;
+}
+
+int print(const servo::ReplayOutcome& outcome) {
+  if (!outcome.note.empty()) std::fprintf(stderr, "note: %s\n", outcome.note.c_str());
+  if (!outcome.first) {
+    std::printf("%llu ticks of %llu: every bit is the same\n", static_cast<unsigned long long>(outcome.ticks),
+                static_cast<unsigned long long>(outcome.recorded_ticks));
+    return verdictOf(outcome);
+  }
+  const servo::Difference& first = *outcome.first;
+  std::printf("the first difference is in tick %llu (t = %.6f s): %s was %.17g, is now %.17g\n",
+              static_cast<unsigned long long>(first.tick), first.t, first.what.c_str(), first.recorded, first.replayed);
+  std::printf("largest difference of the sent force: %.3g N in %llu ticks\n", outcome.largest_force_error,
+              static_cast<unsigned long long>(outcome.ticks));
+  return verdictOf(outcome);
+}
+
+int printJson(const servo::ReplayOutcome& outcome) {
+  Json json{{"same", !outcome.first.has_value()},
+            {"ticks", outcome.ticks},
+            {"recorded_ticks", outcome.recorded_ticks},
+            {"note", outcome.note.empty() ? Json() : Json(outcome.note)},
+            {"first_difference", nullptr},
+            {"largest_force_error_n", outcome.largest_force_error}};
+  if (const auto& first = outcome.first)
+    json["first_difference"] = {{"tick", first->tick},
+                                {"t", first->t},
+                                {"what", first->what},
+                                {"recorded", first->recorded},
+                                {"replayed", first->replayed}};
+  std::printf("%s\n", json.dump(2).c_str());
+  return verdictOf(outcome);
+}
+
+int replay(const ReplayArguments& options) {
+  auto recording = record::Recording::open(options.file);
+  if (!recording) return fail(kBadInput, recording.error());
+  auto run = servo::readAbout((*recording)->aboutJson());
+  if (!run) return fail(kBadInput, options.file + ": " + run.error());
+  if (auto found = findLibraries(run->scene); !found) return fail(kBadInput, options.file + ": " + found.error());
+  for (const std::string& text : options.changes)
+    if (auto done = change(run->scene, text); !done) return fail(kBadInput, done.error());
+  takeInstructions(*run);
+  warnOfChanges(*run);
+  noteOpenEnd(options.file, **recording, "replaying");
+  const GuardedCommand guarded;
+  const TickWatch watched;
+  const SetupErrors once;
+  const std::string& damage = (*recording)->damage();
+  auto again = servo::Replay::prepare(**recording, *run, logToTerminal);
+  if (!again)
+    return fail(kBadInput, options.file + ": " + again.error() + (damage.empty() ? "" : ", because " + damage));
+  servo::ReplayOutcome outcome = (*again)->run();
+  if (!damage.empty()) outcome.note += (outcome.note.empty() ? "" : "; ") + damage;
+  const int code = options.json ? printJson(outcome) : print(outcome);
+  return code == kWorked && !damage.empty() ? kPartly : code;
+}
+
+}  // namespace
+
+void addReplay(const Command& app, int& exit_code) {
+  auto options = std::make_shared<ReplayArguments>();
+  const Command command = app.addSubcommand("replay", "Run a recording again and compare every force to the last bit.");
+  command.addOption("file", options->file, "recording made by `hapticd run --record`").required();
+  command.addOption("--set", options->changes, "change a parameter: MODEL.PARAMETER=NUMBER; may be repeated");
+  command.addFlag("--json", options->json, "print the outcome as JSON");
+  command.footer(
+      "Exit codes: 0 every bit is the same, 1 something differs, 2 the recording cannot be replayed, 3 every bit is "
+      "the same\nas far as the run could be replayed: a replay ends where models were added or removed, or where the "
+      "file is damaged.\n\nExample:\n  "
+      "hapticd run config/scenes/teapot.yaml --for 10 --record run.h5\n  hapticd replay run.h5");
+  command.callback([options, &exit_code] {
+    exit_code = replay(*options);
+    watch::guardTheEnd({});  // a destructor of a plugin may crash
+  });
+}
+
+}  // namespace hapticd::cli

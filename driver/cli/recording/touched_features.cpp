@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "cli/recording/touched_features.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "base/regular_file.hpp"
+#include "kernels/brep/part_file.hpp"
+#include "kernels/brep/part_limit.hpp"
+#include "kernels/brep/part_names.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+constexpr std::size_t kMostNamed = 5;
+
+using Ticks = std::map<std::uint32_t, std::uint64_t>;  // of each feature
+
+/// Tells whether an arm had a fault in a tick: then no force pushed back, so it is no contact, as in the report of a
+/// run. Ticks are asked for in their order.
+class Faults {
+ public:
+  explicit Faults(const record::RecordedStream* ticks) : ticks_(ticks) {
+    if (ticks_ != nullptr) number_ = ticks_->find("tick");
+  }
+
+  bool at(double tick, std::uint32_t arm) {
+    if (number_ == nullptr) return false;
+    while (row_ < ticks_->rows() && ticks_->number(row_, *number_) < tick) ++row_;
+    const record::Column* fault = ticks_->find("arm" + std::to_string(arm) + "_fault");
+    return row_ < ticks_->rows() && fault != nullptr && ticks_->number(row_, *fault) != 0;
+  }
+
+ private:
+  const record::RecordedStream* ticks_;
+  const record::Column* number_ = nullptr;
+  std::uint64_t row_ = 0;
+};
+
+/// Counts the ticks of contact of each feature, for each place of a model.
+std::map<std::uint32_t, Ticks> contactTicks(const record::RecordedStream& contacts, const record::RecordedStream* all) {
+  std::map<std::uint32_t, Ticks> ticks;
+  const record::Column *tick = contacts.find("tick"), *model = contacts.find("model"), *probe = contacts.find("probe"),
+                       *feature = contacts.find("feature"), *depth = contacts.find("depth");
+  if (tick == nullptr || model == nullptr || probe == nullptr || feature == nullptr || depth == nullptr) return ticks;
+  const auto whole = [&](std::uint64_t row, const record::Column& column) {
+    return static_cast<std::uint32_t>(contacts.number(row, column));
+  };
+  Faults faults(all);
+  for (std::uint64_t row = 0; row < contacts.rows(); ++row)
+    if (contacts.number(row, *depth) > 0 && !faults.at(contacts.number(row, *tick), whole(row, *probe)))
+      ++ticks[whole(row, *model)][whole(row, *feature)];
+  return ticks;
+}
+
+/// Reads the part of a model. Returns nothing if the model has none, or if the file cannot be read any more.
+std::optional<brep::Part> partOf(const scene::Model& model) {
+  for (const scene::Value& value : model.parameters) {
+    if (value.id != "geometry" || !value.text.ends_with(".hpart")) continue;
+    const auto bytes = readRegular(value.text, brep::kMostPartBytes);
+    if (!bytes) return {};
+    try {
+      return brep::readPart(std::as_bytes(std::span(*bytes)), value.text);
+    } catch (const brep::PartError&) {
+      return {};
+    }
+  }
+  return {};
+}
+
+/// Returns the features with the longest contacts, longest first.
+std::string longest(const Ticks& ticks, const std::optional<brep::Part>& part, double rate) {
+  std::vector<std::pair<std::uint32_t, std::uint64_t>> features(ticks.begin(), ticks.end());
+  std::stable_sort(features.begin(), features.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::string text;
+  for (std::size_t i = 0; i < std::min(features.size(), kMostNamed); ++i) {
+    const auto& [feature, count] = features[i];
+    std::string name = part ? brep::featureName(*part, feature) : "";
+    if (name.empty()) name = "feature " + std::to_string(feature);
+    char time[40];
+    std::snprintf(time, sizeof time, " for %.3g s", static_cast<double>(count) / rate);
+    text += (text.empty() ? "" : ", ") + name + time;
+  }
+  if (features.size() > kMostNamed) text += ", and " + std::to_string(features.size() - kMostNamed) + " others";
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> touchedFeatures(const record::Recording& recording, const scene::Scene& scene, double rate) {
+  std::vector<std::string> lines;
+  const record::RecordedStream* contacts = recording.stream("contacts");
+  if (contacts == nullptr) return lines;
+  for (const auto& [place, ticks] : contactTicks(*contacts, recording.stream("ticks"))) {
+    const bool known = place < scene.models.size();  // others were added during the run
+    const std::string name = known ? scene.models[place].name : "model " + std::to_string(place);
+    const auto part = known ? partOf(scene.models[place]) : std::nullopt;
+    lines.push_back(name + ": " + longest(ticks, part, rate));
+  }
+  return lines;
+}
+
+}  // namespace hapticd::cli
