@@ -19,7 +19,7 @@
 #include "diagnostics/scene/explain_cost.hpp"
 #include "document/reader.hpp"
 #include "servo/loop/lockstep.hpp"
-#include "session/setup_watch.hpp"
+#include "session/messages/setup_watch.hpp"
 #include "watch/crash.hpp"
 #include "world/world.hpp"
 

@@ -18,7 +18,7 @@
 #include "cli/support/probe_path.hpp"
 #include "cli/support/tick_watch.hpp"
 #include "record/recording.hpp"
-#include "session/setup_watch.hpp"
+#include "session/messages/setup_watch.hpp"
 #include "tune/page.hpp"
 #include "tune/write_scene.hpp"
 #include "watch/crash.hpp"

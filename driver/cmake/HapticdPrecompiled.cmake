@@ -40,7 +40,7 @@ if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   hapticd_precompile(hapticd_headers_no_deadline HEADERS <Eigen/Geometry> <json_without_literals.hpp> ${standard}
     LIBRARIES Eigen3::Eigen hapticd_precompiled_json ROOMS
     hapticd_capture hapticd_conformance hapticd_diagnostics_check hapticd_diagnostics_device hapticd_diagnostics_hand hapticd_diagnostics_machine hapticd_diagnostics_reading hapticd_diagnostics_scene hapticd_document hapticd_export
-    hapticd_importing hapticd_mesh_import hapticd_model_file hapticd_part hapticd_record hapticd_scene hapticd_session hapticd_tune hapticd_view_parts
+    hapticd_importing hapticd_mesh_import hapticd_model_file hapticd_part hapticd_record hapticd_messages hapticd_replay hapticd_requests hapticd_run hapticd_scene hapticd_tune hapticd_view_parts
     hapticd_world hapticd_client_objects hapticd_control hapticd_haply_parts hapticd_hd)
   hapticd_no_deadline(hapticd_headers_no_deadline)
 endif()

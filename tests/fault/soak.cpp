@@ -13,8 +13,8 @@
 #include "base/allocation_count.hpp"
 #include "base/os.hpp"
 #include "dying_readers.hpp"
-#include "session/status_writer.hpp"
-#include "session/watched_servo.hpp"
+#include "session/run/watched_servo.hpp"
+#include "session/telemetry/status_writer.hpp"
 #include "support/sweep.hpp"
 #include "test_rig.hpp"
 

@@ -48,7 +48,7 @@ def check(source):
 def check_itself():
     """Lines that must be found, and lines that must not."""
     bad = ["#include <unistd.h>", "#include <sys/stat.h>", "# include <pthread.h>", "#include <dlfcn.h>", "#include <csignal>",
-           '#include "base/fatal_signals_posix.hpp"', '#include "session/runner.hpp"', "#include <time.h>"]
+           '#include "base/fatal_signals_posix.hpp"', '#include "session/run/runner.hpp"', "#include <time.h>"]
     good = ["#include <cmath>", "#include <Eigen/Core>", '#include "base/os.hpp"', "#include <stdint.h>", "#include <filesystem>"]
     return [f"not found: {line}" for line in bad if not problem_of(line)] + [f"refused: {line}" for line in good if problem_of(line)]
 

@@ -8,7 +8,7 @@
 #include "cli/recording/touched_features.hpp"
 #include "cli/support/command.hpp"
 #include "hapticd/abi.h"
-#include "session/recorded_events.hpp"
+#include "session/replay/recorded_events.hpp"
 
 namespace hapticd::cli {
 

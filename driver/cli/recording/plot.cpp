@@ -15,7 +15,7 @@
 #include "hapticd/shape.h"
 #include "record/picture.hpp"
 #include "record/recording.hpp"
-#include "session/about.hpp"
+#include "session/replay/about.hpp"
 
 namespace hapticd::cli {
 

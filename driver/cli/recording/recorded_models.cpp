@@ -14,9 +14,9 @@
 #include "control/server.hpp"
 #include "document/json_text.hpp"
 #include "record/recording.hpp"
-#include "session/about.hpp"
-#include "session/geometry_answer.hpp"
-#include "session/model_rerun.hpp"
+#include "session/replay/about.hpp"
+#include "session/replay/model_rerun.hpp"
+#include "session/requests/geometry_answer.hpp"
 #include "world/world.hpp"
 
 namespace hapticd::cli {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd replay`: runs a recording again and says where it first differs.
-#include "session/replay.hpp"
+#include "session/replay/replay.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
-#include "session/runner.hpp"
+#include "session/run/runner.hpp"
 
 namespace hapticd::cli {
 

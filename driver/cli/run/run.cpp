@@ -24,8 +24,8 @@
 #include "document/node.hpp"
 #include "host/file_stamp.hpp"
 #include "log/log.hpp"
-#include "session/run_files.hpp"
-#include "session/runner.hpp"
+#include "session/requests/run_files.hpp"
+#include "session/run/runner.hpp"
 #include "tune/stability.hpp"
 #include "watch/quarantine.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Handles the signals that end or suspend a run: Ctrl-C, SIGTERM, Ctrl-Z.
 #pragma once
-#include "session/runner.hpp"
+#include "session/run/runner.hpp"
 
 namespace hapticd::cli {
 

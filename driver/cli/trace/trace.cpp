@@ -17,8 +17,8 @@
 #include "document/suggestion.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "servo/velocity/probe_velocity.hpp"
-#include "session/setup_watch.hpp"
-#include "session/silence_reason.hpp"
+#include "session/messages/setup_watch.hpp"
+#include "session/messages/silence_reason.hpp"
 #include "watch/crash.hpp"
 #include "world/world.hpp"
 

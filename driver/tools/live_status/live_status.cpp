@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "servo/safety/limiter.hpp"
-#include "session/silence_reason.hpp"
+#include "session/messages/silence_reason.hpp"
 
 namespace hapticd::live_status {
 namespace {

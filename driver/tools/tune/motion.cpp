@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "session/runner.hpp"
+#include "session/run/runner.hpp"
 
 namespace hapticd::tune {
 namespace {

@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "scenario.hpp"
-#include "session/silence_reason.hpp"
+#include "session/messages/silence_reason.hpp"
 
 namespace hapticd::servo {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "rig_page.hpp"
 #include "servo/loop/loop.hpp"
-#include "session/telemetry.hpp"
+#include "session/telemetry/telemetry.hpp"
 #include "world/arm_force.hpp"
 #include "world/world.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "description/scene.hpp"
 #include "host/catalog.hpp"
-#include "session/runner.hpp"
+#include "session/run/runner.hpp"
 
 namespace hapticd::diagnostics {
 

@@ -15,9 +15,9 @@
 #include "record/contact_warnings.hpp"
 #include "servo/arm/arm.hpp"
 #include "servo/loop/loop.hpp"
-#include "session/silence_reason.hpp"
-#include "session/stop_counts.hpp"
-#include "session/telemetry.hpp"
+#include "session/messages/silence_reason.hpp"
+#include "session/telemetry/stop_counts.hpp"
+#include "session/telemetry/telemetry.hpp"
 
 namespace hapticd::diagnostics {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Every kind of event has its words, and names the model or the arm.
-#include "session/event_log.hpp"
+#include "session/messages/event_log.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "hapticd/abi.h"
 #include "servo/safety/guard.hpp"
-#include "session/pusher_log.hpp"
+#include "session/messages/pusher_log.hpp"
 
 namespace hapticd::servo {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "servo/loop/loop.hpp"
-#include "session/telemetry.hpp"
+#include "session/telemetry/telemetry.hpp"
 #include "test_world.hpp"
 
 namespace hapticd::servo {

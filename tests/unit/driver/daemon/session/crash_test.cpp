@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "session/watched_servo.hpp"
+#include "session/run/watched_servo.hpp"
 #include "test_rig.hpp"
 #include "watch/quarantine.hpp"
 #include "watch/watchdog.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "session/replay.hpp"
+#include "session/replay/replay.hpp"
 
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "session/watched_servo.hpp"
+#include "session/run/watched_servo.hpp"
 #include "test_rig.hpp"
 #include "watch/watchdog.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "session/former_defaults.hpp"
+#include "session/replay/former_defaults.hpp"
 
 #include <gtest/gtest.h>
 

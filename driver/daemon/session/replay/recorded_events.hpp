@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+/// The events of a recording in words, as the log of the run had them.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "record/recording.hpp"
+#include "session/replay/about.hpp"
+
+namespace hapticd::servo {
+
+struct RecordedMessage {
+  double t = 0;           ///< [s] since the first tick
+  int level = 0;          ///< HSP_LOG_DEBUG, ...
+  std::string who, text;  ///< the model or the arm; empty if the text names it
+};
+
+/// [main] Returns the events that have words, in order. Models that were added during the run have no name in a
+/// recording: they are called by their number.
+std::vector<RecordedMessage> messagesOf(const record::Recording& recording, const RecordedRun& run);
+
+}  // namespace hapticd::servo
