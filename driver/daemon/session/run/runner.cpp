@@ -99,8 +99,10 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
       return started;
     }
   Result<void> done;
-  if (recorder_)
-    if (const auto code = recorder_->start()) return Error{"cannot start the recording thread: " + code.message()};
+  if (const auto code = recorder_ ? recorder_->start() : std::error_code()) {
+    dropRecording();
+    return Error{"cannot start the recording thread: " + code.message()};
+  }
   const WorkerScope working(Worker::kMain);
   WatchedServo watched(*loop_, arms_, *telemetry_);
   const watch::CrashGuard crash(watched, options_.state_dir);
