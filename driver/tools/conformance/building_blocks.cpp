@@ -8,7 +8,7 @@ namespace hapticd::conformance {
 
 using Eigen::Vector3d;
 
-Made::Made(const Recipe& recipe, uint32_t probes) {
+Made::Made(const Recipe& recipe, uint32_t probes, Time time) {
   auto made = Subject::make(recipe);
   if (!made) {
     error = made.error();
@@ -16,6 +16,7 @@ Made::Made(const Recipe& recipe, uint32_t probes) {
   }
   subject = std::move(*made);
   if (auto active = subject->activate(probes); !active) error = active.error();
+  if (time == Time::kStands && subject->moves()) subject->stopTime();
 }
 
 std::string text(double value) {
@@ -73,8 +74,8 @@ std::string alongAndDeep(Subject& subject, const std::function<std::string(const
   return "";
 }
 
-Verdict atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test) {
-  const Made made(recipe);
+Verdict atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test, Time time) {
+  const Made made(recipe, 1, time);
   if (!made.error.empty()) return made.error;
   if (recipe.touch.places.empty())
     return recipe.touch.traced || !recipe.touch.felt ? skipped("no contact was found to test, see contact-found")

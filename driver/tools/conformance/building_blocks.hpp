@@ -16,16 +16,23 @@ constexpr int kConformanceSteps = 2000;  ///< number of steps once around the pa
 
 /// Names of tests on which other tests depend (see ConformanceTest::needs).
 constexpr const char *kInTime = "steps-end-in-time", *kFinite = "finite-outputs", *kSame = "determinism-bitwise",
-                     *kFoot = "foot-and-normal", *kGuarded = "eight-probes";
+                     *kFoot = "foot-and-normal", *kGuarded = "eight-probes", *kRests = "rests-in-no-time";
 /// The beginning of the message about an overrun that did not end the process.
 constexpr const char* kBeyond = "it writes behind its hsp_contact";
+
+/// Whether the time of a shape that moves goes on from step to step, or stands still (Subject::stopTime()).
+enum class Time { kGoesOn, kStands };
 
 /// An instance that is made and activated, or the reason why this failed.
 struct Made {
   std::unique_ptr<Subject> subject;
   std::string error;
-  explicit Made(const Recipe& recipe, uint32_t probes = 1);
+  explicit Made(const Recipe& recipe, uint32_t probes = 1, Time time = Time::kGoesOn);
 };
+/// An instance whose time stands still if it moves.
+inline Made madeAtRest(const Recipe& recipe, uint32_t probes = 1) {
+  return Made(recipe, probes, Time::kStands);
+}
 
 std::string text(double value);
 std::string roughly(double value);           ///< with two digits
@@ -51,7 +58,8 @@ std::string alongAndDeep(Subject& subject,
 
 /// Runs a test on one instance at each place where the shape can be touched. Stops when `test` returns an objection,
 /// and returns it. Skips the test if there is no such place.
-Verdict atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test);
+Verdict atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test,
+                    Time time = Time::kGoesOn);
 
 /// The result of a test of contacts for a shape that names no surface.
 inline Verdict fieldOnly() {
@@ -103,6 +111,9 @@ Verdict boundsWhereFelt(const Recipe& recipe, uint64_t);
 /// Fails if a shape that moves gives its contacts in the frame of the pose before the step, or if its class does not
 /// say that it may move. Skips a shape that does not move.
 Verdict contactsOfTheNewPose(const Recipe& recipe, uint64_t);
+
+/// Fails if a shape that moves changes its pose in steps of 0 s. Skips a shape that does not move.
+Verdict restsInNoTime(const Recipe& recipe, uint64_t);
 
 /// Returns what goes wrong with eight probes, as many as a run may have, in guarded memory, or "".
 Verdict eightProbes(const Recipe& recipe, uint64_t);

@@ -234,16 +234,18 @@ std::string toldStiffness(Subject& subject, const Place& place) {
 Verdict stiffnessClaim(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (made.subject->moves()) return skipped("the shape moves by itself, so its force changes by itself");
   const double claimed = made.subject->report().max_stiffness;
   // factors by which the claim may be exceeded, because a force law may be a little steeper in places; [N/m]
   constexpr double kFails = 1.5, kWarns = 1.1, kNoise = 10;
   double steepest = 0;
-  Verdict verdict = atEachPlace(recipe, [claimed, &steepest](Subject& subject, const Place& place) {
-    const double measured = stiffnessAt(subject, place, claimed);
-    steepest = std::max(steepest, measured);
-    return measured <= kFails * claimed + kNoise ? toldStiffness(subject, place) : besideClaim(claimed, measured);
-  });
+  Verdict verdict = atEachPlace(
+      recipe,
+      [claimed, &steepest](Subject& subject, const Place& place) {
+        const double measured = stiffnessAt(subject, place, claimed);
+        steepest = std::max(steepest, measured);
+        return measured <= kFails * claimed + kNoise ? toldStiffness(subject, place) : besideClaim(claimed, measured);
+      },
+      Time::kStands);
   if (!verdict.clean() || steepest == 0) return verdict;
   if (steepest > kWarns * claimed + kNoise) return warned(besideClaim(claimed, steepest));
   return noted("it claims " + text(claimed) + " N/m, and its force grows by " + text(steepest) + " N/m at most");
@@ -266,28 +268,31 @@ Verdict noStep(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   const hsp_report& report = made.subject->report();
-  if (made.subject->moves()) return skipped("the shape moves by itself, so its force changes by itself");
   const double stiffness = report.max_stiffness > 0 ? report.max_stiffness : servo::Claim::kUnclaimed;
   const double jumps = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
-  return atEachPlace(recipe, [stiffness, jumps](Subject& subject, const Place& place) {
-    constexpr double kRoom = 0.1;  // [N] not felt as a step
-    bool known = false, inside = false;
-    Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero(), at = Vector3d::Zero();
-    return press(subject, place, [&](const Answer& answer, const PressStep& step) {
-      if (!step.settled) return std::string();
-      const hsp_contact& c = answer.contacts[0];
-      const bool entered = known && !inside && c.depth_m > 0;
-      const double jump = (Vector3d(c.force) - force).norm(), way = (step.p - at).norm();
-      const double explained = servo::Claim::kMargin * stiffness * way + jumps;
-      std::string turned = entered ? torqueAtOnce(torque, Vector3d(c.torque), explained) : std::string();
-      known = true, inside = c.depth_m > 0, force = Vector3d(c.force), torque = Vector3d(c.torque), at = step.p;
-      if (!turned.empty()) return turned;
-      if (!entered || jump <= explained + kRoom) return std::string();
-      return "the force jumps by " + text(jump) + " N within " + text(way * 1e6) +
-             " um where the surface is met; expected it to grow from 0 with the depth (a jump on purpose is claimed: "
-             "HSP_R_JUMPS and max_jump)";
-    });
-  });
+  return atEachPlace(
+      recipe,
+      [stiffness, jumps](Subject& subject, const Place& place) {
+        constexpr double kRoom = 0.1;  // [N] not felt as a step
+        bool known = false, inside = false;
+        Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero(), at = Vector3d::Zero();
+        return press(subject, place, [&](const Answer& answer, const PressStep& step) {
+          if (!step.settled) return std::string();
+          const hsp_contact& c = answer.contacts[0];
+          const bool entered = known && !inside && c.depth_m > 0;
+          const double jump = (Vector3d(c.force) - force).norm(), way = (step.p - at).norm();
+          const double explained = servo::Claim::kMargin * stiffness * way + jumps;
+          std::string turned = entered ? torqueAtOnce(torque, Vector3d(c.torque), explained) : std::string();
+          known = true, inside = c.depth_m > 0, force = Vector3d(c.force), torque = Vector3d(c.torque), at = step.p;
+          if (!turned.empty()) return turned;
+          if (!entered || jump <= explained + kRoom) return std::string();
+          return "the force jumps by " + text(jump) + " N within " + text(way * 1e6) +
+                 " um where the surface is met; expected it to grow from 0 with the depth (a jump on purpose is "
+                 "claimed: "
+                 "HSP_R_JUMPS and max_jump)";
+        });
+      },
+      Time::kStands);
 }
 
 /// The depths and forces of a press far below the surface that rests at each depth. It ends where the foot point leaves
@@ -323,29 +328,32 @@ Verdict deepPress(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   const hsp_report& report = made.subject->report();
-  if (made.subject->moves() || (made.subject->description().flags & HSP_C_DEFORMS) != 0)
-    return skipped("it moves or deforms, so its force does not depend on the depth alone");
+  if ((made.subject->description().flags & HSP_C_DEFORMS) != 0)
+    return skipped("it deforms, so its force does not depend on the depth alone");
   const double claimed = report.max_stiffness, jumps = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
   if (!(claimed > 0)) return skipped("no stiffness is claimed");
   Verdict steep = "";
   int left = 4;  // [places] at all of them, a slow shape would take too long
-  Verdict verdict = atEachPlace(recipe, [&](Subject& subject, const Place& place) {
-    if (left-- <= 0) return std::string();
-    const DeepPress press = pressDeep(subject, place);
-    for (size_t i = 1; i < press.force.size(); ++i) {
-      const double way = press.depth[i] - press.depth[i - 1], jump = std::abs(press.force[i] - press.force[i - 1]);
-      if (jump > kJump * claimed * way + kRoom + jumps)
-        return "the force jumps by " + text(jump) + " N within " + text(way * 1e6) + " um at a depth of " +
-               text(press.depth[i] * 1e3) + " mm, below " + text(place.foot) + "; expected what " + text(claimed) +
-               " N/m explain (a jump on purpose is claimed: HSP_R_JUMPS and max_jump)";
-      if (i < kApart || !steep.clean()) continue;
-      const double slope =
-          (press.force[i] - press.force[i - kApart] - jumps) / (press.depth[i] - press.depth[i - kApart]);
-      if (slope > kSteep * claimed + kRoom / (kApart * way))
-        steep = warned("at a depth of " + text(press.depth[i] * 1e3) + " mm " + besideClaim(claimed, slope));
-    }
-    return std::string();
-  });
+  Verdict verdict = atEachPlace(
+      recipe,
+      [&](Subject& subject, const Place& place) {
+        if (left-- <= 0) return std::string();
+        const DeepPress press = pressDeep(subject, place);
+        for (size_t i = 1; i < press.force.size(); ++i) {
+          const double way = press.depth[i] - press.depth[i - 1], jump = std::abs(press.force[i] - press.force[i - 1]);
+          if (jump > kJump * claimed * way + kRoom + jumps)
+            return "the force jumps by " + text(jump) + " N within " + text(way * 1e6) + " um at a depth of " +
+                   text(press.depth[i] * 1e3) + " mm, below " + text(place.foot) + "; expected what " + text(claimed) +
+                   " N/m explain (a jump on purpose is claimed: HSP_R_JUMPS and max_jump)";
+          if (i < kApart || !steep.clean()) continue;
+          const double slope =
+              (press.force[i] - press.force[i - kApart] - jumps) / (press.depth[i] - press.depth[i - kApart]);
+          if (slope > kSteep * claimed + kRoom / (kApart * way))
+            steep = warned("at a depth of " + text(press.depth[i] * 1e3) + " mm " + besideClaim(claimed, slope));
+        }
+        return std::string();
+      },
+      Time::kStands);
   return verdict.clean() ? steep : verdict;
 }
 
@@ -361,18 +369,18 @@ std::vector<ConformanceTest> contactTests() {
        &forceAlongNormal, kFoot},
       {"torque-about-probe", "the torque is about the probe, not about the model's origin", &torqueAboutProbe, kFinite},
       {"loops-give-no-energy", "a loop into the shape, along below its surface and out again gives no energy",
-       &loopsGiveNoEnergy, kFinite},
-      {"damping-sign", "a damper brakes the hand: moving in it pushes no less than moving out", &dampingSign, kFinite},
+       &loopsGiveNoEnergy, kRests},
+      {"damping-sign", "a damper brakes the hand: moving in it pushes no less than moving out", &dampingSign, kRests},
       {"long-loops-give-no-energy", "nor does one of 10 or 20 mm, between places of different stiffness",
        &longLoopsGiveNoEnergy, "loops-give-no-energy"},
       {"contacts-of-new-pose", "the contacts of a shape that moves belong to the pose that it writes",
-       &contactsOfTheNewPose, kFinite},
+       &contactsOfTheNewPose, kRests},
       {"contact-flags", "HSP_OUT_TRACED and HSP_OUT_CONTACT agree with depth and normal", &contactFlags, kFinite},
-      {"force-from-zero", "the force grows from zero where the surface is met", &noStep, kFinite},
-      {"stiffness-vs-claim", "forces are no steeper than claimed", &stiffnessClaim, kFinite},
-      {"deep-press", "deep below the surface the force still follows the claim", &deepPress, kFinite},
+      {"force-from-zero", "the force grows from zero where the surface is met", &noStep, kRests},
+      {"stiffness-vs-claim", "forces are no steeper than claimed", &stiffnessClaim, kRests},
+      {"deep-press", "deep below the surface the force still follows the claim", &deepPress, kRests},
       {"drawing-where-felt", "triangles and bounds of hsp.geometry/1 are where the surface is felt", &drawingWhereFelt,
-       kFinite},
+       kRests},
       {"bounds-where-felt", "the bounds of hsp.geometry/1 hold the surface that is felt", &boundsWhereFelt, kFinite},
   };
 }

@@ -75,23 +75,26 @@ std::string wrongDamping(Subject& subject, const Place& place, Pass out, bool& j
 Verdict dampingSign(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (made.subject->moves() || (made.subject->description().flags & HSP_C_DEFORMS) != 0)
-    return skipped("it moves or deforms, so its force does not depend on depth and speed alone");
+  if ((made.subject->description().flags & HSP_C_DEFORMS) != 0)
+    return skipped("it deforms, so its force does not depend on depth and speed alone");
   if ((made.subject->report().flags & HSP_R_VELOCITY) == 0)
     return skipped("it does not ask for the velocity (HSP_R_VELOCITY), so there is no damping to test");
   bool judged = false;
-  Verdict verdict = atEachPlace(recipe, [&judged](Subject& subject, const Place& place) {
-    constexpr int kMostLead = 5;  // [ticks]
-    const double shallow = pressDepth(subject, place), deep = std::min(3 * shallow, deepestPress(subject, place));
-    for (const double depth : {shallow, deep})
-      for (const double speed : {0.3, 0.1}) {
-        // The way inward begins below the surface too, so that both directions are in contact for as long.
-        const int lead = std::min(kMostLead, static_cast<int>(0.95 * depth / (speed * kConformanceDt)));
-        if (lead < 1) continue;
-        if (std::string one = wrongDamping(subject, place, {depth, speed, lead}, judged); !one.empty()) return one;
-      }
-    return std::string();
-  });
+  Verdict verdict = atEachPlace(
+      recipe,
+      [&judged](Subject& subject, const Place& place) {
+        constexpr int kMostLead = 5;  // [ticks]
+        const double shallow = pressDepth(subject, place), deep = std::min(3 * shallow, deepestPress(subject, place));
+        for (const double depth : {shallow, deep})
+          for (const double speed : {0.3, 0.1}) {
+            // The way inward begins below the surface too, so that both directions are in contact for as long.
+            const int lead = std::min(kMostLead, static_cast<int>(0.95 * depth / (speed * kConformanceDt)));
+            if (lead < 1) continue;
+            if (std::string one = wrongDamping(subject, place, {depth, speed, lead}, judged); !one.empty()) return one;
+          }
+        return std::string();
+      },
+      Time::kStands);
   if (!verdict.clean() || judged) return verdict;
   return skipped("at no place did one part of the surface answer on the whole way in and out");
 }

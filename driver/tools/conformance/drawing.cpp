@@ -112,7 +112,7 @@ std::string verdictOf(const Compared& found) {
 
 Verdict boundsWhereFelt(const Recipe& recipe, uint64_t) {
   constexpr double kRoom = 0.01;  // share of the diagonal: a curve may lie a little outside of the box of its drawing
-  const Made made(recipe);
+  const Made made = madeAtRest(recipe);
   if (!made.error.empty()) return made.error;
   Subject& subject = *made.subject;
   const auto* geometry = static_cast<const hsp_ext_geometry*>(subject.extension(HSP_EXT_GEOMETRY));
@@ -120,8 +120,6 @@ Verdict boundsWhereFelt(const Recipe& recipe, uint64_t) {
   if (geometry == nullptr || geometry->bounds == nullptr ||
       geometry->bounds(subject.handle(), low.data(), high.data()) != HSP_OK)
     return skipped("it gives no bounds() (hsp.geometry/1)");
-  if (subject.moves())
-    return skipped("the shape moves by itself, so it does not stay in the bounds() of its first pose");
   const Eigen::AlignedBox3d box(low, high);
   if (!low.allFinite() || !high.allFinite() || box.isEmpty())
     return warned("bounds() gives from " + text(low) + " to " + text(high) + "; expected min below max, finite");
@@ -137,7 +135,7 @@ Verdict boundsWhereFelt(const Recipe& recipe, uint64_t) {
 }
 
 Verdict drawingWhereFelt(const Recipe& recipe, uint64_t) {
-  const Made made(recipe);
+  const Made made = madeAtRest(recipe);
   if (!made.error.empty()) return made.error;
   Subject& subject = *made.subject;
   const auto* geometry = static_cast<const hsp_ext_geometry*>(subject.extension(HSP_EXT_GEOMETRY));
@@ -154,7 +152,6 @@ Verdict drawingWhereFelt(const Recipe& recipe, uint64_t) {
   if (std::string wrong = readDrawing(mesh, drawing); !wrong.empty()) return wrong;
   if (drawing.triangles.empty()) return skipped("tessellate() gives no triangle");
   if (std::string wrong = outsideBounds(drawing, low, high); !wrong.empty()) return wrong;
-  if (subject.moves()) return skipped("the shape moves by itself, so its surface does not stay where it is drawn");
   Compared found;
   const size_t tried = std::min(kMostTriangles, drawing.triangles.size());
   constexpr double kGolden = 0.6180339887498949;  // equal steps could try the same column of a grid again and again

@@ -188,10 +188,9 @@ std::vector<Loop> loopsOf(Subject& subject, const std::vector<Place>& places) {
 Verdict longLoopsGiveNoEnergy(const Recipe& recipe, uint64_t) {
   constexpr size_t kMost = 8;                       // loops
   constexpr Nanoseconds kPatience = 1'000'000'000;  // [ns] for the loops after the first one
-  const Made made(recipe);
+  const Made made = madeAtRest(recipe);
   if (!made.error.empty()) return made.error;
   Subject& subject = *made.subject;
-  if (subject.moves()) return skipped("it moves, so its energy does not depend on the place of the probe alone");
   if (recipe.touch.places.empty()) return atEachPlace(recipe, [](Subject&, const Place&) { return std::string(); });
   const std::vector<Loop> loops = loopsOf(subject, recipe.touch.places);
   if (loops.empty()) return skipped("its surface goes on smoothly for less than 10 mm");

@@ -59,7 +59,7 @@ std::string keptOverReset(const Recipe& recipe, Subject& subject) {
                    to = next.foot - depth / 2 * next.out;
     for (int k = 0; k < kStay; ++k) subject.step({below}, kConformanceDt, k == 0 ? uint32_t{HSP_IN_JUMP} : 0);
     for (int k = 0; k < kStay; ++k) subject.step({aside}, kConformanceDt);
-    const Made fresh(recipe);
+    const Made fresh = madeAtRest(recipe);
     const auto got = forcesAfterReset(subject, to), expected = forcesAfterReset(*fresh.subject, to);
     for (size_t k = 0; k < got.size(); ++k)
       if (const double apart = (got[k] - expected[k]).norm(); apart > 1e-3 * (1 + expected[k].norm()))
@@ -71,9 +71,8 @@ std::string keptOverReset(const Recipe& recipe, Subject& subject) {
 }
 
 Verdict resetEqualsFresh(const Recipe& recipe, uint64_t) {
-  const Made used(recipe), fresh(recipe);
+  const Made used = madeAtRest(recipe), fresh = madeAtRest(recipe);
   if (!used.error.empty()) return used.error;
-  if (used.subject->moves()) return skipped("it moves, and reset() keeps its pose");
   size_t steps = answersOf(*used.subject, kConformanceSteps / 2, 0.7).size();
   // A shape may keep a phase that repeats every 2, 3, 5 or 7 steps. After whole periods, it would not show.
   constexpr size_t kRounds = 2 * 3 * 5 * 7;
@@ -96,10 +95,10 @@ Verdict resetEqualsFresh(const Recipe& recipe, uint64_t) {
 /// search ends at the same foot with other last bits (1e-15 N with eight probes of nurbs_rigid, and another "certified"
 /// flag). This does not couple forces and is allowed.
 Verdict batchEqualsSingle(const Recipe& recipe, uint64_t) {
-  const Made batch(recipe, 2), one(recipe), two(recipe);
+  const Made batch = madeAtRest(recipe, 2), one = madeAtRest(recipe), two = madeAtRest(recipe);
   if (!batch.error.empty()) return "two probes: " + batch.error;
-  if (batch.subject->moves() || (batch.subject->description().flags & HSP_C_DEFORMS) != 0)
-    return skipped("a moving or deforming shape couples the probes");
+  if ((batch.subject->description().flags & HSP_C_DEFORMS) != 0)
+    return skipped("a shape that deforms couples the probes");
   for (int i = 0; i < kConformanceSteps; ++i) {
     const double part = static_cast<double>(i) / kConformanceSteps;
     const Vector3d p = onPath(*batch.subject, part), q = onPath(*batch.subject, part, 1.1);
@@ -128,7 +127,7 @@ std::string searchesAfterJump(const Recipe& recipe, Subject& subject, uint64_t s
   for (int i = 0; i < 100; ++i) {
     const Vector3d p = onPath(subject, part(random), part(random));
     const double jumped = subject.step({p}, kConformanceDt, HSP_IN_JUMP).contacts[0].depth_m;
-    const Made fresh(recipe);
+    const Made fresh = madeAtRest(recipe);
     const double alone = fresh.subject->step({p}, kConformanceDt).contacts[0].depth_m;
     if (!(std::abs(jumped - alone) <= 1e-4 * (1e-2 + std::abs(alone))))
       return "after a jump to " + text(p) + " the depth is " + text(jumped) + " m, but that of a new instance is " +
@@ -156,7 +155,7 @@ std::string keptOverJump(const Recipe& recipe, const std::vector<Place>& places,
                  deep = std::min(5 * depth, deepestPress(subject, from));
     const Vector3d below = from.foot - deep * from.out, aside = below + depth * from.out.unitOrthogonal();
     const Vector3d to = next.foot - depth / 2 * next.out, outside = next.foot + depth * next.out;
-    const Made fresh(recipe);
+    const Made fresh = madeAtRest(recipe);
     const Vector3d expected = forceAfterJump(*fresh.subject, {outside, outside}, to);
     subject.reset();
     const Vector3d got = forceAfterJump(subject, {below, aside}, to);
@@ -172,10 +171,10 @@ std::string keptOverJump(const Recipe& recipe, const std::vector<Place>& places,
 }
 
 Verdict jumpFlag(const Recipe& recipe, uint64_t seed) {
-  const Made made(recipe);
+  const Made made = madeAtRest(recipe);
   if (!made.error.empty()) return made.error;
-  if (made.subject->moves() || (made.subject->description().flags & HSP_C_DEFORMS) != 0)
-    return skipped("a moving or deforming shape remembers where it was touched");
+  if ((made.subject->description().flags & HSP_C_DEFORMS) != 0)
+    return skipped("a shape that deforms remembers where it was touched");
   const std::string wrong = searchesAfterJump(recipe, *made.subject, seed);
   const bool remembers = made.subject->extension(HSP_EXT_STATE) != nullptr;
   return wrong.empty() && !remembers ? keptOverJump(recipe, recipe.touch.places, *made.subject) : wrong;

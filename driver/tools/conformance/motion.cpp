@@ -66,6 +66,25 @@ std::string classSaysSo(const Subject& subject) {
 
 }  // namespace
 
+Verdict restsInNoTime(const Recipe& recipe, uint64_t) {
+  const Made made = madeAtRest(recipe);
+  if (!made.error.empty()) return made.error;
+  if (!made.subject->moves()) return skipped("it does not move by itself");
+  const Vector3d start = Vector3d::Zero();
+  double farthest = 0;  // [m] that a point 0.1 m from the frame's origin went
+  along(*made.subject, [&](const Answer& answer, const Vector3d&) {
+    constexpr double kArm = 0.1;
+    for (const Vector3d& point : {start, Vector3d(kArm, 0, 0), Vector3d(0, kArm, 0)})
+      farthest = std::max(farthest, (inFrame(answer.pose, point) - point).norm());
+    return std::string();
+  });
+  if (farthest <= kLeastWay) return "";
+  return "its pose changes by " + text(farthest) +
+         " m in steps that take no time (step.dt_s is 0); expected a motion that follows step.dt_s: the host repeats "
+         "no "
+         "tick, and leaves some out";
+}
+
 Verdict contactsOfTheNewPose(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;

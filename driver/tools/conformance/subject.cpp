@@ -152,7 +152,7 @@ Result<void> Subject::activate(uint32_t probes) {
   active_ = true;
   pose_ = {};
   pose_.orientation[0] = 1;
-  steps_ = allocations_ = locks_ = 0;
+  steps_ = ticks_ = allocations_ = locks_ = 0;
   last_.clear();
   const auto* surfaces = static_cast<const hsp_ext_surfaces*>(extension(HSP_EXT_SURFACES));
   traced_.assign(probes, std::vector<uint8_t>(surfaces != nullptr ? surfaces->surface_count : 0, 0));
@@ -210,7 +210,7 @@ const Answer& Subject::step(const std::vector<Vector3d>& positions, double dt, u
     Eigen::Map<Vector3d>(probes[i].position) = positions[i];
     probes[i].orientation[0] = 1;
     probes[i].flags = flags;
-    probes[i].time_ns = steps_ * 1'000'000;
+    probes[i].time_ns = ticks_ * 1'000'000;
     const bool moved = dt > 0 && i < last_.size() && (flags & HSP_IN_JUMP) == 0;
     if (moved && ((report_.flags | given_) & HSP_R_VELOCITY) != 0)
       Eigen::Map<Vector3d>(probes[i].velocity) = (positions[i] - last_[i]) / dt;
@@ -240,7 +240,7 @@ const Answer& Subject::run(const std::vector<hsp_probe>& probes, double dt) {
   step.in_stride = static_cast<uint32_t>(in_stride);
   step.out = reinterpret_cast<hsp_contact*>(out_.data());
   step.out_stride = static_cast<uint32_t>(out_stride);
-  step.dt_s = steps_ == 0 ? 0 : dt;
+  step.dt_s = steps_ == 0 || stopped_ ? 0 : dt;
   step.pose = &pose_;
   call(step);
   answer_.contacts.resize(probes.size());
@@ -250,6 +250,7 @@ const Answer& Subject::run(const std::vector<hsp_probe>& probes, double dt) {
   answer_.jumped =
       std::any_of(probes.begin(), probes.end(), [](const hsp_probe& p) { return (p.flags & HSP_IN_JUMP) != 0; });
   ++steps_;
+  if (!stopped_) ++ticks_;
   return answer_;
 }
 

@@ -65,6 +65,9 @@ class Subject {
   /// From now on probes have the quantities that these flags stand for (HSP_R_VELOCITY, HSP_R_ORIENTATION), even if the
   /// shape did not ask for them.
   void give(uint32_t flags) { given_ = flags; }
+  /// From now on every step takes 0 s and has the same time, so that a shape that moves stays where it is. What holds
+  /// for shapes at rest then holds for it, too. The velocity of a probe is that of the time that step() was given.
+  void stopTime() { stopped_ = true; }
   /// From now on the cost of each step is measured, and cost() returns that of the last step.
   void measureCost() { measured_ = true; }
   const StepCost& cost() const { return cost_; }
@@ -109,9 +112,9 @@ class Subject {
   std::vector<std::vector<uint8_t>> traced_;  // [probe][surface]
   std::vector<uint8_t> in_, out_;             // records with room between them
   size_t room_ = 0;
-  uint64_t steps_ = 0, step_ns_ = 0, allocations_ = 0, locks_ = 0;
+  uint64_t steps_ = 0, ticks_ = 0, step_ns_ = 0, allocations_ = 0, locks_ = 0;
   uint32_t given_ = 0;
-  bool measured_ = false;
+  bool measured_ = false, stopped_ = false;
   StepCost cost_;
 };
 

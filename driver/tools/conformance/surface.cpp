@@ -102,9 +102,9 @@ std::string wrongFoot(Subject& subject, const Place& place) {
 Verdict footAndNormal(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (made.subject->moves() || (made.subject->description().flags & HSP_C_DEFORMS) != 0)
-    return skipped("it moves or deforms, so its foot point moves too");
-  return atEachPlace(recipe, &wrongFoot);
+  if ((made.subject->description().flags & HSP_C_DEFORMS) != 0)
+    return skipped("it deforms, so its foot point moves too");
+  return atEachPlace(recipe, &wrongFoot, Time::kStands);
 }
 
 namespace {

@@ -147,7 +147,7 @@ std::string press(Subject& subject, const Place& place, const PressLook& look) {
 }
 
 Touch findTouch(const Recipe& recipe) {
-  const Made made(recipe);
+  const Made made = madeAtRest(recipe);
   if (!made.error.empty()) return {};
   Search search{*made.subject, {}};
   const auto from = sizes(*made.subject);

@@ -13,6 +13,9 @@ constexpr double kSpring = 500, kSpeed = 0.01;  // [N/m], [m/s]
 template <class Derived, bool kShifts>
 struct Lift : hapticd::Shape {
   double number = 0;
+  double spring = kSpring;  ///< [N/m] that is felt
+  double aside = 0;         ///< [m] by which the foot point is wrong
+  double tick = 0;          ///< [m] by which the plate rises in each step, however short
   static constexpr auto fields() {
     return std::array{hapticd::Fields<Derived>::real("number", &Derived::number, "", 0, 1, 0, "None.")};
   }
@@ -22,7 +25,7 @@ struct Lift : hapticd::Shape {
     report.flags |= HSP_R_MOVES | HSP_R_PUSHES;
   }
   hsp_status step(const hsp_step& step) noexcept HSP_RT {
-    const double way = kSpeed * step.dt_s;
+    const double way = kSpeed * step.dt_s + tick;
     step.pose->position[1] += way;
     step.pose->linear[1] = kSpeed;
     for (uint32_t i = 0; i < step.count; ++i) {
@@ -32,8 +35,8 @@ struct Lift : hapticd::Shape {
       out.depth_m = (kShifts ? way : 0) - in.position[1];
       out.flags = HSP_OUT_TRACED | (out.depth_m > 0 ? HSP_OUT_CONTACT : 0);
       out.normal[1] = 1;
-      out.point[0] = in.position[0], out.point[2] = in.position[2];
-      if (out.depth_m > 0) out.force[1] = kSpring * out.depth_m;
+      out.point[0] = in.position[0], out.point[1] = aside, out.point[2] = in.position[2];
+      if (out.depth_m > 0) out.force[1] = spring * out.depth_m;
     }
     return HSP_OK;
   }
@@ -52,6 +55,22 @@ struct Unsaid : Lift<Unsaid, true> {
                                             "To be tested."};
 };
 
+struct Steep : Lift<Steep, true> {
+  static constexpr hapticd::ShapeInfo kInfo{
+      "org.example.shape.lift_steep", "lift_steep", "1.0.0", "MIT", "To be tested.", HSP_C_MOVES};
+  Steep() { spring = 3 * kSpring; }
+};
+struct Aside : Lift<Aside, true> {
+  static constexpr hapticd::ShapeInfo kInfo{
+      "org.example.shape.lift_aside", "lift_aside", "1.0.0", "MIT", "To be tested.", HSP_C_MOVES};
+  Aside() { aside = -0.003; }
+};
+struct Counting : Lift<Counting, true> {
+  static constexpr hapticd::ShapeInfo kInfo{
+      "org.example.shape.lift_counting", "lift_counting", "1.0.0", "MIT", "To be tested.", HSP_C_MOVES};
+  Counting() { tick = 1e-5; }
+};
+
 }  // namespace
 
-HAPTICD_SHAPES(Right, Late, Unsaid)
+HAPTICD_SHAPES(Right, Late, Unsaid, Steep, Aside, Counting)
