@@ -292,7 +292,7 @@ void Subject::reset() {
       traced_[probe][s] = 0;
     }
   last_.clear();
-  steps_ = 0;
+  steps_ = ticks_ = 0;
 }
 
 }  // namespace hapticd::conformance

@@ -31,7 +31,7 @@ for name, enumeration, file in (("kFaults", "Fault", ("daemon", "servo", "safety
                                 ("kSilenced", "ShapeFault", ("daemon", "servo", "safety", "guard.hpp"))):
     known, told = members(text_of(*file), enumeration), words(name)
     check(f"{name}: words for all of {enumeration}", len(told) == len(known), (len(told), known))
-kinds = re.findall(r'"(\w+)"', re.search(r"kNames\[\] = {(.*?)};", text_of("daemon", "session", "event_finder.cpp"), re.S)[1])
+kinds = re.findall(r'"(\w+)"', re.search(r"kNames\[\] = {(.*?)};", text_of("daemon", "session", "telemetry", "event_finder.cpp"), re.S)[1])
 described = re.findall(r"^  (\w+): {sort", EVENTS, re.M)
 check("every kind of event has a sort and words", sorted(kinds) == sorted(described), (kinds, described))
 finish()
