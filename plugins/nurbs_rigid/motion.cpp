@@ -61,6 +61,9 @@ dynamics::RigidBodyLaw lawOf(const MotionParameters& given, const dynamics::Mass
   law.joint = static_cast<dynamics::Joint>(given.joint_);
   law.pivot = Vector3d(given.pivot_.data());
   law.axis = Vector3d(given.axis_.data());
+  law.angular_tether = given.angular_tether_;
+  law.rest = given.rest_;
+  if (given.limits_.size() == 2) law.limits = {given.limits_[0], given.limits_[1]};
   return law;
 }
 

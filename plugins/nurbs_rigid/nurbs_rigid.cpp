@@ -23,6 +23,10 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
   if (friction_dynamic_ > friction_static_)
     throw std::invalid_argument("friction_dynamic: " + number(friction_dynamic_) + " is more than friction_static, " +
                                 number(friction_static_) + "; it must not be greater");
+  if (motion_ != kDynamic && !limits_.empty())
+    throw std::invalid_argument(
+        std::string("limits: end stops hold only a body that moves under forces, and this model is motion: ") +
+        kMotionNames[motion_] + "; set motion: dynamic, or remove limits");
   takeParts(instance_name_);
   load(activation, report);
   if (pop_through_ > 0 && sides_ != kBoth && host() != nullptr && host()->log != nullptr)
