@@ -2,6 +2,7 @@
 /// A rigid model that moves under the forces on it: its parameters, its body, and the contacts that push it.
 #pragma once
 #include <array>
+#include <string>
 #include <vector>
 
 #include "hapticd/shape.hpp"
@@ -65,6 +66,9 @@ struct MotionParameters {
 dynamics::MassProperties massProperties(const trace::Model& model, bool& bounded);
 /// [main] Does the same for a part. It integrates over triangles that are exact to a ten-thousandth of the part's size.
 dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded);
+
+/// [main] Says in one line how the joint of a body moves: its inertia, end stops, and the swing on its spring.
+std::string jointText(const MotionParameters& parameters, const dynamics::RigidBody& body);
 
 /// A model that moves under forces: its rigid body, its frame, and its contacts.
 class DynamicBody {

@@ -82,6 +82,10 @@ class RigidBody {
   /// [rt] angle [rad] of a hinge or way [m] of a slider since the initial pose; 0 for a free body. The angle counts
   /// whole turns if there is a torsion spring or a limit.
   double jointPosition() const noexcept;
+  /// [any] moment of inertia about the axis of a hinge [kg m^2], or mass of a slider [kg]; 0 for a free body
+  double jointInertia() const noexcept {
+    return law_.joint == Joint::kFree ? 0 : law_.joint == Joint::kHinge ? hinge_.inertia : law_.mass;
+  }
   Stop stop() const noexcept;  ///< [rt] end stop at which the joint stands
   /// [any] Returns the angular frequency [rad/s] of small swings of a hinge about its lowest point; 0 for other joints.
   /// Steps in which such a swing advances by more than kLargestSwing [rad] are not stable (pendulum.hpp).
