@@ -6,6 +6,7 @@
 #include <map>
 
 #include "cli/command.hpp"
+#include "cli/joint_ranges.hpp"
 #include "cli/touched_features.hpp"
 #include "hapticd/abi.h"
 #include "session/recorded_events.hpp"
@@ -76,6 +77,9 @@ int explainRecording(const std::string& file) {
   const auto touched = touchedFeatures(**recording, run->scene, run->facts.rate);
   if (!touched.empty()) std::printf("touched\n");
   for (const std::string& line : touched) std::printf("  %s\n", line.c_str());
+  const auto joints = jointRanges(**recording, run->scene, run->facts.rate);
+  if (!joints.empty()) std::printf("joints\n");
+  for (const std::string& line : joints) std::printf("  %s\n", line.c_str());
   return kWorked;
 }
 
