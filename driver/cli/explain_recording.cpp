@@ -78,7 +78,7 @@ int explainRecording(const std::string& file) {
   if (!touched.empty()) std::printf("touched\n");
   for (const std::string& line : touched) std::printf("  %s\n", line.c_str());
   const auto joints = jointRanges(**recording, run->scene, run->facts.rate);
-  if (!joints.empty()) std::printf("joints\n");
+  if (!joints.empty()) std::printf("moved\n");
   for (const std::string& line : joints) std::printf("  %s\n", line.c_str());
   return kWorked;
 }
