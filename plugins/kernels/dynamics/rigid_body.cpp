@@ -148,14 +148,16 @@ RigidBody::Vector6d RigidBody::changeUnder(const Matrix6d& resisting, const Vect
   return free * (free.dot(impulse) / free.dot(resisting * free));
 }
 
-void RigidBody::step(std::span<const PredictedContact> presses, double dt) noexcept {
-  if (presses.empty() || !(dt > 0)) return step(Vector3d::Zero(), Vector3d::Zero(), dt);
-  const Matrix6d own = ownResistance(dt);
+/// Returns the change of velocity in a step under those contacts that act, with forces that follow it linearly.
+template <class Acts>
+RigidBody::Vector6d RigidBody::linearChange(const Matrix6d& own, const Vector6d& own_impulse,
+                                            std::span<const PredictedContact> presses, double dt,
+                                            const Acts& acts) const noexcept {
   Matrix6d resisting = own;
-  Vector6d own_impulse = ownImpulse(dt);
   Vector6d impulse = own_impulse;
   const Vector3d rate = angular();
   for (const PredictedContact& press : presses) {
+    if (!acts(press)) continue;
     const Vector3d lever = press.point - x_;
     const Eigen::Matrix<double, 3, 6> rows = pointRows(lever);
     resisting += dt * rows.transpose() * press.give * rows;
@@ -164,8 +166,23 @@ void RigidBody::step(std::span<const PredictedContact> presses, double dt) noexc
     resisting.bottomRightCorner<3, 3>() += back;
     impulse.tail<3>() -= back * rate;
   }
-  const Vector6d change = changeUnder(resisting, impulse);
+  return changeUnder(resisting, impulse);
+}
+
+void RigidBody::step(std::span<const PredictedContact> presses, double dt) noexcept {
+  if (presses.empty() || !(dt > 0)) return step(Vector3d::Zero(), Vector3d::Zero(), dt);
+  const Matrix6d own = ownResistance(dt);
+  Vector6d own_impulse = ownImpulse(dt);
+  const auto grips = [](const PredictedContact& press) { return !press.lets_go; };
+  Vector6d change = linearChange(own, own_impulse, presses, dt, grips);
+  const auto acts = [this, &grips, first = change](const PredictedContact& press) {
+    return grips(press) || !forceAfter(press, pointRows(press.point - x_) * first).isZero(0);
+  };
+  if (std::none_of(presses.begin(), presses.end(), acts)) return step(Vector3d::Zero(), Vector3d::Zero(), dt);
+  if (!std::all_of(presses.begin(), presses.end(), grips)) change = linearChange(own, own_impulse, presses, dt, acts);
+  const Vector3d rate = angular();
   for (const PredictedContact& press : presses) {
+    if (!acts(press)) continue;
     const Vector3d lever = press.point - x_;
     const Eigen::Matrix<double, 3, 6> rows = pointRows(lever);
     own_impulse += dt * rows.transpose() * forceAfter(press, rows * change);

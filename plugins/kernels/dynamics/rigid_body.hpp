@@ -109,6 +109,9 @@ class RigidBody {
   using Vector6d = Eigen::Matrix<double, 6, 1>;
   using Matrix6d = Eigen::Matrix<double, 6, 6>;
   Vector6d changeUnder(const Matrix6d& resisting, const Vector6d& impulse) const noexcept;
+  template <class Acts>
+  Vector6d linearChange(const Matrix6d& own, const Vector6d& own_impulse, std::span<const PredictedContact> presses,
+                        double dt, const Acts& acts) const noexcept;
   Matrix6d ownResistance(double dt) const noexcept;
   Vector6d ownImpulse(double dt) const noexcept;
   void drift(const Vector6d& change, double dt) noexcept;

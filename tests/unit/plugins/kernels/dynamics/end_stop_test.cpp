@@ -215,7 +215,6 @@ TEST(EndStop, AHandThatPressesABodyAgainstItFeelsTheWholeWallAndNoTremor) {
   for (const double rate : kRates)
     for (const double mass : {1e-4, 0.1, 5.0})
       for (const double tether : {0.0, 40.0}) {
-        if (tether > 0 && mass < 1e-3) continue;  // its spring moves it by itself faster than a tick
         RigidBody body = drawer(mass, tether, {0, 0.02});
         PressingHand hand(1 / rate);
         const auto ticks = static_cast<int>(6 * rate);
@@ -226,10 +225,10 @@ TEST(EndStop, AHandThatPressesABodyAgainstItFeelsTheWholeWallAndNoTremor) {
         EXPECT_LT(hand.speed(), 1e-6);
         EXPECT_EQ(body.linear(), kZero);
         double greatest = hand.force();
-        for (int i = 0; i < ticks; ++i) {  // draws back: the force only falls, and then is 0
+        for (int i = 0; i < ticks; ++i) {  // draws back: the force only falls, but a spring may bring the body after it
           hand.tick(body, wall, -0.05);
           ASSERT_LE(hand.force(), greatest + 1e-9) << rate << ' ' << mass << ' ' << i;
-          greatest = std::fmin(greatest, hand.force());
+          if (tether == 0) greatest = std::fmin(greatest, hand.force());
           ASSERT_GE(body.position().x(), 0) << "its other stop holds it";
         }
         EXPECT_EQ(body.position().x(), tether > 0 ? 0 : 0.02) << "the spring brings it back; without one it stays";
