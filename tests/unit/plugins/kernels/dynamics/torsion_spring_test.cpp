@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "support/sweep.hpp"
+
 namespace hapticd::dynamics {
 namespace {
 
@@ -97,7 +99,7 @@ TEST(TorsionSpring, WithoutAWeightNeverGainsEnergyWhateverItsStiffnessAndInertia
 TEST(TorsionSpring, StaysBoundedWithAWeight) {
   for (const double share : {1e-3, 0.1, 0.5, 0.9, 0.999})  // of the spring in the square of the frequency
     for (const double damping : {0.0, 1e-3, 0.03, 2.0})
-      for (double phase = 1e-3; phase <= kLargestSwing; phase *= 1.19) {
+      for (double phase = 1e-3; phase <= kLargestSwing; phase *= support::kLong ? 1.19 : 1.9) {
         PendulumLaw law;
         law.gravity = 1 - share;
         law.damping = damping;
