@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 namespace hapticd {
@@ -61,6 +62,9 @@ dynamics::RigidBodyLaw lawOf(const MotionParameters& given, const dynamics::Mass
   law.joint = static_cast<dynamics::Joint>(given.joint_);
   law.pivot = Vector3d(given.pivot_.data());
   law.axis = Vector3d(given.axis_.data());
+  law.angular_tether = given.angular_tether_;
+  law.rest = given.rest_;
+  if (given.limits_.size() == 2) law.limits = {given.limits_[0], given.limits_[1]};
   return law;
 }
 
@@ -80,6 +84,22 @@ dynamics::MassProperties massProperties(const trace::Model& model, bool& bounded
   thick.min() -= margin;
   thick.max() += margin;
   return dynamics::boxProperties(thick);
+}
+
+std::string jointText(const MotionParameters& parameters, const dynamics::RigidBody& body) {
+  const bool hinge = parameters.joint_ == static_cast<int>(dynamics::Joint::kHinge);
+  const char* unit = hinge ? " rad" : " m";
+  const double spring = hinge ? parameters.angular_tether_ : parameters.tether_, inertia = body.jointInertia();
+  std::ostringstream text;
+  text.precision(4);
+  text << (hinge ? "a hinge: " : "a slider: ") << inertia << (hinge ? " kg m^2 about its axis" : " kg");
+  if (parameters.limits_.size() == 2)
+    text << ", end stops at " << parameters.limits_[0] << " and " << parameters.limits_[1] << unit;
+  if (spring > 0)
+    text << ", a spring of " << spring << (hinge ? " N m/rad" : " N/m") << " that is relaxed at " << parameters.rest_
+         << unit << ", on which it swings at " << std::sqrt(spring / inertia) / (2 * M_PI)
+         << " Hz if neither drag, weight nor a hand acts";
+  return text.str();
 }
 
 DynamicBody::DynamicBody(const MotionParameters& parameters, const dynamics::MassProperties& shape,

@@ -2,6 +2,7 @@
 /// A rigid model that moves under the forces on it: its parameters, its body, and the contacts that push it.
 #pragma once
 #include <array>
+#include <string>
 #include <vector>
 
 #include "hapticd/shape.hpp"
@@ -37,18 +38,26 @@ struct MotionParameters {
         F::vector3("axis", &MotionParameters::axis_, "", -1e6, 1e6, "[0, 1, 0]",
                    "direction of the axis of hinge or slider, in the model frame"),
         F::real("tether", &MotionParameters::tether_, "N/m", 0, 1e6, 0,
-                "spring that pulls `center` to its initial position; 0: no spring"),
+                "spring that pulls `center` to its initial position, or of a slider to `rest`; 0: no spring"),
         F::vector3("velocity", &MotionParameters::velocity_, "m/s", -1e3, 1e3, "[0, 0, 0]",
                    "velocity of `center` at the start, in the world frame"),
         F::vector3("spin", &MotionParameters::spin_, "rad/s", -1e4, 1e4, "[0, 0, 0]",
-                   "angular velocity at the start, in the model frame")};
+                   "angular velocity at the start, in the model frame"),
+        F::real("angular_tether", &MotionParameters::angular_tether_, "N m/rad", 0, 1e6, 0,
+                "torsion spring that turns a hinge to `rest`; 0: no spring"),
+        F::real("rest", &MotionParameters::rest_, "rad or m", -1e3, 1e3, 0,
+                "where the spring of the joint is relaxed, from the initial pose: angle of a hinge with angular_tether "
+                "[rad], by the right-hand rule about axis; way of a slider with tether [m], along axis"),
+        F::array("limits", &MotionParameters::limits_, "rad or m", 2, 0, 2, -1e3, 1e3, "[]",
+                 "[lowest, highest]: end stops of the joint, from the initial pose, which is 0: angles of a hinge "
+                 "[rad], ways of a slider [m]; []: no stops")};
   }
   static constexpr const char* kJointNames[] = {"free", "hinge", "slider"};
 
-  double mass_ = 1, drag_ = 0, angular_drag_ = 0, tether_ = 0;
+  double mass_ = 1, drag_ = 0, angular_drag_ = 0, tether_ = 0, angular_tether_ = 0, rest_ = 0;
   bool gravity_ = true;
   int joint_ = 0;
-  std::vector<double> center_, inertia_;
+  std::vector<double> center_, inertia_, limits_;
   std::array<double, 3> pivot_{}, axis_{0, 1, 0}, velocity_{}, spin_{};
 };
 
@@ -57,6 +66,9 @@ struct MotionParameters {
 dynamics::MassProperties massProperties(const trace::Model& model, bool& bounded);
 /// [main] Does the same for a part. It integrates over triangles that are exact to a ten-thousandth of the part's size.
 dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded);
+
+/// [main] Says in one line how the joint of a body moves: its inertia, end stops, and the swing on its spring.
+std::string jointText(const MotionParameters& parameters, const dynamics::RigidBody& body);
 
 /// A model that moves under forces: its rigid body, its frame, and its contacts.
 class DynamicBody {

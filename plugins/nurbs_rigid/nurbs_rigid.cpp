@@ -23,6 +23,10 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
   if (friction_dynamic_ > friction_static_)
     throw std::invalid_argument("friction_dynamic: " + number(friction_dynamic_) + " is more than friction_static, " +
                                 number(friction_static_) + "; it must not be greater");
+  if (motion_ != kDynamic && !limits_.empty())
+    throw std::invalid_argument(
+        std::string("limits: end stops hold only a body that moves under forces, and this model is motion: ") +
+        kMotionNames[motion_] + "; set motion: dynamic, or remove limits");
   takeParts(instance_name_);
   load(activation, report);
   if (pop_through_ > 0 && sides_ != kBoth && host() != nullptr && host()->log != nullptr)
@@ -60,6 +64,8 @@ void NurbsRigid::setInMotion(const hsp_activation& activation, hsp_report& repor
     host()->log(host(), HSP_LOG_WARNING,
                 "the surfaces are not closed, so center or inertia, if not given, are taken from the box around them");
   body_.emplace(*this, shape, activation);
+  if (joint_ != static_cast<int>(dynamics::Joint::kFree) && host() != nullptr && host()->log != nullptr)
+    host()->log(host(), HSP_LOG_DEBUG, jointText(*this, body_->body()).c_str());
   report.flags |= HSP_R_MOVES;
 }
 

@@ -72,26 +72,41 @@ MovingFrame Pendulum::frame() const noexcept HSP_RT {
 }
 
 /// Makes a step under the forces of the hand by backward Euler: it uses the torques at the end of the step, so it is
-/// stable even for a very light pendulum.
-void Pendulum::push(std::span<const dynamics::PredictedContact> presses, double dt) noexcept HSP_RT {
+/// stable even for a very light pendulum. A contact that lets go acts only if the pendulum comes after the probe.
+/// @return false if no contact acts; then nothing was done
+bool Pendulum::push(std::span<const dynamics::PredictedContact> presses, double dt) noexcept HSP_RT {
   const double weight = law_.mass * law_.gravity * law_.length, here = state_.angle + dt * state_.rate;
   const double own = law_.inertia + dt * (law_.damping + dt * weight * std::max(0.0, std::cos(state_.angle)));
   const double own_impulse = -dt * (weight * std::sin(here) + law_.damping * state_.rate);
-  double resisting = own, impulse = own_impulse;
+  // velocity of the point per angular velocity
+  const auto moment_of = [this](const dynamics::PredictedContact& press) -> Eigen::Vector3d {
+    return axis_world_.cross(press.point - pivot_world_);
+  };
+  const auto change_under = [&](const auto& acts) {
+    double resisting = own, impulse = own_impulse;
+    for (const dynamics::PredictedContact& press : presses) {
+      if (!acts(press)) continue;
+      const Eigen::Vector3d moment = moment_of(press);
+      resisting += dt * moment.dot(press.give * moment);
+      impulse += dt * moment.dot(press.force);
+    }
+    return impulse / resisting;
+  };
+  const double first = change_under([](const dynamics::PredictedContact& press) { return !press.lets_go; });
+  const auto acts = [&](const dynamics::PredictedContact& press) {
+    return !press.lets_go || !dynamics::forceAfter(press, first * moment_of(press)).isZero(0);
+  };
+  if (std::none_of(presses.begin(), presses.end(), acts)) return false;
+  const double change = change_under(acts);
+  double impulse = own_impulse;
   for (const dynamics::PredictedContact& press : presses) {
-    // velocity of the point per angular velocity
-    const Eigen::Vector3d moment = axis_world_.cross(press.point - pivot_world_);
-    resisting += dt * moment.dot(press.give * moment);
-    impulse += dt * moment.dot(press.force);
-  }
-  const double change = impulse / resisting;
-  impulse = own_impulse;
-  for (const dynamics::PredictedContact& press : presses) {
-    const Eigen::Vector3d moment = axis_world_.cross(press.point - pivot_world_);
+    if (!acts(press)) continue;
+    const Eigen::Vector3d moment = moment_of(press);
     impulse += dt * moment.dot(dynamics::forceAfter(press, change * moment));
   }
   state_.rate += impulse / own;
   state_.angle += dt * state_.rate;
+  return true;
 }
 
 hsp_status Pendulum::step(const hsp_step& step) noexcept HSP_RT {
@@ -101,7 +116,7 @@ hsp_status Pendulum::step(const hsp_step& step) noexcept HSP_RT {
   };
   if (step.dt_s > 0) {
     const auto presses = presses_->predict(step, before, velocity_at);
-    presses.empty() ? void(state_ = dynamics::advance(law_, state_, 0, step.dt_s)) : push(presses, step.dt_s);
+    if (presses.empty() || !push(presses, step.dt_s)) state_ = dynamics::advance(law_, state_, 0, step.dt_s);
     // keeps the precision of the angle if the pendulum goes round many times
     state_.angle = std::remainder(state_.angle, 2 * M_PI);
   }

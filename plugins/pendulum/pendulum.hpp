@@ -55,7 +55,7 @@ class Pendulum final : public TracedShape {
 
  private:
   MovingFrame frame() const noexcept HSP_RT;
-  void push(std::span<const dynamics::PredictedContact> presses, double dt) noexcept HSP_RT;
+  bool push(std::span<const dynamics::PredictedContact> presses, double dt) noexcept HSP_RT;
   hsp_status press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact,
                    const MovingFrame& now) noexcept HSP_RT;
 

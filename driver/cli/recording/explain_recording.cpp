@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 
+#include "cli/recording/joint_ranges.hpp"
 #include "cli/recording/touched_features.hpp"
 #include "cli/support/command.hpp"
 #include "hapticd/abi.h"
@@ -76,6 +77,9 @@ int explainRecording(const std::string& file) {
   const auto touched = touchedFeatures(**recording, run->scene, run->facts.rate);
   if (!touched.empty()) std::printf("touched\n");
   for (const std::string& line : touched) std::printf("  %s\n", line.c_str());
+  const auto joints = jointRanges(**recording, run->scene, run->facts.rate);
+  if (!joints.empty()) std::printf("moved\n");
+  for (const std::string& line : joints) std::printf("  %s\n", line.c_str());
   return kWorked;
 }
 

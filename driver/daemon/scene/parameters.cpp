@@ -57,6 +57,9 @@ std::string idEndingWith(const std::string& word, const std::vector<std::string>
 }
 
 std::string countText(const host::ParamInfo& p) {
+  // one row, which may be left out: no other number of numbers is right
+  if (p.min_count == 0 && p.columns > 1 && p.max_count == p.columns)
+    return "0 or " + std::to_string(p.columns) + " numbers";
   std::string text = p.min_count == p.max_count ? std::to_string(p.min_count) + " numbers"
                      : p.max_count == UINT32_MAX
                          ? "at least " + std::to_string(p.min_count) + " numbers"

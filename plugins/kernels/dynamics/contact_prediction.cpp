@@ -2,11 +2,33 @@
 #include "kernels/dynamics/contact_prediction.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hapticd::dynamics {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+
+namespace {
+
+struct Depths {
+  double now, deepest;  // [m] at the end of the step if the body keeps its velocity; if it stays
+};
+
+/// Predicts a contact whose damper holds back the probe more than the surface pushes.
+PredictedContact lettingGo(PredictedContact press, const LastContact& last, const contact::WallForce& wall,
+                           const Depths& depth, double closing_speed, double dt) noexcept {
+  if (!(depth.deepest > 0) || !(wall.damping > 0) || !std::isfinite(closing_speed)) return press;
+  const double elastic = contact::wallForce(last.law, depth.deepest, 0).force;
+  const double chord = elastic / depth.deepest * std::max(1.0, last.law.exponent);
+  const double force = elastic + wall.damping * closing_speed - chord * (depth.deepest - depth.now);
+  press.force = -force * last.normal;
+  press.give = (chord * dt + wall.damping) * last.normal * last.normal.transpose();
+  press.lets_go = true;
+  return press;
+}
+
+}  // namespace
 
 PredictedContact predict(const LastContact& last, const Vector3d& probe_now, double closing_speed,
                          const Vector3d& point_velocity, double dt) noexcept {
@@ -19,7 +41,7 @@ PredictedContact predict(const LastContact& last, const Vector3d& probe_now, dou
   // linearly to negative values.
   const double deepest = std::max(depth, last.depth - last.normal.dot(probe_now - last.probe));
   const contact::WallForce wall = contact::wallForce(last.law, deepest, closing_speed);
-  if (!(wall.force > 0)) return press;
+  if (!(wall.force > 0)) return lettingGo(press, last, wall, {depth, deepest}, closing_speed, dt);
   // For n < 1 the slope of the chord to depth 0 is used. With the steeper slope of the law itself, a light body would
   // be thrown out.
   const double chord = wall.force / deepest * std::max(1.0, last.law.exponent);

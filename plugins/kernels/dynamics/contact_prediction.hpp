@@ -35,6 +35,11 @@ struct PredictedContact {
   Eigen::Vector3d force{0, 0, 0};
   /// [N s/m] reduction of the force per change of the point's velocity
   Eigen::Matrix3d give = Eigen::Matrix3d::Zero();
+  /// True if the probe draws back so fast that the surface does not push: the damper's share of `force` then pulls.
+  /// Such a contact acts only if the body comes after the probe in this step, so that forceAfter() is a push. Without
+  /// it a light body on a spring would strike the hand that lets it go (test
+  /// Coupling.ALightBodyIsNoBlowToTheHandThatLetsItGo).
+  bool lets_go = false;
 };
 
 /// [rt] Predicts the contact `last` for the end of a step of dt [s].

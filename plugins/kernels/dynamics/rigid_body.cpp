@@ -43,6 +43,13 @@ void validate(const RigidBodyLaw& law) {
   principalMoments(law.inertia);
   if (!(law.damping >= 0) || !(law.angular_damping >= 0) || !(law.tether >= 0))
     throw std::invalid_argument("drag, angular_drag and tether must be 0 or more");
+  if (!(law.angular_tether >= 0) || !std::isfinite(law.angular_tether) || !std::isfinite(law.rest))
+    throw std::invalid_argument("angular_tether must be 0 or more, and rest a finite number");
+  validate(law.limits);
+  if (law.joint == Joint::kFree && law.limits.given())
+    throw std::invalid_argument(
+        "limits: a free body has no axis along which a stop could hold it; expected joint: hinge or slider beside "
+        "limits");
   if (law.joint != Joint::kFree && !(law.axis.norm() > 0))
     throw std::invalid_argument("axis: all three numbers are 0, so it has no direction; give one such as [0, 1, 0]");
 }
@@ -68,6 +75,7 @@ RigidBody::RigidBody(const RigidBodyLaw& law, const Vector3d& position, const Qu
   x_ = start_ = position + model * law.center;
   pivot_world_ = position + model * law.pivot;
   axis_world_ = law.joint == Joint::kFree ? Vector3d::UnitY() : Vector3d(model * law.axis.normalized());
+  anchor_ = law.joint == Joint::kSlider ? Vector3d(start_ + law.rest * axis_world_) : start_;
   if (law.joint == Joint::kHinge) initializeHinge();
   start_turn_ = turn_.quaternion();
 }
@@ -78,7 +86,10 @@ void RigidBody::step(const Vector3d& force, const Vector3d& torque, double dt) n
   const Vector3d t = torque.allFinite() ? torque : Vector3d::Zero().eval();
   if (law_.joint == Joint::kHinge) return stepHinge(pushed, t, dt);
   const Vector3d f = pushed + law_.mass * gravity_;
-  if (law_.joint == Joint::kSlider) return translate(axis_world_ * axis_world_.dot(f), dt);
+  if (law_.joint == Joint::kSlider) {
+    translate(axis_world_ * axis_world_.dot(f), dt);
+    return stopSlider();
+  }
   translate(f, dt);
   rotate(t, dt);
 }
@@ -104,20 +115,24 @@ Matrix3d facing(const PredictedContact& press, const Vector3d& lever) noexcept {
 
 }  // namespace
 
-/// Returns mass and inertia, plus the resistance of tether and drag to a change of velocity within the step.
+/// Returns mass and inertia, plus the resistance of springs and drag to a change of velocity within the step.
 RigidBody::Matrix6d RigidBody::ownResistance(double dt) const noexcept {
   Matrix6d own = Matrix6d::Zero();
   own.topLeftCorner<3, 3>().diagonal().setConstant(law_.mass + dt * law_.damping + dt * dt * law_.tether);
   const Matrix3d axes = turn_.matrix();
   own.bottomRightCorner<3, 3>() = axes * principal_.asDiagonal() * axes.transpose();
   own.bottomRightCorner<3, 3>().diagonal().array() += dt * law_.angular_damping;
+  if (law_.joint == Joint::kHinge && law_.angular_tether > 0)
+    own.bottomRightCorner<3, 3>() += dt * dt * law_.angular_tether * axis_world_ * axis_world_.transpose();
   return own;
 }
 
 RigidBody::Vector6d RigidBody::ownImpulse(double dt) const noexcept {
   Vector6d impulse;
-  impulse << law_.mass * gravity_ - law_.damping * v_ - law_.tether * (x_ - start_ + dt * v_),
+  impulse << law_.mass * gravity_ - law_.damping * v_ - law_.tether * (x_ - anchor_ + dt * v_),
       -law_.angular_damping * angular();
+  if (law_.joint == Joint::kHinge && law_.angular_tether > 0)
+    impulse.tail<3>() -= law_.angular_tether * (hinge_angle_ + dt * hinge_rate_ - law_.rest) * axis_world_;
   return dt * impulse;
 }
 
@@ -133,14 +148,16 @@ RigidBody::Vector6d RigidBody::changeUnder(const Matrix6d& resisting, const Vect
   return free * (free.dot(impulse) / free.dot(resisting * free));
 }
 
-void RigidBody::step(std::span<const PredictedContact> presses, double dt) noexcept {
-  if (presses.empty() || !(dt > 0)) return step(Vector3d::Zero(), Vector3d::Zero(), dt);
-  const Matrix6d own = ownResistance(dt);
+/// Returns the change of velocity in a step under those contacts that act, with forces that follow it linearly.
+template <class Acts>
+RigidBody::Vector6d RigidBody::linearChange(const Matrix6d& own, const Vector6d& own_impulse,
+                                            std::span<const PredictedContact> presses, double dt,
+                                            const Acts& acts) const noexcept {
   Matrix6d resisting = own;
-  Vector6d own_impulse = ownImpulse(dt);
   Vector6d impulse = own_impulse;
   const Vector3d rate = angular();
   for (const PredictedContact& press : presses) {
+    if (!acts(press)) continue;
     const Vector3d lever = press.point - x_;
     const Eigen::Matrix<double, 3, 6> rows = pointRows(lever);
     resisting += dt * rows.transpose() * press.give * rows;
@@ -149,8 +166,23 @@ void RigidBody::step(std::span<const PredictedContact> presses, double dt) noexc
     resisting.bottomRightCorner<3, 3>() += back;
     impulse.tail<3>() -= back * rate;
   }
-  const Vector6d change = changeUnder(resisting, impulse);
+  return changeUnder(resisting, impulse);
+}
+
+void RigidBody::step(std::span<const PredictedContact> presses, double dt) noexcept {
+  if (presses.empty() || !(dt > 0)) return step(Vector3d::Zero(), Vector3d::Zero(), dt);
+  const Matrix6d own = ownResistance(dt);
+  Vector6d own_impulse = ownImpulse(dt);
+  const auto grips = [](const PredictedContact& press) { return !press.lets_go; };
+  Vector6d change = linearChange(own, own_impulse, presses, dt, grips);
+  const auto acts = [this, &grips, first = change](const PredictedContact& press) {
+    return grips(press) || !forceAfter(press, pointRows(press.point - x_) * first).isZero(0);
+  };
+  if (std::none_of(presses.begin(), presses.end(), acts)) return step(Vector3d::Zero(), Vector3d::Zero(), dt);
+  if (!std::all_of(presses.begin(), presses.end(), grips)) change = linearChange(own, own_impulse, presses, dt, acts);
+  const Vector3d rate = angular();
   for (const PredictedContact& press : presses) {
+    if (!acts(press)) continue;
     const Vector3d lever = press.point - x_;
     const Eigen::Matrix<double, 3, 6> rows = pointRows(lever);
     own_impulse += dt * rows.transpose() * forceAfter(press, rows * change);
@@ -173,7 +205,7 @@ void RigidBody::drift(const Vector6d& change, double dt) noexcept {
   }
   v_ += change.head<3>();
   x_ += dt * v_;
-  if (law_.joint == Joint::kSlider) return;
+  if (law_.joint == Joint::kSlider) return stopSlider();
   const Matrix3d axes = turn_.matrix();
   l_ += axes * principal_.cwiseProduct(axes.transpose() * change.tail<3>());
   // Backward Euler is of first order, so a more accurate turn would only cost time.
@@ -186,9 +218,17 @@ Vector3d RigidBody::velocityAt(const Vector3d& point) const noexcept {
 }
 
 void RigidBody::translate(const Vector3d& force, double dt) noexcept {
-  Vector3d away = x_ - start_;
+  Vector3d away = x_ - anchor_;
   drive(law_.mass, law_.damping, law_.tether, force, dt, away, v_);
-  x_ = start_ + away;
+  x_ = anchor_ + away;
+}
+
+void RigidBody::stopSlider() noexcept {
+  if (!law_.limits.given()) return;
+  double way = jointPosition(), rate = axis_world_.dot(v_);
+  if (holdInRange(law_.limits, way, rate) == Stop::kNone) return;
+  x_ = start_ + way * axis_world_;
+  v_ = rate * axis_world_;
 }
 
 void RigidBody::rotate(const Vector3d& torque, double dt) noexcept {
@@ -219,13 +259,18 @@ void RigidBody::decay(double time) noexcept {
 
 void RigidBody::stepHinge(const Vector3d& force, const Vector3d& torque, double dt) noexcept {
   const double moment = axis_world_.dot(torque + (x_ - pivot_world_).cross(force));
-  const PendulumState next = advance(hinge_, {hinge_angle_ - hinge_rest_, hinge_rate_}, moment, dt);
+  const PendulumState now{hinge_angle_ - hinge_rest_, hinge_rate_};
+  const TorsionSpring spring{law_.angular_tether, law_.rest - hinge_rest_};
+  const PendulumState next =
+      spring.stiffness > 0 ? advance(hinge_, spring, now, moment, dt) : advance(hinge_, now, moment, dt);
   hinge_rate_ = next.rate;
   poseHinge(next.angle + hinge_rest_);
 }
 
 void RigidBody::poseHinge(double angle) noexcept {
-  hinge_angle_ = std::remainder(angle, 2 * M_PI);  // keeps the precision of a body that goes round many times
+  // the remainder keeps the precision of a body that goes round many times
+  hinge_angle_ = counts_turns_ ? angle : std::remainder(angle, 2 * M_PI);
+  holdInRange(law_.limits, hinge_angle_, hinge_rate_);
   // the pose is computed from the angle since the start, not step by step, so it has only the error of the angle
   const Quaterniond turn = rotationBy(hinge_angle_ * axis_world_);
   turn_.set(turn * start_turn_);
@@ -239,6 +284,7 @@ void RigidBody::initializeHinge() noexcept {
   const double down = law_.tether * out.squaredNorm() + law_.mass * gravity_.dot(out);
   const double aside = law_.mass * gravity_.dot(axis_world_.cross(out));
   const Vector3d axis = law_.axis.normalized();
+  counts_turns_ = law_.angular_tether > 0 || law_.limits.given();
   hinge_.inertia = axis.dot(law_.inertia * axis) + law_.mass * out.squaredNorm();
   hinge_.mass = hinge_.length = 1;
   hinge_.gravity = std::hypot(down, aside);  // [N m] restoring torque at 90 degrees; mass and length of the law are 1
@@ -274,9 +320,24 @@ Vector3d RigidBody::bodyRate() const noexcept {
 }
 
 double RigidBody::energy() const noexcept {
-  const Vector3d away = x_ - start_;
-  return 0.5 * law_.mass * v_.squaredNorm() + 0.5 * l_.dot(angular()) + 0.5 * law_.tether * away.squaredNorm() -
-         law_.mass * gravity_.dot(away);
+  const double turned = law_.joint == Joint::kHinge ? hinge_angle_ - law_.rest : 0;
+  return 0.5 * law_.mass * v_.squaredNorm() + 0.5 * l_.dot(angular()) +
+         0.5 * law_.tether * (x_ - anchor_).squaredNorm() + 0.5 * law_.angular_tether * turned * turned -
+         law_.mass * gravity_.dot(x_ - start_);
+}
+
+double RigidBody::jointPosition() const noexcept {
+  if (law_.joint == Joint::kFree) return 0;
+  return law_.joint == Joint::kHinge ? hinge_angle_ : axis_world_.dot(x_ - start_);
+}
+
+Stop RigidBody::stop() const noexcept {
+  return stopAt(law_.limits, jointPosition());
+}
+
+double RigidBody::swingRate() const noexcept {
+  const double weight_square = law_.joint == Joint::kHinge ? hinge_.frequencySquared() : 0;
+  return weight_square > 0 ? std::sqrt(weight_square + law_.angular_tether / hinge_.inertia) : 0;
 }
 
 void RigidBody::setVelocity(const Vector3d& center_velocity, const Vector3d& body_rate) noexcept {
@@ -284,10 +345,13 @@ void RigidBody::setVelocity(const Vector3d& center_velocity, const Vector3d& bod
   hinge_rate_ = law_.joint == Joint::kHinge ? axis_world_.dot(rate) : 0;
   v_ = center_velocity;
   l_.setZero();
-  if (law_.joint == Joint::kHinge) return setHingeVelocities();
+  if (law_.joint == Joint::kHinge) {
+    holdInRange(law_.limits, hinge_angle_, hinge_rate_);
+    return setHingeVelocities();
+  }
   if (law_.joint == Joint::kSlider) {
     v_ = axis_world_ * axis_world_.dot(center_velocity);
-    return;
+    return stopSlider();
   }
   l_ = turn_.quaternion() * principal_.cwiseProduct(from_axes_.conjugate() * body_rate);
 }

@@ -18,13 +18,35 @@ hapticd = program(HAPTICD, together=True)
 FAULT = 3  # HAPTICD_FAULT
 
 
-def replayIsExact(folder, scene):
+def replayIsExact(folder, scene, seconds="1"):
     file = os.path.join(folder, scene + ".h5")
-    code, told = hapticd("run", os.path.join(SCENES, scene + ".yaml"), "--for", "1", "--virtual-time", "--record", file)
+    code, told = hapticd("run", os.path.join(SCENES, scene + ".yaml"), "--for", seconds, "--virtual-time", "--record", file)
     check(scene + " is recorded", code == 0 and os.path.isfile(file), told)
     code, told = hapticd("replay", file)
     check(scene + " replays with every bit the same", code == 0, told)
     return file
+
+
+def aDoorStandsAtItsStop(folder):
+    """The hand of the shipped door opens it to its end stop, presses beyond, and lets it close."""
+    import h5py
+    import numpy
+    file = replayIsExact(folder, "door", "4")
+    recording = h5py.File(file)
+    poses, contacts = recording["poses"][:], recording["contacts"][:]
+    angles = 2 * numpy.arctan2(poses["qy"], poses["qw"])
+    check("the door stays between its stops, and comes to both", angles.min() == 0 and abs(angles.max() - 0.6) < 1e-12, (angles.min(), angles.max()))
+    open_ = numpy.isin(contacts["tick"], poses["tick"][abs(angles - 0.6) < 1e-12])
+    still = contacts[open_ & (contacts["depth"] > 0)][50:-50]  # its damper acts on the hand that arrives and leaves
+    force = numpy.linalg.norm([still["fx"], still["fy"], still["fz"]], axis=0)
+    share = force / (800 * still["depth"])
+    check("there it is a wall of its full stiffness", len(still) > 200 and abs(numpy.median(share) - 1) < 0.01, (len(still), numpy.median(share)))
+    check("and does not tremble", not poses["wy"][abs(angles - 0.6) < 1e-12].any(), poses["wy"])
+    gone = numpy.diff(numpy.concatenate(([0], force)))
+    check("no kick as the hand lets go", gone[len(gone) // 2:].max() < 0.1, gone.max())
+    code, told = hapticd("explain", file)
+    check("explain tells of the stops", code == 0 and "door: turned from 0 to 0.6 rad; at its stop at 0 rad for " in told
+          and "at its stop at 0.6 rad for " in told and "(1 time)" in told, told)
 
 
 def theManualReadsIt(file):
@@ -110,6 +132,7 @@ def killLeavesAReadableFile(folder, environment):
 with tempfile.TemporaryDirectory() as scratch:
     teapot = replayIsExact(scratch, "teapot")
     replayIsExact(scratch, "moving-box")
+    aDoorStandsAtItsStop(scratch)
     theManualReadsIt(teapot)
     status, text = hapticd("plot", teapot, "--from", "2", "--to", "1")
     check("--from after --to is refused by its name", status == 2 and "--from 2 is not before --to 1" in text, text)

@@ -9,6 +9,8 @@
 #include <limits>
 
 #include "diagnostics/hand/hand_script.hpp"
+#include "diagnostics/reading/given_values.hpp"
+#include "hapticd/abi.h"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -34,6 +36,13 @@ Inside insideOf(const Eigen::AlignedBox3d& box, const Vector3d& start, const Vec
   return inside;
 }
 
+/// Returns true if the model gives way to a hand, so that its thickness does not say how far the hand may go.
+bool givesWay(const scene::Model& model) {
+  constexpr double kDynamic = 2;  // index of `dynamic` among the words of `motion`
+  const scene::Value* motion = givenIn(model.parameters, "motion");
+  return motion != nullptr && motion->kind == HSP_ENUM && motion->number == kDynamic;
+}
+
 }  // namespace
 
 document::Problems pressesThrough(const scene::Scene& scene, const ModelBoxes& boxes) {
@@ -44,7 +53,7 @@ document::Problems pressesThrough(const scene::Scene& scene, const ModelBoxes& b
     const Vector3d inwards = -hand->normal.normalized(), aim = hand->center - hand->radius * inwards;
     for (size_t i = 0; i < scene.models.size() && i < boxes.size(); ++i) {
       const scene::Model& model = scene.models[i];
-      if (!boxes[i] || model.kinematic) continue;
+      if (!boxes[i] || model.kinematic || givesWay(model)) continue;
       const Eigen::Quaterniond back = model.pose.orientation.conjugate();
       const Vector3d start = back * (device.mount.position + device.mount.orientation * aim - model.pose.position);
       const Inside inside = insideOf(*boxes[i], start, back * (device.mount.orientation * inwards));

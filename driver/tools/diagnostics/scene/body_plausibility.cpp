@@ -24,13 +24,15 @@ void checkContactHold(const GivenModel& given) {
   Vector3d pull = given.gravity();
   const Vector3d axis = given.vector("axis");
   if (joint == "slider" && axis.norm() > 0) pull = pull.dot(axis) / axis.squaredNorm() * axis;
+  const scene::Value* limits = given.find("limits");
+  if (joint == "slider" && limits != nullptr && !limits->numbers.empty()) return;  // its end stop holds it
   if (joint == "hinge" || given.number("gravity") == 0 || pull.norm() < kWeightless) return;
   const double weight = given.number("mass") * pull.norm(), tether = given.number("tether");
   if (!(tether > 0))
     return given.warn({"mass", "motion"},
                       given.model().name +
                           " has weight, and nothing holds it: it falls out of reach at once; expected "
-                          "tether, a hinge, or gravity: false");
+                          "tether, a hinge, a slider with limits, or gravity: false");
   const double size = given.box() ? given.size() : kUnknownSize;
   if (const double sag = weight / tether; sag > kSizes * size)
     given.warn({"tether", "mass"},
@@ -79,6 +81,24 @@ void checkJoint(const GivenModel& given) {
                true);
 }
 
+/// Warns of end stops, or a rest of the spring, in degrees or millimetres.
+void checkRange(const GivenModel& given, const char* id) {
+  constexpr double kTurn = 2 * M_PI + 1e-3, kSizes = 2, kUnknownSize = 1;  // [rad]; sizes of the body; [m]
+  const scene::Value* value = given.find(id);
+  const std::string joint = given.choice("joint");
+  if (value == nullptr || joint == "free") return;
+  double most = std::abs(value->number);
+  for (const double x : value->numbers) most = std::max(most, std::abs(x));
+  if (joint == "hinge" && most > kTurn)
+    return given.warn({id}, fmt::format("{0:g} rad is more than a whole turn; the value must be in rad: if you meant "
+                                        "{0:g} degrees, write {1:.4g}",
+                                        most, most * M_PI / 180));
+  if (joint == "slider" && most > (given.box() ? kSizes * given.size() : kUnknownSize))
+    given.warn({id}, fmt::format("{0:g} m is far for a body that is {1:.3g} m large; the value must be in m: {0:g} mm "
+                                 "is {2:g} m",
+                                 most, given.size(), most * 1e-3));
+}
+
 /// Warns of a drag so strong that no hand moves the body.
 void checkDrag(const GivenModel& given) {
   constexpr double kMost = 1000, kCalm = 0.1;      // [N s/m]; [m/s]
@@ -110,6 +130,10 @@ void checkDynamic(const GivenModel& given) {
   for (const auto& judge : {&checkJoint, &checkContactHold, &checkCenter, &checkDrag, &checkTetherCreep}) {
     given.begin();
     judge(given);
+  }
+  for (const char* id : {"limits", "rest"}) {
+    given.begin();
+    checkRange(given, id);
   }
   given.begin();
   const scene::Value* inertia = given.find("inertia");

@@ -65,6 +65,25 @@ void checkSlider(const GivenModel& given) {
       given.warn({id}, "has no effect: a slider does not turn; remove it, or set joint: hinge or free");
 }
 
+/// Warns of a spring, or of its rest, that the joint of the body does not use.
+void checkJointSpring(const GivenModel& given) {
+  if (given.choice("motion") != "dynamic") return;
+  const std::string joint = given.choice("joint");
+  if (joint.empty()) return;
+  if (joint != "hinge" && given.number("angular_tether") > 0)
+    given.warn({"angular_tether"},
+               fmt::format("has no effect: it turns a hinge back, and the joint is {}; {}", joint,
+                           joint == "slider" ? "give tether, in N/m" : "set joint: hinge, or remove this"));
+  given.begin();
+  const char* spring = joint == "hinge" ? "angular_tether" : "tether";
+  if (given.find("rest") == nullptr || (joint != "free" && given.number(spring) > 0)) return;
+  given.warn({"rest"}, joint == "free"
+                           ? std::string("has no effect: the tether of a free body ends where the body starts; set "
+                                         "joint: hinge or slider, or remove this")
+                           : fmt::format("has no effect, because the {0} has no spring; give {1}, too, or remove this",
+                                         joint, spring));
+}
+
 /// Warns of parameters of a soft body that have no effect: contact_ratio unless dynamics is `felt`, and shear_offset
 /// beside shear_distance.
 void checkSoftBody(const GivenModel& given) {
@@ -81,7 +100,7 @@ void checkSoftBody(const GivenModel& given) {
 void checkIdleParameters(const GivenModel& given) {
   checkChoices(given);
   checkNumbers(given);
-  for (const auto& judge : {&checkDepthScale, &checkSlider, &checkSoftBody}) {
+  for (const auto& judge : {&checkDepthScale, &checkSlider, &checkJointSpring, &checkSoftBody}) {
     given.begin();
     judge(given);
   }

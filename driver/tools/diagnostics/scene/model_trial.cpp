@@ -134,7 +134,8 @@ class PackedTexts {
 /// Warns of parameters for moving bodies on a model that does not move by forces.
 void warnOfMotion(const scene::Model& model, size_t index, document::Problems& warnings) {
   for (const scene::Value& value : model.parameters)
-    for (const char* id : {"mass", "inertia", "gravity", "drag", "angular_drag", "joint", "tether", "velocity"})
+    for (const char* id : {"mass", "inertia", "gravity", "drag", "angular_drag", "joint", "tether", "angular_tether",
+                           "rest", "velocity"})
       if (value.id == id)
         document::report(warnings, value.place, "models[" + std::to_string(index) + "].parameters." + id,
                          "has no effect, because this model does not move by forces; set parameters.motion: dynamic if "
@@ -259,8 +260,8 @@ TrialResult tryWithout(const scene::Scene& scene, uint32_t index, double max_for
 
 /// Returns true for a parameter that a plugin can judge without knowing the surfaces.
 bool isOfItself(const std::string& id) {
-  constexpr std::string_view kOwn[] = {"detent",           "end_stiffness", "friction_static",
-                                       "friction_dynamic", "axis",          "inertia"};
+  constexpr std::string_view kOwn[] = {"detent", "end_stiffness", "friction_static", "friction_dynamic",
+                                       "axis",   "inertia",       "limits"};
   return std::find(std::begin(kOwn), std::end(kOwn), id) != std::end(kOwn);
 }
 

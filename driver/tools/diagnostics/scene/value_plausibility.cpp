@@ -123,7 +123,7 @@ std::vector<bool> strayModels(const scene::Scene& scene, const ModelBoxes& boxes
     if (!model || *model >= strays.size() || at == std::string::npos) continue;
     const std::string id = one.key.substr(at + kParameters.size());
     for (const char* moves : {"mass", "inertia", "center", "tether", "velocity", "spin", "drag", "joint", "pivot",
-                              "length", "angle", "rate"})
+                              "limits", "rest", "length", "angle", "rate"})
       if (id == moves) strays[*model] = true;
   }
   return strays;

@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "kernels/dynamics/pendulum.hpp"
+#include "kernels/dynamics/torsion_spring.hpp"
 #include "kernels/spline/surface.hpp"
 #include "kinematics/phantom.hpp"
 
@@ -53,6 +54,17 @@ void pendulum() {
   }
 }
 
+void spring() {
+  hapticd::dynamics::PendulumLaw law;
+  hapticd::dynamics::PendulumState state{1.5, 0};
+  for (int i = 0; i < 50'000; ++i) {
+    law.damping = i % 5000 * 1e-4;
+    law.gravity = i % 2 == 0 ? 9.81 : 0;
+    state = hapticd::dynamics::advance(law, {i % 300 + 1.0, 0.4}, state, 0.1 * std::sin(i * 1e-3), 1e-3);
+    book(state.angle), book(state.rate);
+  }
+}
+
 void surface() {
   hapticd::spline::SurfaceData data;
   data.name = "patch";
@@ -83,5 +95,6 @@ int main() {
   elementary(), tell("elementary");
   arm(), tell("arm");
   pendulum(), tell("pendulum");
+  spring(), tell("spring");
   surface(), tell("surface");
 }

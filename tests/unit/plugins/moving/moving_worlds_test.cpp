@@ -33,7 +33,9 @@ class Scene {
     fs::remove(file);
     for (const document::Problem& problem : loaded.problems) ADD_FAILURE() << problem.text();
     auto world = servo::World::build(*loaded.scene, {rate, 1, false},
-                                     [](int, const std::string&, const std::string& text) { ADD_FAILURE() << text; });
+                                     [](int level, const std::string&, const std::string& text) {
+                                       if (level > HSP_LOG_DEBUG) ADD_FAILURE() << text;
+                                     });
     EXPECT_TRUE(world) << world.error();
     world_ = std::move(*world);
     lockstep_.emplace(world_->lockstep());

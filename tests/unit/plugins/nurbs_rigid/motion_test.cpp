@@ -260,6 +260,100 @@ TEST(Motion, EnergyComesFromTheHandAlone) {
   EXPECT_GT(work, 1e-3);
 }
 
+/// Makes the cube a door about its left edge, which closes by itself and opens by 0.6 rad.
+void makeDoor(PluginUnderTest& plugin) {
+  makeCube(plugin, 1);
+  plugin.set("joint", kHinge);
+  plugin.set("pivot", {-0.05, 0, 0});
+  plugin.set("axis", {0, 1, 0});
+  plugin.set("angular_drag", 0.02);
+  plugin.set("angular_tether", 0.5);
+  plugin.set("limits", {0, 0.6});
+}
+
+double angleOf(const PluginUnderTest& plugin) {
+  return 2 * std::atan2(plugin.pose.orientation[2], plugin.pose.orientation[0]);
+}
+
+TEST(Motion, ADoorIsPushedToItsStopFeltAsAWallThereAndClosesAgain) {
+  for (const double rate : {500.0, 1000.0, 4000.0, 10'000.0}) {
+    PluginUnderTest plugin;
+    makeDoor(plugin);
+    ASSERT_EQ(plugin.activate(1, rate), HSP_OK);
+    // the hand follows the front, whose normal is along z at first, to 6 mm below the surface of the opened door
+    const Eigen::AngleAxisd open(0.6, Vector3d::UnitY());
+    const Vector3d edge(-0.05, 0, 0), deep = edge + open * (Vector3d(0.03, 0.01, 0.044) - edge);
+    const Vector3d start(0.03, 0.01, 0.06);
+    const auto ticks = static_cast<int>(2 * rate);
+    for (int i = 0; i < ticks; ++i) plugin.tick({start + std::min(1.0, 1.5 * i / ticks) * (deep - start)});
+    EXPECT_NEAR(angleOf(plugin), 0.6, 1e-12) << rate;
+    EXPECT_EQ(Vector3d(plugin.pose.angular), Vector3d::Zero());
+    EXPECT_NEAR(plugin.force().norm(), 800 * 0.006, 1e-9) << "stiffness times depth, as of a wall that stands";
+    EXPECT_NEAR(plugin.force().dot(open * Vector3d::UnitZ()), 4.8, 1e-9) << "along its normal";
+    for (int i = 0; i < 4 * ticks; ++i) plugin.tick({kFar});
+    EXPECT_EQ(angleOf(plugin), 0) << "the spring closes it";
+    EXPECT_EQ(Vector3d(plugin.pose.angular), Vector3d::Zero());
+  }
+}
+
+TEST(Motion, ALeverHeldAgainstItsSpringPushesBackAsTheSpringDoes) {
+  PluginUnderTest plugin;
+  makeDoor(plugin);
+  plugin.set("rest", -0.1);  // the closed door is pressed against its frame
+  ASSERT_EQ(plugin.activate(), HSP_OK);
+  for (int i = 0; i < 4000; ++i) plugin.tick({{0.04, 0, 0.05 - 0.01 * std::min(1.0, i / 1000.0)}});
+  const double angle = angleOf(plugin);
+  ASSERT_GT(angle, 0.05);
+  ASSERT_LT(angle, 0.3);
+  const Vector3d lever = Vector3d(plugin.contacts[0].point) - Vector3d(-0.05, 0, 0);  // in the model frame
+  const Vector3d moment = lever.cross(-Vector3d(plugin.contacts[0].force));
+  EXPECT_NEAR(moment.y(), 0.5 * (angle + 0.1), 1e-4);
+}
+
+TEST(Motion, ADoorBetweenStopsNeverPaysBackMoreThanAHandPutIn) {
+  for (const double rate : {500.0, 1000.0, 4000.0, 10'000.0}) {
+    PluginUnderTest plugin;
+    makeDoor(plugin);
+    plugin.set("damping", 2);
+    ASSERT_EQ(plugin.activate(1, rate), HSP_OK);
+    plugin.tick({kFar});
+    const double before = plugin.energy();
+    double work = 0, at_stop = 0;
+    Vector3d last(0.03, 0.01, 0.06);
+    const auto ticks = static_cast<int>(20 * rate);
+    for (int i = 0; i < ticks; ++i) {
+      const double t = i / rate, reach = 0.045 * std::sin(0.9 * t) * std::sin(0.9 * t);
+      const Vector3d probe(0.02 + 0.01 * std::sin(3.1 * t), 0.01, 0.06 - reach * (1 + 0.5 * std::sin(7.3 * t)));
+      plugin.tick({probe});
+      work -= plugin.force().dot(probe - last);
+      last = probe;
+      ASSERT_LE(plugin.energy() - before, work + 2e-4) << rate << ' ' << i;
+      ASSERT_GE(angleOf(plugin), 0);
+      ASSERT_LE(angleOf(plugin), 0.6 + 1e-12);
+      at_stop += std::fabs(angleOf(plugin) - 0.6) < 1e-9 ? 1 : 0;
+    }
+    EXPECT_GT(work, 1e-3);
+    EXPECT_GT(at_stop, rate / 10);
+  }
+}
+
+TEST(Motion, AResetAndALostSampleLeaveItWithinItsLimits) {
+  PluginUnderTest plugin;
+  makeDoor(plugin);
+  plugin.set("spin", {0, 12, 0});
+  ASSERT_EQ(plugin.activate(), HSP_OK);
+  double widest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    if (i % 7 == 0) plugin.reset();
+    plugin.tick({i % 5 == 0 ? Vector3d(NAN, 0, 0) : Vector3d(0.03, 0.01, 0.04)}, {},
+                i % 11 == 0 ? uint32_t{HSP_IN_JUMP} : 0u);
+    ASSERT_GE(angleOf(plugin), 0);
+    ASSERT_LE(angleOf(plugin), 0.6 + 1e-12);
+    widest = std::fmax(widest, angleOf(plugin));
+  }
+  EXPECT_NEAR(widest, 0.6, 1e-12) << "it was at its stop";
+}
+
 TEST(Motion, SaysWhatBodyItRefuses) {
   const auto complaint = [](auto change) {
     PluginUnderTest plugin;
@@ -286,7 +380,15 @@ TEST(Motion, SaysWhatBodyItRefuses) {
               p.set("tether", 1e6);
             }).find("at most 3.2e+04 rad/s at 1000 Hz"),
             std::string::npos);
+  EXPECT_NE(complaint([](auto& p) { p.set("limits", {0, 1}); }).find("limits: a free body"), std::string::npos);
+  EXPECT_NE(complaint([](auto& p) {
+              p.set("motion", 1);
+              p.set("limits", {0, 1});
+            }).find("limits: end stops hold only a body that moves under forces, and this model is motion: kinematic"),
+            std::string::npos);
   PluginUnderTest plugin;
+  EXPECT_EQ(plugin.set("limits", {0, 1, 2}), HSP_E_ARG);
+  EXPECT_EQ(plugin.set("limits", {NAN, 1}), HSP_E_ARG);
   EXPECT_EQ(plugin.set("mass", 1e-7), HSP_E_ARG);
   EXPECT_EQ(plugin.set("mass", 0), HSP_E_ARG);
 }

@@ -198,6 +198,52 @@ TEST(Coupling, AWeightlessBodyIsNoDragOnTheHand) {
   EXPECT_LT(force, 1e-6);
 }
 
+/// Forces on a hand that presses a body against its tether, and then draws back at once by 0.1 m.
+struct LetGo {
+  double held = 0, largest_after = 0;
+};
+LetGo letGo(double mass, double tether, double rate) {
+  const double dt = 1 / rate;
+  const OscillatorStep hand = oscillatorStep(0.2, 5, 500, dt);
+  const contact::WallLaw wall{800, 2, 1, 1e-3};
+  RigidBody body = slab(mass, 0.5 * std::sqrt(mass * tether), tether);
+  LetGo forces;
+  LastContact last;
+  double x = -5e-3, v = 0;
+  const auto ticks = static_cast<int>(8 * rate);
+  for (int i = 0; i < ticks; ++i) {
+    const Vector3d probe = x * Vector3d::UnitX();
+    if (i > 0) {
+      const PredictedContact press = predict(last, probe, v - body.linear().x(), body.linear(), dt);
+      body.step({&press, press.force.isZero(0) ? size_t{0} : size_t{1}}, dt);
+    }
+    last = {};
+    last.probe = probe;
+    last.point = body.position();
+    last.normal = -Vector3d::UnitX();
+    last.depth = x - body.position().x();
+    last.law = wall;
+    const double force = contact::wallForce(wall, last.depth, v - body.linear().x()).force;
+    (i < ticks / 2 ? forces.held : forces.largest_after) =
+        i < ticks / 2 ? force : std::fmax(forces.largest_after, force);
+    const double rest = (i < ticks / 2 ? 0.05 : -0.05) - force / 500;
+    double from_rest = x - rest;
+    advance(hand, from_rest, v);
+    x = rest + from_rest;
+  }
+  return forces;
+}
+
+TEST(Coupling, ALightBodyIsNoBlowToTheHandThatLetsItGo) {
+  for (const double rate : {500.0, 1000.0, 4000.0, 10'000.0})
+    for (const double mass : {1e-4, 1e-3, 5e-3, 0.02, 0.5})
+      for (const double tether : {40.0, 400.0}) {
+        const LetGo forces = letGo(mass, tether, rate);
+        EXPECT_GT(forces.held, 1);
+        EXPECT_LT(forces.largest_after, 1.1 * forces.held) << rate << " Hz, " << mass << " kg, " << tether << " N/m";
+      }
+}
+
 TEST(Coupling, WhatTheProbeLosesTheBodyGains) {
   // a probe of mass 1 kg strikes a free body of 2 kg; the force each feels is that of the same tick
   RigidBody body = slab(2);
