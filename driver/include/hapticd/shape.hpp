@@ -46,7 +46,8 @@ inline void reportJumps(hsp_report& report, double newtons) {
 /// and one of
 ///   hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept HSP_RT;   [rt] answers one probe
 ///   hsp_status step(const hsp_step&) noexcept HSP_RT;                                    [rt] answers all probes
-/// and may hide the functions below. The text of an exception becomes the error that the user reads.
+/// (one that has both is asked by step() alone, which may call touch()), and may hide the functions below. The text of
+/// an exception becomes the error that the user reads.
 class Shape {
  public:
   void deactivate() {}                                             ///< [main] frees what activate() took
@@ -123,7 +124,14 @@ struct ShapeClass {
   static hsp_status step(hsp_shape* shape, const hsp_step* step) noexcept HSP_RT {
     if (!base(shape).active_) return HSP_E_STATE;
     applyChanges(self(shape), *step);
-    if constexpr (requires(T& t, const hsp_probe& probe, hsp_contact& contact) { t.touch(probe, *step, contact); }) {
+    if constexpr (requires(T& t) { t.step(*step); }) {
+      return self(shape).step(*step);
+    } else {
+      static_assert(
+          requires(T& t, const hsp_probe& probe, hsp_contact& contact) { t.touch(probe, *step, contact); },
+          "the shape has neither hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept nor "
+          "hsp_status step(const hsp_step&) noexcept; check the name and the arguments of the function, and that it "
+          "is public");
       hsp_status worst = HSP_OK;
       for (uint32_t i = 0; i < step->count; ++i) {
         const hsp_status status = self(shape).touch(*HSP_AT(const hsp_probe, step->in, step->in_stride, i), *step,
@@ -131,13 +139,6 @@ struct ShapeClass {
         if (status < 0 || (status > 0 && worst == HSP_OK)) worst = worst < 0 ? worst : status;
       }
       return worst;
-    } else {
-      static_assert(
-          requires(T& t) { t.step(*step); },
-          "the shape has neither hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept nor "
-          "hsp_status step(const hsp_step&) noexcept; check the name and the arguments of the function, and that it "
-          "is public");
-      return self(shape).step(*step);
     }
   }
   static const void* extension(hsp_shape* shape, const char* name) { return self(shape).extension(name); }
