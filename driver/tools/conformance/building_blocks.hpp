@@ -112,8 +112,13 @@ Verdict boundsWhereFelt(const Recipe& recipe, uint64_t);
 /// say that it may move. Skips a shape that does not move.
 Verdict contactsOfTheNewPose(const Recipe& recipe, uint64_t);
 
-/// Fails if a shape that moves changes its pose in steps of 0 s. Skips a shape that does not move.
+/// Fails if a shape that moves changes its pose in steps of 0 s, or if one that does not report to move writes a pose.
+/// Skips a shape that does not move.
 Verdict restsInNoTime(const Recipe& recipe, uint64_t);
+
+/// Fails if a shape that rests comes nearer to a probe that presses it and is held still: it would drive the hand.
+/// Skips a shape that does not move, that does not rest while nothing touches it, or whose force jumps.
+Verdict goesWithAPress(const Recipe& recipe, uint64_t);
 
 /// Returns what goes wrong with eight probes, as many as a run may have, in guarded memory, or "".
 Verdict eightProbes(const Recipe& recipe, uint64_t);

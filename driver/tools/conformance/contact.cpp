@@ -362,7 +362,7 @@ Verdict deepPress(const Recipe& recipe, uint64_t) {
 std::vector<ConformanceTest> contactTests() {
   return {
       {"contact-found", "the shape can be found and touched", &contactFound, kFinite},
-      {"force-outward", "forces in contact push out of the shape", &forceOutward, kFinite},
+      {"force-outward", "forces in contact push out of the shape", &forceOutward, kRests},
       {kFoot, "the foot point is on the surface, as far away as the depth says, and the normal points to the probe",
        &footAndNormal, "depth-falls-outward"},
       {"force-along-normal", "a shape that only pushes, and has no friction, pushes along its normal",
@@ -375,6 +375,8 @@ std::vector<ConformanceTest> contactTests() {
        &longLoopsGiveNoEnergy, "loops-give-no-energy"},
       {"contacts-of-new-pose", "the contacts of a shape that moves belong to the pose that it writes",
        &contactsOfTheNewPose, kRests},
+      {"goes-with-a-press", "a shape that gives way moves with the press, not against it", &goesWithAPress,
+       "force-outward"},
       {"contact-flags", "HSP_OUT_TRACED and HSP_OUT_CONTACT agree with depth and normal", &contactFlags, kFinite},
       {"force-from-zero", "the force grows from zero where the surface is met", &noStep, kRests},
       {"stiffness-vs-claim", "forces are no steeper than claimed", &stiffnessClaim, kRests},

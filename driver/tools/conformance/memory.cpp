@@ -304,7 +304,7 @@ Verdict asksForWhatItReads(const Recipe& recipe, uint64_t) {
 
 std::vector<ConformanceTest> memoryTests() {
   return {
-      {"determinism-bitwise", "same input, same bits", &determinism, kFinite},
+      {"determinism-bitwise", "same input, same bits", &determinism, kRests},
       {"layout-golden", "structs have at least their size of version 1.0, and strides are used", &layoutGolden, kSame},
       {"create-destroy-leak", "create() to destroy() leaks no memory", &createDestroyLeak, kInTime},
       {"asks-for-what-it-reads", "velocity and orientation are read only if the shape asks for them",
