@@ -173,7 +173,14 @@ int explainCost(const ExplainArguments& options, const scene::Scene& scene) {
 }
 
 int explain(const ExplainArguments& options) {
-  if (isRecording(options.scene)) return explainRecording(options.scene);
+  if (isRecording(options.scene)) {
+    if (options.cost || options.json || !options.device.empty())
+      return fail(kBadInput, options.scene +
+                                 ": is a recording, which is told in words alone, so --cost, --json and "
+                                 "--device do not apply; for numbers, run: hapticd export " +
+                                 options.scene + " --csv FOLDER");
+    return explainRecording(options.scene);
+  }
   auto scene = loadSceneOrReport(options.scene, options.device);
   if (!scene) return kBadInput;
   const GuardedCommand guarded;

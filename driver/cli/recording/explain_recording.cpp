@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "cli/recording/explain_recording.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <map>
 
 #include "cli/recording/joint_ranges.hpp"
+#include "cli/recording/recorded_orders.hpp"
 #include "cli/recording/touched_features.hpp"
 #include "cli/support/command.hpp"
 #include "hapticd/abi.h"
@@ -53,10 +55,18 @@ void printEvents(const std::vector<servo::RecordedMessage>& messages) {
     }
   }
   if (left > 0) std::printf("  and %zu more; for all, run: hapticd export FILE --csv OUT --stream events\n", left);
-  if (lines == 0) std::printf("  no fault, and nothing else that the log would have told\n");
+  if (lines == 0) std::printf("  no fault, and no model was silenced, came or left\n");
   for (const auto& [model, count] : touched)
     std::printf("  %s was touched or clicked %llu time%s\n", model.c_str(), static_cast<unsigned long long>(count),
                 count == 1 ? "" : "s");
+}
+
+void printLines(const char* title, const std::vector<std::string>& lines, const char* stream) {
+  if (!lines.empty()) std::printf("%s\n", title);
+  for (size_t i = 0; i < std::min(lines.size(), kMostLines); ++i) std::printf("  %s\n", lines[i].c_str());
+  if (lines.size() > kMostLines)
+    std::printf("  and %zu more; for all, run: hapticd export FILE --csv OUT --stream %s\n", lines.size() - kMostLines,
+                stream);
 }
 
 }  // namespace
@@ -74,12 +84,9 @@ int explainRecording(const std::string& file) {
   if (!run) return fail(kBadInput, file + ": " + run.error());
   printRun(file, **recording, *run);
   printEvents(servo::messagesOf(**recording, *run));
-  const auto touched = touchedFeatures(**recording, run->scene, run->facts.rate);
-  if (!touched.empty()) std::printf("touched\n");
-  for (const std::string& line : touched) std::printf("  %s\n", line.c_str());
-  const auto joints = jointRanges(**recording, run->scene, run->facts.rate);
-  if (!joints.empty()) std::printf("moved\n");
-  for (const std::string& line : joints) std::printf("  %s\n", line.c_str());
+  printLines("orders", recordedOrders(**recording, run->scene), "orders");
+  printLines("touched", touchedFeatures(**recording, run->scene, run->facts.rate), "contacts");
+  printLines("moved", jointRanges(**recording, run->scene, run->facts.rate), "poses");
   return kWorked;
 }
 

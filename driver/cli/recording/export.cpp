@@ -4,15 +4,18 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "cli/recording/name_tables.hpp"
 #include "cli/support/command.hpp"
 #include "cli/support/open_end.hpp"
 #include "cli/support/output_file.hpp"
 #include "control/liveness.hpp"
 #include "document/suggestion.hpp"
+#include "session/replay/about.hpp"
 #include "status/page_file.hpp"
 
 namespace hapticd::cli {
@@ -60,6 +63,33 @@ std::string fileForFolder(const record::Recording& recording, const std::filesys
          folder.stem().string() + ".csv" + " --stream STREAM, with one of " + document::listed(namesOf(recording), 10);
 }
 
+/// A table that is no stream.
+struct ExtraTable {
+  std::string file;
+  const char* header;
+  NameTable table;
+};
+
+/// Returns the tables with names that stand in the folder beside those of the streams; none if the description of the
+/// run cannot be read.
+std::vector<ExtraTable> extraTables(const record::Recording& recording, const std::filesystem::path& folder) {
+  const auto run = servo::readAbout(recording.aboutJson());
+  if (!run) return {};
+  std::vector<ExtraTable> all{{(folder / "models.csv").string(), kModelsHeader, modelsTable(run->scene)}};
+  NameTable joints = jointsTable(recording, run->scene);
+  if (joints.rows > 0) all.push_back({(folder / "joints.csv").string(), kJointsHeader, std::move(joints)});
+  return all;
+}
+
+int writeExtra(const std::vector<ExtraTable>& tables) {
+  for (const ExtraTable& extra : tables) {
+    std::ofstream out(extra.file, std::ios::binary);
+    if (!(out << extra.table.text).flush()) return fail(kFailed, extra.file + ": cannot be written");
+    printExport(extra.file, {extra.table.rows, extra.table.text.size()});
+  }
+  return kWorked;
+}
+
 /// Writes one file of one stream, or a folder with a file for each stream.
 int toCsv(const record::Recording& recording, const ExportArguments& options) {
   const bool one = !options.stream.empty();
@@ -79,6 +109,10 @@ int toCsv(const record::Recording& recording, const ExportArguments& options) {
             whyNotWritten(file, tableKind(firstColumns(*stream)), {{options.file, "the recording"}});
         !wrong.empty())
       return fail(kBadInput, wrong);
+  const std::vector<ExtraTable> extra = one ? std::vector<ExtraTable>() : extraTables(recording, options.csv);
+  for (const ExtraTable& table : extra)
+    if (const std::string wrong = whyNotWritten(table.file, tableKind(table.header)); !wrong.empty())
+      return fail(kBadInput, wrong);
   if (const std::string wrong = one ? whyNotWritable(options.csv) : ""; !wrong.empty()) return fail(kBadInput, wrong);
   std::error_code error;
   if (!one) std::filesystem::create_directories(options.csv, error);
@@ -93,7 +127,7 @@ int toCsv(const record::Recording& recording, const ExportArguments& options) {
     }
     printExport(file, *done);
   }
-  return kWorked;
+  return writeExtra(extra);
 }
 
 int exportRecording(const ExportArguments& options) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Tells how far the joints of a recording's models moved, and how long they stood at their end stops.
+/// Tells how far the joints of a recording's models moved, and when they stood at their end stops.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,9 +9,9 @@
 
 namespace hapticd::cli {
 
-/// [main] Returns a line for each model with a joint that has end stops (parameters joint and limits), such as "door:
-/// turned from 0 to 0.6 rad; at its stop at 0.6 rad for 2.1 s (3 times)". Positions count from the pose in the scene.
-/// @param rate [Hz] of the run
+/// [main] Returns a line for each model with a hinge or a slider (parameter joint), such as "door: turned from 0 to 0.6
+/// rad; at its stop at 0.6 rad for 2.1 s (2 times: 0.9 to 2 s, 4.9 to 5.9 s)". Positions count from the pose in the
+/// scene. @param rate [Hz] of the run
 std::vector<std::string> jointRanges(const record::Recording& recording, const scene::Scene& scene, double rate);
 
 }  // namespace hapticd::cli

@@ -20,6 +20,12 @@ constexpr std::size_t kMostNamed = 5;
 
 using Ticks = std::map<std::uint32_t, std::uint64_t>;  // of each feature
 
+/// The ticks of contact of a model.
+struct Touched {
+  Ticks ticks;
+  std::uint64_t forceless = 0;  ///< ticks in which the model gave no force, because it was faded out
+};
+
 /// Tells whether an arm had a fault in a tick: then no force pushed back, so it is no contact, as in the report of a
 /// run. Ticks are asked for in their order.
 class Faults {
@@ -42,19 +48,24 @@ class Faults {
 };
 
 /// Counts the ticks of contact of each feature, for each place of a model.
-std::map<std::uint32_t, Ticks> contactTicks(const record::RecordedStream& contacts, const record::RecordedStream* all) {
-  std::map<std::uint32_t, Ticks> ticks;
+std::map<std::uint32_t, Touched> contactTicks(const record::RecordedStream& contacts,
+                                              const record::RecordedStream* all) {
+  std::map<std::uint32_t, Touched> touched;
   const record::Column *tick = contacts.find("tick"), *model = contacts.find("model"), *probe = contacts.find("probe"),
-                       *feature = contacts.find("feature"), *depth = contacts.find("depth");
-  if (tick == nullptr || model == nullptr || probe == nullptr || feature == nullptr || depth == nullptr) return ticks;
+                       *feature = contacts.find("feature"), *depth = contacts.find("depth"),
+                       *gain = contacts.find("gain");  // older recordings have no gain
+  if (tick == nullptr || model == nullptr || probe == nullptr || feature == nullptr || depth == nullptr) return touched;
   const auto whole = [&](std::uint64_t row, const record::Column& column) {
     return static_cast<std::uint32_t>(contacts.number(row, column));
   };
   Faults faults(all);
-  for (std::uint64_t row = 0; row < contacts.rows(); ++row)
-    if (contacts.number(row, *depth) > 0 && !faults.at(contacts.number(row, *tick), whole(row, *probe)))
-      ++ticks[whole(row, *model)][whole(row, *feature)];
-  return ticks;
+  for (std::uint64_t row = 0; row < contacts.rows(); ++row) {
+    if (!(contacts.number(row, *depth) > 0) || faults.at(contacts.number(row, *tick), whole(row, *probe))) continue;
+    Touched& one = touched[whole(row, *model)];
+    ++one.ticks[whole(row, *feature)];
+    if (gain != nullptr && contacts.number(row, *gain) == 0) ++one.forceless;
+  }
+  return touched;
 }
 
 /// Reads the part of a model. Returns nothing if the model has none, or if the file cannot be read any more.
@@ -70,6 +81,17 @@ std::optional<brep::Part> partOf(const scene::Model& model) {
     }
   }
   return {};
+}
+
+/// Returns for how long a touched model gave no force, or "" if it always did.
+std::string withoutForce(std::uint64_t ticks, double rate) {
+  if (ticks == 0) return "";
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "; for %.3g s of it the model gave no force (it was disabled or silenced, or waited until the tip had "
+                "left it)",
+                static_cast<double>(ticks) / rate);
+  return text;
 }
 
 /// Returns the features with the longest contacts, longest first.
@@ -95,11 +117,11 @@ std::vector<std::string> touchedFeatures(const record::Recording& recording, con
   std::vector<std::string> lines;
   const record::RecordedStream* contacts = recording.stream("contacts");
   if (contacts == nullptr) return lines;
-  for (const auto& [place, ticks] : contactTicks(*contacts, recording.stream("ticks"))) {
+  for (const auto& [place, touched] : contactTicks(*contacts, recording.stream("ticks"))) {
     const bool known = place < scene.models.size();  // others were added during the run
     const std::string name = known ? scene.models[place].name : "model " + std::to_string(place);
     const auto part = known ? partOf(scene.models[place]) : std::nullopt;
-    lines.push_back(name + ": " + longest(ticks, part, rate));
+    lines.push_back(name + ": " + longest(touched.ticks, part, rate) + withoutForce(touched.forceless, rate));
   }
   return lines;
 }

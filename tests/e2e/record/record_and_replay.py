@@ -46,7 +46,18 @@ def aDoorStandsAtItsStop(folder):
     check("no kick as the hand lets go", gone[len(gone) // 2:].max() < 0.1, gone.max())
     code, told = hapticd("explain", file)
     check("explain tells of the stops", code == 0 and "door: turned from 0 to 0.6 rad; at its stop at 0 rad for " in told
-          and "at its stop at 0.6 rad for " in told and "(1 time)" in told, told)
+          and "at its stop at 0.6 rad for " in told and "(1 time: " in told, told)
+    first = poses["tick"][abs(angles - 0.6) < 1e-12][0] / 1000
+    check("and when", f"(1 time: {first:.4g} to " in told, (first, told))
+    table = os.path.join(folder, "door-tables")
+    code, told = hapticd("export", file, "--csv", table)
+    joints = numpy.genfromtxt(os.path.join(table, "joints.csv"), delimiter=",", names=True, dtype=None, encoding=None)
+    check("joints.csv has the angle and the stops by name", code == 0 and set(joints["name"]) == {"door"} and set(joints["unit"]) == {"rad"}
+          and abs(joints["position"] - angles).max() < 1e-12 and set(joints["stop"][joints["position"] > 0.6 - 1e-12]) == {1}
+          and set(joints["stop"]) == {-1, 0, 1} and abs(joints["t"] - joints["tick"] / 1000).max() < 1e-9, told)
+    check("models.csv has the names of the numbers", open(os.path.join(table, "models.csv")).read() == "model,name,plugin\n0,door,nurbs_rigid\n")
+    code, told = hapticd("explain", file, "--json")
+    check("explain of a recording refuses --json", code == 2 and "told in words alone" in told, told)
 
 
 def theManualReadsIt(file):
@@ -60,6 +71,23 @@ def theManualReadsIt(file):
     check("the manual's Python reads a recording",
           len(ticks) == 1000 and ticks["arm0_fx"].shape == (1000,) and "columns" in names["about"], ticks.dtype)
     check("a planned end is no event of a fault", FAULT not in names["file"]["events"]["kind"], names["file"]["events"][:])
+
+
+def ordersAreTold(folder, environment):
+    """What people and programs ordered, and a contact that gave no force, because the model was disabled."""
+    file = os.path.join(folder, "told.h5")
+    command = [HAPTICD, "run", os.path.join(SCENES, "teapot.yaml"), "--for", "60", "--name", "told", "--record", file]
+    with subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as run:
+        ask = program(HAPTICD, environment, together=True)
+        code, told = ask("ctl", "--name", "told", "--wait", "30", "set", "teapot", "stiffness", "600", "--consent")
+        check("a parameter is set", code == 0, told)
+        check("a model is disabled", ask("ctl", "--name", "told", "disable", "teapot")[0] == 0)
+        time.sleep(1.5)
+        ask("ctl", "--name", "told", "stop")
+        run.wait(60)
+    code, told = hapticd("explain", file)
+    for words in (" s  set teapot stiffness 600\n", " s  disable teapot\n", " of it the model gave no force (it was disabled"):
+        check(f"explain tells: {words.strip()}", code == 0 and words in told, told)
 
 
 def aHoldIsAFault(folder, environment):
@@ -148,6 +176,7 @@ with tempfile.TemporaryDirectory() as scratch:
     status, text = hapticd("replay", teapot, "--set", "teapot.stiffness=900")
     check("a changed stiffness is found", status == 1 and "differ" in text, text)
     environment = dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch)
+    ordersAreTold(scratch, environment)
     aHoldIsAFault(scratch, environment)
     killLeavesAReadableFile(scratch, environment)
 finish()

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "cli/recording/joint_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace hapticd::cli {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr double kHinge = 1;  // index of `hinge` among the words of `joint`
+
+const scene::Value* valueOf(const scene::Model& model, const char* id) {
+  const auto found = std::find_if(model.parameters.begin(), model.parameters.end(),
+                                  [id](const scene::Value& value) { return value.id == id; });
+  return found != model.parameters.end() ? &*found : nullptr;
+}
+
+}  // namespace
+
+std::optional<JointMotion> JointMotion::of(const scene::Model& model) {
+  const scene::Value *joint = valueOf(model, "joint"), *limits = valueOf(model, "limits");
+  if (joint == nullptr || joint->number == 0) return {};
+  const scene::Value* axis = valueOf(model, "axis");
+  const bool given = axis != nullptr && axis->numbers.size() == 3;
+  JointMotion motion(model.pose, given ? Vector3d(axis->numbers.data()) : Vector3d::UnitY(), joint->number == kHinge);
+  if (limits != nullptr && limits->numbers.size() == 2) motion.limits_ = {limits->numbers[0], limits->numbers[1]};
+  return motion;
+}
+
+JointPlace JointMotion::next(const Vector3d& position, const Quaterniond& orientation) {
+  constexpr double kSame = 1e-6;  // [rad or m]
+  if (turns_) {
+    const Quaterniond turn = orientation * start_.orientation.conjugate();
+    const double angle = 2 * std::atan2(turn.vec().dot(axis_), turn.w());
+    last_ += std::remainder(angle - last_, 2 * M_PI);
+  } else {
+    last_ = axis_.dot(position - start_.position);
+  }
+  JointPlace place{last_, 0};
+  if (!limits_) return place;
+  if (std::abs(last_ - (*limits_)[0]) < kSame) place.stop = -1;
+  if (std::abs(last_ - (*limits_)[1]) < kSame) place.stop = 1;
+  return place;
+}
+
+TickTimes::TickTimes(const record::Recording& recording) : ticks_(recording.stream("ticks")) {
+  if (ticks_ == nullptr) return;
+  tick_ = ticks_->find("tick"), time_ = ticks_->find("t");
+}
+
+double TickTimes::of(double tick) {
+  if (tick_ == nullptr || time_ == nullptr || ticks_->rows() == 0) return 0;
+  while (row_ + 1 < ticks_->rows() && ticks_->number(row_, *tick_) < tick) ++row_;
+  return ticks_->number(row_, *time_);
+}
+
+void eachJointPlace(const record::Recording& recording, const scene::Scene& scene,
+                    const std::function<void(size_t, const JointMotion&, double, const JointPlace&)>& take) {
+  std::vector<std::optional<JointMotion>> joints;
+  for (const scene::Model& model : scene.models) joints.push_back(JointMotion::of(model));
+  const record::RecordedStream* poses = recording.stream("poses");
+  if (poses == nullptr) return;
+  std::array<const record::Column*, 9> columns{};
+  constexpr const char* kNames[] = {"model", "x", "y", "z", "qw", "qx", "qy", "qz", "tick"};
+  for (size_t i = 0; i < columns.size(); ++i)
+    if ((columns[i] = poses->find(kNames[i])) == nullptr) return;
+  for (uint64_t row = 0; row < poses->rows(); ++row) {
+    const auto at = [&](size_t column) { return poses->number(row, *columns[column]); };
+    const auto model = static_cast<size_t>(at(0));
+    if (model >= joints.size() || !joints[model]) continue;  // others were added during the run
+    take(model, *joints[model], at(8), joints[model]->next({at(1), at(2), at(3)}, {at(4), at(5), at(6), at(7)}));
+  }
+}
+
+}  // namespace hapticd::cli
