@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import warnings
 
 import numpy
 
@@ -68,6 +69,12 @@ def around_the_tip(client, ball):
         first = client.streams["ticks"].written
         client.wait(first + 300, timeout=30)
         check("the same when it is enabled around the tip", largest(client, 200) == 0, largest(client, 200))
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            felt = client.models["ball"].enable()
+        check("enable() of a model tells its program so", felt is False and [w.category for w in told] == [hapticd.NoForceWarning]
+              and "draw the hand back" in str(told[0].message) and told[0].filename == __file__, (felt, told))
+        check("and so does the model", client.models["ball"].waits)
 
 
 def away_from_the_tip(client):
@@ -80,6 +87,7 @@ def away_from_the_tip(client):
             answer = client.ask(do="enable", model="ball")
             check(f"nobody is told to leave a model that is elsewhere, x = {x}", "waiting" not in answer, answer)
             check("nor by list", client.ask(do="list")["models"][-1]["waits"] is False, client.ask(do="list"))
+            check("nor by enable() of a model", client.models["ball"].enable() is True and not client.models["ball"].waits)
 
 
 def words_of_answers(client, folder):

@@ -26,7 +26,8 @@ class Refused(HapticdError):
 
 
 class NoForceWarning(UserWarning):
-    """A program pushes on an arm that gets no force: a fault is latched, or somebody holds it. The text says what to do."""
+    """A program pushes on an arm that gets no force (a fault is latched, or somebody holds it), or has enabled a model that
+    gives none, because a tip is inside it. The text says what to do."""
 
 
 def caller() -> tuple[str, int]:

@@ -2,10 +2,11 @@
 """Models of a running daemon and their live parameters."""
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Optional, Sequence
 
-from ._error import Named
+from ._error import Named, NoForceWarning, caller
 
 if TYPE_CHECKING:
     from ._client import Client
@@ -34,6 +35,7 @@ class Model:
         self.number: int = facts["number"]  #: number of the model in the columns `model` of rows
         self.plugin: str = facts["plugin"]
         self.enabled: bool = facts["enabled"]
+        self.waits: bool = facts.get("waits", False)  #: True if it gives no force until no tip is inside it
         self.kinematic: bool = facts["kinematic"]
         self.leader: Optional[int] = facts["leader"]  #: id of the process that leads the model
         self.position: list[float] = facts["pose"]["position"]  #: m, world frame
@@ -56,9 +58,14 @@ class Model:
             request["consent"] = True
         self._client.ask(**request)
 
-    def enable(self) -> None:
-        """Fades the force of the model in."""
-        self._client.ask(do="enable", model=self.name)
+    def enable(self) -> bool:
+        """Fades the force of the model in. Returns False, and warns (NoForceWarning), if a tip is inside the model: then
+        it gives no force until the tip has left it. `h.models[name].waits` tells whether it still waits."""
+        waits = self.name in self._client.ask(do="enable", model=self.name).get("waiting", [])
+        if waits:
+            warnings.warn_explicit(f"{self.name}: a tip is inside this model, so it gives no force until the tip has left "
+                                   "it; draw the hand back", NoForceWarning, *caller())
+        return not waits
 
     def disable(self) -> None:
         """Fades the force of the model out. The model is still traced."""
