@@ -13,7 +13,9 @@
 #include <XCAFDoc_Location.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <cmath>
+#include <map>
 #include <utility>
+#include <vector>
 
 #include "kernels/brep/part_names.hpp"
 
@@ -36,6 +38,35 @@ std::string nameOf(const TDF_Label& label) {
   for (const char* kind : {"COMPOUND", "COMPSOLID", "SOLID", "SHELL", "FACE"})
     if (text == kind) return "";
   return brep::plainText(std::move(text));
+}
+
+/// Open CASCADE gives the number of the reference to a component without a name. It says nothing to a person.
+bool isNumber(const std::string& name) {
+  return !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
+}
+
+/// Returns what a label stands for: the shape that it refers to, or itself.
+TDF_Label shapeOf(const TDF_Label& label) {
+  TDF_Label shape = label;
+  if (XCAFDoc_ShapeTool::IsReference(label)) XCAFDoc_ShapeTool::GetReferredShape(label, shape);
+  return shape;
+}
+
+/// Returns the names of the components of an assembly. One without a name has that of its shape, and its number behind
+/// it where several would have the same name.
+std::vector<std::string> namesOf(const TDF_LabelSequence& components) {
+  std::map<std::string, int> nameless;
+  for (const TDF_Label& component : components)
+    if (const std::string own = nameOf(component); own.empty() || isNumber(own)) ++nameless[nameOf(shapeOf(component))];
+  std::vector<std::string> names;
+  for (const TDF_Label& component : components) {
+    const std::string own = nameOf(component), shape = nameOf(shapeOf(component));
+    if ((own.empty() || isNumber(own)) && !shape.empty())
+      names.push_back(nameless[shape] > 1 && !own.empty() ? shape + " " + own : shape);
+    else
+      names.push_back(own);
+  }
+  return names;
 }
 
 std::uint32_t packed(const Quantity_ColorRGBA& colour) {
@@ -83,7 +114,7 @@ class Tree {
   void run() {
     TDF_LabelSequence roots;
     shapes_->GetFreeShapes(roots);
-    for (const TDF_Label& root : roots) walk(root, gp_Trsf(), -1, 0, 0);
+    for (const TDF_Label& root : roots) walk(root, "", gp_Trsf(), -1, 0, 0);
   }
 
  private:
@@ -102,16 +133,14 @@ class Tree {
         file_.colours[XCAFDoc_ShapeTool::GetShape(part).TShape().get()] = colour;
   }
 
-  void walk(const TDF_Label& label, gp_Trsf pose, int parent, std::uint32_t colour, int depth) {
+  void walk(const TDF_Label& label, const std::string& name, gp_Trsf pose, int parent, std::uint32_t colour,
+            int depth) {
     if (depth > kDeepest) throw CadError("its assemblies are nested more than 200 levels deep; expected at most 200");
-    TDF_Label shape = label;
-    if (XCAFDoc_ShapeTool::IsReference(label)) {
-      pose.Multiply(XCAFDoc_ShapeTool::GetLocation(label).Transformation());
-      XCAFDoc_ShapeTool::GetReferredShape(label, shape);
-    }
+    const TDF_Label shape = shapeOf(label);
+    if (XCAFDoc_ShapeTool::IsReference(label)) pose.Multiply(XCAFDoc_ShapeTool::GetLocation(label).Transformation());
     Node node;
     node.body_name = nameOf(shape);
-    node.name = shape == label ? "" : nameOf(label);
+    node.name = name;
     if (node.name.empty()) node.name = node.body_name;
     node.parent = parent;
     node.pose = pose;
@@ -126,7 +155,9 @@ class Tree {
     file_.nodes.push_back(node);
     TDF_LabelSequence components;
     XCAFDoc_ShapeTool::GetComponents(shape, components);
-    for (const TDF_Label& component : components) walk(component, pose, index, node.colour, depth + 1);
+    const std::vector<std::string> names = namesOf(components);
+    std::size_t at = 0;
+    for (const TDF_Label& component : components) walk(component, names[at++], pose, index, node.colour, depth + 1);
   }
 
   Handle(XCAFDoc_ShapeTool) shapes_;
