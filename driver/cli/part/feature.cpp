@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "cli/part/feature.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "kernels/brep/model.hpp"
+#include "kernels/brep/part_names.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -63,31 +66,59 @@ void addInside(const Model& model, const brep::Placement& place, std::uint32_t i
   }
 }
 
-/// Returns where the axis of a round face is, and the keys of a scene that let a body turn about it; the centre of a
-/// sphere; "" for other faces. @param near [m] the axis is told at its point nearest to this
-std::string axisText(const brep::Surface& surface, const brep::Placement& place, const Vector3d& near) {
-  const Vector3d origin = place.rotation * brep::vec(surface.o) + place.position;
-  if (surface.kind == SurfaceKind::kSphere) return ", centre at " + pointText(origin, kMm) + " mm";
+std::string listed(const Vector3d& v) {
+  const auto rounded = [](double x) { return std::round(x * 1e9) * 1e-9 + 0.0; };
+  char text[100];
+  std::snprintf(text, sizeof text, "[%.9g, %.9g, %.9g]", rounded(v.x()), rounded(v.y()), rounded(v.z()));
+  return text;
+}
+
+/// An axis in the frame of the part: a point [m] and a unit vector.
+struct Axis {
+  Vector3d through = Vector3d::Zero(), along = Vector3d::Zero();
+
+  std::string keys() const { return "joint: hinge, pivot: " + listed(through) + ", axis: " + listed(along); }
+
+  bool same(const Axis& other) const {
+    constexpr double kNear = 1e-6, kTurned = 1e-6;  // [m], [rad]
+    const Vector3d way = other.through - through;
+    return along.cross(other.along).norm() < kTurned && (way - way.dot(along) * along).norm() < kNear;
+  }
+};
+
+/// Returns the axis of a round face, nothing for other faces. @param near [m] the axis is told at its point nearest to
+/// this
+std::optional<Axis> axisOf(const brep::Surface& surface, const brep::Placement& place, const Vector3d& near) {
   const bool round = surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kCone ||
                      surface.kind == SurfaceKind::kTorus || surface.kind == SurfaceKind::kRevolution;
-  if (!round) return "";
+  if (!round) return {};
+  const Vector3d origin = place.rotation * brep::vec(surface.o) + place.position;
   const Vector3d along = (place.rotation * brep::vec(surface.z)).normalized();
-  const Vector3d through = origin + along.dot(near - origin) * along;
-  const auto listed = [](const Vector3d& v) {
-    const auto rounded = [](double x) { return std::round(x * 1e9) * 1e-9 + 0.0; };
-    char text[100];
-    std::snprintf(text, sizeof text, "[%.9g, %.9g, %.9g]", rounded(v.x()), rounded(v.y()), rounded(v.z()));
-    return std::string(text);
-  };
-  return ", axis through " + pointText(through, kMm) + " mm along " + pointText(along, 1) +
-         "\n  to turn about it in a scene:    joint: hinge, pivot: " + listed(through) + ", axis: " + listed(along);
+  return Axis{origin + along.dot(near - origin) * along, along};
+}
+
+/// Returns where the axis of a round face is, and the keys of a scene that let a body turn about it; the centre of a
+/// sphere; "" for other faces.
+std::string axisText(const brep::Surface& surface, const brep::Placement& place, const Vector3d& near) {
+  if (surface.kind == SurfaceKind::kSphere)
+    return ", centre at " + pointText(place.rotation * brep::vec(surface.o) + place.position, kMm) + " mm";
+  const auto axis = axisOf(surface, place, near);
+  if (!axis) return "";
+  return ", axis through " + pointText(axis->through, kMm) + " mm along " + pointText(axis->along, 1) +
+         "\n  to turn about it in a scene:    " + axis->keys();
+}
+
+/// Returns a box around a face in its place [m].
+Eigen::AlignedBox3d boxOf(const Model& model, const brep::Placement& place, std::uint32_t index) {
+  Eigen::AlignedBox3d box;
+  addEdges(model, place, model.part().faces[index], box);
+  addInside(model, place, index, box);
+  return box;
 }
 
 std::string faceText(const Model& model, const brep::Placement& place, std::uint32_t index) {
   const brep::Face& face = model.part().faces[index];
-  Eigen::AlignedBox3d box;
-  addEdges(model, place, face, box);
-  addInside(model, place, index, box);
+  const Eigen::AlignedBox3d box = boxOf(model, place, index);
   std::string text = kindText(model.part().surfaces[face.surface]);
   if (model.part().surfaces[face.surface].kind == SurfaceKind::kPlane) {
     const Vector3d normal = model.geometry().normal(face, 0.5 * (brep::vec(face.lo) + brep::vec(face.hi)));
@@ -124,6 +155,34 @@ std::string featureText(const brep::Part& part, std::uint32_t feature) {
       return triangleText(model, place, body.first_triangle + at - body.face_count);
   }
   return "";
+}
+
+std::vector<std::string> axisLines(const brep::Part& part) {
+  const Model model{brep::Part(part)};
+  struct Line {
+    Axis axis;
+    std::string text;
+  };
+  std::vector<std::string> all;
+  for (const brep::Placement& place : model.placements()) {
+    const brep::Body& body = model.part().bodies[place.body];
+    std::vector<Line> lines;  // of this instance
+    for (std::uint32_t i = 0; i < body.face_count; ++i) {
+      const std::uint32_t index = body.first_face + i;
+      const brep::Surface& surface = model.part().surfaces[model.part().faces[index].surface];
+      if (!axisOf(surface, place, Vector3d::Zero())) continue;
+      const Eigen::AlignedBox3d box = boxOf(model, place, index);
+      const Axis axis = *axisOf(surface, place, box.isEmpty() ? Vector3d(place.position) : Vector3d(box.center()));
+      const std::string face = kindText(surface) + ": feature " + std::to_string(place.first_feature + i);
+      const auto known = std::find_if(lines.begin(), lines.end(), [&](const Line& one) { return one.axis.same(axis); });
+      if (known != lines.end())
+        known->text += ", " + face;
+      else
+        lines.push_back({axis, brep::instancePath(part, place.instance) + ": " + axis.keys() + "  (" + face});
+    }
+    for (const Line& line : lines) all.push_back(line.text + ")");
+  }
+  return all;
 }
 
 }  // namespace hapticd::cli

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "kernels/brep/part.hpp"
 
@@ -13,5 +14,10 @@ namespace hapticd::cli {
 /// keys of a scene that make a hinge of it. The coordinates are those of the part. @throws std::invalid_argument if the
 /// part cannot be searched
 std::string featureText(const brep::Part& part, std::uint32_t feature);
+
+/// [main] Returns a line for each axis about which round faces (cylinders, cones, tori, revolutions) of an instance
+/// lie, such as "engine/crank: joint: hinge, pivot: [0, 0, 0.01], axis: [0, 0, 1]  (a cylinder of radius 5 mm: feature
+/// 10)", in the order of the features. @throws std::invalid_argument if the part cannot be searched
+std::vector<std::string> axisLines(const brep::Part& part);
 
 }  // namespace hapticd::cli

@@ -241,7 +241,7 @@ int printFeature(const std::string& file, const Part& part, std::uint32_t featur
   const std::string name = brep::featureName(part, feature);
   if (name.empty())
     return fail(kBadInput, file + ": has no feature " + std::to_string(feature) + "; hapticd part info " + file +
-                               " lists its features");
+                               " tells which features each instance has");
   std::printf("%s\n", name.c_str());
   try {
     std::printf("  %s\n", featureText(part, feature).c_str());
@@ -251,7 +251,26 @@ int printFeature(const std::string& file, const Part& part, std::uint32_t featur
   return kWorked;
 }
 
-int partInfo(const std::string& file, bool json, std::optional<std::uint32_t> feature) {
+int printAxes(const std::string& file, const Part& part) {
+  try {
+    const std::vector<std::string> lines = axisLines(part);
+    for (const std::string& line : lines) std::printf("%s\n", line.c_str());
+    if (lines.empty()) std::printf("%s: no face is round, so it has no axis\n", file.c_str());
+  } catch (const std::invalid_argument& error) {
+    return fail(kBadInput, file + ": " + error.what());
+  }
+  return kWorked;
+}
+
+/// What `part info` is asked.
+struct InfoArguments {
+  std::string file;
+  bool json = false, axes = false;
+  std::optional<std::uint32_t> feature;
+};
+
+int partInfo(const InfoArguments& options) {
+  const std::string& file = options.file;
   if (file.ends_with(".yaml") || file.ends_with(".yml"))
     return fail(kBadInput,
                 file +
@@ -262,10 +281,11 @@ int partInfo(const std::string& file, bool json, std::optional<std::uint32_t> fe
   if (!bytes) return fail(kBadInput, file + ": " + bytes.error());
   try {
     Part part = brep::readPart(std::as_bytes(std::span(*bytes)), file);
-    if (feature) return printFeature(file, part, *feature);
+    if (options.feature) return printFeature(file, part, *options.feature);
+    if (options.axes) return printAxes(file, part);
     Json info = describe(part, bytes->size());
     addMeasures(info, std::move(part));
-    if (json)
+    if (options.json)
       std::printf("%s\n", info.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
     else
       print(file, info);
@@ -282,17 +302,21 @@ void addPart(const Command& app, int& exit_code) {
       app.addSubcommand("part", "Work with part files, which `hapticd import` makes from CAD files and meshes.");
   command.requireSubcommand();
   command.footer("Example:\n  hapticd part info bracket.hpart");
-  auto file = std::make_shared<std::string>();
-  auto json = std::make_shared<bool>(false);
+  auto options = std::make_shared<InfoArguments>();
   const Command info = command.addSubcommand("info", "Show what a part file holds: bodies, instances, faces, losses.");
-  info.addOption("part", *file, "a part file (.hpart)").required();
-  info.addFlag("--json", *json, "print JSON");
-  auto feature = std::make_shared<std::optional<std::uint32_t>>();
-  info.addOption("--feature", *feature,
+  info.addOption("part", options->file, "a part file (.hpart)").required();
+  info.addFlag("--json", options->json, "print JSON");
+  info.addOption("--feature", options->feature,
                  "print only this feature (column feature of a trace): its instance and face, its kind, size and place")
       .excludes("--json");
-  info.footer("Example:\n  hapticd part info bracket.hpart");
-  info.callback([file, json, feature, &exit_code] { exit_code = partInfo(*file, *json, *feature); });
+  info.addFlag("--axes", options->axes,
+               "print only the axes of the round faces of each instance, as the keys of a scene that make a hinge")
+      .excludes("--json")
+      .excludes("--feature");
+  info.footer(
+      "Examples:\n  hapticd part info bracket.hpart\n  hapticd part info engine.hpart --axes    # where a body can "
+      "turn");
+  info.callback([options, &exit_code] { exit_code = partInfo(*options); });
 }
 
 }  // namespace hapticd::cli

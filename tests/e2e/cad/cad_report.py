@@ -8,6 +8,7 @@ import csv
 import json
 import os
 import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -38,6 +39,32 @@ def units():
         report = json.loads(told(name, "--json")[0])
         source = json.loads(run("part", "info", PART, "--json")[1])["source"]
         check(f"{name}: and so in JSON", report["unit_assumed"] == source["unit_assumed"] == assumed, (report, source))
+
+
+def names():
+    """A component without a name has that of its shape, and not the number that Open CASCADE gives it."""
+    text = open(join("assembly.step")).read()
+    for file, pattern in (("nameless.step", r"'(?:left|right)'"), ("half.step", r"'left'")):
+        with open(join(file), "w") as out:
+            out.write(re.sub(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\('\d+',)" + pattern, r"\1''", text))
+    _, _, info = told("half.step")
+    check("one without a name has that of its shape", "instance 'block': body 0" in info and "instance 'right': body 0" in info, info)
+    _, _, info = told("nameless.step")
+    check("two of them have numbers", "instance 'block 1': body 0" in info and "instance 'block 2': body 0" in info, info)
+
+
+def axes():
+    """The axes about which a scene can turn a body, without knowing the numbers of faces."""
+    told("assembly.step")
+    code, out, err = run("part", "info", PART, "--axes")
+    check("boxes have no axis", code == 0 and "no face is round" in out, out + err)
+    part = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "config", "models", "as1.hpart")
+    code, out, err = run("part", "info", part, "--axes")
+    lines = [line for line in out.splitlines() if line.startswith("as1/rod-assembly_1/rod_1: ")]
+    check("a rod has one axis", code == 0 and len(lines) == 1, out + err)
+    feature = re.search(r"feature (\d+)", lines[0])[1]
+    one = run("part", "info", part, "--feature", feature)[1]
+    check("it is that of its face", re.search(r"joint: hinge, pivot: \[.*\], axis: \[.*?\]", lines[0])[0] in one, (lines, one))
 
 
 def sizes():
@@ -151,6 +178,6 @@ def placed_parts():
 
 
 subprocess.run([MAKE_PARTS, folder], check=True, timeout=300)
-for part_of_the_test in (units, sizes, full_disks, sizes_in_scenes, open_bodies, counts, poses, features, placed_parts):
+for part_of_the_test in (units, names, axes, sizes, full_disks, sizes_in_scenes, open_bodies, counts, poses, features, placed_parts):
     part_of_the_test()
 finish()
