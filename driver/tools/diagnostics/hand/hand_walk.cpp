@@ -16,7 +16,6 @@
 #include "servo/arm/arm.hpp"
 #include "servo/loop/loop.hpp"
 #include "session/messages/silence_reason.hpp"
-#include "session/telemetry/stop_counts.hpp"
 #include "session/telemetry/telemetry.hpp"
 
 namespace hapticd::diagnostics {
@@ -167,6 +166,7 @@ class WalkLog final : public servo::TickLog {
 
   void observeArm(uint32_t index, const servo::Core& core, const servo::Arm& arm) noexcept HSP_RT {
     WalkedArm& seen = walk_.arms[index];
+    seen.stops.add(arm.info(), arm.sample());
     const servo::Clips& clips = arm.limiter().clips();
     const double asked = core.force(index).norm();
     seen.asked = std::max(seen.asked, asked);

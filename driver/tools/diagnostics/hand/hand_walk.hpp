@@ -12,6 +12,7 @@
 
 #include "description/scene.hpp"
 #include "servo/safety/limiter.hpp"
+#include "session/telemetry/stop_counts.hpp"
 #include "world/world.hpp"
 
 namespace hapticd::diagnostics {
@@ -39,6 +40,7 @@ struct WalkedArm {
   double away = HUGE_VAL;     ///< [m] least distance from any model, or from a box around it
   uint32_t nearest = 0;       ///< index of the model at the least distance
   uint32_t end = 0;           ///< number of the first joint that was at an end of its range there, from 1; 0 for none
+  servo::StopCounts stops;    ///< ticks in which each joint was at an end of its range
 };
 
 struct Walk {

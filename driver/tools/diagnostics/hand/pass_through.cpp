@@ -43,6 +43,27 @@ bool givesWay(const scene::Model& model) {
   return motion != nullptr && motion->kind == HSP_ENUM && motion->number == kDynamic;
 }
 
+/// Returns where the way of a hand lies in the box of a model, in distances from where its press begins.
+Inside wayInside(const scene::Device& device, const HandScript& hand, const scene::Model& model,
+                 const Eigen::AlignedBox3d& box) {
+  const Vector3d inwards = -hand.normal.normalized(), aim = hand.center - hand.radius * inwards;
+  const Eigen::Quaterniond back = model.pose.orientation.conjugate();
+  const Vector3d start = back * (device.mount.position + device.mount.orientation * aim - model.pose.position);
+  return insideOf(box, start, back * (device.mount.orientation * inwards));
+}
+
+/// Returns true if the hand meets a body that gives way. How far the hand goes then depends on the body, and the box of
+/// a housing around it says nothing about the way.
+bool meetsAMovingBody(const scene::Scene& scene, const ModelBoxes& boxes, const scene::Device& device,
+                      const HandScript& hand) {
+  for (size_t i = 0; i < scene.models.size() && i < boxes.size(); ++i) {
+    if (!boxes[i] || !givesWay(scene.models[i])) continue;
+    const Inside inside = wayInside(device, hand, scene.models[i], *boxes[i]);
+    if (inside.from < inside.to && inside.to >= 0 && inside.from <= hand.rise) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 document::Problems pressesThrough(const scene::Scene& scene, const ModelBoxes& boxes) {
@@ -50,13 +71,11 @@ document::Problems pressesThrough(const scene::Scene& scene, const ModelBoxes& b
   for (const scene::Device& device : scene.devices) {
     const auto hand = handScriptOf(device);
     if (!hand || !hand->presses() || !(hand->normal.norm() > 0)) continue;
-    const Vector3d inwards = -hand->normal.normalized(), aim = hand->center - hand->radius * inwards;
+    if (meetsAMovingBody(scene, boxes, device, *hand)) continue;
     for (size_t i = 0; i < scene.models.size() && i < boxes.size(); ++i) {
       const scene::Model& model = scene.models[i];
       if (!boxes[i] || model.kinematic || givesWay(model)) continue;
-      const Eigen::Quaterniond back = model.pose.orientation.conjugate();
-      const Vector3d start = back * (device.mount.position + device.mount.orientation * aim - model.pose.position);
-      const Inside inside = insideOf(*boxes[i], start, back * (device.mount.orientation * inwards));
+      const Inside inside = wayInside(device, *hand, model, *boxes[i]);
       if (!(inside.from < inside.to) || inside.to < 0 || hand->rise <= inside.to) continue;
       const HandKey key = keyOfHand(scene, device, {"hand.rise", "hand.radius", "hand.script"});
       document::report(warnings, key.place, key.id,

@@ -228,6 +228,26 @@ void reportCut(const scene::Scene& scene, const scene::Device& device, const Han
           100 * static_cast<double>(seen.cut) / static_cast<double>(seen.contact)));
 }
 
+/// Warns of a hand that touches a model, but whose arm stands at its own end much of the time: the tip does not follow
+/// it, and it presses or moves the model less far than it wants to.
+void reportArmAtEnd(const scene::Scene& scene, uint32_t index, const Walk& walk, document::Problems& warnings) {
+  constexpr double kMuch = 0.25;  // share of the ticks
+  const WalkedArm& seen = walk.arms[index];
+  const scene::Model& model = scene.models[seen.deepest];
+  uint32_t joint = 0;
+  for (uint32_t i = 1; i < HDV_MAX_JOINTS; ++i)
+    if (seen.stops.ticks(i) > seen.stops.ticks(joint)) joint = i;
+  const double share = static_cast<double>(seen.stops.ticks(joint)) / static_cast<double>(walk.ticks);
+  if (share < kMuch) return;
+  const std::string key = fmt::format("models[{}].pose.position", seen.deepest);
+  document::report(
+      warnings, placeInModel(model, key), key,
+      fmt::format("joint {} of {} is at the end of its range in {:.0f} % of the ticks, so the tip cannot follow the "
+                  "hand, which touches {}: it presses and moves it less far than it wants to; expected a model nearer "
+                  "to where the arm reaches; move it (pose.position) or the arm (mount.position)",
+                  joint + 1, scene.devices[index].name, 100 * share, model.name));
+}
+
 /// Returns true if a run would report something odd about the plugin of a model. Its contacts say nothing about the
 /// scene then.
 bool isOdd(const Walk& walk, size_t model) {
@@ -259,6 +279,7 @@ void checkWalkOfArm(const scene::Scene& scene, uint32_t index, const Walk& walk,
   const auto ticks = [](uint64_t count) { return static_cast<double>(count); };
   if (ticks(seen.cut) * walk.period > kContactSeconds && ticks(seen.cut) > kOften * ticks(seen.contact))
     reportCut(scene, scene.devices[index], *hand, seen, walk.limiters[index], warnings);
+  if (walk.whole) reportArmAtEnd(scene, index, walk, warnings);
 }
 
 void checkWalkOfModel(const scene::Scene& scene, size_t index, const Walk& walk, const servo::World& world,
