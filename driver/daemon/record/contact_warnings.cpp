@@ -52,6 +52,13 @@ std::string deepText(const ModelReport& model) {
         "{0} is {1:.3g} m large, and the hand was {2:.3g} m deep in it, deeper than an arm reaches: lengths must be in "
         "m ({1:.3g} mm is {3:.3g} m); check the unit of its geometry, and where it stands",
         model.name, model.size_m, deepest, model.size_m * 1e-3);
+  if (deepest * 1e-3 > kDeep && model.moves)  // nor is it a depth in mm
+    return fmt::format(
+        "{} reports a depth of {:.3g} m: its body runs away, so its force grows without bound; look for a wrong sign "
+        "of "
+        "what moves it (the force on the body is the opposite of the force on the probe) and for a spring that is too "
+        "stiff for its integrator; test it with {}",
+        model.name, deepest, checkCommand(model));
   return fmt::format(
       "{} reports a depth of {:.3g} m, deeper than an arm reaches: depth_m must be in m (if it is in mm, the depth was "
       "{:.3g} m); test it with {}",

@@ -36,6 +36,15 @@ TEST(ContactWarnings, BlameThePluginOfASmallModel) {
   EXPECT_NE(texts[0].find("test it with hapticd plugin check"), std::string::npos) << texts[0];
 }
 
+TEST(ContactWarnings, BlameTheMotionOfABodyThatRunsAway) {
+  ModelReport model = touched(2e6);
+  EXPECT_NE(contactWarnings(model)[0].find("depth_m must be in m"), std::string::npos) << "it stands still";
+  model.moves = true;
+  ASSERT_EQ(contactWarnings(model).size(), 1u);
+  EXPECT_NE(contactWarnings(model)[0].find("its body runs away"), std::string::npos) << contactWarnings(model)[0];
+  EXPECT_EQ(contactWarnings(model)[0].find("in mm"), std::string::npos) << contactWarnings(model)[0];
+}
+
 TEST(ContactWarnings, TellOfEnergyOnlyWhereTheModelStandsStill) {
   ModelReport model = touched(0.003);
   model.given_j = 0.02, model.taken_j = 0.01;
