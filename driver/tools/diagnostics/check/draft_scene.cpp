@@ -89,7 +89,7 @@ bool judgeHands(const scene::Scene& draft, const UnreadKeys& unread, const Draft
   const bool arms = !draft.devices.empty();
   if (arms && !unread.has("hand")) {
     document::append(warnings, unreachableRows(draft));
-    document::append(warnings, pressesThrough(draft, trial.boxes));
+    document::append(warnings, pressesThrough(draft, trial.boxes, trial.moves));
   }
   const KnownHands known = arms ? knownOfHands(unread, problems) : KnownHands::kNothing;
   bool moved = false;

@@ -114,7 +114,7 @@ void judgeScene(const scene::Scene& scene, const CheckOptions& options, host::Ca
   document::append(result.warnings, trial.warnings);
   document::Problems more = warningsOfSettings(full, trial, catalog);
   if (!options.files_only) {
-    document::append(more, pressesThrough(full, trial.boxes));
+    document::append(more, pressesThrough(full, trial.boxes, trial.moves));
     document::append(more, unreachableRows(full));
     document::append(more, warningsOfHands(full, trial, catalog, result));
   }

@@ -9,8 +9,6 @@
 #include <limits>
 
 #include "diagnostics/hand/hand_script.hpp"
-#include "diagnostics/reading/given_values.hpp"
-#include "hapticd/abi.h"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -36,13 +34,6 @@ Inside insideOf(const Eigen::AlignedBox3d& box, const Vector3d& start, const Vec
   return inside;
 }
 
-/// Returns true if the model gives way to a hand, so that its thickness does not say how far the hand may go.
-bool givesWay(const scene::Model& model) {
-  constexpr double kDynamic = 2;  // index of `dynamic` among the words of `motion`
-  const scene::Value* motion = givenIn(model.parameters, "motion");
-  return motion != nullptr && motion->kind == HSP_ENUM && motion->number == kDynamic;
-}
-
 /// Returns where the way of a hand lies in the box of a model, in distances from where its press begins.
 Inside wayInside(const scene::Device& device, const HandScript& hand, const scene::Model& model,
                  const Eigen::AlignedBox3d& box) {
@@ -54,10 +45,10 @@ Inside wayInside(const scene::Device& device, const HandScript& hand, const scen
 
 /// Returns true if the hand meets a body that gives way. How far the hand goes then depends on the body, and the box of
 /// a housing around it says nothing about the way.
-bool meetsAMovingBody(const scene::Scene& scene, const ModelBoxes& boxes, const scene::Device& device,
-                      const HandScript& hand) {
+bool meetsAMovingBody(const scene::Scene& scene, const ModelBoxes& boxes, const std::vector<bool>& moves,
+                      const scene::Device& device, const HandScript& hand) {
   for (size_t i = 0; i < scene.models.size() && i < boxes.size(); ++i) {
-    if (!boxes[i] || !givesWay(scene.models[i])) continue;
+    if (!boxes[i] || i >= moves.size() || !moves[i]) continue;
     const Inside inside = wayInside(device, hand, scene.models[i], *boxes[i]);
     if (inside.from < inside.to && inside.to >= 0 && inside.from <= hand.rise) return true;
   }
@@ -66,15 +57,15 @@ bool meetsAMovingBody(const scene::Scene& scene, const ModelBoxes& boxes, const 
 
 }  // namespace
 
-document::Problems pressesThrough(const scene::Scene& scene, const ModelBoxes& boxes) {
+document::Problems pressesThrough(const scene::Scene& scene, const ModelBoxes& boxes, const std::vector<bool>& moves) {
   document::Problems warnings;
   for (const scene::Device& device : scene.devices) {
     const auto hand = handScriptOf(device);
     if (!hand || !hand->presses() || !(hand->normal.norm() > 0)) continue;
-    if (meetsAMovingBody(scene, boxes, device, *hand)) continue;
+    if (meetsAMovingBody(scene, boxes, moves, device, *hand)) continue;
     for (size_t i = 0; i < scene.models.size() && i < boxes.size(); ++i) {
       const scene::Model& model = scene.models[i];
-      if (!boxes[i] || model.kinematic || givesWay(model)) continue;
+      if (!boxes[i] || model.kinematic || (i < moves.size() && moves[i])) continue;
       const Inside inside = wayInside(device, *hand, model, *boxes[i]);
       if (!(inside.from < inside.to) || inside.to < 0 || hand->rise <= inside.to) continue;
       const HandKey key = keyOfHand(scene, device, {"hand.rise", "hand.radius", "hand.script"});

@@ -190,7 +190,7 @@ std::optional<Eigen::AlignedBox3d> readBox(host::Unpacker& in) {
 struct TrialResult {
   std::string error;     ///< why it was refused; "" if it was not
   double stiffness = 0;  ///< [N/m]
-  bool idle = false, reads_velocity = false;
+  bool idle = false, reads_velocity = false, moves = false;
   Eigen::AlignedBox3d box;
 };
 
@@ -220,7 +220,8 @@ TrialResult tryOne(const scene::Scene& scene, const scene::Model& model, uint32_
   tried.stiffness = (*shape)->report().max_stiffness;
   tried.reads_velocity = ((*shape)->report().flags & HSP_R_VELOCITY) != 0;
   const bool may_move = ((*shape)->description().flags & HSP_C_MOVES) != 0;
-  tried.idle = may_move && ((*shape)->report().flags & HSP_R_MOVES) == 0;
+  tried.moves = ((*shape)->report().flags & HSP_R_MOVES) != 0;
+  tried.idle = may_move && !tried.moves;
   markCall(trail, index, "bounds");
   if (!(*shape)->bounds(tried.box.min().data(), tried.box.max().data())) tried.box.setEmpty();
   markCall(trail, index, "deactivate() or destroy");
@@ -326,6 +327,7 @@ std::string tryAll(const scene::Scene& scene, double max_force, const std::vecto
     claims.number(tried.stiffness);
     claims.number(uint32_t{tried.idle ? 1u : 0u});
     claims.number(uint32_t{tried.reads_velocity ? 1u : 0u});
+    claims.number(uint32_t{tried.moves ? 1u : 0u});
     packBox(tried.box, boxes);
   }
   return problems.take() + warnings.take() + claims.take() + boxes.take();
@@ -360,6 +362,7 @@ ModelTrial tryModels(const scene::Scene& scene, double max_force, const std::vec
     trial.stiffness.push_back(in.real());
     if (in.count() != 0) warnOfMotion(scene.models[i], i, trial.warnings);
     trial.needs_velocity = in.count() != 0 || trial.needs_velocity;
+    trial.moves.push_back(in.count() != 0);
   }
   for (size_t i = 0; i < scene.models.size() && in.good(); ++i) trial.boxes.push_back(readBox(in));
   return trial;

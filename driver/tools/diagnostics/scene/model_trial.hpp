@@ -18,6 +18,7 @@ using ModelBoxes = std::vector<std::optional<Eigen::AlignedBox3d>>;
 struct ModelTrial {
   document::Problems problems, warnings;
   std::vector<double> stiffness;  ///< [N/m] that each model claims, in scene order
+  std::vector<bool> moves;        ///< true for each model that its plugin moves, in scene order
   bool needs_velocity = false;    ///< some model reads the velocity of a probe
   ModelBoxes boxes;
 };
