@@ -3,6 +3,7 @@
 
 Usage: run_the_examples.py HAPTICD SOURCE BUTTON     prints one line per case; exit 1 when one is off.
 """
+import csv
 import json
 import os
 import re
@@ -106,8 +107,8 @@ def alone():
     from hapticd import FAULTS
     words = re.findall(r'"([^"]*)"', words)
     check("faults have the words of the pictures", [w.replace("stopped", "held or stopped") for w in words] == list(FAULTS) and len(words) == 13, (words, FAULTS))
-    for name in ("button.py", "move_door.py", "plot_live.py", "record_to_pandas.py", "spring.py"):
-        ended = subprocess.run([sys.executable, os.path.join(CLIENT, "examples", name), "--name", "nobody", *(["door"] if name == "move_door.py" else [])],
+    for name in ("button.py", "experiment.py", "move_door.py", "plot_live.py", "record_to_pandas.py", "spring.py"):
+        ended = subprocess.run([sys.executable, os.path.join(CLIENT, "examples", name), "--name", "nobody", *{"move_door.py": ["door"], "experiment.py": ["scene.yaml"]}.get(name, [])],
                                env=dict(os.environ, PYTHONPATH=CLIENT), capture_output=True, text=True, timeout=120)
         check(f"{name} without a daemon says so, with no traceback", ended.returncode == 1 and "error: no daemon named nobody runs" in ended.stderr
               and "Traceback" not in ended.stderr, ended.stderr)
@@ -131,6 +132,35 @@ def examples(folder):
     table = os.path.join(folder, "run.csv")
     code, out, err = example("record_to_pandas.py", "--seconds", "1", "--csv", table)
     check("record_to_pandas.py", code == 0 and " 0 gaps" in out and open(table).readline().startswith("tick,time_ns,t,"), (out, err))
+
+
+STIMULUS = """hapticd: 1
+device: {source}/config/devices/simulated-premium15.yaml
+hand: {{script: press, radius: 0.053, rise: 0.008, rate: 1}}
+models:
+  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {source}/config/models/sphere.yaml, stiffness: {stiffness}, damping: 2}}}}
+"""
+
+
+def experiment(folder):
+    """Two stimuli in random order, each felt while the hand came from outside."""
+    scenes = [os.path.join(folder, name) for name in ("soft.yaml", "hard.yaml")]
+    for scene, stiffness in zip(scenes, (200, 1000)):
+        with open(scene, "w") as file:
+            file.write(STIMULUS.format(source=SOURCE, stiffness=stiffness))
+    out = os.path.join(folder, "session")
+    with subprocess.Popen([HAPTICD, "run", scenes[0], "--name", "trials"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as run:
+        subprocess.run([HAPTICD, "ctl", "--name", "trials", "--wait", "30", "status"], env=environment, stdout=subprocess.DEVNULL, timeout=60)
+        done = subprocess.run([sys.executable, os.path.join(CLIENT, "examples", "experiment.py"), *scenes, "--name", "trials", "--trials", "4", "--seconds",
+                               "2.5", "--out", out], env=dict(environment, PYTHONPATH=CLIENT), input="\n" * 4, capture_output=True, text=True, timeout=200)
+        run.terminate()
+    table = list(csv.DictReader(open(os.path.join(out, "trials.csv")))) if done.returncode == 0 else []
+    force = {name: [float(row["force_n"]) for row in table if row["scene"].endswith(name)] for name in ("soft.yaml", "hard.yaml")}
+    check("experiment.py presents each stimulus equally often", [len(f) for f in force.values()] == [2, 2], (done, table))
+    check("each trial was felt, and the stiffer one more", all(row["valid"] == "1" for row in table) and min(force["hard.yaml"]) > 1.3 * max(force["soft.yaml"]), table)
+    ticks = list(csv.DictReader(open(os.path.join(out, "trial-002.csv"))))
+    check("a trial has its ticks without a gap", len(ticks) == int(table[1]["ticks"]) > 1000 and ticks[0]["tick"] == table[1]["tick"]
+          and all(int(b["tick"]) - int(a["tick"]) == 1 for a, b in zip(ticks, ticks[1:])), table)
 
 
 PUSHES = """
@@ -251,6 +281,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
         time.sleep(0.05)
     alone()
     examples(folder)
+    experiment(folder)
     pushes(folder)
     snaps(folder, True)
     snaps(folder, False)
