@@ -249,7 +249,8 @@ Verdict twoInstances(const Recipe& recipe, uint64_t) {
 }
 
 Verdict layoutGolden(const Recipe& recipe, uint64_t) {
-  const Made made(recipe), wide(recipe);
+  // two probes: the record of the first is where it would be without strides, too
+  const Made made(recipe, 2), wide(recipe, 2);
   if (!made.error.empty()) return made.error;
   const hsp_class& c = made.subject->description();
   if (c.struct_size < offsetof(hsp_class, extension))
@@ -262,9 +263,10 @@ Verdict layoutGolden(const Recipe& recipe, uint64_t) {
     return "activate() changed report.struct_size, which the host sets; expected that it stays";
   wide.subject->widen(32);  // the records of a later host may be larger
   for (int i = 0; i < kConformanceSteps / 4; ++i) {
-    const Vector3d p = onPath(*made.subject, static_cast<double>(i) / kConformanceSteps);
-    const Answer expected = made.subject->step({p}, kConformanceDt);
-    if (!sameBits(expected, wide.subject->step({p}, kConformanceDt)))
+    const double part = static_cast<double>(i) / kConformanceSteps;
+    const Vector3d p = onPath(*made.subject, part), q = onPath(*made.subject, part, 1.1);
+    const Answer expected = made.subject->step({p, q}, kConformanceDt);
+    if (!sameBits(expected, wide.subject->step({p, q}, kConformanceDt)))
       return "the answers change if the records of a step are larger; expected HSP_AT with step.in_stride and " +
              std::string("step.out_stride instead of in[i] and out[i]");
     if (!wide.subject->roomUntouched())

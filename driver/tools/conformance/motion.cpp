@@ -41,8 +41,15 @@ double wayOf(const hsp_pose& from, const hsp_pose& to) {
 /// How often the contacts of a step were those of the frame before the step, and an example.
 struct Lag {
   int judged = 0, late = 0;
-  double way = 0, off = 0;  ///< [m] of the worst step: how far the shape moved, how far its contact was off
+  double way = 0, off = 0;   ///< [m] of the worst step: how far the shape moved, how far its contact was off
+  int moved = 0;             ///< steps in which the pose changed
+  bool tells_speed = false;  ///< one of these steps wrote a velocity
 };
+
+/// Returns true if a pose has a velocity other than 0.
+bool hasSpeed(const hsp_pose& pose) {
+  return Vector3d(pose.linear).squaredNorm() + Vector3d(pose.angular).squaredNorm() > 0;
+}
 
 /// Rests the probe in the world while the shape moves. Asks each step again with the probe in the frame of the new
 /// pose, and without time to move: both answers must be the same contact.
@@ -58,6 +65,8 @@ void follow(Subject& subject, const Vector3d& world, Lag& lag) {
     const Vector3d after = inFrame(pose, world);
     const double way = (after - before).norm();
     if (i == 0 || !(way > kLeastWay) || first.status != HSP_OK) continue;
+    ++lag.moved;
+    lag.tells_speed |= hasSpeed(pose);
     hsp_probe probe{};
     Eigen::Map<Vector3d>(probe.position) = after;
     probe.orientation[0] = 1;
@@ -178,6 +187,10 @@ Verdict contactsOfTheNewPose(const Recipe& recipe, uint64_t) {
     return std::string();
   });
   if (!verdict.clean()) return verdict;
+  if (lag.moved > 0 && !lag.tells_speed)
+    return "its pose changes, but pose.linear and pose.angular are always 0; expected its velocities in the world "
+           "frame, "
+           "because probe.velocity is relative to the shape, and a damper would brake the wrong motion";
   if (lag.judged == 0) return skipped("it did not move where it was touched");
   if (2 * lag.late < lag.judged) return "";
   return "it moved by " + text(lag.way) + " m in a step, and its contact was off by " + text(lag.off) +

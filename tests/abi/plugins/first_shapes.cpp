@@ -152,7 +152,17 @@ SHAPE("thin_plate", ThinPlate, Plate<ThinPlate, 500>)
 SHAPE("slab", Slab, Plate<Slab, 4000>)
 SHAPE("far_plate", FarPlate, Plate<FarPlate, 50000, false, -5>)
 
+/// Walks the records of a step as an array, as a first shape in C does.
+struct PlainIndex : Ball<PlainIndex, Slip::kNone> {
+  static constexpr hapticd::ShapeInfo kInfo{"org.example.shape.plain_index", "plain_index", "1.0.0", "MIT",
+                                            "To be tested."};
+  hsp_status step(const hsp_step& step) noexcept HSP_RT {
+    for (uint32_t i = 0; i < step.count; ++i) touch(step.in[i], step, step.out[i]);
+    return HSP_OK;
+  }
+};
+
 }  // namespace
 
 HAPTICD_SHAPES(Right, PushesAndRubs, DampsOdd, EmptyReset, LongNormal, OriginTorque, AtOnce, NoCentre, Clock, GivesMore,
-               NoDoc, Turns, Diameter, ThinPlate, Slab, FarPlate)
+               NoDoc, Turns, Diameter, ThinPlate, Slab, FarPlate, PlainIndex)

@@ -13,8 +13,9 @@ constexpr double kSpring = 500, kSpeed = 0.01;  // [N/m], [m/s]
 template <class Derived, bool kShifts>
 struct Lift : hapticd::Shape {
   double number = 0;
-  double spring = kSpring;  ///< [N/m] that is felt
-  double aside = 0;         ///< [m] by which the foot point is wrong
+  double spring = kSpring;     ///< [N/m] that is felt
+  double aside = 0;            ///< [m] by which the foot point is wrong
+  double told_speed = kSpeed;  ///< [m/s]
   uint32_t claims = HSP_R_MOVES | HSP_R_PUSHES;
   double tick = 0;  ///< [m] by which the plate rises in each step, however short
   static constexpr auto fields() {
@@ -28,7 +29,7 @@ struct Lift : hapticd::Shape {
   hsp_status step(const hsp_step& step) noexcept HSP_RT {
     const double way = kSpeed * step.dt_s + tick;
     step.pose->position[1] += way;
-    step.pose->linear[1] = kSpeed;
+    step.pose->linear[1] = told_speed;
     for (uint32_t i = 0; i < step.count; ++i) {
       const hsp_probe& in = *HSP_AT(const hsp_probe, step.in, step.in_stride, i);
       hsp_contact& out = *HSP_AT(hsp_contact, step.out, step.out_stride, i);
@@ -77,6 +78,12 @@ struct Silent : Lift<Silent, true> {
   static constexpr hapticd::ShapeInfo kInfo{
       "org.example.shape.lift_silent", "lift_silent", "1.0.0", "MIT", "To be tested.", HSP_C_MOVES};
   Silent() { claims = HSP_R_PUSHES; }
+};
+/// Writes no velocity.
+struct Mute : Lift<Mute, true> {
+  static constexpr hapticd::ShapeInfo kInfo{
+      "org.example.shape.lift_mute", "lift_mute", "1.0.0", "MIT", "To be tested.", HSP_C_MOVES};
+  Mute() { told_speed = 0; }
 };
 /// Has touch() beside step(), as a shape that was made of the template: step() alone is asked.
 struct Both : Lift<Both, true> {
@@ -129,4 +136,4 @@ struct ComesUp : Plate<ComesUp, -1> {
 
 }  // namespace
 
-HAPTICD_SHAPES(Right, Late, Unsaid, Steep, Aside, Counting, Silent, Both, GivesWay, ComesUp)
+HAPTICD_SHAPES(Right, Late, Unsaid, Steep, Aside, Counting, Silent, Mute, Both, GivesWay, ComesUp)

@@ -195,7 +195,8 @@ FIRST = {"pushes_and_rubs": ("force-along-normal", "expected no HSP_R_PUSHES in 
          "no_centre": ("denormals", "with a probe at 0 m contact."), "clock": ("no-system-call-in-step", "(clock_gettime)"),
          "gives_more": ("energy-non-increasing", "a closed path gave"), "no_doc": ("descriptor-complete", 'parameter "number": its doc is empty'),
          "turns": ("asks-for-what-it-reads", "report.flags |= HSP_R_ORIENTATION in activate()"),
-         "diameter": ("contact-found", "look at the sign of depth_m and at point")}
+         "diameter": ("contact-found", "look at the sign of depth_m and at point"),
+         "plain_index": ("layout-golden", "expected HSP_AT with step.in_stride and step.out_stride instead of in[i] and out[i]")}
 for shape, (test, words) in FIRST.items():
     mine = [(t["name"], t["why"]) for t in tests if t["plugin"] == shape and t["result"] == "fail"]
     check(f"{shape} fails by {test}", mine and mine[0][0] == test and words in mine[0][1], mine)
@@ -214,7 +215,8 @@ MOVING = {"lift_right": None, "lift_late": ("contacts-of-new-pose", "off by 1e-0
           "lift_unsaid": ("contacts-of-new-pose", "expected HSP_C_MOVES in the flags of the class"),
           "lift_steep": ("stiffness-vs-claim", "1500 N/m"), "lift_aside": ("depth-falls-outward", "expected the foot on the surface"),
           "lift_counting": ("rests-in-no-time", "in steps that take no time (step.dt_s is 0); expected a motion that follows step.dt_s"),
-          "lift_silent": ("rests-in-no-time", "expected report.flags |= HSP_R_MOVES in activate()"), "lift_both": None, "gives_way": None,
+          "lift_silent": ("rests-in-no-time", "expected report.flags |= HSP_R_MOVES in activate()"), "lift_both": None,
+          "lift_mute": ("contacts-of-new-pose", "expected its velocities in the world frame"), "gives_way": None,
           "comes_up": ("goes-with-a-press", "it moves against the hand: a probe was held still 0.5 mm deep")}
 for shape, want in MOVING.items():
     mine = [(t["name"], t["why"]) for t in tests if t["plugin"] == shape and t["result"] == "fail"]
