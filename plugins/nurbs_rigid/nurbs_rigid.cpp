@@ -64,6 +64,7 @@ void NurbsRigid::setInMotion(const hsp_activation& activation, hsp_report& repor
     host()->log(host(), HSP_LOG_WARNING,
                 "the surfaces are not closed, so center or inertia, if not given, are taken from the box around them");
   body_.emplace(*this, shape, activation);
+  if (joint_ == static_cast<int>(dynamics::Joint::kHinge) && part() != nullptr) warnOfCrossedAxis();
   if (joint_ != static_cast<int>(dynamics::Joint::kFree) && host() != nullptr && host()->log != nullptr)
     host()->log(host(), HSP_LOG_DEBUG, jointText(*this, body_->body()).c_str());
   report.flags |= HSP_R_MOVES;

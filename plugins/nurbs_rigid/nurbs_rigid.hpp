@@ -71,6 +71,7 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
   static constexpr const char* kMotionNames[] = {"static", "kinematic", "dynamic"};
 
   void warnOfThinWalls(const hsp_activation& activation) const;
+  void warnOfCrossedAxis() const;
   void setInMotion(const hsp_activation& activation, hsp_report& report);
   hsp_status press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
   void remember(const hsp_probe& probe, const Touch& touch, uint32_t index, double depth,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Properties of a part for a rigid model: the lengths of its faces for bumps, thin walls, and the centre and inertia.
+/// Properties of a part for a rigid model: the lengths of its faces for bumps, thin walls, the axes of round faces, and
+/// the centre and inertia.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -87,6 +88,33 @@ void NurbsRigid::warnOfThinWalls(const hsp_activation& activation) const {
          "the contact is held all the same, and stiffness: " +
              std::to_string(static_cast<int>(roundedUp(stiffness_ * std::pow(depth / other->thickness, exponent_)))) +
              " keeps the tip inside, if the arm is stable with it");
+}
+
+/// Warns of a hinge whose axis crosses the axis of a round face at the pivot: whoever takes the pivot from a round face
+/// means to turn about it. Another round face there that lies along the axis says that this was meant.
+void NurbsRigid::warnOfCrossedAxis() const {
+  constexpr double kAtPivot = 1e-5, kAlong = 1e-3;  // [m], [rad]
+  if (host() == nullptr || host()->log == nullptr) return;
+  const Eigen::Vector3d pivot(pivot_.data()), axis = Eigen::Vector3d(axis_.data()).normalized();
+  std::string crossed;
+  for (const brep::Placement& place : part()->placements()) {
+    const brep::Body& body = part()->part().bodies[place.body];
+    for (std::uint32_t f = 0; f < body.face_count; ++f) {
+      const brep::Surface& surface = part()->part().surfaces[part()->part().faces[body.first_face + f].surface];
+      if (surface.kind != brep::SurfaceKind::kCylinder && surface.kind != brep::SurfaceKind::kCone) continue;
+      const Eigen::Vector3d along = (place.rotation * brep::vec(surface.z)).normalized();
+      const Eigen::Vector3d way = pivot - (place.rotation * brep::vec(surface.o) + place.position);
+      if ((way - way.dot(along) * along).norm() > kAtPivot) continue;
+      if (along.cross(axis).norm() < kAlong) return;
+      if (!crossed.empty()) continue;
+      char text[120];
+      std::snprintf(text, sizeof text, "; to turn about this face, give axis: [%.6g, %.6g, %.6g]", along.x() + 0.0,
+                    along.y() + 0.0, along.z() + 0.0);
+      crossed =
+          "axis: crosses at the pivot the axis of the round " + part()->featureName(place.first_feature + f) + text;
+    }
+  }
+  if (!crossed.empty()) host()->log(host(), HSP_LOG_WARNING, crossed.c_str());
 }
 
 dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded) {

@@ -67,6 +67,18 @@ def axes():
     check("it is that of its face", re.search(r"joint: hinge, pivot: \[.*\], axis: \[.*?\]", lines[0])[0] in one, (lines, one))
 
 
+def crossed_axes():
+    """A hinge whose pivot lies on the axis of a round face, and whose axis is across it."""
+    part = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "config", "models", "as1.hpart")
+    for axis, warned in (("[1, 0, 0]", False), ("[-2, 0, 0]", False), ("[0, 1, 0]", True)):
+        with open(join("crossed.yaml"), "w") as scene:
+            scene.write(f"hapticd: 1\nhand: {{script: none}}\nmodels:\n  - name: rod\n    plugin: nurbs_rigid\n    motion: dynamic\n    parameters:\n"
+                        f"      geometry: {os.path.abspath(part)}\n      instance: rod_1\n      joint: hinge\n      pivot: [0.09, 0.075, 0.06]\n      axis: {axis}\n")
+        code, out, err = run("check", join("crossed.yaml"))
+        check(f"a rod on a hinge along {axis}", code == 0 and (":12:" in out and "give axis: [1, 0, 0]" in out) == warned
+              and ("crosses at the pivot" in out) == warned, out + err)
+
+
 def sizes():
     out, err, info = told("box.step")
     check("the first line has the size", "40 x 30 x 20 mm, unit mm" in out.splitlines()[0] and err == "", out + err)
@@ -178,6 +190,6 @@ def placed_parts():
 
 
 subprocess.run([MAKE_PARTS, folder], check=True, timeout=300)
-for part_of_the_test in (units, names, axes, sizes, full_disks, sizes_in_scenes, open_bodies, counts, poses, features, placed_parts):
+for part_of_the_test in (units, names, axes, crossed_axes, sizes, full_disks, sizes_in_scenes, open_bodies, counts, poses, features, placed_parts):
     part_of_the_test()
 finish()
