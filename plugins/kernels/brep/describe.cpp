@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kernels/brep/feet.hpp"
+#include "kernels/brep/narrow_triangles.hpp"
 #include "kernels/brep/topology.hpp"
 #include "kernels/brep/tracer.hpp"
 #include "kernels/brep/triangle_foot.hpp"
@@ -151,6 +152,18 @@ Around onTriangle(const Model& model, const Hit& hit) noexcept {
   return a;
 }
 
+/// Replaces the normal of a foot on a narrow triangle, or on an edge or a corner of one.
+void leaveOutNarrow(const Model& model, const Hit& hit, const Vector3d& r, Around& a) noexcept {
+  const std::uint32_t triangle = hit.element.index();
+  if (a.open || !isBesideNarrow(model, triangle)) return;
+  const double distance = std::sqrt(hit.d2);
+  if (a.inside && !isNarrow(model.part(), triangle, distance)) return;
+  const NearFoot near(model.part(), triangle, hit.point, distance);
+  if (!near.hasNarrow()) return;
+  const Vector3d normal = near.normalToward(model.part(), r);
+  if (!normal.isZero(0)) a.normal = normal;
+}
+
 /// Sets the depth and the normal of a foot, in the frame of its body.
 void decideSide(const Around& a, const Vector3d& r, Foot& foot) noexcept {
   foot.normal = a.normal;
@@ -189,6 +202,7 @@ std::uint32_t faceOf(const Model& model, const Hit& hit, std::uint32_t before) n
 Foot describe(const Model& model, std::uint32_t place, const Hit& hit, std::uint32_t face, const Vector3d& p) noexcept {
   const Placement& placement = model.placements()[place];
   const Body& body = model.part().bodies[placement.body];
+  const Vector3d r = placement.toBody(p) - hit.point;
   Around a;
   switch (hit.element.kind()) {
     case ElementKind::kFace:
@@ -197,6 +211,7 @@ Foot describe(const Model& model, std::uint32_t place, const Hit& hit, std::uint
       break;
     case ElementKind::kTriangle:
       a = onTriangle(model, hit);
+      leaveOutNarrow(model, hit, r, a);
       break;
     default:
       a = onEdge(model, hit, face);
@@ -207,7 +222,7 @@ Foot describe(const Model& model, std::uint32_t place, const Hit& hit, std::uint
   foot.point = hit.point;
   foot.u = a.u;
   foot.v = a.v;
-  decideSide(a, placement.toBody(p) - hit.point, foot);
+  decideSide(a, r, foot);
   const std::uint32_t first = body.kind == BodyKind::kMesh ? body.first_triangle : body.first_face;
   foot.surface = face == kNone ? 0 : static_cast<int>(placement.first_feature + face - first);
   foot.status = contact::FootStatus::kNearest;

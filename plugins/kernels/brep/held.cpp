@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/brep/narrow_triangles.hpp"
 #include "kernels/brep/next_faces.hpp"
 #include "kernels/brep/topology.hpp"
 #include "kernels/brep/tracer.hpp"
@@ -37,20 +38,6 @@ Vector3d outOf(const Geometry& geometry, const Coedge& coedge, double t, const V
   return along.cross(normal).stableNormalized();
 }
 
-Hit footOn(const Part& part, std::uint32_t triangle, const Vector3d& p) noexcept {
-  const Triangle& t = part.triangles[triangle];
-  const TriangleFoot foot =
-      triangleFoot(p, vec(part.points[t.corner[0]]), vec(part.points[t.corner[1]]), vec(part.points[t.corner[2]]));
-  Hit hit;
-  hit.d2 = (p - foot.point).squaredNorm();
-  hit.point = foot.point;
-  hit.u = foot.s;
-  hit.v = foot.t;
-  hit.element = Element(ElementKind::kTriangle, triangle);
-  hit.region = static_cast<std::uint8_t>(foot.region);
-  return hit;
-}
-
 void takeNearer(const Hit& hit, Hit& best) noexcept {
   if (hit.d2 < best.d2) best = hit;
 }
@@ -81,6 +68,18 @@ void lookAround(const Part& part, std::uint32_t triangle, std::uint32_t k, const
     turnAbout(part, triangle, k, 1, flat, p, best);
     turnAbout(part, triangle, (k + 2) % 3, 0, flat, p, best);
   }
+}
+
+/// Looks for a nearer foot beyond narrow triangles, at which a descent from triangle to triangle comes to a stand.
+void passNarrow(const Part& part, std::uint32_t triangle, const Vector3d& p, Hit& best) noexcept {
+  const double distance = (p - best.point).norm();
+  const NearFoot near(part, triangle, best.point, distance);
+  if (!near.hasNarrow()) return;
+  const Vector3d here = triangleNormal(part, part.triangles[triangle]);
+  const bool narrow = isNarrow(part, triangle, distance);
+  if (narrow) best.d2 *= 1 / (kNearer * kNearer);  // a wide one that is as near is better
+  for (std::size_t i = 1; i < near.count(); ++i)
+    if (!near.narrow(i) && (narrow || looksAlong(part, near[i], here))) takeNearer(footOn(part, near[i], p), best);
 }
 
 /// Where a straight way over a triangle leaves it.
@@ -116,7 +115,13 @@ bool isReleased(const Part& part, std::uint32_t triangle, const Vector3d& foot, 
   const Triangle& t = part.triangles[triangle];
   if (t.across[k] == kNone) return false;
   const Vector3d here = triangleNormal(part, t);
-  const Vector3d there = side * triangleNormal(part, part.triangles[t.across[k] / 4]);
+  const double distance = (p - foot).norm();
+  std::uint32_t next = t.across[k] / 4;
+  if (isNarrow(part, next, distance) && !isNarrow(part, triangle, distance)) {
+    const std::uint32_t wide = NearFoot(part, triangle, foot, distance).nextWide(part, triangle, here);
+    if (wide != kNone) next = wide;
+  }
+  const Vector3d there = side * triangleNormal(part, part.triangles[next]);
   const Vector3d along = vec(part.points[t.corner[(k + 1) % 3]]) - vec(part.points[t.corner[k]]);
   const contact::EdgeKind kind = contact::edgeKind(side * here, there, along.cross(here).stableNormalized());
   return contact::atEdge(kind, there, p - foot) == AtEdge::kRelease;
@@ -299,6 +304,7 @@ Followed Tracer::followTriangles(double side, const Vector3d& p_model) noexcept 
       lookAround(part, held_.face, k, p, best);
     else if (const std::uint32_t code = part.triangles[held_.face].across[k]; code != kNone)
       takeNearer(footOn(part, code / 4, p), best);
+    if (best.element == held_.hit.element && isBesideNarrow(model(), held_.face)) passNarrow(part, held_.face, p, best);
     if (best.element == held_.hit.element)
       return !corner && isReleased(part, held_.face, held_.hit.point, k, side, p) ? Followed::kReleased : Followed::kOn;
     held_.hit = best;

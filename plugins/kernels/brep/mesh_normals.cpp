@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
+#include "kernels/brep/narrow_triangles.hpp"
 #include "kernels/brep/topology.hpp"
 #include "kernels/contact/edge_rule.hpp"
 
@@ -92,10 +94,13 @@ bool isFlatOver(const Part& part, std::uint32_t triangle, std::uint32_t k) noexc
 std::vector<CornerNormal> pointNormals(const Part& part) {
   std::vector<Vector3d> sums(part.points.size(), Vector3d::Zero());
   std::vector<CornerNormal> normals(part.points.size());
-  for (const Triangle& t : part.triangles) {
+  for (std::uint32_t i = 0; i < part.triangles.size(); ++i) {
+    const Triangle& t = part.triangles[i];
     const Vector3d n = triangleNormal(part, t);
+    const bool narrow = isNarrow(part, i, std::numeric_limits<double>::infinity());
     for (std::size_t k = 0; k < 3; ++k) {
       sums[t.corner[k]] += angleAt(part, t, k) * n;
+      normals[t.corner[k]].narrow |= narrow;
       if (t.across[k] != kNone) continue;
       normals[t.corner[k]].open = normals[t.corner[(k + 1) % 3]].open = true;
     }

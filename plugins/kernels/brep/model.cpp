@@ -30,6 +30,8 @@ class ModelBuilder {
     classifyEdges(*model_.geometry_, part_.edges);
     model_.vertex_normals_ = vertexNormals(*model_.geometry_);
     model_.point_normals_ = pointNormals(part_);
+    model_.has_narrow_ = std::any_of(model_.point_normals_.begin(), model_.point_normals_.end(),
+                                     [](const CornerNormal& normal) { return normal.narrow; });
     listEdgesOfVertices();
     smoothNormals(part_, model_.smooth_corner_, model_.smooth_normals_);
     shapeFacesAndEdges();

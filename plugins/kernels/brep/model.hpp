@@ -44,6 +44,7 @@ struct Placement {
 struct CornerNormal {
   Eigen::Vector3f normal{0, 0, 0};  ///< angle-weighted mean of the outward normals (Baerentzen & Aanaes 2005), unit
   bool open = false;                ///< true if a free edge ends there
+  bool narrow = false;              ///< true if a triangle is there that isNarrow(), far away
 };
 
 /// The elements of one body.
@@ -113,6 +114,7 @@ class Model {
   std::size_t pieceCount() const noexcept { return pieces_.size(); }
   const CornerNormal& vertexNormal(std::uint32_t vertex) const noexcept { return vertex_normals_[vertex]; }
   const CornerNormal& pointNormal(std::uint32_t point) const noexcept { return point_normals_[point]; }
+  bool hasNarrow() const noexcept { return has_narrow_; }  ///< [any] true if a CornerNormal of a point is narrow
   /// [any] Returns the edges that end at a vertex.
   std::span<const std::uint32_t> edgesAt(std::uint32_t vertex) const noexcept {
     const std::uint32_t first = first_edge_at_[vertex];
@@ -166,7 +168,7 @@ class Model {
   Eigen::AlignedBox3d bounds_;
   std::vector<std::string> warnings_;
   std::uint32_t feature_count_ = 0;
-  bool open_ = false;
+  bool open_ = false, has_narrow_ = false;
 };
 
 }  // namespace hapticd::brep
