@@ -6,19 +6,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <random>
 #include <vector>
 
 #include "kernels/brep/tracer.hpp"
-#include "sample_solids.hpp"
+#include "sample_meshes.hpp"
 
 namespace hapticd::brep {
 namespace {
 
 using Eigen::Vector3d;
-using Mesh = std::vector<std::array<Vector3d, 3>>;
+using Mesh = samples::TriangleList;
+using samples::partOf;
 
 constexpr double kBallRadius = 0.03;  // [m]
 
@@ -77,31 +77,6 @@ Mesh foil(double thickness) {
     mesh.push_back({at(from, h), at(to, -h), at(from, -h)});
   }
   return mesh;
-}
-
-Part partOf(const Mesh& mesh) {
-  Part part;
-  std::map<std::array<double, 3>, std::uint32_t> points;
-  std::map<std::array<std::uint32_t, 2>, std::uint32_t> sides;  // the side of a triangle from one point to another
-  for (const auto& corners : mesh) {
-    Triangle t;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vector3d& p = corners[k];
-      const auto [found, added] =
-          points.try_emplace({p.x(), p.y(), p.z()}, static_cast<std::uint32_t>(part.points.size()));
-      if (added) part.points.push_back({p.x(), p.y(), p.z()});
-      t.corner[k] = found->second;
-    }
-    for (std::uint32_t k = 0; k < 3; ++k)
-      sides[{t.corner[k], t.corner[(k + 1) % 3]}] = 4 * static_cast<std::uint32_t>(part.triangles.size()) + k;
-    part.triangles.push_back(t);
-  }
-  for (Triangle& t : part.triangles)
-    for (std::size_t k = 0; k < 3; ++k)
-      if (const auto found = sides.find({t.corner[(k + 1) % 3], t.corner[k]}); found != sides.end())
-        t.across[k] = found->second;
-  samples::endBody(part, BodyKind::kMesh, kClosed);
-  return part;
 }
 
 /// The deepest contact [m] of a probe that goes twice around the ball, 1 mm deep.
