@@ -153,6 +153,7 @@ class Search {
   NearPlaces near_places_;        ///< used if there are several placements, in the frame of the model
   int whole_nodes_ = 0;           ///< nodes that the last search of the whole model examined
   double reach_ = 0;              ///< [m] gathered rows may be farther than the nearest point by this
+  int crowded_wait_ = 0;          ///< value at which crowded_ticks_ began
   int crowded_ticks_ = 0;         ///< ticks in which near_triangles_ would be so many that a search is quicker
 };
 

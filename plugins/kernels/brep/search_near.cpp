@@ -158,7 +158,7 @@ bool Search::gatherNear(Near& near, const Vector3d& p, double way, double distan
 /// with them, a tick takes less time than with a search from the root.
 template <>
 bool Search::gatherNear(NearTriangles& near, const Vector3d& p, double way, double distance) noexcept {
-  constexpr int kCrowdedTicks = 100;  // ticks until it looks again whether few rows are near
+  constexpr int kMostCrowdedTicks = 100;  // ticks until it looks again whether few rows are near
   const bool lasts = reach_ >= TriangleLimits::kWorthIt * way;
   if (!lasts) {
     reach_ = reach_ > 0 ? 1.01 * reach_ : TriangleLimits::kWorthIt * way;
@@ -170,7 +170,9 @@ bool Search::gatherNear(NearTriangles& near, const Vector3d& p, double way, doub
   const double reach = lasts ? distance + reach_ : distance * (1 + 1e-6);
   const bool gathered = gatherFrom(model_, near, p, reach);
   if (!lasts) {
-    if (!gathered || near.rows() > TriangleLimits::kMany) crowded_ticks_ = kCrowdedTicks;
+    const bool crowded = !gathered || near.rows() > TriangleLimits::kMany;
+    crowded_wait_ = crowded ? std::min(2 * crowded_wait_ + 1, kMostCrowdedTicks) : 0;
+    crowded_ticks_ = crowded_wait_;
   } else if (!gathered) {
     reach_ *= 0.5;
   } else {
