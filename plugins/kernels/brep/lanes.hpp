@@ -27,6 +27,12 @@ inline int countOf(const Test4& test) noexcept {
   return -(pairs[0] + pairs[1]);
 }
 
+/// [any] Replaces one lane. It writes all four: a processor that reads four numbers, of which one was written alone
+/// just before, has to wait.
+inline void putLane(Float4& x, int lane, float number) noexcept {
+  x = Test4{0, 1, 2, 3} == Test4{} + lane ? Float4{} + number : x;
+}
+
 /// [any] Returns the lesser number of each lane.
 inline Float4 lesser(const Float4& a, const Float4& b) noexcept {
   return a < b ? a : b;

@@ -76,30 +76,42 @@ bool NearRows<Choice>::considerDiscs(const BodyTree& body, const BoxProbe& probe
   return true;
 }
 
-/// Lists the rows of the tree whose boxes are within reach. It opens all boxes of a level before those of the next: so
-/// they come from memory together, and no branch depends on a distance.
+/// Lists the rows of the tree whose boxes are within reach. It opens several boxes before it lists what is in them: so
+/// they come from memory together, and a processor need not know how long the list is to go on with the next. No branch
+/// depends on a distance.
 template <class Choice>
 bool NearRows<Choice>::openBoxes(const BodyTree& body, const BoxProbe& probe, double reach2, double& beyond2) noexcept {
   const Float4 limit = Float4{} + roundedDown(reach2);
-  constexpr int kAhead = 3;  // nodes that are on their way from memory
+  constexpr int kAtOnce = 4;
   Float4 beyond = kEndless4;
-  std::array<std::int32_t, Limits::kMostNodes + 4> nodes;
+  std::array<std::int32_t, Limits::kMostNodes + 4 * kAtOnce> nodes;
   nodes[0] = 0;  // the root
   int count = 1, rows = 0;
-  for (int next = 0; next < count; ++next) {
-    const BoxNode& node = body.tree.node(nodes[static_cast<std::size_t>(next)]);
-    body.fetchAhead(nodes[static_cast<std::size_t>(std::min(next + kAhead, count - 1))], 0);
-    const Float4 bounds = boxDistances(node, probe);
-    const Test4 within = bounds <= limit;
-    beyond = lesser(within ? kEndless4 : bounds, beyond);
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::int32_t child = node.child[i], is_row = child >> 31;  // -1 if it is a row
-      nodes[static_cast<std::size_t>(count)] = child;
-      rows_of_tree_[static_cast<std::size_t>(rows)] = {bounds[i], node.row[i], child};
-      count -= within[i] & ~is_row;
-      rows -= within[i] & is_row;
+  for (int next = 0; next < count;) {
+    const int last = std::min(next + kAtOnce, count) - 1;
+    const BoxNode* open[kAtOnce];
+    Float4 bounds[kAtOnce];
+    Test4 within[kAtOnce];
+    for (int k = 0; k < kAtOnce; ++k)
+      open[k] = &body.tree.node(nodes[static_cast<std::size_t>(std::min(next + k, last))]);
+    for (int k = 0; k < kAtOnce; ++k) {
+      bounds[k] = boxDistances(*open[k], probe);
+      const Test4 near = bounds[k] <= limit;
+      beyond = lesser(near ? kEndless4 : bounds[k], beyond);
+      within[k] = near & (Test4{} + (next + k <= last ? -1 : 0));
     }
+    next = last + 1;
+    for (int k = 0; k < kAtOnce; ++k)
+      for (std::size_t i = 0; i < 4; ++i) {
+        const std::int32_t child = open[k]->child[i], is_row = child >> 31;  // -1 if it is a row
+        nodes[static_cast<std::size_t>(count)] = child;
+        rows_of_tree_[static_cast<std::size_t>(rows)] = {bounds[k][i], open[k]->row[i], child};
+        count -= within[k][i] & ~is_row;
+        rows -= within[k][i] & is_row;
+      }
     if (count > Limits::kMostNodes || rows > Limits::kMostRowsOfTree) return false;
+    for (int k = kAtOnce; k < 2 * kAtOnce; ++k)
+      body.fetchAhead(nodes[static_cast<std::size_t>(std::min(next + k, count - 1))], 0);
   }
   rows_of_tree_count_ = rows;
   beyond2 = std::min(beyond2, static_cast<double>(leastOf(beyond)));

@@ -74,6 +74,7 @@ class NearRows {
     const Float4 known = (left > kZero ? left : kZero) * (left > kZero ? left : kZero) * kRowShare;
     return boxes > known ? boxes : known;
   }
+  const Four& shapes(int four) const noexcept { return fours_[static_cast<std::size_t>(four)]; }
   ElementRow row(int four, int lane) const noexcept {
     return BoxTree::rowOf(children_[static_cast<std::size_t>(4 * four + lane)]);
   }
@@ -100,7 +101,7 @@ class NearRows {
   int rows_ = 0;
   std::array<Candidate, Limits::kMostCandidates + 1> candidates_;
   int candidate_count_ = 0;
-  std::array<Candidate, Limits::kMostRowsOfTree + 4> rows_of_tree_{};  ///< rows whose boxes are within reach
+  std::array<Candidate, Limits::kMostRowsOfTree + 16> rows_of_tree_{};  ///< rows whose boxes are within reach
   int rows_of_tree_count_ = 0;
   int looks_ = 0;  ///< elements whose boxes were measured to gather the rows
 };

@@ -99,6 +99,40 @@ inline Float4 rowDistances(const FourDiscs& discs, const BoxProbe& probe) noexce
   return (high * high + across * across) * kDiscShare;
 }
 
+/// Planes that part a probe from four discs.
+struct DiscPlanes {
+  Float4 normal[3];  ///< toward the probe, not longer than 1; zero if the probe is in the disc
+  Float4 distance;   ///< [m] from the probe to the plane, rounded down
+};
+
+/// [rt] Returns planes across the ways from the probe to the nearest points of four discs.
+inline DiscPlanes discPlanes(const FourDiscs& discs, const BoxProbe& probe) noexcept {
+  constexpr Float4 kZero{}, kTiny = kZero + 1e-30F;
+  const auto positive = [](const Float4& x) { return x > kZero ? x : kZero; };
+  const auto lengthOf = [](const Float4* v) { return squareRoots(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); };
+  Float4 way[3], aside[3], normal[3], across[3], off{}, turn{}, along{};
+  for (int axis = 0; axis < 3; ++axis) {
+    way[axis] = probe.at[axis] - discs.center[axis];
+    off += way[axis] * discs.normal[axis];
+  }
+  for (int axis = 0; axis < 3; ++axis) aside[axis] = way[axis] - off * discs.normal[axis];
+  const Float4 radius = lengthOf(aside) + kTiny;
+  const Float4 high = positive((off > kZero ? off : -off) - discs.half), signed_high = off > kZero ? high : -high;
+  const Float4 beyond = positive(radius - discs.radius) / radius;
+  for (int axis = 0; axis < 3; ++axis) normal[axis] = signed_high * discs.normal[axis] + beyond * aside[axis];
+  const Float4 share = (1 - 1e-6F) / (lengthOf(normal) + kTiny);
+  for (int axis = 0; axis < 3; ++axis) {
+    normal[axis] *= share;
+    turn += normal[axis] * discs.normal[axis];
+    along += normal[axis] * way[axis];
+  }
+  for (int axis = 0; axis < 3; ++axis) across[axis] = normal[axis] - turn * discs.normal[axis];
+  // how far the disc reaches along the normal; this holds for every normal, so its own rounding does not matter
+  const Float4 extent = (turn > kZero ? turn : -turn) * discs.half + lengthOf(across) * discs.radius;
+  const Float4 rounding = 4e-6F * (lengthOf(way) + discs.half + discs.radius);
+  return {{normal[0], normal[1], normal[2]}, along - extent - rounding};
+}
+
 /// [rt] Returns a lower bound of the squared distance [m^2] to the contents of one disc.
 inline float rowDistance(const RowDisc& disc, const BoxProbe& probe) noexcept {
   float off = 0, whole = 0;

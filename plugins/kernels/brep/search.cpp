@@ -26,11 +26,14 @@ inline double poleFoot(const Part& part, std::uint32_t edge, const Vector3d& p, 
   return d2;
 }
 
-/// Examines a triangle of a mesh. Returns its squared distance. `hit` is replaced if the triangle is nearer.
-inline double meshFoot(const Part& part, std::uint32_t triangle, const Vector3d& p, Hit& hit) noexcept {
+/// Returns the foot on a triangle of a mesh.
+inline TriangleFoot footIn(const Part& part, std::uint32_t triangle, const Vector3d& p) noexcept {
   const Triangle& t = part.triangles[triangle];
-  const TriangleFoot foot =
-      triangleFoot(p, vec(part.points[t.corner[0]]), vec(part.points[t.corner[1]]), vec(part.points[t.corner[2]]));
+  return triangleFoot(p, vec(part.points[t.corner[0]]), vec(part.points[t.corner[1]]), vec(part.points[t.corner[2]]));
+}
+
+/// Returns the squared distance of a foot. `hit` is replaced if the foot is nearer.
+inline double keepNearer(const TriangleFoot& foot, const Vector3d& p, Hit& hit) noexcept {
   const double d2 = (p - foot.point).squaredNorm();
   if (!(d2 < hit.d2)) return d2;
   hit.d2 = d2;
@@ -39,6 +42,11 @@ inline double meshFoot(const Part& part, std::uint32_t triangle, const Vector3d&
   hit.v = foot.t;
   hit.region = static_cast<std::uint8_t>(foot.region);
   return d2;
+}
+
+/// Examines a triangle of a mesh. Returns its squared distance. `hit` is replaced if the triangle is nearer.
+inline double meshFoot(const Part& part, std::uint32_t triangle, const Vector3d& p, Hit& hit) noexcept {
+  return keepNearer(footIn(part, triangle, p), p, hit);
 }
 
 /// Returns the squared distance [m^2] from p to a known point of the part, rounded up.
@@ -166,6 +174,15 @@ void Search::examineTriangle(std::uint32_t place, Element element, const Vector3
   const double before = run.best.hit.d2;
   ++run.best.elements;
   compare(place, element, p, before, meshFoot(model_.part(), element.index(), p, run.best.hit), run);
+}
+
+/// As examineTriangle(). Returns the foot, which takes a little longer.
+Vector3d Search::examineForFoot(std::uint32_t place, Element element, const Vector3d& p, Run& run) noexcept {
+  const double before = run.best.hit.d2;
+  ++run.best.elements;
+  const TriangleFoot foot = footIn(model_.part(), element.index(), p);
+  compare(place, element, p, before, keepNearer(foot, p, run.best.hit), run);
+  return foot.point;
 }
 
 /// Notes whether an element, whose examination returned d2, has the best foot now. @param before [m^2] squared distance

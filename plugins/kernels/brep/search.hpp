@@ -12,6 +12,7 @@
 #include "kernels/brep/descent.hpp"
 #include "kernels/brep/model.hpp"
 #include "kernels/brep/near_places.hpp"
+#include "kernels/brep/near_planes.hpp"
 #include "kernels/brep/near_rows.hpp"
 
 namespace hapticd::brep {
@@ -135,6 +136,11 @@ class Search {
   static void searchWithin(Run& run, const Whole& whole) noexcept;
   double examine(std::uint32_t place, Element element, const Eigen::Vector3d& p, double bound2, Run& run) noexcept;
   void examineTriangle(std::uint32_t place, Element element, const Eigen::Vector3d& p, Run& run) noexcept;
+  Eigen::Vector3d examineForFoot(std::uint32_t place, Element element, const Eigen::Vector3d& p, Run& run) noexcept;
+  void examineBehind(int plane, std::uint32_t place, Element triangle, const Eigen::Vector3d& p, Run& run) noexcept;
+  void examinePlanes(std::uint32_t place, const Eigen::Vector3d& p, Run& run) noexcept;
+  template <class Note>
+  void examineDiscs(std::uint32_t place, const BoxProbe& probe, const Note& note, Run& run) noexcept;
   void compare(std::uint32_t place, Element element, const Eigen::Vector3d& p, double before, double d2,
                Run& run) const noexcept;
   bool isAsNear(Element element, const Eigen::Vector3d& p, double d2) const noexcept;
@@ -150,9 +156,14 @@ class Search {
   Eigen::Vector3d last_p_{0, 0, 0};
   NearElements near_elements_;    ///< used if the model is one body of faces, in the frame of the body
   NearTriangles near_triangles_;  ///< used if the model is one mesh, in its frame
+  NearPlanes near_planes_;        ///< planes of near_triangles_, for a slow probe
+  int last_plane_ = -1;           ///< likely number of the plane of the nearest triangle
+  bool gathered_now_ = false;     ///< near_triangles_ were gathered in this tick
+  double way_ = 0;                ///< [m] by which the probe has moved since the last tick
   NearPlaces near_places_;        ///< used if there are several placements, in the frame of the model
   int whole_nodes_ = 0;           ///< nodes that the last search of the whole model examined
   double reach_ = 0;              ///< [m] gathered rows may be farther than the nearest point by this
+  int crowded_wait_ = 0;          ///< value at which crowded_ticks_ began
   int crowded_ticks_ = 0;         ///< ticks in which near_triangles_ would be so many that a search is quicker
 };
 

@@ -3,7 +3,6 @@
 /// gathered around the probe.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -66,54 +65,6 @@ class RowBounds {
   double taken_ = 0;
 };
 
-/// As RowBounds, for triangles. It has no branches, because on a mesh no processor can predict which rows are near; on
-/// faces and splines it can, and RowBounds is quicker.
-class DiscBounds {
- public:
-  DiscBounds(const NearTriangles& rows, const BoxProbe& probe) noexcept : count_(rows.fours()) {
-    for (int k = 0; k < count_; ++k) bounds_[static_cast<std::size_t>(k)] = rows.distances(k, probe);
-  }
-
-  double at(int row) const noexcept { return static_cast<double>(bounds_[static_cast<std::size_t>(row / 4)][row % 4]); }
-  void take(int row) noexcept { bounds_[static_cast<std::size_t>(row / 4)][row % 4] = kTaken; }
-  /// Returns the least bound of the remaining rows.
-  double least() const noexcept {
-    Float4 least = Float4{} + kTaken;
-    for (int k = 0; k < count_; ++k) least = lesser(bounds_[static_cast<std::size_t>(k)], least);
-    return static_cast<double>(leastOf(least));
-  }
-  /// Returns the row with the least bound, the first one of several.
-  int nearest() const noexcept {
-    Float4 least = Float4{} + kTaken;
-    Test4 where{};
-    for (int k = 0; k < count_; ++k) {
-      const Float4& four = bounds_[static_cast<std::size_t>(k)];
-      const Test4 closer = four < least;
-      where = closer ? Test4{} + k : where;
-      least = closer ? four : least;
-    }
-    const Test4 rows = 4 * where + Test4{0, 1, 2, 3};
-    const float value = leastOf(least);
-    int row = 4 * count_;
-    for (int lane = 0; lane < 4; ++lane) row = least[lane] == value && rows[lane] < row ? rows[lane] : row;
-    return row < 4 * count_ ? row : 0;
-  }
-  /// Returns bit i of word w for each row 64 w + i that is within d2, or hardly farther.
-  std::array<std::uint64_t, 2> within(double d2) const noexcept {
-    static_assert(NearTriangles::kMostRows <= 128);
-    const Float4 limit = Float4{} + static_cast<float>(d2) * (1 + 1e-6F);  // rounded up
-    std::array<std::uint64_t, 2> rows{};
-    for (int k = 0; k < count_; ++k)
-      rows[static_cast<std::size_t>(k / 16)] |= std::uint64_t{bitsOf(bounds_[static_cast<std::size_t>(k)] <= limit)}
-                                                << 4 * (k % 16);
-    return rows;
-  }
-
- private:
-  std::array<Float4, NearTriangles::kMostRows / 4> bounds_;
-  int count_;
-};
-
 /// Gathers the elements around p in a model of one placement; p is in the body's frame.
 template <class Near>
 bool gatherFrom(const Model& model, Near& near, const Vector3d& p, double reach) noexcept {
@@ -158,7 +109,7 @@ bool Search::gatherNear(Near& near, const Vector3d& p, double way, double distan
 /// with them, a tick takes less time than with a search from the root.
 template <>
 bool Search::gatherNear(NearTriangles& near, const Vector3d& p, double way, double distance) noexcept {
-  constexpr int kCrowdedTicks = 100;  // ticks until it looks again whether few rows are near
+  constexpr int kMostCrowdedTicks = 100;  // ticks until it looks again whether few rows are near
   const bool lasts = reach_ >= TriangleLimits::kWorthIt * way;
   if (!lasts) {
     reach_ = reach_ > 0 ? 1.01 * reach_ : TriangleLimits::kWorthIt * way;
@@ -168,9 +119,13 @@ bool Search::gatherNear(NearTriangles& near, const Vector3d& p, double way, doub
     }
   }
   const double reach = lasts ? distance + reach_ : distance * (1 + 1e-6);
+  near_planes_.forget();
+  gathered_now_ = true;
   const bool gathered = gatherFrom(model_, near, p, reach);
   if (!lasts) {
-    if (!gathered || near.rows() > TriangleLimits::kMany) crowded_ticks_ = kCrowdedTicks;
+    const bool crowded = !gathered || near.rows() > TriangleLimits::kMany;
+    crowded_wait_ = crowded ? std::min(2 * crowded_wait_ + 1, kMostCrowdedTicks) : 0;
+    crowded_ticks_ = crowded_wait_;
   } else if (!gathered) {
     reach_ *= 0.5;
   } else {
@@ -209,27 +164,8 @@ void Search::examineRows(Near& near, std::uint32_t place, const Vector3d& p, Run
   run.others2 = std::min(run.others2, bounds.least());
 }
 
-/// Examines the rows of a mesh around the probe, the nearest one first.
 template <>
-void Search::examineRows(NearTriangles& near, std::uint32_t place, const Vector3d& p, Run& run) noexcept {
-  const BodyTree& body = model_.body(model_.placements()[place].body);
-  const Element first = run.first_place == place ? run.first : Element();
-  DiscBounds bounds(near, BoxProbe(body.tree, p));
-  run.best.nodes += near.fours();
-  const auto examineWithin = [&](int at) {
-    if (!(bounds.at(at) <= run.within2())) return;
-    bounds.take(at);
-    const ElementRow row = near.row(at / 4, at % 4);
-    for (std::uint32_t i = row.first; i < row.first + row.count; ++i)
-      if (const Element element = body.elements[i]; !(element == first)) examineTriangle(place, element, p, run);
-  };
-  if (near.rows() > 0) examineWithin(bounds.nearest());  // it brings the limit down for the others
-  const std::array<std::uint64_t, 2> rows = bounds.within(run.within2());
-  for (std::size_t w = 0; w < 2; ++w)
-    for (std::uint64_t left = rows[w]; left != 0; left &= left - 1)
-      examineWithin(64 * static_cast<int>(w) + std::countr_zero(left));
-  run.others2 = std::min(run.others2, bounds.least());
-}
+void Search::examineRows(NearTriangles& near, std::uint32_t place, const Vector3d& p, Run& run) noexcept;
 
 template <class Near>
 void Search::examineAll(Near& near, const Vector3d& p, Run& run) noexcept {
@@ -284,6 +220,8 @@ bool Search::searchNear(const Vector3d& p_model, double way, Run& run) noexcept 
 
 /// Tells the gathered rows that the probe has moved by `way` [m], or forgets them if the last search found nothing.
 void Search::moveNear(double way) noexcept {
+  way_ = way;
+  gathered_now_ = false;
   if (last_.found()) {
     near_elements_.probeMoved(way);
     near_triangles_.probeMoved(way);
@@ -291,6 +229,7 @@ void Search::moveNear(double way) noexcept {
   } else {
     near_elements_.forget();
     near_triangles_.forget();
+    near_planes_.forget();
     near_places_.forget();
   }
 }
