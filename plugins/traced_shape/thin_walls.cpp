@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/brep/narrow_triangles.hpp"
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
+#include "kernels/brep/model/narrow_triangles.hpp"
 #include "traced_shape/other_solids.hpp"
 
 namespace hapticd {

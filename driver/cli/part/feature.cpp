@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "kernels/brep/model.hpp"
+#include "kernels/brep/model/model.hpp"
 
 namespace hapticd::cli {
 namespace {

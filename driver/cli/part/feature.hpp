@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "kernels/brep/part.hpp"
+#include "kernels/part/part.hpp"
 
 namespace hapticd::cli {
 

@@ -15,7 +15,7 @@
 #include <cmath>
 #include <utility>
 
-#include "kernels/brep/part_names.hpp"
+#include "kernels/part/names.hpp"
 
 namespace hapticd::cad {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "kernels/brep/open_borders.hpp"
-#include "kernels/brep/part.hpp"
+#include "kernels/brep/model/open_borders.hpp"
+#include "kernels/part/part.hpp"
 #include "mesh_import/mesh_crossings.hpp"
 #include "mesh_import/mesh_file.hpp"
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "../kernels/brep/sample_meshes.hpp"
+#include "../kernels/brep/sample_solids.hpp"
 
 namespace hapticd {
 namespace {

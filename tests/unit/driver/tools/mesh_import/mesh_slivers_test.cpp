@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cube.hpp"
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
 
 namespace hapticd::importing {
 namespace {

@@ -10,8 +10,9 @@
 #include <random>
 #include <vector>
 
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
 #include "sample_meshes.hpp"
+#include "sample_solids.hpp"
 
 namespace hapticd::brep {
 namespace {

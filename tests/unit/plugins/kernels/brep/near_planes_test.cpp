@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Tests the planes between a slow probe and the triangles of a mesh.
-#include "kernels/brep/near_planes.hpp"
+#include "kernels/brep/search/near_planes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <random>
 #include <vector>
 
-#include "kernels/brep/geometry.hpp"
-#include "kernels/brep/search.hpp"
-#include "kernels/brep/triangle_foot.hpp"
+#include "kernels/brep/geometry/geometry.hpp"
+#include "kernels/brep/geometry/triangle_foot.hpp"
+#include "kernels/brep/search/search.hpp"
 #include "sample_meshes.hpp"
 
 namespace hapticd::brep {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Tests the discs around rows of triangles, and ticks that examine only the gathered rows around the probe.
-#include "kernels/brep/near_rows.hpp"
+#include "kernels/brep/search/near_rows.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,10 +12,10 @@
 #include <random>
 #include <vector>
 
-#include "kernels/brep/descent.hpp"
-#include "kernels/brep/geometry.hpp"
-#include "kernels/brep/search.hpp"
-#include "kernels/brep/triangle_foot.hpp"
+#include "kernels/brep/geometry/geometry.hpp"
+#include "kernels/brep/geometry/triangle_foot.hpp"
+#include "kernels/brep/search/descent.hpp"
+#include "kernels/brep/search/search.hpp"
 #include "sample_meshes.hpp"
 
 namespace hapticd::brep {
