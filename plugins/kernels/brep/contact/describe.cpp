@@ -154,10 +154,11 @@ Around onTriangle(const Model& model, const Hit& hit) noexcept {
 
 /// Replaces the normal of a foot on a narrow triangle, or on an edge or a corner of one.
 void leaveOutNarrow(const Model& model, const Hit& hit, const Vector3d& r, Around& a) noexcept {
+  if (a.open || !model.hasNarrow()) return;
   const std::uint32_t triangle = hit.element.index();
-  if (a.open || !isBesideNarrow(model, triangle)) return;
   const double distance = std::sqrt(hit.d2);
-  if (a.inside && !isNarrow(model.part(), triangle, distance)) return;
+  if (a.inside && !isNarrow(model.part(), triangle, distance)) return;  // its corners are in the cache
+  if (!isBesideNarrow(model, triangle)) return;
   const NearFoot near(model.part(), triangle, hit.point, distance);
   if (!near.hasNarrow()) return;
   const Vector3d normal = near.normalToward(model.part(), r);
