@@ -33,7 +33,8 @@ if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(standard <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem> <functional> <memory> <optional> <string> <vector>)
   hapticd_precompile(hapticd_headers HEADERS <Eigen/Geometry> ${standard} LIBRARIES Eigen3::Eigen ROOMS
     hapticd_base hapticd_status hapticd_watch hapticd_codec hapticd_arm hapticd_core hapticd_host hapticd_loop hapticd_passivity hapticd_safety hapticd_sim hapticd_telemetry
-    hapticd_velocity hapticd_kinematics hapticd_simulated simulated_objects hapticd_brep hapticd_contact hapticd_dynamics
+    hapticd_velocity hapticd_kinematics hapticd_simulated simulated_objects hapticd_brep_contact hapticd_brep_elements
+    hapticd_brep_geometry hapticd_brep_model hapticd_brep_search hapticd_brep_tree hapticd_contact hapticd_dynamics
     hapticd_medial hapticd_spline hapticd_trace hapticd_traced_shape mat_deformable_objects
     nurbs_rigid_objects pendulum_objects push_button_objects hapticd_wire_arm usb_hid_objects usb_bulk_objects vme_objects
     vendor_hd_objects vendor_dhd_objects)

@@ -25,12 +25,8 @@ endfunction()
 # hapticd_include_root(TARGET PREFIX): gives an existing library the include root of the current folder.
 function(hapticd_include_root target prefix)
   set(root ${PROJECT_BINARY_DIR}/rooms/${target})
+  file(REMOVE_RECURSE ${root}) # links of an older build, which may lead through a wall; what they lead to stays
   get_filename_component(parent ${root}/${prefix} DIRECTORY)
-  if(IS_SYMLINK ${parent}) # of an older build, when the room above had the files of this one
-    file(REMOVE ${parent})
-  elseif(IS_DIRECTORY ${root}/${prefix} AND NOT IS_SYMLINK ${root}/${prefix})
-    file(REMOVE_RECURSE ${root}/${prefix})
-  endif()
   file(MAKE_DIRECTORY ${parent})
   file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${root}/${prefix} SYMBOLIC)
   get_target_property(type ${target} TYPE)

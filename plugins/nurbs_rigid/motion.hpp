@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hapticd/shape.hpp"
-#include "kernels/brep/model.hpp"
+#include "kernels/brep/model/model.hpp"
 #include "kernels/dynamics/mass_properties.hpp"
 #include "kernels/dynamics/rigid_body.hpp"
 #include "kernels/trace/model.hpp"

@@ -3,7 +3,7 @@
 /// all solids returns only the nearest face. If a bolt fills a hole, for example, a face of the bolt and a face of the
 /// hole are equally near.
 #pragma once
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
 
 namespace hapticd {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "kernels/brep/topology.hpp"
+#include "kernels/brep/model/topology.hpp"
 
 namespace hapticd {
 namespace {

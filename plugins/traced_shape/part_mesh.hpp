@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Triangles of parts, for drawing and for their volume.
 #pragma once
-#include "kernels/brep/model.hpp"
+#include "kernels/brep/model/model.hpp"
 #include "traced_shape/mesh.hpp"
 
 namespace hapticd {

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
+#include "kernels/brep/model/narrow_triangles.hpp"
 #include "traced_shape/other_solids.hpp"
 
 namespace hapticd {
@@ -94,6 +95,8 @@ void pressFaces(const brep::Model& part, const brep::Placement& place, std::uint
 void pressTriangles(const brep::Model& part, const brep::Placement& place, std::uint32_t stride, WallPress& presser) {
   const brep::Body& body = part.part().bodies[place.body];
   for (std::uint32_t t = 0; t < body.triangle_count; t += stride) {
+    // rounding may make a narrow triangle look anywhere, so behind it is no wall
+    if (brep::isNarrow(part.part(), body.first_triangle + t, HUGE_VAL)) continue;
     const brep::Triangle& triangle = part.part().triangles[body.first_triangle + t];
     Vector3d middle = Vector3d::Zero();
     for (const std::uint32_t corner : triangle.corner) middle += brep::vec(part.part().points[corner]) / 3;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "kernels/brep/model.hpp"
+#include "kernels/brep/model/model.hpp"
 
 namespace hapticd {
 

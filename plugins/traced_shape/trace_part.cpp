@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "document/suggestion.hpp"
-#include "kernels/brep/part_file.hpp"
-#include "kernels/brep/part_names.hpp"
+#include "kernels/part/file.hpp"
+#include "kernels/part/names.hpp"
 #include "traced_shape.hpp"
 
 namespace hapticd {

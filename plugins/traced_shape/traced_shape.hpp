@@ -9,7 +9,7 @@
 
 #include "hapticd/shape.hpp"
 #include "hapticd/shape_names.h"
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
 #include "kernels/trace/tracer.hpp"
 #include "traced_shape/mesh.hpp"
 

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "kernels/brep/part_file.hpp"
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
+#include "kernels/part/file.hpp"
 #include "mesh_import/mesh_part.hpp"
 
 namespace {

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <span>
 
-#include "kernels/brep/part_file.hpp"
-#include "kernels/brep/part_sections.hpp"
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
+#include "kernels/part/file.hpp"
+#include "kernels/part/sections.hpp"
 #include "unit/plugins/kernels/brep/sample_solids.hpp"
 
 namespace {

@@ -50,7 +50,7 @@ def can_lock_memory():
     return capabilities >> cap_ipc_lock & 1 == 1 or resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] == resource.RLIM_INFINITY
 
 
-def program(path, environment=None, timeout=120, together=False):
+def program(path, environment=None, timeout=300, together=False):
     """Returns a function that runs the program with the given arguments. It returns the exit code, standard output and standard error;
     with `together` the exit code and both outputs as one text."""
     def run(*arguments):

@@ -70,8 +70,11 @@ int show(const CtlArguments& options, const Result<std::string>& answer, const s
   return kWorked;
 }
 
+/// Sends a request and prints the answer. Triangles of a large part take the daemon some seconds, the more so if several
+/// drawings are tried.
 int send(const CtlArguments& options, const std::string& line) {
-  return show(options, control::ask(socketOf(options), line));
+  constexpr double kPatience = 60;  // [s]
+  return show(options, control::ask(socketOf(options), line, kPatience));
 }
 
 /// Does `ctl add` and `ctl reload`. The scene and the files that it names are opened here, with the rights of the

@@ -7,7 +7,7 @@
 
 #include "base/regular_file.hpp"
 #include "cli/support/command.hpp"
-#include "kernels/brep/part_file.hpp"
+#include "kernels/part/file.hpp"
 #include "mesh_import/mesh_part.hpp"
 
 namespace hapticd::cli {

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <optional>
 
-#include "kernels/brep/model.hpp"
-#include "kernels/brep/part_names.hpp"
+#include "kernels/brep/model/model.hpp"
+#include "kernels/part/names.hpp"
 
 namespace hapticd::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/brep/part.hpp"
+#include "kernels/part/part.hpp"
 
 namespace hapticd::cli {
 

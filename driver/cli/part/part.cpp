@@ -11,11 +11,11 @@
 #include "cli/part/feature.hpp"
 #include "cli/part/poses.hpp"
 #include "cli/support/command.hpp"
-#include "kernels/brep/model.hpp"
-#include "kernels/brep/part_file.hpp"
-#include "kernels/brep/part_limit.hpp"
-#include "kernels/brep/part_names.hpp"
-#include "kernels/brep/tight_bounds.hpp"
+#include "kernels/brep/model/model.hpp"
+#include "kernels/brep/search/tight_bounds.hpp"
+#include "kernels/part/file.hpp"
+#include "kernels/part/limit.hpp"
+#include "kernels/part/names.hpp"
 
 namespace hapticd::cli {
 namespace {

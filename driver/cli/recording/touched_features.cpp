@@ -9,9 +9,9 @@
 #include <span>
 
 #include "base/regular_file.hpp"
-#include "kernels/brep/part_file.hpp"
-#include "kernels/brep/part_limit.hpp"
-#include "kernels/brep/part_names.hpp"
+#include "kernels/part/file.hpp"
+#include "kernels/part/limit.hpp"
+#include "kernels/part/names.hpp"
 
 namespace hapticd::cli {
 namespace {

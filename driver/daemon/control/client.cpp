@@ -35,6 +35,15 @@ int connected(const std::string& file) {
   return -1;
 }
 
+/// Says why a daemon has closed a connection without an answer. One that ends may live on for a moment.
+std::string closedText(const std::string& file) {
+  constexpr double kEnding = 1;  // s
+  if (waitForEnd(file, kEnding)) return "the daemon at " + file + " has ended without an answer";
+  return "the daemon at " + file +
+         " closed the connection without an answer, but runs on: it may serve too many programs"
+         "\n  fix: end some of them, or try again";
+}
+
 }  // namespace
 
 bool socketAddress(const std::string& file, sockaddr_un& address) {
@@ -123,7 +132,7 @@ Result<Reply> Client::receive(double seconds) {
     const int ready = poll(&polled, 1, static_cast<int>((left + 999'999) / 1'000'000));
     if (ready < 0 && errno == EINTR) continue;  // a signal handler of the program interrupted the call
     if (ready != 1) return Error{"the daemon at " + file_ + " did not answer in time" + kBusy};
-    if (!receiveMore()) return Error{"the daemon at " + file_ + " has ended without an answer"};
+    if (!receiveMore()) return Error{closedText(file_)};
   }
   Reply reply = std::move(lines_.front());
   lines_.pop_front();

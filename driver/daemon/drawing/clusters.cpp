@@ -69,7 +69,7 @@ Clusters clustersOf(const WeldedMesh& mesh, double cell) {
 }
 
 Clusters finestClusters(const WeldedMesh& mesh, std::size_t most) {
-  constexpr int kMostPasses = 16;
+  constexpr int kMostPasses = 16, kGuesses = 4;
   constexpr double kEnough = 0.8;  // share of `most` that is near enough to it
   const double size = std::max((mesh.high - mesh.low).maxCoeff(), 1e-9);
   const double finest = size / (kMostCells - 1), coarsest = 1.01 * size;
@@ -84,9 +84,12 @@ Clusters finestClusters(const WeldedMesh& mesh, std::size_t most) {
     (share <= 1 ? fits : too_fine) = cell;
     if (share <= 1) best = std::move(clusters);
     if (share <= 1 && (share >= kEnough || cell <= finest)) return best;
-    // the number of triangles falls about with the square of the cell; a step beyond what is known is halved instead
+    // The number of triangles falls about with the square of the cell. A step beyond what is known is halved instead,
+    // and so is one for a model of which that is not true, such as dust: all of it stays until the cells hold many
+    // grains.
     const double next = cell * std::sqrt(share / (0.5 + 0.5 * kEnough));
-    cell = next > too_fine && next < fits ? next : std::sqrt(too_fine * fits);
+    const bool guessed = pass < kGuesses && next > too_fine && next < fits;
+    cell = guessed ? next : std::sqrt(too_fine * fits);
   }
   return best.count > 0 ? best : clustersOf(mesh, coarsest);
 }

@@ -9,11 +9,30 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 #include "base/regular_file.hpp"
 
 namespace hapticd::record {
+
+namespace {
+
+/// True if a name is that of an open file.
+bool isNameOf(const std::string& file, int fd) {
+  struct stat named{}, opened{};
+  return stat(file.c_str(), &named) == 0 && fstat(fd, &opened) == 0 && named.st_dev == opened.st_dev &&
+         named.st_ino == opened.st_ino;
+}
+
+/// Locks a file while it is open, because two writers would make it unreadable. Returns false if another one has it.
+bool lockFile(const std::string& file, int fd) {
+  if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
+  return isNameOf(file, fd);  // else another run has just put its recording in this place
+}
+
+}  // namespace
 
 Result<std::unique_ptr<RecordingFile>> RecordingFile::create(const std::string& file,
                                                              const std::vector<StreamSpec>& streams, const About& about,
@@ -21,8 +40,7 @@ Result<std::unique_ptr<RecordingFile>> RecordingFile::create(const std::string& 
   const int fd = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (fd < 0) return Error{file + ": cannot be written: " + std::strerror(errno)};
   std::unique_ptr<RecordingFile> recording(new RecordingFile(file, fd));
-  // The lock is held while the file is open, because two writers would make the file unreadable.
-  if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+  if (!lockFile(file, fd))
     return Error{file +
                  ": another run records into it, or a program that reads it keeps it open; expected the name of "
                  "another file"};
@@ -35,10 +53,45 @@ Result<std::unique_ptr<RecordingFile>> RecordingFile::create(const std::string& 
   }
   recording->skeleton_ = makeSkeleton(streams, chunk_rows, about, false);
   struct stat there{};
-  if (fstat(fd, &there) != 0 || there.st_size == 0) recording->begin();
+  const bool former = fstat(fd, &there) == 0 && S_ISREG(there.st_mode) && there.st_size > 0;
+  if (former && there.st_nlink == 1) recording->writeBeside();
+  if (!former || !recording->part_.empty()) recording->begin();
   if (recording->error_ == 0) return recording;
-  removeIncomplete(file);
+  if (!former) removeIncomplete(file);
   return Error{file + ": cannot be written: " + std::strerror(recording->error_)};
+}
+
+/// Writes into a file beside the former recording, if its folder allows one. Else begin() writes over the former one.
+void RecordingFile::writeBeside() {
+  char* resolved = realpath(file_.c_str(), nullptr);
+  if (resolved == nullptr) return;
+  const std::string target = resolved, part = target + ".part";
+  std::free(resolved);
+  const int fd = open(part.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+  if (fd < 0) return;
+  struct stat there{}, former{};
+  const bool usable = fstat(fd, &there) == 0 && S_ISREG(there.st_mode) && there.st_nlink == 1;
+  if (!usable || !lockFile(part, fd)) {
+    ::close(fd);
+    return;
+  }
+  if (fstat(fd_, &former) == 0 && fchmod(fd, former.st_mode & 0777) != 0) error_ = errno;
+  former_fd_ = fd_;
+  fd_ = fd;
+  part_ = part;
+  target_ = target;
+}
+
+/// Gives the recording its name, and drops the former one.
+void RecordingFile::takePlace() {
+  if (part_.empty() || error_ != 0) return;
+  if (std::rename(part_.c_str(), target_.c_str()) != 0) {
+    error_ = errno;
+    return;
+  }
+  part_.clear();
+  ::close(former_fd_);
+  former_fd_ = -1;
 }
 
 /// Replaces what is in the file by the skeleton, once.
@@ -52,11 +105,13 @@ void RecordingFile::begin() {
 }
 
 void RecordingFile::discard() {
-  if (begun_) removeIncomplete(file_);
+  if (begun_ && part_.empty()) removeIncomplete(file_);
 }
 
 RecordingFile::~RecordingFile() {
+  if (!part_.empty()) removeIncomplete(part_);
   if (fd_ >= 0) ::close(fd_);
+  if (former_fd_ >= 0) ::close(former_fd_);
 }
 
 Result<void> RecordingFile::append(size_t number, const std::byte* rows, uint64_t count) {
@@ -116,6 +171,7 @@ Result<void> RecordingFile::publish() {
     write(at + offsetof(StreamHeader, rows), &stream.rows, sizeof stream.rows);
     stream.published = stream.rows;
   }
+  if (std::any_of(streams_.begin(), streams_.end(), [](const Stream& stream) { return stream.rows > 0; })) takePlace();
   return state();
 }
 
@@ -123,6 +179,8 @@ Result<void> RecordingFile::close() {
   if (auto published = publish(); !published) return published;
   const uint32_t closed = 1;
   write(kHeaderAt + offsetof(FileHeader, closed), &closed, sizeof closed);
+  takePlace();
+  if (auto there = isThere(); !there && error_ == 0) return there;
   if (::close(fd_) != 0 && error_ == 0) error_ = errno;
   fd_ = -1;
   return state();
@@ -143,8 +201,24 @@ void RecordingFile::write(uint64_t address, const void* bytes, size_t size) {
   }
 }
 
+/// Fails if the file was removed, moved, replaced or cut while it was written, as nobody would notice that otherwise.
+Result<void> RecordingFile::isThere() const {
+  struct stat there{};
+  if (fstat(fd_, &there) != 0 || !S_ISREG(there.st_mode)) return {};
+  if (!isNameOf(file_, fd_))
+    return Error{file_ + ": this recording is not there any more: it was moved, replaced or removed during the run" +
+                 (there.st_nlink > 0 ? "; where it was moved, it is complete" : "; its rows are lost")};
+  FileHeader header;  // written once: later rows do not bring it back
+  const bool begins = pread(fd_, &header, sizeof header, kHeaderAt) == static_cast<ssize_t>(sizeof header) &&
+                      std::strncmp(header.magic, kRecordingFormat, sizeof header.magic) == 0;
+  if (begins && static_cast<uint64_t>(there.st_size) >= end_) return {};
+  return Error{file_ + ": another program cut this recording during the run; its first rows are lost"};
+}
+
 Result<void> RecordingFile::state() const {
   if (error_ == 0) return {};
+  if (!part_.empty())
+    return Error{file_ + ": cannot be written: " + std::strerror(error_) + "; the former recording of this name stays"};
   return Error{file_ + ": cannot be written: " + std::strerror(error_) + "; the file ends with its last complete row"};
 }
 

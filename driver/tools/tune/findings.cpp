@@ -12,23 +12,30 @@ const Candidate& chosenOf(const Findings& findings) {
   return findings.tuning.candidates[findings.tuning.chosen];
 }
 
+bool cheaper(const Candidate* a, const Candidate* b) {
+  return a->cost.p50_ns != b->cost.p50_ns ? a->cost.p50_ns < b->cost.p50_ns : a < b;
+}
+
 /// Returns the candidates of the Pareto front (of cost and error) that are shown, cheapest first. Of several that are
-/// alike, one is shown.
+/// alike, the simplest is shown.
 std::vector<Candidate*> front(Findings& findings) {
+  std::vector<Candidate>& candidates = findings.tuning.candidates;
   std::vector<Candidate*> all;
-  for (Candidate& candidate : findings.tuning.candidates)
+  for (Candidate& candidate : candidates)
     if (candidate.on_front) all.push_back(&candidate);
-  std::sort(all.begin(), all.end(), [](const auto* a, const auto* b) {
-    return a->cost.p50_ns != b->cost.p50_ns ? a->cost.p50_ns < b->cost.p50_ns : a < b;
-  });
-  const Candidate &current = findings.tuning.candidates[0], &chosen = chosenOf(findings);
+  std::sort(all.begin(), all.end(), &cheaper);
+  const Candidate &current = candidates[0], &chosen = chosenOf(findings);
   std::vector<Candidate*> shown;
   for (Candidate* c : all) {
     const bool alike_shown =
         std::any_of(shown.begin(), shown.end(), [&](const auto* other) { return alike(*c, *other); });
     const bool alike_wanted = (alike(*c, current) && current.on_front) || (alike(*c, chosen) && chosen.on_front);
-    if (c == &current || c == &chosen || (!alike_shown && !alike_wanted)) shown.push_back(c);
+    if (c == &current || c == &chosen)
+      shown.push_back(c);
+    else if (!alike_shown && !alike_wanted)
+      shown.push_back(&candidates[simplest(candidates, static_cast<size_t>(c - candidates.data()))]);
   }
+  std::sort(shown.begin(), shown.end(), &cheaper);
   return shown;
 }
 

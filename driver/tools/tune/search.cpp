@@ -2,6 +2,8 @@
 #include "tune/search.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
 #include <set>
 
 #include "base/clock.hpp"
@@ -213,6 +215,19 @@ bool alike(const Candidate& a, const Candidate& b) {
          forceErrorOf(a) == forceErrorOf(b);
 }
 
+size_t simplest(const std::vector<Candidate>& candidates, size_t like) {
+  const auto changes = [&](const Candidate& c) {
+    const Choice &own = candidates[0].choice, &choice = c.choice;
+    return std::inner_product(own.begin(), own.end(), choice.begin(), size_t{0}, std::plus<>(), std::not_equal_to<>());
+  };
+  size_t best = like;
+  for (size_t i = 0; i < candidates.size(); ++i)
+    if (alike(candidates[i], candidates[like]) && candidates[i].on_front >= candidates[like].on_front &&
+        changes(candidates[i]) < changes(candidates[best]))
+      best = i;
+  return best;
+}
+
 std::pair<size_t, bool> choose(const std::vector<Candidate>& candidates, const Goal& goal) {
   size_t best = 0;
   bool met = meets(candidates[0], goal);
@@ -223,7 +238,8 @@ std::pair<size_t, bool> choose(const std::vector<Candidate>& candidates, const G
       met = now;
     }
   }
-  return {best, met};
+  const size_t plain = simplest(candidates, best);
+  return {meets(candidates[plain], goal) == met ? plain : best, met};
 }
 
 }  // namespace hapticd::tune

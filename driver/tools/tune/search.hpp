@@ -71,6 +71,10 @@ void markFront(std::vector<Candidate>& candidates);
 /// Returns true if two candidates are equal except for the noise of timing and rounding.
 bool alike(const Candidate& a, const Candidate& b);
 
+/// Returns the index of the candidate that is alike and changes the fewest parameters of the scene, so that a parameter
+/// without effect, such as the tolerance of another method, is not named. For one of the front it is one of the front.
+size_t simplest(const std::vector<Candidate>& candidates, size_t like);
+
 /// Returns the index of the candidate to choose, and whether it meets the goal.
 std::pair<size_t, bool> choose(const std::vector<Candidate>& candidates, const Goal& goal);
 

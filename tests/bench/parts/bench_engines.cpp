@@ -11,7 +11,7 @@
 #include <numeric>
 #include <random>
 
-#include "kernels/brep/search.hpp"
+#include "kernels/brep/search/search.hpp"
 #include "kernels/trace/tracer.hpp"
 #include "traced_shape/model_file.hpp"
 #include "unit/plugins/kernels/brep/sample_splines.hpp"

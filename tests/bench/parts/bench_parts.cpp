@@ -17,8 +17,8 @@
 #include <random>
 
 #include "edge_steps.hpp"
-#include "kernels/brep/part_file.hpp"
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
+#include "kernels/part/file.hpp"
 #include "occt.hpp"
 #include "peers.hpp"
 #include "unit/plugins/kernels/brep/sample_solids.hpp"

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "kernels/brep/topology.hpp"
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
+#include "kernels/brep/model/topology.hpp"
 
 namespace hapticd::bench {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Measures how far the direction of the force turns when a probe slides over the smooth edges of a part.
 #pragma once
-#include "kernels/brep/model.hpp"
+#include "kernels/brep/model/model.hpp"
 
 namespace hapticd::bench {
 

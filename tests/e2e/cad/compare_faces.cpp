@@ -26,8 +26,8 @@
 #include <string>
 #include <vector>
 
-#include "kernels/brep/part_file.hpp"
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
+#include "kernels/part/file.hpp"
 
 namespace {
 

@@ -171,7 +171,7 @@ with tempfile.TemporaryDirectory() as scratch:
     picture = open(os.path.join(scratch, "teapot.svg")).read() if status == 0 else text
     for words in (">teapot<", "asked for by the models", "sent to the arm", "penetration depth", "x of the tip", "% of the ticks"):
         check(f"the picture says {words}", words in picture, picture[:200])
-    status, text = hapticd("plot", teapot, "--out", "/nonexistent/a.svg")
+    status, text = hapticd("plot", teapot, "--out", "/dev/null/a.svg")
     check("a picture that cannot be written is bad input, as it is to run", status == 2 and "cannot be written" in text, text)
     status, text = hapticd("replay", teapot, "--set", "teapot.stiffness=900")
     check("a changed stiffness is found", status == 1 and "differ" in text, text)

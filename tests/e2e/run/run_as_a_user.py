@@ -68,7 +68,7 @@ def main():
     refused("--for 1s", teapot, "--for", "1s")
     done = subprocess.run([HAPTICD, "run", teapot, "--for", "1s"], capture_output=True, text=True, timeout=20)
     check("and says how to write it", "expected seconds, such as --for 10" in done.stderr + done.stdout, done.stderr)
-    refused("a report that cannot be written", teapot, "--for", "1", "--report", "/nonexistent/report.json")
+    refused("a report that cannot be written", teapot, "--for", "1", "--report", "/dev/null/report.json")
     refused("a missing scene", "/nonexistent/scene.yaml")
     refused("a rate of nothing", teapot, "--rate", "0")
     with tempfile.TemporaryDirectory() as folder:

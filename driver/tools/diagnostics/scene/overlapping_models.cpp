@@ -13,7 +13,7 @@
 
 #include "diagnostics/reading/key_place.hpp"
 #include "diagnostics/scene/value_plausibility.hpp"
-#include "kernels/brep/triangle_foot.hpp"
+#include "kernels/brep/geometry/triangle_foot.hpp"
 
 namespace hapticd::diagnostics {
 namespace {

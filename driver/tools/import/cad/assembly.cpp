@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/brep/part_names.hpp"
+#include "kernels/part/names.hpp"
 
 namespace hapticd::cad {
 namespace {

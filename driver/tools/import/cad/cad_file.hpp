@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "kernels/brep/part.hpp"
+#include "kernels/part/part.hpp"
 
 namespace hapticd::cad {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "kernels/brep/part.hpp"
+#include "kernels/part/part.hpp"
 
 namespace hapticd::cad {
 

@@ -30,7 +30,7 @@
 #include <gp_Pnt.hxx>
 #include <unordered_set>
 
-#include "kernels/brep/part_names.hpp"
+#include "kernels/part/names.hpp"
 
 namespace hapticd::cad {
 namespace {

@@ -24,7 +24,7 @@
 #include "cad_import/placed_part.hpp"
 #include "cad_import/shape_fixes.hpp"
 #include "command_line/command_line.hpp"
-#include "kernels/brep/part_file.hpp"
+#include "kernels/part/file.hpp"
 
 namespace hapticd::cad {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <map>
 
-#include "kernels/brep/model.hpp"
-#include "kernels/brep/open_borders.hpp"
-#include "kernels/brep/tight_bounds.hpp"
+#include "kernels/brep/model/model.hpp"
+#include "kernels/brep/model/open_borders.hpp"
+#include "kernels/brep/search/tight_bounds.hpp"
 
 namespace hapticd::cad {
 namespace {

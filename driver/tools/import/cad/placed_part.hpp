@@ -3,7 +3,7 @@
 #pragma once
 #include <Eigen/Geometry>
 
-#include "kernels/brep/part.hpp"
+#include "kernels/part/part.hpp"
 
 namespace hapticd::cad {
 

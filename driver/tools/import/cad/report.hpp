@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cad_import/measures.hpp"
-#include "kernels/brep/part.hpp"
+#include "kernels/part/part.hpp"
 
 namespace hapticd::cad {
 

@@ -18,7 +18,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/brep/spline_check.hpp"
+#include "kernels/part/spline_check.hpp"
 #include "kernels/spline/surface_data.hpp"
 
 namespace hapticd::cad {

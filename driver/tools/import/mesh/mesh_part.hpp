@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "kernels/brep/open_borders.hpp"
-#include "kernels/brep/part.hpp"
+#include "kernels/brep/model/open_borders.hpp"
+#include "kernels/part/part.hpp"
 #include "mesh_import/mesh_crossings.hpp"
 #include "mesh_import/mesh_file.hpp"
 
@@ -29,7 +29,7 @@ struct MeshBody {
 struct MeshReport {
   std::size_t triangles = 0, points = 0;  ///< numbers of triangles and points that were kept
   std::size_t joined = 0;                 ///< points that were joined with one that differs by rounding only
-  std::size_t slivers = 0;                ///< triangles of zero area that were taken into a neighbour
+  std::size_t slivers = 0;                ///< triangles without width that were taken into a neighbour
   std::size_t solids_inside = 0;          ///< closed shells inside another one that face outward like it
   std::size_t degenerate = 0;             ///< triangles that were left out because they have no area
   std::size_t duplicates = 0;    ///< triangles that were left out because they have the same three corners as another

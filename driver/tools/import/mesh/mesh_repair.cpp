@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "mesh_import/mesh_coincident.hpp"
 #include "mesh_import/mesh_nesting.hpp"
 #include "mesh_import/mesh_slivers.hpp"
 #include "mesh_import/mesh_touching.hpp"
@@ -45,8 +46,10 @@ class Repair {
   void dropEmpty() {
     report_.degenerate =
         std::erase_if(corners_, [](const Corners& c) { return c[0] == c[1] || c[1] == c[2] || c[2] == c[0]; });
-    report_.joined = joinFreePoints(points_, corners_);
-    report_.slivers = takeInSlivers(points_, corners_);
+    const double rounding = roundingOf(points_, corners_);
+    report_.joined = joinFreePoints(points_, rounding, corners_);
+    report_.joined += joinCoincident(points_, rounding, corners_);
+    report_.slivers = takeInSlivers(points_, rounding, corners_);
     report_.degenerate += std::erase_if(corners_, [this](const Corners& c) { return isEmptyTriangle(points_, c); });
   }
 

@@ -59,8 +59,8 @@ std::vector<std::string> linesOf(const MeshReport& r) {
   };
   say(r.joined, "point was joined with one that differs by rounding only",
       "points were joined with others that differ by rounding only");
-  say(r.slivers, "triangle of zero area was taken into its neighbour",
-      "triangles of zero area were taken into their neighbours");
+  say(r.slivers, "triangle without width was taken into its neighbour",
+      "triangles without width were taken into their neighbours");
   say(r.degenerate, "triangle of zero area was left out", "triangles of zero area were left out");
   say(r.duplicates, "duplicate triangle was left out", "duplicate triangles were left out");
   say(r.flipped, "triangle was reversed", "triangles were reversed");

@@ -79,7 +79,37 @@ class Near {
   std::map<Cell, std::uint32_t> first_;
 };
 
+/// True if the middle corner of a triangle is so near to its longest edge that rounding decides where the triangle
+/// looks, or if the triangle is empty.
+bool isSliver(const std::vector<Vector3d>& points, const Corners& c, double rounding) {
+  if (isEmptyTriangle(points, c)) return true;
+  const Vector3d ab = points[c[1]] - points[c[0]], ac = points[c[2]] - points[c[0]];
+  const std::uint32_t k = longestEdge(points, c);
+  const double length = (points[c[(k + 1) % 3]] - points[c[k]]).norm();
+  return ab.cross(ac).norm() <= std::min(rounding, kSmallShare * length) * length;
+}
+
+/// Cuts the neighbour of a sliver in two at the sliver's middle corner; the sliver becomes the second half. Returns
+/// false, and changes nothing, if that corner is one of the neighbour's.
+/// @param code the neighbour, and which of its edges is the longest edge of the sliver
+bool cutNeighbour(const std::vector<Vector3d>& points, std::uint32_t code, Corners& sliver, Corners& neighbour) {
+  const std::uint32_t middle = sliver[(longestEdge(points, sliver) + 2) % 3], m = code % 4;
+  const std::uint32_t from = neighbour[m], to = neighbour[(m + 1) % 3], apex = neighbour[(m + 2) % 3];
+  if (apex == middle) return false;
+  neighbour = {from, middle, apex};
+  sliver = {middle, to, apex};
+  return true;
+}
+
 }  // namespace
+
+double roundingOf(const std::vector<Vector3d>& points, const TriangleCorners& corners) {
+  constexpr double kRounding = 5e-7;
+  double largest = 0;
+  for (const Corners& c : corners)
+    for (const std::uint32_t i : c) largest = std::max(largest, points[i].lpNorm<Eigen::Infinity>());
+  return kRounding * largest;
+}
 
 bool isEmptyTriangle(const std::vector<Vector3d>& points, const Corners& c) {
   if (hasEqualCorners(c)) return true;
@@ -87,27 +117,22 @@ bool isEmptyTriangle(const std::vector<Vector3d>& points, const Corners& c) {
   return !(ab.cross(ac).norm() > 1e-14 * ab.norm() * ac.norm());
 }
 
-std::size_t takeInSlivers(const std::vector<Vector3d>& points, TriangleCorners& corners) {
+std::size_t takeInSlivers(const std::vector<Vector3d>& points, double rounding, TriangleCorners& corners) {
   constexpr int kMostRounds = 64;  // a sliver beside a sliver waits until that one is gone
   std::size_t taken = 0;
   for (int round = 0; round < kMostRounds; ++round) {
     std::vector<std::uint32_t> slivers;
     for (std::uint32_t t = 0; t < corners.size(); ++t)
-      if (!hasEqualCorners(corners[t]) && isEmptyTriangle(points, corners[t])) slivers.push_back(t);
+      if (!hasEqualCorners(corners[t]) && isSliver(points, corners[t], rounding)) slivers.push_back(t);
     if (slivers.empty()) break;
     const std::vector<std::uint32_t> across = pairedNeighbours(meshEdges(corners), corners.size());
     std::vector<char> changed(corners.size(), 0);
     const std::size_t before = taken;
     for (const std::uint32_t t : slivers) {
-      const std::uint32_t k = longestEdge(points, corners[t]), code = across[3 * t + k];
+      const std::uint32_t code = across[3 * t + longestEdge(points, corners[t])];
       if (code == kNoTriangle || changed[t] != 0 || changed[code / 4] != 0) continue;
-      Corners& other = corners[code / 4];
-      if (isEmptyTriangle(points, other)) continue;
-      const std::uint32_t middle = corners[t][(k + 2) % 3], m = code % 4;
-      const std::uint32_t from = other[m], to = other[(m + 1) % 3], apex = other[(m + 2) % 3];
-      if (apex == middle) continue;
-      other = {from, middle, apex};
-      corners[t] = {middle, to, apex};
+      if (isSliver(points, corners[code / 4], rounding)) continue;
+      if (!cutNeighbour(points, code, corners[t], corners[code / 4])) continue;
       changed[t] = changed[code / 4] = 1;
       ++taken;
     }
@@ -116,10 +141,8 @@ std::size_t takeInSlivers(const std::vector<Vector3d>& points, TriangleCorners& 
   return taken;
 }
 
-std::size_t joinFreePoints(const std::vector<Vector3d>& points, TriangleCorners& corners) {
-  constexpr double kRounding = 5e-7;  // 4 steps of single precision
-  constexpr double kShare = 0.01;     // of the free edges: a part far from the origin has more digits than these
-  constexpr double kLeast = 1e-16;    // of the largest coordinate: the numbers of smaller cells are no whole numbers
+std::size_t joinFreePoints(const std::vector<Vector3d>& points, double rounding, TriangleCorners& corners) {
+  constexpr double kLeast = 2e-10;  // of the rounding: the numbers of smaller cells are no whole numbers
   const std::vector<MeshEdge> edges = meshEdges(corners);
   std::vector<char> free(points.size(), 0);
   std::size_t count = 0;
@@ -129,12 +152,10 @@ std::size_t joinFreePoints(const std::vector<Vector3d>& points, TriangleCorners&
     free[edges[i].ends >> 32] = free[edges[i].ends & 0xffffffffu] = 1;
     ++count;
   }
-  double largest = 0;
-  for (const Corners& c : corners)
-    for (const std::uint32_t i : c) largest = std::max(largest, points[i].lpNorm<Eigen::Infinity>());
-  if (count == 0 || !(largest > 0)) return 0;
-  const double distance = std::min(kRounding * largest, kShare * medianFree(points, edges));
-  if (!(distance > kLeast * largest)) return 0;
+  if (count == 0 || !(rounding > 0)) return 0;
+  // a part far from the origin has more digits than those of single precision
+  const double distance = std::min(rounding, kSmallShare * medianFree(points, edges));
+  if (!(distance > kLeast * rounding)) return 0;
   Near near(points, distance);
   std::vector<std::uint32_t> number(points.size());
   std::size_t joined = 0;

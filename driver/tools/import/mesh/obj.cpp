@@ -2,7 +2,7 @@
 /// Reads OBJ, the format of Wavefront: the lines `v`, `f` and `o`. Lines of other kinds are passed over.
 #include <map>
 
-#include "kernels/brep/part_names.hpp"
+#include "kernels/part/names.hpp"
 #include "mesh_import/mesh_file.hpp"
 #include "mesh_import/mesh_words.hpp"
 #include "mesh_import/polygons.hpp"

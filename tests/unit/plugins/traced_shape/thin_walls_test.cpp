@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "../kernels/brep/sample_meshes.hpp"
 #include "../kernels/brep/sample_solids.hpp"
 
 namespace hapticd {
@@ -70,6 +71,28 @@ TEST(ThinWalls, PressesNoFaceThatIsCovered) {
 TEST(ThinWalls, LeavesCornersOut) {
   const brep::Model prism_of_three(prism({{0, 0}, {60, 0}, {30, 52}}, 60));
   EXPECT_FALSE(thinnestWall(prism_of_three, 0.010));
+}
+
+/// A pyramid of 40 mm with a point beside each edge of its base. @param beside [m] by how much they are off their edges
+TriangleList pyramid(const Vector3d& beside) {
+  const Vector3d top(0, 0, 0.04);
+  const std::array<Vector3d, 4> base{Vector3d(-0.02, -0.02, 0), Vector3d(0.02, -0.02, 0), Vector3d(0.02, 0.02, 0),
+                                     Vector3d(-0.02, 0.02, 0)};
+  TriangleList mesh{{base[0], base[2], base[1]}, {base[0], base[3], base[2]}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vector3d &a = base[i], &b = base[(i + 1) % 4], q = 0.5 * (a + b) + beside;
+    mesh.insert(mesh.end(), {{a, q, top}, {q, b, top}, {a, b, q}});
+  }
+  return mesh;
+}
+
+TEST(ThinWalls, TellsOfNoneBehindATriangleThatRoundingMade) {
+  for (int i = 0; i < 16; ++i) {
+    const double turn = 2 * std::numbers::pi * i / 16;
+    const brep::Model part(partOf(pyramid(1e-8 * Vector3d(std::cos(turn), std::cos(turn), std::sin(turn)))));
+    const auto wall = thinnestWall(part, 0.005);
+    EXPECT_FALSE(wall) << wall->thickness << " m, direction " << i;
+  }
 }
 
 TEST(ThinWalls, SaysNothingOfAPressThatIsNone) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "control/client.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <pthread.h>
+#include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -95,6 +97,21 @@ TEST(Client, KeepsWhatComesByItself) {
     EXPECT_EQ(*heard, event);
   }
   EXPECT_FALSE(client.receiveLine(kShort));
+}
+
+TEST(Client, TellsADaemonThatClosesFromOneThatHasEnded) {
+  Daemon daemon;
+  const std::string name = daemon.file.substr(0, daemon.file.size() - 5) + ".lock";
+  Descriptor lock(open(name.c_str(), O_RDWR | O_CREAT, 0600));
+  ASSERT_EQ(flock(lock.get(), LOCK_EX), 0);
+  Client client = connectTo(daemon);
+  daemon.line = Descriptor();
+  EXPECT_NE(client.ask("one", kLong).error().find("but runs on"), std::string::npos);
+  Client other = connectTo(daemon);
+  daemon.line = Descriptor();
+  lock = Descriptor();  // as the daemon ends
+  EXPECT_NE(other.ask("two", kLong).error().find("has ended without an answer"), std::string::npos);
+  unlink(name.c_str());
 }
 
 TEST(Client, WaitsOnThroughTheSignalsOfItsProgram) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -214,6 +215,19 @@ TEST(CoarseMesh, AThousandGrainsBecomeFewTriangles) {
     mesh.add(near(), near(), near());
   }
   reduced(mesh, 100);
+}
+
+TEST(CoarseMesh, MoreTrianglesOfDustAreNotFewer) {
+  Mesh mesh;
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> place(0, 0.1), small(-1e-4, 1e-4);
+  for (int i = 0; i < 1000; ++i) {
+    std::array<Vector3d, 4> p;
+    const Vector3d middle(place(random), place(random), place(random));
+    for (Vector3d& corner : p) corner = middle + Vector3d(small(random), small(random), small(random));
+    for (size_t k = 0; k < 4; ++k) mesh.add(p[k], p[(k + 1) % 4], p[(k + 2) % 4]);
+  }
+  for (const size_t most : {500, 1000, 2000, 3000}) EXPECT_GT(reduced(mesh, most).indices.size() / 3, most / 2);
 }
 
 TEST(CoarseMesh, CornersThatShareAVertexMakeNoDifference) {

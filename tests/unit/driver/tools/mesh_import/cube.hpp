@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "kernels/brep/part_check.hpp"
+#include "kernels/part/check.hpp"
 #include "mesh_import/mesh_part.hpp"
 
 namespace hapticd::importing {

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "cube.hpp"
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
 
 namespace hapticd::importing {
 namespace {

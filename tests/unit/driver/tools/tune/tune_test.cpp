@@ -70,6 +70,23 @@ TEST(Front, KeepsItsWordOverRandomCostsAndErrors) {
   }
 }
 
+TEST(Choice, NamesNoParameterWithoutEffect) {
+  std::vector<Candidate> all = {candidate(100, 1e-9), candidate(51, 1e-6), candidate(50, 1e-6), candidate(52, 1e-6),
+                                candidate(20, 1e-3)};
+  const std::vector<Choice> choices = {{0, 0, 0}, {1, 2, 0}, {1, 1, 1}, {1, 0, 0}, {2, 0, 0}};
+  for (size_t i = 0; i < all.size(); ++i) all[i].choice = choices[i];
+  markFront(all);
+  ASSERT_TRUE(all[3].on_front);
+  EXPECT_EQ(simplest(all, 2), 3u);
+  EXPECT_EQ(simplest(all, 0), 0u);
+  EXPECT_EQ(simplest(all, 4), 4u);
+  Goal goal;
+  goal.tolerance_m = 1e-5;
+  EXPECT_EQ(choose(all, goal), (std::pair<size_t, bool>(3, true)));
+  all[3].cost.p50_low_ns = 52.6, all[2].cost.p50_high_ns = 52.5;  // now it is clearly dearer
+  EXPECT_EQ(simplest(all, 2), 1u);
+}
+
 TEST(Cost, OfTwoMeasurementsIsAnIntervalThatHoldsBoth) {
   Cost cost = candidate(100, 0).cost;
   widen(cost, candidate(130, 0).cost);

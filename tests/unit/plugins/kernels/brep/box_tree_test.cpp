@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/brep/box_tree.hpp"
+#include "kernels/brep/tree/box_tree.hpp"
 
 #include <gtest/gtest.h>
 

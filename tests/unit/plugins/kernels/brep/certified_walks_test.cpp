@@ -10,8 +10,8 @@
 #include <numbers>
 #include <random>
 
-#include "kernels/brep/part_file.hpp"
-#include "kernels/brep/search.hpp"
+#include "kernels/brep/search/search.hpp"
+#include "kernels/part/file.hpp"
 #include "sample_solids.hpp"
 #include "sample_splines.hpp"
 #include "traced_shape/model_file.hpp"

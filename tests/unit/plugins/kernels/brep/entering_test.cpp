@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
 #include "sample_solids.hpp"
 #include "sample_splines.hpp"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
 #include "sample_solids.hpp"
 
 namespace hapticd::brep {

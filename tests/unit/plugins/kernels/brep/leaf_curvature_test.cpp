@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "kernels/brep/model.hpp"
-#include "kernels/brep/newton_feet.hpp"
+#include "kernels/brep/elements/newton_feet.hpp"
+#include "kernels/brep/model/model.hpp"
 #include "sample_splines.hpp"
 #include "traced_shape/model_file.hpp"
 

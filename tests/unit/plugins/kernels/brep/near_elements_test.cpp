@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "kernels/brep/near_places.hpp"
-#include "kernels/brep/search.hpp"
+#include "kernels/brep/search/near_places.hpp"
+#include "kernels/brep/search/search.hpp"
 #include "sample_splines.hpp"
 #include "traced_shape/model_file.hpp"
 

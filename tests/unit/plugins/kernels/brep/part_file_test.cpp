@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/brep/part_file.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -8,8 +6,9 @@
 #include <limits>
 #include <random>
 
-#include "kernels/brep/crc32c.hpp"
-#include "kernels/brep/part_sections.hpp"
+#include "kernels/part/crc32c.hpp"
+#include "kernels/part/file.hpp"
+#include "kernels/part/sections.hpp"
 #include "sample_parts.hpp"
 
 namespace hapticd::brep {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/brep/recognised_edges.hpp"
+#include "kernels/brep/elements/recognised_edges.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <iterator>
 #include <random>
 
-#include "kernels/brep/part_file.hpp"
-#include "kernels/brep/pieces.hpp"
-#include "kernels/brep/search.hpp"
+#include "kernels/brep/elements/pieces.hpp"
+#include "kernels/brep/search/search.hpp"
+#include "kernels/part/file.hpp"
 #include "sample_splines.hpp"
 
 namespace hapticd::brep {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Tests that the distance to the box of a row is never greater than the distance to a point of its element.
-#include "kernels/brep/row_box.hpp"
+#include "kernels/brep/tree/row_box.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "kernels/brep/model.hpp"
+#include "kernels/brep/model/model.hpp"
 #include "sample_solids.hpp"
 #include "sample_splines.hpp"
 #include "traced_shape/model_file.hpp"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "kernels/brep/part.hpp"
+#include "kernels/part/part.hpp"
 
 namespace hapticd::brep::samples {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/brep/search.hpp"
+#include "kernels/brep/search/search.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kernels/brep/part_check.hpp"
+#include "kernels/part/check.hpp"
 #include "sample_parts.hpp"
 
 namespace hapticd::brep {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <random>
 
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
 #include "sample_solids.hpp"
 
 namespace hapticd::brep {

@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "kernels/brep/search.hpp"
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
+#include "kernels/brep/search/search.hpp"
 #include "kernels/trace/model.hpp"
 #include "sample_splines.hpp"
 #include "traced_shape/model_file.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// The size of parts whose control points and turned boxes reach farther than they do.
-#include "kernels/brep/tight_bounds.hpp"
+#include "kernels/brep/search/tight_bounds.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Tests contacts with parts, tick by tick.
-#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/contact/tracer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Tests loops of splines: which points are inside, and into how many pieces the loops are cut.
-#include "kernels/brep/trim.hpp"
+#include "kernels/brep/geometry/trim.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "kernels/brep/feet.hpp"
+#include "kernels/brep/elements/feet.hpp"
 #include "kernels/spline/refinement.hpp"
 #include "sample_splines.hpp"
 

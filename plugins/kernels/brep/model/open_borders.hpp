@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+/// Finds where the bodies of a part are open: the borders that their free edges form.
+#pragma once
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "kernels/part/part.hpp"
+
+namespace hapticd::brep {
+
+/// Free edges that hang together.
+struct OpenBorder {
+  std::size_t edges = 0;
+  std::uint32_t body = 0;
+  Eigen::AlignedBox3d box;  ///< [m] around the edges, in the frame of the body
+};
+
+/// [main] Returns the borders of all bodies, the largest of each body first.
+std::vector<OpenBorder> openBorders(const Part& part);
+
+/// [main] Says where the largest of some borders are, such as "around (10, 0, 2) mm, 5 mm wide; around ...". The
+/// coordinates are those of the body.
+std::string placesOf(const std::vector<OpenBorder>& borders);
+
+}  // namespace hapticd::brep

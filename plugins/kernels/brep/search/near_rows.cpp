@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/brep/search/near_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kernels/brep/search/descent.hpp"
+
+namespace hapticd::brep {
+
+/// Adds up to four candidates to the rows, from number `first` on.
+template <class Choice>
+void NearRows<Choice>::add(const BodyTree& body, int first) noexcept {
+  const auto& shapes = body.template shapes<Shape>();
+  const auto at = static_cast<std::size_t>(first / 4);
+  const int last = std::min(first + 4, rows_) - 1;
+  const auto shape = [&](int lane) -> const Shape& {
+    return shapes[static_cast<std::size_t>(candidates_[static_cast<std::size_t>(std::min(first + lane, last))].row)];
+  };
+  for (int i = first; i <= last; ++i)
+    children_[static_cast<std::size_t>(i)] = candidates_[static_cast<std::size_t>(i)].child;
+  known_[at] = Float4{};
+  if constexpr (std::is_same_v<Shape, RowDisc>) {
+    fours_[at] = fourOf(shape(0), shape(1), shape(2), shape(3));
+    for (int lane = last - first + 1; lane < 4; ++lane) putNothing(lane, fours_[at]);
+  } else {
+    fours_[at] = emptyFour(Shape{});
+    for (int lane = 0; lane <= last - first; ++lane) put(shape(lane), lane, fours_[at]);
+  }
+}
+
+/// Adds a shape to the candidates, if it is within reach. Returns false if there are too many.
+template <class Choice>
+bool NearRows<Choice>::consider(const Candidate& next, double reach2, double& beyond2) noexcept {
+  const auto bound = static_cast<double>(next.bound2);
+  if (!(bound <= reach2)) {
+    beyond2 = std::min(beyond2, bound);
+    return true;
+  }
+  if (candidate_count_ == Limits::kMostCandidates) return false;
+  candidates_[static_cast<std::size_t>(candidate_count_++)] = next;
+  return true;
+}
+
+/// Considers the discs of the rows of a mesh, four at once.
+template <class Choice>
+bool NearRows<Choice>::considerDiscs(const BodyTree& body, const BoxProbe& probe, double reach2,
+                                     double& beyond2) noexcept {
+  const Float4 limit = Float4{} + roundedDown(reach2);
+  Float4 beyond = kEndless4;
+  const int count = rows_of_tree_count_;
+  for (int r = 0; r < count; ++r) {
+    const Candidate& row = rows_of_tree_[static_cast<std::size_t>(r)];
+    __builtin_prefetch(&body.discs[static_cast<std::size_t>(row.row)]);
+    __builtin_prefetch(&body.elements[BoxTree::rowOf(row.child).first]);
+  }
+  for (int r = 0; r < count; r += 4) {
+    if (candidate_count_ > Limits::kMostCandidates - 4) return false;
+    const Candidate* const four = &rows_of_tree_[static_cast<std::size_t>(r)];
+    const auto disc = [&](int i) -> const RowDisc& {
+      return body.discs[static_cast<std::size_t>(four[r + i < count ? i : 0].row)];
+    };
+    const Float4 boxes{four[0].bound2, four[1].bound2, four[2].bound2, four[3].bound2};
+    const Float4 discs = rowDistances(fourOf(disc(0), disc(1), disc(2), disc(3)), probe);
+    const Test4 used = Test4{0, 1, 2, 3} < Test4{} + (count - r);
+    const Float4 bounds = discs > boxes ? discs : boxes;
+    const Test4 within = (bounds <= limit) & used;
+    beyond = lesser(within | ~used ? kEndless4 : bounds, beyond);
+    for (int i = 0; i < 4; ++i) {
+      candidates_[static_cast<std::size_t>(candidate_count_)] = {bounds[i], four[i].row, four[i].child};
+      candidate_count_ -= within[i];
+    }
+  }
+  beyond2 = std::min(beyond2, static_cast<double>(leastOf(beyond)));
+  return true;
+}
+
+/// Lists the rows of the tree whose boxes are within reach. It opens several boxes before it lists what is in them: so
+/// they come from memory together, and a processor need not know how long the list is to go on with the next. No branch
+/// depends on a distance.
+template <class Choice>
+bool NearRows<Choice>::openBoxes(const BodyTree& body, const BoxProbe& probe, double reach2, double& beyond2) noexcept {
+  const Float4 limit = Float4{} + roundedDown(reach2);
+  constexpr int kAtOnce = 4;
+  Float4 beyond = kEndless4;
+  std::array<std::int32_t, Limits::kMostNodes + 4 * kAtOnce> nodes;
+  nodes[0] = 0;  // the root
+  int count = 1, rows = 0;
+  for (int next = 0; next < count;) {
+    const int last = std::min(next + kAtOnce, count) - 1;
+    const BoxNode* open[kAtOnce];
+    Float4 bounds[kAtOnce];
+    Test4 within[kAtOnce];
+    for (int k = 0; k < kAtOnce; ++k)
+      open[k] = &body.tree.node(nodes[static_cast<std::size_t>(std::min(next + k, last))]);
+    for (int k = 0; k < kAtOnce; ++k) {
+      bounds[k] = boxDistances(*open[k], probe);
+      const Test4 near = bounds[k] <= limit;
+      beyond = lesser(near ? kEndless4 : bounds[k], beyond);
+      within[k] = near & (Test4{} + (next + k <= last ? -1 : 0));
+    }
+    next = last + 1;
+    for (int k = 0; k < kAtOnce; ++k)
+      for (std::size_t i = 0; i < 4; ++i) {
+        const std::int32_t child = open[k]->child[i], is_row = child >> 31;  // -1 if it is a row
+        nodes[static_cast<std::size_t>(count)] = child;
+        rows_of_tree_[static_cast<std::size_t>(rows)] = {bounds[k][i], open[k]->row[i], child};
+        count -= within[k][i] & ~is_row;
+        rows -= within[k][i] & is_row;
+      }
+    if (count > Limits::kMostNodes || rows > Limits::kMostRowsOfTree) return false;
+    for (int k = kAtOnce; k < 2 * kAtOnce; ++k)
+      body.fetchAhead(nodes[static_cast<std::size_t>(std::min(next + k, count - 1))], 0);
+  }
+  rows_of_tree_count_ = rows;
+  beyond2 = std::min(beyond2, static_cast<double>(leastOf(beyond)));
+  return true;
+}
+
+/// Considers each element of a row of the tree.
+template <class Choice>
+bool NearRows<Choice>::considerRow(const BodyTree& body, const BoxProbe& probe, const Candidate& row, double reach2,
+                                   double& beyond2) noexcept {
+  const auto boundOf = [&](std::int32_t shape) {
+    return std::max(row.bound2, rowDistance(body.template shapes<Shape>()[static_cast<std::size_t>(shape)], probe));
+  };
+  const ElementRow elements = BoxTree::rowOf(row.child);
+  looks_ += static_cast<int>(elements.count);
+  if (looks_ > Limits::kMostLooks) return false;
+  for (std::uint32_t i = elements.first; i < elements.first + elements.count; ++i) {
+    const auto place = static_cast<std::int32_t>(i);
+    if (!consider({boundOf(place), place, BoxTree::codeOf({i, 1})}, reach2, beyond2)) return false;
+  }
+  return true;
+}
+
+/// Collects the rows within reach as candidates. `beyond2` is lowered to the least bound of all other rows.
+template <class Choice>
+bool NearRows<Choice>::collect(const BodyTree& body, const Eigen::Vector3d& p, double reach2,
+                               double& beyond2) noexcept {
+  const BoxProbe probe(body.tree, p);
+  candidate_count_ = looks_ = 0;
+  if constexpr (std::is_same_v<Shape, RowDisc>)
+    return openBoxes(body, probe, reach2, beyond2) && considerDiscs(body, probe, reach2, beyond2);
+  std::array<std::int32_t, BoxTree::kMaxStack> stack;
+  int depth = 0, nodes = 0;
+  stack[static_cast<std::size_t>(depth++)] = 0;
+  while (depth > 0) {
+    if (++nodes > Limits::kMostNodes) return false;
+    const BoxNode& node = body.tree.node(stack[static_cast<std::size_t>(--depth)]);
+    const Float4 bounds = boxDistances(node, probe);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::int32_t child = node.child[i];
+      if (!(static_cast<double>(bounds[i]) <= reach2)) {
+        beyond2 = std::min(beyond2, static_cast<double>(bounds[i]));
+      } else if (child >= 0) {
+        stack[static_cast<std::size_t>(depth++)] = child;
+        body.fetchAhead(child, 0);
+      } else if (!considerRow(body, probe, {bounds[i], node.row[i], child}, reach2, beyond2)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+template <class Choice>
+bool NearRows<Choice>::gather(const BodyTree& body, const Eigen::Vector3d& p, double reach) noexcept {
+  const double reach2 = reach * reach;
+  double beyond2 = std::numeric_limits<double>::infinity();
+  rows_ = 0;
+  center_ = p;
+  beyond_ = -1;
+  moved_ = 0;
+  if (!(reach2 < beyond2) || !collect(body, p, reach2, beyond2)) return false;
+  const auto begin = candidates_.begin(), end = begin + candidate_count_;
+  if (candidate_count_ > kMostRows) {
+    const auto last = begin + kMostRows;
+    std::nth_element(begin, last, end, [](const Candidate& a, const Candidate& b) {
+      return a.bound2 < b.bound2 || (a.bound2 == b.bound2 && a.row < b.row);
+    });
+    beyond2 = std::min(beyond2, static_cast<double>(last->bound2) * (1 - 1e-7));
+  }
+  rows_ = std::min(candidate_count_, kMostRows);
+  for (int i = 0; i < rows_; i += 4) add(body, i);
+  beyond_ = std::sqrt(beyond2);
+  return true;
+}
+
+template class NearRows<ElementLimits>;
+template class NearRows<TriangleLimits>;
+
+}  // namespace hapticd::brep
