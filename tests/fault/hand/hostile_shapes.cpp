@@ -90,6 +90,42 @@ struct Failing : hapticd::Shape {
   }
 };
 
+/// A plate on a spring, 0.1 kg, that gives way to a press, or comes against it, since its force has the wrong sign.
+struct Yielding : hapticd::Shape {
+  bool comes = false;
+  double height = 0, speed = 0, push = 0;  // [m], [m/s], [N] on the hand in the last step
+  static constexpr double kWall = 500, kSpring = 50, kDrag = 5, kMass = 0.1;
+  static constexpr hapticd::ShapeInfo kInfo{
+      "org.hapticd.test.yielding", "yielding", "1.0.0", "MIT", "Gives way.", HSP_C_MOVES};
+  static constexpr auto fields() {
+    return std::array{Fields<Yielding>::boolean("comes", &Yielding::comes, false, "It comes against the hand.")};
+  }
+  void activate(const hsp_activation&, hsp_report& report) {
+    report.max_stiffness = kWall;
+    report.size_m = 0.1;
+    report.flags |= HSP_R_MOVES | HSP_R_PUSHES;
+  }
+  hsp_status step(const hsp_step& step) noexcept HSP_RT {
+    const double before = height;
+    speed += step.dt_s / kMass * ((comes ? push : -push) - kSpring * height - kDrag * speed);
+    height += step.dt_s * speed;
+    step.pose->position[1] += height - before;
+    step.pose->linear[1] = speed;
+    push = 0;
+    for (uint32_t i = 0; i < step.count; ++i) {
+      const hsp_probe& in = *HSP_AT(const hsp_probe, step.in, step.in_stride, i);
+      hsp_contact& out = *HSP_AT(hsp_contact, step.out, step.out_stride, i);
+      if ((in.flags & HSP_IN_INVALID) != 0) continue;
+      out.depth_m = height - before - in.position[1];
+      out.flags = HSP_OUT_TRACED | (out.depth_m > 0 ? HSP_OUT_CONTACT : 0);
+      out.normal[1] = 1;
+      out.point[0] = in.position[0], out.point[2] = in.position[2];
+      if (out.depth_m > 0) push += out.force[1] = kWall * out.depth_m;
+    }
+    return HSP_OK;
+  }
+};
+
 /// A floor at y = 0 with the wrong sign, which may say that it only pushes; or with the right one and no depth.
 struct Pulling : hapticd::Shape {
   double stiffness = 800;
@@ -137,4 +173,4 @@ struct Shallow : hapticd::Shape {
 
 }  // namespace
 
-HAPTICD_SHAPES(Still, Kicking, Failing, Pulling, Shallow)
+HAPTICD_SHAPES(Still, Kicking, Failing, Pulling, Shallow, Yielding)

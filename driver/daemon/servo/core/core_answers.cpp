@@ -70,6 +70,12 @@ void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, con
   model.pull = Pull{-1, inside ? out.depth_m : -1, jump};
 }
 
+/// Returns where the motion of a model in this step has carried a place of it, in the world frame.
+Vector3d carried(const ModelState& model, const Vector3d& from) noexcept HSP_RT {
+  const Vector3d in_model = model.before.R_world_model.transpose() * (from - model.before.origin_world);
+  return model.frame.R_world_model * in_model + model.frame.origin_world;
+}
+
 }  // namespace
 
 /// Reduces force and torque of the answer to this probe to what the claim allows, and returns which of them was larger.
@@ -132,6 +138,9 @@ ShapeFault Core::checkAnswer(ModelState& model, uint32_t index, double dt, const
   else
     model.guard.enter(fault);
   if (fault == ShapeFault::kNone) fault = holdToClaims(model, index, dt);
+  constexpr int kTooFast = 3;
+  if (fault == ShapeFault::kNone && moves_itself && runsAway(model, index, dt))
+    fault = model.guard.strike(ShapeFault::kRunsAway, kTooFast);
   if (fault == ShapeFault::kBadStatus && model.failed_status == HSP_OK) model.failed_status = model.status;
   if (fault == ShapeFault::kLost) {
     model.shape->reset();
@@ -159,17 +168,33 @@ bool Core::pulls(ModelState& model) noexcept HSP_RT {
   return false;
 }
 
+/// Returns the place of a model on which its force of the last tick acts.
+Vector3d Core::touchedPlace(uint32_t index, uint32_t probe) const noexcept HSP_RT {
+  const Contact& held = contacts_[size_t{index} * probe_count_ + probe];
+  return held.traced ? Vector3d(ConstMap(held.world.point)) : last_position_[probe];
+}
+
+/// Returns true if a place that pushes moves faster than the fastest tip. A body that comes against the hand, since its
+/// force has the wrong sign or its spring is too stiff for its integrator, becomes ever faster, and would push with all
+/// that the arm may.
+bool Core::runsAway(const ModelState& model, uint32_t index, double dt) const noexcept HSP_RT {
+  if (!(dt > 0)) return false;
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    if (ConstMap(contacts_[size_t{index} * probe_count_ + i].world.force).isZero(0)) continue;
+    const Vector3d from = touchedPlace(index, i);
+    if ((carried(model, from) - from).norm() > settings_.max_probe_speed * dt) return true;
+  }
+  return false;
+}
+
 /// Adds the work that a moving model did on the probe: the force of the last tick times the motion of the surface since
 /// then.
 void Core::recordMotion(const ModelState& model, uint32_t index) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
-    const Contact& held = contacts_[size_t{index} * probe_count_ + i];
-    const ConstMap force(held.world.force);
+    const ConstMap force(contacts_[size_t{index} * probe_count_ + i].world.force);
     if (force.isZero(0)) continue;
-    const Vector3d from = held.traced ? Vector3d(ConstMap(held.world.point)) : last_position_[i];
-    const Vector3d in_model = model.before.R_world_model.transpose() * (from - model.before.origin_world);
-    const Vector3d to = model.frame.R_world_model * in_model + model.frame.origin_world;
-    exchanges_[i].supplied += force.dot(to - from);
+    const Vector3d from = touchedPlace(index, i);
+    exchanges_[i].supplied += force.dot(carried(model, from) - from);
   }
 }
 
