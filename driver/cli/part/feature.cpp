@@ -57,9 +57,10 @@ void addInside(const Model& model, const brep::Placement& place, std::uint32_t i
   constexpr int kPieces = 32;
   const brep::Face& face = model.part().faces[index];
   spline::SurfacePoint at;
-  for (int i = 0; i <= kPieces * (kPieces + 2); ++i) {
-    const double u = face.lo[0] + (face.hi[0] - face.lo[0]) * (i % (kPieces + 1)) / kPieces;
-    const double v = face.lo[1] + (face.hi[1] - face.lo[1]) * (i / (kPieces + 1)) / kPieces;
+  for (int i = 0; i < (kPieces + 1) * (kPieces + 1); ++i) {
+    const int column = i % (kPieces + 1), row = i / (kPieces + 1);
+    const double u = face.lo[0] + (face.hi[0] - face.lo[0]) * column / kPieces;
+    const double v = face.lo[1] + (face.hi[1] - face.lo[1]) * row / kPieces;
     if (!model.face(index).trim.inside(u, v)) continue;
     model.geometry().surface(face.surface, u, v, at);
     box.extend(place.rotation * at.S + place.position);

@@ -66,8 +66,10 @@ void eachJointPlace(const record::Recording& recording, const scene::Scene& scen
   if (poses == nullptr) return;
   std::array<const record::Column*, 9> columns{};
   constexpr const char* kNames[] = {"model", "x", "y", "z", "qw", "qx", "qy", "qz", "tick"};
-  for (size_t i = 0; i < columns.size(); ++i)
-    if ((columns[i] = poses->find(kNames[i])) == nullptr) return;
+  for (size_t i = 0; i < columns.size(); ++i) {
+    columns[i] = poses->find(kNames[i]);
+    if (columns[i] == nullptr) return;
+  }
   for (uint64_t row = 0; row < poses->rows(); ++row) {
     const auto at = [&](size_t column) { return poses->number(row, *columns[column]); };
     const auto model = static_cast<size_t>(at(0));

@@ -79,8 +79,10 @@ std::vector<std::string> recordedOrders(const record::Recording& recording, cons
   if (orders == nullptr) return lines;
   std::array<const record::Column*, 5> columns{};
   constexpr const char* kNames[] = {"tick", "kind", "target", "param", "value"};
-  for (size_t i = 0; i < columns.size(); ++i)
-    if ((columns[i] = orders->find(kNames[i])) == nullptr) return lines;
+  for (size_t i = 0; i < columns.size(); ++i) {
+    columns[i] = orders->find(kNames[i]);
+    if (columns[i] == nullptr) return lines;
+  }
   const Names names(scene);
   TickTimes times(recording);
   for (uint64_t row = 0; row < orders->rows(); ++row) {

@@ -137,7 +137,7 @@ Verdict goesWithAPress(const Recipe& recipe, uint64_t) {
   constexpr double kDeep = 5e-4, kOutside = 5e-3;       // [m]
   constexpr double kPart = 1.2, kRoom = 2 * kLeastWay;  // of the first depth, for the error of an integrator; [m]
   int rested = 0;
-  const Verdict verdict = atEachPlace(recipe, [&](Subject& subject, const Place& place) {
+  Verdict verdict = atEachPlace(recipe, [&](Subject& subject, const Place& place) {
     subject.reset();
     const auto pose = settled(subject, place.foot + place.out * kOutside);
     if (!pose) return std::string();
@@ -182,7 +182,7 @@ Verdict contactsOfTheNewPose(const Recipe& recipe, uint64_t) {
   if (std::string wrong = classSaysSo(*made.subject); !wrong.empty()) return wrong;
   constexpr double kDeep = 5e-4;  // [m]
   Lag lag;
-  const Verdict verdict = atEachPlace(recipe, [&](Subject& subject, const Place& place) {
+  Verdict verdict = atEachPlace(recipe, [&](Subject& subject, const Place& place) {
     follow(subject, place.foot - place.out * std::min(kDeep, place.through / 2), lag);
     return std::string();
   });

@@ -72,6 +72,7 @@ test('a recording goes on where it was when the connection is back', async () =>
       const state = await page.evaluate(() => window.hapticdView.timeline.state);
       return !state.playing && !state.loop && state.speed === 0.25 && Math.abs(state.t - 4.5) < 5e-3;
     }, kPatience, 'the same place, paused');
+    await page.waitForFunction(() => window.hapticdView.now?.arms.every((arm) => arm.now)); // rows come after the place
     await until(async () => Math.abs((await look(page)).t - 4.5) < 5e-3, kPatience, 'its row');
     assert.deepEqual(page.wrong, []);
   } finally {
