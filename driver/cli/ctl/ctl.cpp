@@ -70,11 +70,8 @@ int show(const CtlArguments& options, const Result<std::string>& answer, const s
   return kWorked;
 }
 
-/// Sends a request and prints the answer. Triangles of a large part take the daemon some seconds, the more so if several
-/// drawings are tried.
-int send(const CtlArguments& options, const std::string& line) {
-  constexpr double kPatience = 60;  // [s]
-  return show(options, control::ask(socketOf(options), line, kPatience));
+int send(const CtlArguments& options, const std::string& line, double seconds = 10) {
+  return show(options, control::ask(socketOf(options), line, seconds));
 }
 
 /// Does `ctl add` and `ctl reload`. The scene and the files that it names are opened here, with the rights of the
@@ -131,7 +128,7 @@ int follow(const CtlArguments& options) {
   RealClock clock(0);
   uint64_t seen = 0;
   for (const char* word : {"vertices", "geometry"}) {  // if the model has no frames, the first request fails
-    const auto answer = client->ask(document::jsonLine({{"do", word}, {"model", options.model}}));
+    const auto answer = client->ask(document::jsonLine({{"do", word}, {"model", options.model}}), kDrawingPatience);
     const Json json = answer ? document::parseJson(*answer) : Json();
     if (!answer) return fail(kFailed, answer.error());
     if (!json.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + *answer);
@@ -189,11 +186,12 @@ const Command addRequest(const Command& parent, const char* word, const char* do
     build(json);
     awaitDaemon(*options);
     const bool scene = std::string(word) == "add" || std::string(word) == "reload";
-    const bool stops = std::string(word) == "stop";
+    const bool stops = std::string(word) == "stop", draws = std::string(word) == "geometry";
     exit_code = options->follow         ? follow(*options)
                 : !options->obj.empty() ? saveGeometry(socketOf(*options), json, options->obj)
                 : scene                 ? sendScene(*options, json)
                 : stops                 ? stop(*options, document::jsonLine(json))
+                : draws                 ? send(*options, document::jsonLine(json), kDrawingPatience)
                                         : send(*options, document::jsonLine(json));
   });
   return command;

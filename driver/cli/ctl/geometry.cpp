@@ -19,8 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kPatience = 60;  ///< [s] a part of tens of millions of triangles takes the daemon some seconds
-
 /// Reads numbers from the memory of an answer. Returns an empty list if it has fewer.
 template <class T>
 std::vector<T> readNumbers(int memory, std::size_t first, std::size_t count) {
@@ -60,7 +58,7 @@ int saveGeometry(const std::string& socket, Json request, const std::string& fil
   auto client = control::Client::connect(socket);
   if (!client) return fail(kFailed, client.error());
   request["as"] = "memory";
-  const auto reply = client->askForMore(document::jsonLine(request), kPatience);
+  const auto reply = client->askForMore(document::jsonLine(request), kDrawingPatience);
   if (!reply) return fail(kFailed, reply.error());
   const Json answer = document::parseJson(reply->line);
   if (!answer.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + reply->line);
