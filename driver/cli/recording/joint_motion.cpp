@@ -47,17 +47,6 @@ JointPlace JointMotion::next(const Vector3d& position, const Quaterniond& orient
   return place;
 }
 
-TickTimes::TickTimes(const record::Recording& recording) : ticks_(recording.stream("ticks")) {
-  if (ticks_ == nullptr) return;
-  tick_ = ticks_->find("tick"), time_ = ticks_->find("t");
-}
-
-double TickTimes::of(double tick) {
-  if (tick_ == nullptr || time_ == nullptr || ticks_->rows() == 0) return 0;
-  while (row_ + 1 < ticks_->rows() && ticks_->number(row_, *tick_) < tick) ++row_;
-  return ticks_->number(row_, *time_);
-}
-
 void eachJointPlace(const record::Recording& recording, const scene::Scene& scene,
                     const std::function<void(size_t, const JointMotion&, double, const JointPlace&)>& take) {
   std::vector<std::optional<JointMotion>> joints;

@@ -43,19 +43,6 @@ class JointMotion {
   double last_ = 0;
 };
 
-/// The time of ticks, which are asked for in their order.
-class TickTimes {
- public:
-  explicit TickTimes(const record::Recording& recording);
-  /// Returns the time of the tick [s] since the first one, or of the next tick that is in the recording.
-  double of(double tick);
-
- private:
-  const record::RecordedStream* ticks_;
-  const record::Column *tick_ = nullptr, *time_ = nullptr;
-  uint64_t row_ = 0;
-};
-
 /// [main] Calls `take` for each tick of each model with a joint, in the order of the ticks.
 /// @param take number of the model, its joint, number of the tick, place of the joint
 void eachJointPlace(const record::Recording& recording, const scene::Scene& scene,

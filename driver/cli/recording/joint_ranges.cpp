@@ -9,6 +9,7 @@
 #include <map>
 
 #include "cli/recording/joint_motion.hpp"
+#include "cli/recording/tick_times.hpp"
 
 namespace hapticd::cli {
 namespace {

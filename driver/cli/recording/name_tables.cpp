@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "cli/recording/joint_motion.hpp"
+#include "cli/recording/tick_times.hpp"
 
 namespace hapticd::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include <array>
 #include <cstdint>
 
-#include "cli/recording/joint_motion.hpp"
+#include "cli/recording/tick_times.hpp"
 #include "servo/core/order.hpp"
 
 namespace hapticd::cli {
