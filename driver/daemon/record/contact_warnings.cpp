@@ -55,9 +55,8 @@ std::string deepText(const ModelReport& model) {
   if (deepest * 1e-3 > kDeep && model.moves)  // nor is it a depth in mm
     return fmt::format(
         "{} reports a depth of {:.3g} m: its body runs away, so its force grows without bound; look for a wrong sign "
-        "of "
-        "what moves it (the force on the body is the opposite of the force on the probe) and for a spring that is too "
-        "stiff for its integrator; test it with {}",
+        "of what moves it (the force on the body is the opposite of the force on the probe) and for a spring that is "
+        "too stiff for its integrator; test it with {}",
         model.name, deepest, checkCommand(model));
   return fmt::format(
       "{} reports a depth of {:.3g} m, deeper than an arm reaches: depth_m must be in m (if it is in mm, the depth was "

@@ -288,8 +288,7 @@ Verdict noStep(const Recipe& recipe, uint64_t) {
           if (!entered || jump <= explained + kRoom) return std::string();
           return "the force jumps by " + text(jump) + " N within " + text(way * 1e6) +
                  " um where the surface is met; expected it to grow from 0 with the depth (a jump on purpose is "
-                 "claimed: "
-                 "HSP_R_JUMPS and max_jump)";
+                 "claimed: HSP_R_JUMPS and max_jump)";
         });
       },
       Time::kStands);

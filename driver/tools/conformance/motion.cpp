@@ -189,8 +189,7 @@ Verdict contactsOfTheNewPose(const Recipe& recipe, uint64_t) {
   if (!verdict.clean()) return verdict;
   if (lag.moved > 0 && !lag.tells_speed)
     return "its pose changes, but pose.linear and pose.angular are always 0; expected its velocities in the world "
-           "frame, "
-           "because probe.velocity is relative to the shape, and a damper would brake the wrong motion";
+           "frame, because probe.velocity is relative to the shape, and a damper would brake the wrong motion";
   if (lag.judged == 0) return skipped("it did not move where it was touched");
   if (2 * lag.late < lag.judged) return "";
   return "it moved by " + text(lag.way) + " m in a step, and its contact was off by " + text(lag.off) +
