@@ -10,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include "../../../plugins/kernels/brep/sample_meshes.hpp"
 #include "cube.hpp"
 #include "kernels/brep/contact/tracer.hpp"
 
@@ -17,27 +18,13 @@ namespace hapticd::importing {
 namespace {
 
 using Eigen::Vector3d;
-using Mesh = std::vector<std::array<Vector3d, 3>>;
+using Mesh = brep::samples::TriangleList;
 
 constexpr double kRadius = 0.03;  // [m]
 
 /// A ball of 512 triangles.
 Mesh ball() {
-  Mesh mesh;
-  for (const double x : {-1, 1})
-    for (const double y : {-1, 1})
-      for (const double z : {-1, 1}) {
-        const Vector3d a(x, 0, 0), b(0, y, 0), c(0, 0, z);
-        mesh.push_back(x * y * z > 0 ? std::array{a, b, c} : std::array{a, c, b});
-      }
-  for (int round = 0; round < 3; ++round) {
-    Mesh fine;
-    for (const auto& [a, b, c] : mesh) {
-      const Vector3d ab = (a + b).normalized(), bc = (b + c).normalized(), ca = (c + a).normalized();
-      fine.insert(fine.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-    }
-    mesh = fine;
-  }
+  Mesh mesh = brep::samples::unitBall();
   for (auto& triangle : mesh)
     for (Vector3d& p : triangle) p *= kRadius;
   return mesh;

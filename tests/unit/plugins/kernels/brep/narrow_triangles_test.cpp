@@ -30,21 +30,7 @@ Vector3d rounded(const Vector3d& p, double digit) {
 
 /// A ball of 512 triangles.
 Mesh ball(double digit) {
-  Mesh mesh;
-  for (const double x : {-1, 1})
-    for (const double y : {-1, 1})
-      for (const double z : {-1, 1}) {
-        const Vector3d a(x, 0, 0), b(0, y, 0), c(0, 0, z);
-        mesh.push_back(x * y * z > 0 ? std::array{a, b, c} : std::array{a, c, b});
-      }
-  for (int round = 0; round < 3; ++round) {
-    Mesh fine;
-    for (const auto& [a, b, c] : mesh) {
-      const Vector3d ab = (a + b).normalized(), bc = (b + c).normalized(), ca = (c + a).normalized();
-      fine.insert(fine.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-    }
-    mesh = fine;
-  }
+  Mesh mesh = samples::unitBall();
   for (auto& triangle : mesh)
     for (Vector3d& p : triangle) p = rounded(kBallRadius * p, digit);
   return mesh;

@@ -73,6 +73,26 @@ inline Part scatteredTriangles(std::mt19937& random) {
 /// The corners [m] of triangles, counter-clockwise seen from outside.
 using TriangleList = std::vector<std::array<Eigen::Vector3d, 3>>;
 
+/// Returns a ball of radius 1 m about the origin, of 512 triangles: an octahedron whose edges were halved three times.
+inline TriangleList unitBall() {
+  TriangleList mesh;
+  for (const double x : {-1, 1})
+    for (const double y : {-1, 1})
+      for (const double z : {-1, 1}) {
+        const Eigen::Vector3d a(x, 0, 0), b(0, y, 0), c(0, 0, z);
+        mesh.push_back(x * y * z > 0 ? std::array{a, b, c} : std::array{a, c, b});
+      }
+  for (int round = 0; round < 3; ++round) {
+    TriangleList fine;
+    for (const auto& [a, b, c] : mesh) {
+      const Eigen::Vector3d ab = (a + b).normalized(), bc = (b + c).normalized(), ca = (c + a).normalized();
+      fine.insert(fine.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+    }
+    mesh = fine;
+  }
+  return mesh;
+}
+
 /// Returns the closed part of a mesh whose triangles share corners with the same numbers.
 inline Part partOf(const TriangleList& mesh) {
   Part part;

@@ -26,6 +26,17 @@ RigidBody slab(double mass, double drag = 0, double tether = 0) {
   return RigidBody(law, Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero());
 }
 
+/// What a probe does with the slab's wall, which looks along -x.
+LastContact contactAt(const Vector3d& probe, const RigidBody& body, const contact::WallLaw& wall) {
+  LastContact last;
+  last.probe = probe;
+  last.point = body.position();
+  last.normal = -Vector3d::UnitX();
+  last.depth = probe.x() - body.position().x();
+  last.law = wall;
+  return last;
+}
+
 /// Growth of a body's amplitude over many steps between contacts of stiffness k and damping B, their force held.
 double growthWhenHeld(double mass, double k, double damping, double dt) {
   RigidBody body = slab(mass);
@@ -148,12 +159,7 @@ double tremorOfHand(double body_mass, const contact::WallLaw& wall, int window, 
       const PredictedContact press = predict(last, probe, estimate - body.linear().x(), body.linear(), dt);
       body.step({&press, press.force.isZero(0) ? size_t{0} : size_t{1}}, dt);
     }
-    last = {};
-    last.probe = probe;
-    last.point = body.position();
-    last.normal = -Vector3d::UnitX();
-    last.depth = x - body.position().x();
-    last.law = wall;
+    last = contactAt(probe, body, wall);
     forces.insert(forces.begin(), contact::wallForce(wall, last.depth, estimate - body.linear().x()).force);
     forces.pop_back();
     const double rest = kTarget - forces.back() / kHandSpring;
@@ -217,12 +223,7 @@ LetGo letGo(double mass, double tether, double rate) {
       const PredictedContact press = predict(last, probe, v - body.linear().x(), body.linear(), dt);
       body.step({&press, press.force.isZero(0) ? size_t{0} : size_t{1}}, dt);
     }
-    last = {};
-    last.probe = probe;
-    last.point = body.position();
-    last.normal = -Vector3d::UnitX();
-    last.depth = x - body.position().x();
-    last.law = wall;
+    last = contactAt(probe, body, wall);
     const double force = contact::wallForce(wall, last.depth, v - body.linear().x()).force;
     (i < ticks / 2 ? forces.held : forces.largest_after) =
         i < ticks / 2 ? force : std::fmax(forces.largest_after, force);
@@ -256,12 +257,7 @@ TEST(Coupling, WhatTheProbeLosesTheBodyGains) {
       const PredictedContact press = predict(last, probe, 0, body.linear(), 2.5e-4);
       body.step({&press, press.force.isZero(0) ? size_t{0} : size_t{1}}, 2.5e-4);
     }
-    last = {};
-    last.probe = probe;
-    last.point = body.position();
-    last.normal = -Vector3d::UnitX();
-    last.depth = x - body.position().x();
-    last.law = wall;
+    last = contactAt(probe, body, wall);
     const double force = contact::wallForce(wall, last.depth, 0).force;
     v -= 2.5e-4 * force;
     x += 2.5e-4 * v;
