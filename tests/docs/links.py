@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Every relative link of a Markdown page leads to a file that is installed with it, every anchor to a heading, and every
-page of driver/docs that a source names exists.
+"""Every relative link of a Markdown page leads to a file that is installed with it, every anchor to a heading, every
+page of driver/docs that a source names exists, and the index of the guides lists each page.
 
 Usage: links.py FOLDER   a source folder, or an installation's share/doc/hapticd
 Exit code 1: a link leads nowhere; all of them are printed as file:line."""
@@ -61,6 +61,15 @@ def broken_mentions(file, root):
                 yield f"{file.relative_to(root)}:{number}: {mention}: no such file"
 
 
+def unlisted(docs):
+    """Pages that the index of the guides does not list."""
+    index = docs / "README.md"
+    listed = {(docs / target.partition("#")[0]).resolve() for target in LINK.findall(index.read_text())}
+    for page in [*docs.glob("*.md"), *docs.glob("reports/*.md")]:
+        if page != index and page.resolve() not in listed:
+            yield f"{index}: does not list {page.relative_to(docs)}"
+
+
 def report(files, broken):
     pages = sum(f.suffix == ".md" for f in files)
     if pages < 20:
@@ -82,6 +91,7 @@ def main(root):
     pages = [f for f in files if f.suffix == ".md" and "/page/" not in str(f)]
     broken = [b for page in pages for b in broken_links(page, root)]
     broken += [b for file in files if file.name != "CHANGELOG.md" for b in broken_mentions(file, root)]
+    broken += unlisted(root / "driver/docs")
     return report(files, broken)
 
 

@@ -5,6 +5,7 @@ Usage: readme_readers.py HAPTICD SOURCE_DIR CXX       exit 1 when one is off
 """
 import json
 import os
+import pathlib
 import re
 import subprocess
 import sys
@@ -17,6 +18,7 @@ from e2e import check, finish
 HAPTICD, SOURCE, CXX = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), sys.argv[3]
 README = open(os.path.join(SOURCE, "README.md")).read()
 SHAPES = open(os.path.join(SOURCE, "driver/docs/writing_a_shape.md")).read()
+SCENES = open(os.path.join(SOURCE, "driver/docs/scenes.md")).read()
 
 
 def run(*command, environment=None, **more):
@@ -140,6 +142,22 @@ def twin_of_an_arm(folder):
     check("and presses the sphere", code == 0 and touched and touched > 100, (touched, said))
 
 
+def own_scene(folder):
+    """The scenes that the README and the guide to scenes ask a reader to save."""
+    for name, page in (("README", README), ("guide", SCENES)):
+        scene = re.search(r"Save this as `config/scenes/mine.yaml`:\n\n((?:    .*\n)+)", page)[1]
+        file, report = os.path.join(folder, f"{name}.yaml"), os.path.join(folder, f"{name}.json")
+        open(file, "w").write(re.sub(r"^    ", "", scene, flags=re.M).replace("../", os.path.join(SOURCE, "config") + "/"))
+        code, said = run(HAPTICD, "check", file)
+        check(f"check has nothing against the scene of the {name}", code == 0 and "warning" not in said, said)
+        code, said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", "--report", report)
+        check("and its hand touches the teapot", code == 0 and json.load(open(report))["models"]["teapot"]["contact_ticks"] > 100, said)
+    shown = set(re.findall(r"`([\w/-]+)`", SCENES.split("## The scenes that ship")[1]))
+    folder = pathlib.Path(SOURCE, "config/scenes")
+    there = {str(file.relative_to(folder).with_suffix("")) for file in folder.rglob("*.yaml")}
+    check("the guide lists every scene that ships, and no other", there == shown, there ^ shown)
+
+
 CLIENT = r"""
 set -eu
 until hapticd ctl --name reader status >/dev/null 2>&1; do sleep 0.2; done
@@ -224,6 +242,7 @@ def own_arm(folder):
 
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
+    own_scene(folder)
     own_shape(folder)
     own_arm(folder)
     other_lines(folder)
