@@ -319,9 +319,9 @@ bool Server::send(Client& client) {
     next.descriptor = Descriptor();
     next.line.erase(0, static_cast<size_t>(sent));
     client.waiting -= static_cast<size_t>(sent);
+    client.since = 0;  // it reads, however slowly
     if (next.line.empty()) client.out.pop_front();
   }
-  client.since = 0;
   answerLines(client);  // lines that waited until earlier answers were sent
   return true;
 }

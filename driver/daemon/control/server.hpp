@@ -50,7 +50,7 @@ class Server {
   /// [bytes] most bytes that are kept for a client that does not read its answers
   static constexpr size_t kMaxWaiting = 1 << 20;
   static constexpr Nanoseconds kIdle = 2'000'000'000;  ///< [ns] a client idle for longer is dropped if another waits
-  /// [ns] longest time for a client to send the rest of a line, or to read its answers
+  /// [ns] longest time for a client to send the rest of a line, or to read nothing of its answers
   static constexpr Nanoseconds kPatience = 10'000'000'000;
 
   /// [main] Binds the socket; its owner and its group may connect. An old socket that no process serves is replaced. It
@@ -72,8 +72,8 @@ class Server {
     std::vector<Descriptor> given;  ///< descriptors that came with the lines in `in`, in their order
     std::list<Reply> out;           ///< lines to send, with their ends; a descriptor goes with its line's first byte
     size_t waiting = 0;             ///< [bytes] number of bytes in `out`
-    /// time since which the server waits for the rest of a line, or for the client to read an answer; 0: it waits for
-    /// neither
+    /// time since which the server waits for the rest of a line, or for the client to read more of an answer; 0: it
+    /// waits for neither
     Nanoseconds since = 0;
     Nanoseconds heard = 0;   ///< time when bytes were last received or sent
     bool closing = false;    ///< the connection ends when `out` has been sent

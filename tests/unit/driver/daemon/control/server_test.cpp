@@ -192,6 +192,25 @@ TEST(Server, DoesNotGrowForAClientThatNeverReads) {
   close(fd);
 }
 
+TEST(Server, LetsAClientReadALongAnswerSlowly) {
+  const std::string answer(Server::kMaxWaiting, 'a');
+  Rig rig("slow", answer);
+  const int fd = connectRaw(rig.file);
+  send(fd, "all\n", 4, MSG_NOSIGNAL);
+  std::string got;
+  std::vector<char> part(answer.size() / 64);
+  const Nanoseconds begin = monotonicNow();
+  while (monotonicNow() - begin < Server::kPatience * 5 / 4) {
+    const ssize_t now = recv(fd, part.data(), part.size(), 0);
+    ASSERT_GT(now, 0) << "the server hung up after " << got.size() << " bytes";
+    got.append(part.data(), static_cast<size_t>(now));
+    std::this_thread::sleep_for(std::chrono::nanoseconds(Server::kPatience / 50));
+  }
+  ASSERT_LT(got.size(), answer.size()) << "the client read too quickly for this test";
+  EXPECT_EQ(got + readAll(fd), answer + "\n");
+  close(fd);
+}
+
 TEST(Server, ServesManyClientsAndOutlivesThoseThatDie) {
   Rig rig("many");
   std::vector<int> idle;
