@@ -51,6 +51,7 @@ std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
                                          {"solids_inside", r.solids_inside},
                                          {"degenerate", r.degenerate},
                                          {"duplicates", r.duplicates},
+                                         {"back_to_back", r.back_to_back},
                                          {"flipped", r.flipped},
                                          {"touching_edges", r.touching},
                                          {"non_manifold_edges", r.non_manifold},

@@ -33,6 +33,7 @@ struct MeshReport {
   std::size_t solids_inside = 0;          ///< closed shells inside another one that face outward like it
   std::size_t degenerate = 0;             ///< triangles that were left out because they have no area
   std::size_t duplicates = 0;    ///< triangles that were left out because they have the same three corners as another
+  std::size_t back_to_back = 0;  ///< triangles that were left out in pairs that lay back to back on one another
   std::size_t flipped = 0;       ///< triangles that were reversed to agree with others, or to make the volume positive
   std::size_t touching = 0;      ///< edges with more than two triangles, between which inside and outside alternate
   std::size_t non_manifold = 0;  ///< other edges with more than two triangles

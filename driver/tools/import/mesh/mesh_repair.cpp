@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mesh_import/mesh_coincident.hpp"
+#include "mesh_import/mesh_duplicates.hpp"
 #include "mesh_import/mesh_nesting.hpp"
 #include "mesh_import/mesh_slivers.hpp"
 #include "mesh_import/mesh_touching.hpp"
@@ -26,8 +27,9 @@ class Repair {
   }
 
   void run() {
+    dropDuplicates(Flange::kKeepOneSide);
     dropEmpty();
-    dropDuplicates();
+    dropDuplicates(Flange::kLeaveOut);  // a fold whose sliver was taken in lies on itself
     edges_ = meshEdges(corners_);
     orient();
     edges_ = meshEdges(corners_);  // flipped triangles have other edge numbers
@@ -53,20 +55,10 @@ class Repair {
     report_.degenerate += std::erase_if(corners_, [this](const Corners& c) { return isEmptyTriangle(points_, c); });
   }
 
-  void dropDuplicates() {
-    std::vector<std::pair<Corners, std::uint32_t>> sorted;
-    sorted.reserve(corners_.size());
-    for (std::uint32_t i = 0; i < corners_.size(); ++i) {
-      Corners c = corners_[i];
-      std::sort(c.begin(), c.end());
-      sorted.emplace_back(c, i);
-    }
-    std::sort(sorted.begin(), sorted.end());
-    std::vector<char> drop(corners_.size(), 0);
-    for (std::size_t i = 1; i < sorted.size(); ++i)
-      if (sorted[i].first == sorted[i - 1].first) drop[sorted[i].second] = 1;
-    std::size_t at = 0;
-    report_.duplicates = std::erase_if(corners_, [&](const Corners&) { return drop[at++] != 0; });
+  void dropDuplicates(Flange flange) {
+    const LeftOut left = leaveOutDuplicates(corners_, flange);
+    report_.duplicates += left.duplicates;
+    report_.back_to_back += left.back_to_back;
   }
 
   /// Reverses triangles so that neighbours agree. In each shell the orientation of the majority is kept.

@@ -42,6 +42,7 @@ void tellCrossings(const Crossings& found, std::size_t count, const char* one, c
 void MeshReport::add(const MeshReport& body) {
   triangles += body.triangles, points += body.points, joined += body.joined, slivers += body.slivers;
   solids_inside += body.solids_inside, degenerate += body.degenerate, duplicates += body.duplicates;
+  back_to_back += body.back_to_back;
   flipped += body.flipped, touching += body.touching, non_manifold += body.non_manifold;
   unorientable += body.unorientable, free_edges += body.free_edges, holes += body.holes, shells += body.shells;
   closed = closed && body.closed;
@@ -63,6 +64,8 @@ std::vector<std::string> linesOf(const MeshReport& r) {
       "triangles without width were taken into their neighbours");
   say(r.degenerate, "triangle of zero area was left out", "triangles of zero area were left out");
   say(r.duplicates, "duplicate triangle was left out", "duplicate triangles were left out");
+  say(r.back_to_back / 2, "pair of triangles that lay back to back was left out",
+      "pairs of triangles that lay back to back were left out");
   say(r.flipped, "triangle was reversed", "triangles were reversed");
   say(r.touching, "edge has more than two triangles, those of solids that touch there",
       "edges have more than two triangles, those of solids that touch there");
