@@ -183,8 +183,7 @@ bool hasParameter(const hdv_class& module, const std::string& id) {
 /// its weight is compensated.
 void printDoubts(const scene::Device& description, const host::DeviceInstance& device) {
   constexpr const char* kVerified = "device.verified";
-  const bool tried = std::any_of(description.parameters.begin(), description.parameters.end(),
-                                 [](const scene::Value& value) { return value.id == kVerified && value.number != 0; });
+  const bool tried = numberIn(description.parameters, kVerified) != 0;
   if (hasParameter(device.description(), kVerified) && !tried) std::printf("  description not tried on hardware\n");
   const hdv_ext_kinematics& kinematics = device.kinematics();
   std::array<double, HDV_MAX_JOINTS> q, torque{};

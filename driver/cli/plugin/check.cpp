@@ -50,7 +50,7 @@ struct Outcome {
 void addModelOfOurs(const host::ClassInfo& info, Recipe& recipe) {
   const int index = info.indexOf("geometry");
   const bool ours = info.id.rfind("org.hapticd.", 0) == 0;
-  if (!ours || index < 0 || recipe.find("geometry") != nullptr) return;
+  if (!ours || index < 0 || givenIn(recipe.set, "geometry") != nullptr) return;
   const host::ParamInfo& param = info.params[static_cast<size_t>(index)];
   if (param.kind != HSP_PATH || (param.flags & HSP_P_REQUIRED) == 0) return;
   const bool soft = (info.flags & HSP_C_DEFORMS) != 0;

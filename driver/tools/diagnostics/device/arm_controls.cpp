@@ -172,8 +172,7 @@ std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog
   found.arm = loaded.device->name;
   found.opened = static_cast<bool>(opened);
   if (!opened) found.why = opened.error();
-  for (const scene::Value& value : loaded.device->parameters)
-    if (value.id == "usb.id") found.usb_id = value.text;
+  if (const scene::Value* id = givenIn(loaded.device->parameters, "usb.id")) found.usb_id = id->text;
   found.controls = controlsOf(*loaded.device, **device, found.opened);
   const uint32_t capabilities = found.opened ? (*device)->info().capabilities : 0;
   const auto wire = wireOf(*loaded.device, (*device)->kinematics().joint_count);

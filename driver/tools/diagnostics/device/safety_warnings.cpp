@@ -30,11 +30,7 @@ struct File {
   void warn(const Node& at, const std::string& key, const std::string& what) const {
     document::report(warnings, device.file.string(), at.line, at.column, key, what);
   }
-  double number(const char* id) const {
-    for (const scene::Value& value : device.parameters)
-      if (value.id == id) return value.number;
-    return 0;
-  }
+  double number(const char* id) const { return numberIn(device.parameters, id); }
 };
 
 void noForceLimit(const File& file, const host::DeviceInstance& arm) {
