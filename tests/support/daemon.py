@@ -13,10 +13,11 @@ from e2e import check, until
 class Daemon:
     """A run of a scene under its own name. Its sockets, its log and its other files are in the folder."""
 
-    def __init__(self, program, folder, name, scene, *options):
-        """Starts the daemon, and waits until it serves its socket. @param scene text of the scene @param options of `hapticd run`"""
+    def __init__(self, program, folder, name, scene, *options, **environment):
+        """Starts the daemon, and waits until it serves its socket or has ended. @param scene text of the scene @param options of
+        `hapticd run` @param environment more variables"""
         self.hapticd, self.folder, self.name, self.options = program, folder, name, options
-        self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
+        self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder, **environment)
         self.socket = self.file(name + ".sock")
         self.scene = self.file(name + ".yaml")
         with open(self.scene, "w") as file:
