@@ -38,18 +38,16 @@ class EventFinder {
   void forget() noexcept HSP_RT { count_ = 0; }  ///< [rt] removes the events of this tick
 
  private:
-  /// The state of a model one tick ago.
-  struct ModelNote {
-    std::array<double, link::kMaxProbes> touched = never();  ///< [s] time when each probe was last inside
-    uint32_t level = 0;
-    ShapeFault trouble = ShapeFault::kNone;
-    bool leaving = false;
-    uint64_t refused = 0;
-    double refused_told = -kRefusedPeriod;
-  };
   struct RefusedNote {
     uint64_t refused = 0;
     double refused_told = -kRefusedPeriod;
+  };
+  /// The state of a model one tick ago.
+  struct ModelNote : RefusedNote {
+    std::array<double, link::kMaxProbes> touched = never();  ///< [s] time when each probe was last inside
+    uint32_t level = 0;
+    ShapeFault fault = ShapeFault::kNone;
+    bool leaving = false;
   };
   struct ArmNote : RefusedNote {  // its own counts are for the leader of the hand, `pushes` for the pushing programs
     Fault fault = Fault::kNone;

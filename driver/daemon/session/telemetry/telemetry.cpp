@@ -167,7 +167,7 @@ void Telemetry::recordModels(double dt, const Core& core, const std::vector<std:
     if (depth > -HUGE_VAL && model.status >= HSP_OK) models_[index].addFoot(held, model.status == HSP_DEGRADED);
     // The force with which a model in trouble fades out is not its answer, so it is not counted.
     const bool any = odd.untraced + odd.depthless + odd.outside + odd.pull > 0;
-    if (any && pushed && model.status >= HSP_OK && !model.guard.quarantined()) recordImproper(index, odd);
+    if (any && pushed && model.status >= HSP_OK && !model.guard.silenced()) recordImproper(index, odd);
     recordArms(index, dt, core, arms);
     if (pushed) recordWork(index, core, arms);
     if (depth > -HUGE_VAL && (row.model == UINT32_MAX || depth > row.depth_m)) {
