@@ -52,7 +52,7 @@ void EventFinder::order(const Order& order) noexcept HSP_RT {
   }
 }
 
-void EventFinder::tick(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+void EventFinder::tick(double t, const Core& core, const Arms& arms) noexcept HSP_RT {
   if (t - last_t_ >= kStalled) add(HAPTICD_STALLED, -1, -1, 0, t - last_t_);
   last_t_ = t;
   if (leaving_ > 0) findLeft(core);

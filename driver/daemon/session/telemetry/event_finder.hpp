@@ -31,7 +31,7 @@ class EventFinder {
   /// [rt] Called for each order that this tick obeys.
   void order(const Order& order) noexcept HSP_RT;
   /// [rt] Called after a tick at t [s]: finds its events.
-  void tick(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+  void tick(double t, const Core& core, const Arms& arms) noexcept HSP_RT;
 
   /// [rt] Returns the events of this tick, not yet numbered; valid until forget().
   std::span<const hapticd_event> found() const noexcept { return {found_.data(), count_}; }
