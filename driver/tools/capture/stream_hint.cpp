@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstdio>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -66,10 +67,7 @@ std::string framingOf(const Header& header) {
 
 /// Returns true if a report has a checksum, constant or firmware number, which would be wrong at another place.
 bool tells(const codec::Report& report) {
-  return std::any_of(report.fields.begin(), report.fields.end(), [](const codec::Field& field) {
-    return field.role == codec::Role::kChecksum || field.role == codec::Role::kConstant ||
-           field.role == codec::Role::kFirmware;
-  });
+  return std::any_of(report.fields.begin(), report.fields.end(), std::mem_fn(&codec::Field::judges));
 }
 
 /// Returns the number of bits of a report that are right by chance at a wrong place: of its checksum, and of its
@@ -77,9 +75,7 @@ bool tells(const codec::Report& report) {
 double tellingBits(const codec::Report& report) {
   double bits = 0;
   for (const codec::Field& field : report.fields)
-    if (field.role == codec::Role::kChecksum || field.role == codec::Role::kConstant ||
-        field.role == codec::Role::kFirmware)
-      bits += field.bits;
+    if (field.judges()) bits += field.bits;
   return bits;
 }
 

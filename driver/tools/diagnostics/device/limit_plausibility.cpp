@@ -117,11 +117,7 @@ void checkCarried(const Bounds& of) {
 /// Warns of admittance control on an arm whose wire format has no measured torques or no references for joints.
 void checkCompliance(const Bounds& of, const codec::Wire& wire) {
   if (!of.device.admittance) return;
-  const auto has = [](const codec::Report& report, codec::Role role) {
-    return std::any_of(report.fields.begin(), report.fields.end(),
-                       [role](const auto& one) { return one.role == role; });
-  };
-  const bool measures = has(wire.input, codec::Role::kTorque), follows = has(wire.output, codec::Role::kReference);
+  const bool measures = wire.input.has(codec::Role::kTorque), follows = wire.output.has(codec::Role::kReference);
   if (!measures || !follows)
     of.warn({"admittance"},
             fmt::format(
