@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include "base/counted.hpp"
 #include <vector>
 
 #include "cli/support/colour.hpp"
@@ -100,9 +101,8 @@ int sum(const std::vector<Outcome>& outcomes, const ExamineArguments& options, c
   else if (skipped > 0)
     rest = ", " + std::to_string(skipped) + " skipped";
   if (!options.json)
-    std::printf("%zu test%s, %d failed%s%s\n", run, run == 1 ? "" : "s", failed,
-                warned == 0 ? "" : (", " + std::to_string(warned) + (warned == 1 ? " warning" : " warnings")).c_str(),
-                rest.c_str());
+    std::printf("%s, %d failed%s%s\n", counted(run, "test").c_str(), failed,
+                warned == 0 ? "" : (", " + counted(static_cast<uint64_t>(warned), "warning")).c_str(), rest.c_str());
   return failed;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
+#include "base/counted.hpp"
 #include "cli/plugin/file.hpp"
 #include "cli/plugin/set_option.hpp"
 #include "cli/support/colour.hpp"
@@ -307,7 +308,7 @@ int sum(const std::vector<Outcome>& outcomes, size_t not_run, const ConformanceA
   if (options.json)
     std::printf("%s\n", all.dump(2).c_str());
   else
-    std::printf("%zu %s, %zu failed%s\n", outcomes.size(), outcomes.size() == 1 ? "test" : "tests", failed,
+    std::printf("%s, %zu failed%s\n", counted(outcomes.size(), "test").c_str(), failed,
                 not_run > 0 ? (", " + std::to_string(not_run) + " not run").c_str() : "");
   return failed == 0 ? kWorked : kFailed;
 }

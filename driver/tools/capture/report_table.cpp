@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "base/counted.hpp"
 #include "capture/resync.hpp"
 #include "codec/framer.hpp"
 
@@ -61,11 +62,6 @@ std::string whyWrong(const Field& field, std::span<const uint8_t> body) {
     default:
       return "the field" + at + " is not a number";
   }
-}
-
-/// Returns a count with its noun, such as "1 report" or "3 reports".
-std::string counted(size_t count, const char* what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
 class Reader {

@@ -9,6 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "base/counted.hpp"
+
 namespace hapticd::capture {
 namespace {
 
@@ -134,8 +136,8 @@ std::string beginHint(const codec::Wire& wire, const Bytes& bytes, const Decoded
                            " on, " + howMany(found[0]) + " are good; ";
   if (mark != fields.end())
     return told + "give " + framingOf({static_cast<uint8_t>(mark->code), before}) + ", and the reports are found\n";
-  return told + "leave out the first " + std::to_string(before) + (before == 1 ? " byte" : " bytes") + " (tail -c +" +
-         std::to_string(before + 1) + " FILE)\n";
+  return told + "leave out the first " + counted(before, "byte") + " (tail -c +" + std::to_string(before + 1) +
+         " FILE)\n";
 }
 
 /// Finds the size of reports, and where they begin, from a byte that they have in common.
