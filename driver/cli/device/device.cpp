@@ -78,11 +78,6 @@ Json listJson() {
   return {{"modules", modules["plugins"]}, {"unusable", modules["unusable"]}, {"files", files}, {"plugged_in", found}};
 }
 
-int printJson(const Json& json) {
-  std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
-  return kWorked;
-}
-
 int list() {
   const auto files = catalog().files(host::Kind::kDevice);
   std::printf("modules\n");

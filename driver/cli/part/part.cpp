@@ -284,7 +284,7 @@ int partInfo(const InfoArguments& options) {
     Json info = describe(part, bytes->size());
     addMeasures(info, std::move(part));
     if (options.json)
-      std::printf("%s\n", info.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+      printJson(info);
     else
       print(file, info);
   } catch (const brep::PartError& error) {

@@ -306,7 +306,7 @@ int sum(const std::vector<Outcome>& outcomes, size_t not_run, const ConformanceA
   const nlohmann::ordered_json all{
       {"file", options.file}, {"seed", options.seed}, {"failed", failed}, {"not_run", not_run}, {"tests", tests}};
   if (options.json)
-    std::printf("%s\n", all.dump(2).c_str());
+    printJson(all);
   else
     std::printf("%s, %zu failed%s\n", counted(outcomes.size(), "test").c_str(), failed,
                 not_run > 0 ? (", " + std::to_string(not_run) + " not run").c_str() : "");
