@@ -69,10 +69,7 @@ int check(const CheckArguments& options) {
     hand_left_out = hand_left_out || result.hand_left_out;
     bad_files += result.problems.empty() ? 0 : 1;
   }
-  if (options.json)
-    std::printf(
-        "%s\n",
-        Json{{"problems", problems}, {"files", files}}.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+  if (options.json) printJson({{"problems", problems}, {"files", files}});
   if (problems == 0) return kWorked;
   std::fflush(stdout);
   const size_t all = options.files.size();

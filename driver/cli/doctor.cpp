@@ -58,10 +58,7 @@ int doctor(const std::vector<std::string>& arms, bool json, double seconds) {
                      {"state", f.state},
                      {"consequence", f.consequence},
                      {"fix", f.fix}});
-    std::printf("%s\n",
-                nlohmann::ordered_json{{"ok", worst != Verdict::kFail}, {"verdict", word(worst)}, {"checks", all}}
-                    .dump(2)
-                    .c_str());
+    printJson({{"ok", worst != Verdict::kFail}, {"verdict", word(worst)}, {"checks", all}});
   }
   return static_cast<int>(worst);
 }

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <numeric>
 
+#include "base/counted.hpp"
 #include "document/correction.hpp"
 #include "document/node.hpp"
 #include "document/reader.hpp"
@@ -40,10 +41,6 @@ std::string printable(std::string text) {
   for (char& c : text)
     if (c < ' ' || c > '~') c = '?';
   return text;
-}
-
-std::string countText(size_t columns) {
-  return std::to_string(columns) + (columns == 1 ? " column" : " columns");
 }
 
 /// One field of a line, and the place where it begins.
@@ -158,7 +155,7 @@ class Parser {
       }
     const std::string meant = separators(fields, static_cast<size_t>(-1));
     problem(0, "",
-            (numbers ? countText(fields.size()) + ", expected " + expected()
+            (numbers ? counted(fields.size(), "column") + ", expected " + expected()
                      : "the header is \"" + printable(names.substr(0, 60)) + "\", expected " + expected()) +
                 meant);
     if (understood(fields)) return !numbers;
@@ -217,7 +214,8 @@ class Parser {
   void row(const std::vector<Field>& fields) {
     if (fields.size() != width_)
       return problem(0, "",
-                     countText(fields.size()) + ", expected " + std::to_string(width_) + separators(fields, width_) +
+                     counted(fields.size(), "column") + ", expected " + std::to_string(width_) +
+                         separators(fields, width_) +
                          (fields.size() > width_ ? "; write decimals with a point: 0.5, not 0,5" : ""));
     const size_t wrong_before = wrong_;
     const bool begun = take(fields[order_[0]], 0);
@@ -312,6 +310,13 @@ std::optional<CsvTable> readCsv(const std::filesystem::path& file, size_t max_by
                                 Problems& problems) {
   const auto text = readFile(file, max_bytes, problems);
   return text ? parseCsv(*text, file.string(), rules, problems) : std::nullopt;
+}
+
+std::string csvField(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted(1, '"');
+  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+  return quoted + '"';
 }
 
 }  // namespace hapticd::document

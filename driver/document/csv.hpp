@@ -48,4 +48,8 @@ std::optional<CsvTable> readSoundRows(const std::filesystem::path& file, size_t 
 std::optional<CsvTable> readCsv(const std::filesystem::path& file, size_t max_bytes, const CsvRules& rules,
                                 Problems& problems);
 
+/// [any] Returns a text as a field of a CSV file that others read (RFC 4180): in quotes if it has a comma, quote or
+/// line end.
+std::string csvField(const std::string& text);
+
 }  // namespace hapticd::document

@@ -2,8 +2,9 @@
 #include "document/foreign_file.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
+
+#include "base/file_ending.hpp"
 
 namespace hapticd::document {
 
@@ -26,13 +27,6 @@ constexpr Kind kKinds[] = {{".step", "ISO-10303-21", "a STEP file"},
                            {".obj", "", "a mesh (OBJ)"}};
 
 constexpr std::string_view kRecording = "\x89HDF";  ///< the first bytes of an HDF5 file
-
-std::string endingOf(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
 
 }  // namespace
 

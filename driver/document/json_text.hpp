@@ -18,4 +18,7 @@ nlohmann::ordered_json parseJsonOrThrow(std::string_view text);
 /// [any] Returns JSON as one line of text. Bytes that are not UTF-8 are replaced.
 std::string jsonLine(const nlohmann::ordered_json& json);
 
+/// [any] Returns JSON as indented lines of text, without the last line break. Bytes that are not UTF-8 are replaced.
+std::string jsonLines(const nlohmann::ordered_json& json);
+
 }  // namespace hapticd::document

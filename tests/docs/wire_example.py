@@ -4,7 +4,6 @@
 
 Usage: wire_example.py HAPTICD SOURCE_DIR       exit 1 when one is off
 """
-import binascii
 import csv
 import io
 import os

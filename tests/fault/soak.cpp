@@ -141,7 +141,7 @@ int soak(uint64_t ticks, unsigned seed) {
   outcome.killed = readers.stop();
   running = nullptr;
   outcome.grown = (static_cast<double>(os::residentBytes()) - static_cast<double>(memory)) / 1e6;
-  for (const ModelState& model : rig.world->core().models()) outcome.silenced += model.guard.quarantined() ? 1 : 0;
+  for (const ModelState& model : rig.world->core().models()) outcome.silenced += model.guard.silenced() ? 1 : 0;
   outcome.report = rig.telemetry->report({});
   outcome.allocations = outcome.report.servo_allocations - looked;
   return enoughCame(check, outcome) && check.bad == 0 && outcome.allocations == 0 && outcome.grown < 1 ? 0 : 1;

@@ -70,6 +70,8 @@ struct Field {
   Check check;        ///< method of a checksum
   /// Returns how many bytes the field touches, counted from `at`.
   size_t bytes() const noexcept { return (size_t{bit_skip} + bits + 7) / 8; }
+  /// True for a field that has a wrong value if the bytes are not this report.
+  bool judges() const noexcept { return role == Role::kChecksum || role == Role::kConstant || role == Role::kFirmware; }
 };
 
 /// All fields of one kind of report.
@@ -81,6 +83,13 @@ struct Report {
   bool whole = false;
   bool placed = false;  ///< true if, moreover, the size of the report and the place of every field are known
   size_t bytes() const noexcept { return size + (id >= 0 ? 1 : 0); }
+  /// Returns the first field of a role, or nullptr if there is none.
+  const Field* find(Role role) const noexcept {
+    for (const Field& field : fields)
+      if (field.role == role) return &field;
+    return nullptr;
+  }
+  bool has(Role role) const noexcept { return find(role) != nullptr; }
 };
 
 /// The content of a report from the arm.

@@ -28,10 +28,6 @@ constexpr const char* kFramingKeys[] = {"header", "packet", "start", "end", "esc
 constexpr const char* kEscapeKeys[] = {"mark", "xor", "bytes", "codes"};
 constexpr const char* kEndpointKeys[] = {"in", "out"};
 
-bool has(const Report& report, Role role) {
-  return std::any_of(report.fields.begin(), report.fields.end(), [&](const Field& f) { return f.role == role; });
-}
-
 /// Reads the address of an endpoint. @param direction 0x80 for what the arm sends, 0 for what it gets
 uint8_t endpointAt(const Tree& tree, unsigned direction) {
   const size_t before = tree.problems();
@@ -119,9 +115,9 @@ void readFields(const Tree& fields, size_t joints, bool input, ReadReport& read)
   checkOverlaps(fields, report, read.known);
   if (joints == 0) joints = jointsNamed(report, input ? Role::kPosition : Role::kTorque);
   requireEach(fields, read, joints, input ? Role::kPosition : Role::kTorque, input ? "position" : "torque");
-  if (has(report, Role::kReference)) requireEach(fields, read, joints, Role::kReference, "reference");
+  if (report.has(Role::kReference)) requireEach(fields, read, joints, Role::kReference, "reference");
   const bool roles = std::all_of(read.known.begin(), read.known.end(), [](const FieldFacts& one) { return one.role; });
-  if (roles && has(report, Role::kReference) != has(report, Role::kFollow))
+  if (roles && report.has(Role::kReference) != report.has(Role::kFollow))
     fields.fail("\"reference\" and \"follow\" belong together; expected fields of both, or of neither");
 }
 

@@ -190,12 +190,8 @@ class Arm : public Device, public Parameters {
 
   /// Reads the wire format, and checks that it fits the arm.
   void takeWire() {
-    velocity_ = torque_ = follows_ = false;
-    for (const codec::Field& field : wire_.output.fields) follows_ = follows_ || field.role == codec::Role::kFollow;
-    for (const codec::Field& field : wire_.input.fields) {
-      velocity_ = velocity_ || field.role == codec::Role::kVelocity;
-      torque_ = torque_ || field.role == codec::Role::kTorque;
-    }
+    follows_ = wire_.output.has(codec::Role::kFollow);
+    velocity_ = wire_.input.has(codec::Role::kVelocity), torque_ = wire_.input.has(codec::Role::kTorque);
     needCalibrated(wire_);
   }
 
@@ -208,9 +204,8 @@ class Arm : public Device, public Parameters {
   }
 
   void needCalibrated(const codec::Wire& read) const {
-    bool said = method != static_cast<int>(Calibration::kDevice) || !read.input.whole;
-    for (const codec::Field& field : read.input.fields) said = said || field.role == codec::Role::kCalibrated;
-    if (!said)
+    const bool needed = method == static_cast<int>(Calibration::kDevice) && read.input.whole;
+    if (needed && !read.input.has(codec::Role::kCalibrated))
       throw std::invalid_argument(
           "calibration.method: device, but no field of wire.input says whether the arm has its zero; expected a field "
           "{is: calibrated}, or method: none (absolute encoders) or pose");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
+#include "cli/ctl/answer.hpp"
 #include "cli/ctl/geometry.hpp"
 #include "cli/ctl/lead.hpp"
 #include "cli/ctl/named_files.hpp"
@@ -59,15 +60,11 @@ int showSocket(const CtlArguments& options) {
 /// Prints an answer.
 /// @param scene file that was sent with the request; "" if there was none
 int show(const CtlArguments& options, const Result<std::string>& answer, const std::string& scene = "") {
-  if (!answer) return fail(kFailed, answer.error());
-  Json json = document::parseJson(*answer);
-  if (!json.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + *answer);
-  if (!json.value("ok", false))
-    return fail(kFailed, document::withAbsentFiles(json.value("error", std::string("refused")), scene));
-  printNote(json);
-  if (options.tells_socket) json["name"] = options.name, json["socket"] = socketOf(options);
-  std::printf("%s\n", json.dump(2).c_str());
-  return kWorked;
+  auto json = acceptedAnswer(answer);
+  if (!json) return fail(kFailed, document::withAbsentFiles(json.error(), scene));
+  printNote(*json);
+  if (options.tells_socket) (*json)["name"] = options.name, (*json)["socket"] = socketOf(options);
+  return printJson(*json);
 }
 
 int send(const CtlArguments& options, const std::string& line, double seconds = 10) {
@@ -129,10 +126,7 @@ int follow(const CtlArguments& options) {
   uint64_t seen = 0;
   for (const char* word : {"vertices", "geometry"}) {  // if the model has no frames, the first request fails
     const auto answer = client->ask(document::jsonLine({{"do", word}, {"model", options.model}}), kDrawingPatience);
-    const Json json = answer ? document::parseJson(*answer) : Json();
-    if (!answer) return fail(kFailed, answer.error());
-    if (!json.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + *answer);
-    if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
+    if (const auto json = acceptedAnswer(answer); !json) return fail(kFailed, json.error());
     if (word == std::string("geometry")) std::printf("%s\n", answer->c_str());
   }
   while (std::fflush(stdout) == 0) {
@@ -236,17 +230,14 @@ int showEvents(const CtlArguments& options) {
   uint64_t end = UINT64_MAX;  // number of the first event that the subscription sends
   for (const char* word : {"subscribe", "events"}) {
     if (word == std::string("subscribe") && !options.follow) continue;
-    const auto answer = client->ask(document::jsonLine({{"do", word}}));
-    const Json json = answer ? document::parseJson(*answer) : Json();
-    if (!answer) return fail(kFailed, answer.error());
-    if (!json.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + *answer);
-    if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
-    if (!json.contains("events")) {
-      end = json.value("next", end);
+    const auto json = acceptedAnswer(client->ask(document::jsonLine({{"do", word}})));
+    if (!json) return fail(kFailed, json.error());
+    if (!json->contains("events")) {
+      end = json->value("next", end);
       continue;
     }
-    uint64_t number = json.value("first", uint64_t{0});
-    for (const Json& event : json["events"])
+    uint64_t number = json->value("first", uint64_t{0});
+    for (const Json& event : (*json)["events"])
       if (number++ < end) std::printf("%s\n", event.dump().c_str());
   }
   constexpr double kLong = 1e6;

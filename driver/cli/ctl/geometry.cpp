@@ -9,6 +9,7 @@
 #include <fstream>
 #include <vector>
 
+#include "cli/ctl/answer.hpp"
 #include "cli/support/command.hpp"
 #include "cli/support/output_file.hpp"
 #include "control/client.hpp"
@@ -48,11 +49,6 @@ int writeObj(const std::vector<float>& xyz, const std::vector<uint32_t>& corners
 
 }  // namespace
 
-void printNote(const Json& answer) {
-  if (const std::string note = answer.value("note", std::string()); !note.empty())
-    std::fprintf(stderr, "note: %s\n", note.c_str());
-}
-
 int saveGeometry(const std::string& socket, Json request, const std::string& file) {
   if (const std::string wrong = whyNotWritten(file, objKind()); !wrong.empty()) return fail(kBadInput, wrong);
   auto client = control::Client::connect(socket);
@@ -60,9 +56,9 @@ int saveGeometry(const std::string& socket, Json request, const std::string& fil
   request["as"] = "memory";
   const auto reply = client->askForMore(document::jsonLine(request), kDrawingPatience);
   if (!reply) return fail(kFailed, reply.error());
-  const Json answer = document::parseJson(reply->line);
-  if (!answer.is_object()) return fail(kFailed, "the daemon's answer is not valid JSON: " + reply->line);
-  if (!answer.value("ok", false)) return fail(kFailed, answer.value("error", std::string("refused")));
+  const auto accepted = acceptedAnswer(reply->line);
+  if (!accepted) return fail(kFailed, accepted.error());
+  const Json& answer = *accepted;
   const std::size_t places = 3 * answer.value("vertices", std::size_t{0});
   const std::size_t before = answer.value("normals", false) ? 2 * places : places;
   const int memory = reply->descriptor.get();

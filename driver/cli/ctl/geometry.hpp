@@ -14,7 +14,4 @@ constexpr double kDrawingPatience = 60;
 /// an OBJ file. @param request of the word "geometry" @return exit code
 int saveGeometry(const std::string& socket, nlohmann::ordered_json request, const std::string& file);
 
-/// [main] Prints the note of an answer, if it has one, where it is not taken for output.
-void printNote(const nlohmann::ordered_json& answer);
-
 }  // namespace hapticd::cli

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd device check FILE`: examines a device module, each part in a child process of its own.
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "base/counted.hpp"
 #include "cli/support/colour.hpp"
 #include "cli/support/command.hpp"
+#include "cli/support/shared_object.hpp"
 #include "device_check/device_check.hpp"
 #include "device_check/module_recipe.hpp"
 
@@ -25,17 +25,9 @@ struct ExamineArguments {
   double timeout = 10;
 };
 
-bool isModuleFile(const std::string& file) {
-  char magic[4] = {};
-  std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
-  return std::string_view(magic, sizeof magic) ==
-         "\x7f"
-         "ELF";
-}
-
 /// Returns the arm of a device file, or the arms of a module file.
 Result<std::vector<scene::Device>> devicesOf(const ExamineArguments& options) {
-  if (isModuleFile(options.file)) return device_check::devicesIn(options.file);
+  if (isSharedObject(options.file)) return device_check::devicesIn(options.file);
   const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
   printProblems(loaded.problems, stderr);
   if (loaded.device) return std::vector<scene::Device>{*loaded.device};
@@ -100,9 +92,8 @@ int sum(const std::vector<Outcome>& outcomes, const ExamineArguments& options, c
   else if (skipped > 0)
     rest = ", " + std::to_string(skipped) + " skipped";
   if (!options.json)
-    std::printf("%zu test%s, %d failed%s%s\n", run, run == 1 ? "" : "s", failed,
-                warned == 0 ? "" : (", " + std::to_string(warned) + (warned == 1 ? " warning" : " warnings")).c_str(),
-                rest.c_str());
+    std::printf("%s, %d failed%s%s\n", counted(run, "test").c_str(), failed,
+                warned == 0 ? "" : (", " + counted(static_cast<uint64_t>(warned), "warning")).c_str(), rest.c_str());
   return failed;
 }
 
@@ -116,8 +107,7 @@ int check(const ExamineArguments& options) {
     failed += sum(examine(device, options), options, device.module, all);
   }
   all["failed"] = failed;
-  if (options.json)
-    std::printf("%s\n", all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+  if (options.json) printJson(all);
   return failed == 0 ? kWorked : kFailed;
 }
 

@@ -45,13 +45,11 @@ struct Described {
 capture::ArmFacts factsOf(const scene::Device& device, size_t joints) {
   capture::ArmFacts facts;
   facts.joints = joints;
-  for (const scene::Value& value : device.parameters) {
-    if (value.id == "arm.limits") facts.limits = value.numbers;
-    if (value.id == "arm.max_torque") facts.max_torque = value.numbers;
-    if (value.id == "calibration.method") facts.zeroed = value.number > 1;  // pose
-    if (value.id == "health.max_speed") facts.max_speed = value.number;
-    if (value.id == "health.least_rate") facts.least_rate = value.number;
-  }
+  if (const scene::Value* limits = givenIn(device.parameters, "arm.limits")) facts.limits = limits->numbers;
+  if (const scene::Value* most = givenIn(device.parameters, "arm.max_torque")) facts.max_torque = most->numbers;
+  facts.zeroed = numberIn(device.parameters, "calibration.method") > 1;  // pose
+  facts.max_speed = numberIn(device.parameters, "health.max_speed", facts.max_speed);
+  facts.least_rate = numberIn(device.parameters, "health.least_rate", facts.least_rate);
   if (facts.max_torque.size() == 1) facts.max_torque.assign(joints, facts.max_torque[0]);
   return facts;
 }
@@ -63,11 +61,10 @@ std::optional<Described> describedIn(const std::string& file, int& exit_code) {
   if (!loaded) return std::nullopt;
   auto device = host::DeviceInstance::create(*loaded, logToTerminal);
   if (!device) return exit_code = fail(kFailed, device.error()), std::nullopt;
-  for (const scene::Value& value : loaded->parameters)
-    if (value.id == "wire") {
-      const size_t joints = (*device)->kinematics().joint_count;
-      return Described{codec::readWire(value.text, joints), joints, factsOf(*loaded, joints), std::move(*device)};
-    }
+  if (const scene::Value* wire = givenIn(loaded->parameters, "wire")) {
+    const size_t joints = (*device)->kinematics().joint_count;
+    return Described{codec::readWire(wire->text, joints), joints, factsOf(*loaded, joints), std::move(*device)};
+  }
   exit_code = fail(kBadInput, file + ": its module " + loaded->module +
                                   " has no parameter wire, expected a device file of usb_hid, usb_bulk or vme");
   return std::nullopt;

@@ -78,11 +78,6 @@ Json listJson() {
   return {{"modules", modules["plugins"]}, {"unusable", modules["unusable"]}, {"files", files}, {"plugged_in", found}};
 }
 
-int printJson(const Json& json) {
-  std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
-  return kWorked;
-}
-
 int list() {
   const auto files = catalog().files(host::Kind::kDevice);
   std::printf("modules\n");
@@ -183,8 +178,7 @@ bool hasParameter(const hdv_class& module, const std::string& id) {
 /// its weight is compensated.
 void printDoubts(const scene::Device& description, const host::DeviceInstance& device) {
   constexpr const char* kVerified = "device.verified";
-  const bool tried = std::any_of(description.parameters.begin(), description.parameters.end(),
-                                 [](const scene::Value& value) { return value.id == kVerified && value.number != 0; });
+  const bool tried = numberIn(description.parameters, kVerified) != 0;
   if (hasParameter(device.description(), kVerified) && !tried) std::printf("  description not tried on hardware\n");
   const hdv_ext_kinematics& kinematics = device.kinematics();
   std::array<double, HDV_MAX_JOINTS> q, torque{};

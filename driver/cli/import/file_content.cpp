@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <sstream>
 #include <string_view>
 
+#include "base/file_ending.hpp"
 #include "base/regular_file.hpp"
 
 namespace hapticd::cli {
@@ -35,12 +35,6 @@ constexpr Kind kKinds[] = {
     {"\x1f\x8b", "compressed (gzip)", "", "unpack it first"},
     {"glTF", "a mesh (glTF)", "", "export the mesh as .obj, .stl or .ply"},
 };
-
-std::string endingOf(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending;
-}
 
 std::string firstBytes(const std::string& file) {
   const auto handle = openRegular(file);

@@ -2,10 +2,10 @@
 /// `hapticd import`: converts CAD files and triangle meshes into parts, Bezier patches into a model file, and closed
 /// surfaces into soft bodies.
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <memory>
 
+#include "base/file_ending.hpp"
 #include "base/regular_file.hpp"
 #include "cli/import/cad.hpp"
 #include "cli/import/file_content.hpp"
@@ -34,15 +34,9 @@ struct ImportArguments {
   bool json = false;
 };
 
-std::string lowerEnding(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending;
-}
-
 /// Returns how to convert a file of a common format that hapticd does not read, or "" for any other file.
 std::string otherWay(const std::string& file) {
-  const std::string ending = lowerEnding(file);
+  const std::string ending = endingOf(file);
   const auto is = [&](std::initializer_list<const char*> endings) {
     return std::any_of(endings.begin(), endings.end(), [&](const char* one) { return ending == one; });
   };

@@ -7,6 +7,7 @@
 
 #include "base/regular_file.hpp"
 #include "cli/support/command.hpp"
+#include "document/json_text.hpp"
 #include "kernels/part/file.hpp"
 #include "mesh_import/mesh_part.hpp"
 
@@ -61,7 +62,7 @@ std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
                                          {"hole_places", holePlaces(r.borders)},
                                          {"bodies", bodyList(r)},
                                          {"remarks", r.remarks}};
-  return report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return document::jsonLines(report);
 }
 
 /// Returns the name of a unit of so many metres; `otherwise` if it has none.

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/counted.hpp"
 #include "base/regular_file.hpp"
 #include "cli/part/feature.hpp"
 #include "cli/part/poses.hpp"
@@ -144,19 +145,16 @@ std::string edgesOf(const Json& info) {
   return kinds.empty() ? all : all + ", of these " + kinds;
 }
 
-std::string counted(const Json& count, const char* what) {
-  return std::to_string(count.get<std::size_t>()) + " " + what + (count.get<std::size_t>() == 1 ? "" : "s");
-}
-
 void printBodies(const Json& info) {
   for (const Json& body : info["bodies"]) {
     const std::string name = body["name"].get<std::string>();
     std::printf("  body %s: %s, %s, ", name.empty() ? "unnamed" : ("'" + name + "'").c_str(),
                 body["kind"].get<std::string>().c_str(), body["closed"].get<bool>() ? "closed" : "open");
     if (body["triangles"].get<std::size_t>() > 0)
-      std::printf("%s\n", counted(body["triangles"], "triangle").c_str());
+      std::printf("%s\n", counted(body["triangles"].get<std::size_t>(), "triangle").c_str());
     else
-      std::printf("%s, %s\n", counted(body["faces"], "face").c_str(), counted(body["edges"], "edge").c_str());
+      std::printf("%s, %s\n", counted(body["faces"].get<std::size_t>(), "face").c_str(),
+                  counted(body["edges"].get<std::size_t>(), "edge").c_str());
   }
 }
 
@@ -286,7 +284,7 @@ int partInfo(const InfoArguments& options) {
     Json info = describe(part, bytes->size());
     addMeasures(info, std::move(part));
     if (options.json)
-      std::printf("%s\n", info.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+      printJson(info);
     else
       print(file, info);
   } catch (const brep::PartError& error) {

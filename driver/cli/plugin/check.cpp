@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
+#include "base/counted.hpp"
 #include "cli/plugin/file.hpp"
 #include "cli/plugin/set_option.hpp"
 #include "cli/support/colour.hpp"
@@ -50,7 +51,7 @@ struct Outcome {
 void addModelOfOurs(const host::ClassInfo& info, Recipe& recipe) {
   const int index = info.indexOf("geometry");
   const bool ours = info.id.rfind("org.hapticd.", 0) == 0;
-  if (!ours || index < 0 || recipe.find("geometry") != nullptr) return;
+  if (!ours || index < 0 || givenIn(recipe.set, "geometry") != nullptr) return;
   const host::ParamInfo& param = info.params[static_cast<size_t>(index)];
   if (param.kind != HSP_PATH || (param.flags & HSP_P_REQUIRED) == 0) return;
   const bool soft = (info.flags & HSP_C_DEFORMS) != 0;
@@ -305,9 +306,9 @@ int sum(const std::vector<Outcome>& outcomes, size_t not_run, const ConformanceA
   const nlohmann::ordered_json all{
       {"file", options.file}, {"seed", options.seed}, {"failed", failed}, {"not_run", not_run}, {"tests", tests}};
   if (options.json)
-    std::printf("%s\n", all.dump(2).c_str());
+    printJson(all);
   else
-    std::printf("%zu %s, %zu failed%s\n", outcomes.size(), outcomes.size() == 1 ? "test" : "tests", failed,
+    std::printf("%s, %zu failed%s\n", counted(outcomes.size(), "test").c_str(), failed,
                 not_run > 0 ? (", " + std::to_string(not_run) + " not run").c_str() : "");
   return failed == 0 ? kWorked : kFailed;
 }

@@ -2,10 +2,9 @@
 #include "cli/plugin/file.hpp"
 
 #include <filesystem>
-#include <fstream>
-#include <string_view>
 
 #include "cli/support/command.hpp"
+#include "cli/support/shared_object.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -20,16 +19,6 @@ std::string objectsIn(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(dir, error))
       if (entry.path().extension() == ".so") found += (found.empty() ? "" : " or ") + entry.path().string();
   return found;
-}
-
-/// Returns true for a shared object. A scene that was given by mistake would otherwise get the loader's error "invalid
-/// ELF header".
-bool isSharedObject(const std::string& file) {
-  char magic[4] = {};
-  std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
-  return std::string_view(magic, sizeof magic) ==
-         "\x7f"
-         "ELF";
 }
 
 }  // namespace

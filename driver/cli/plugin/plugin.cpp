@@ -41,11 +41,6 @@ std::map<std::string, std::string> quarantineNotes() {
   return notes;
 }
 
-int printAsJson(const Json& json) {
-  std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
-  return kWorked;
-}
-
 int listPluginsJson() {
   Json json = classesJson(catalog().files(host::Kind::kShape), host::Kind::kShape);
   const auto notes = quarantineNotes();
@@ -53,7 +48,7 @@ int listPluginsJson() {
     const auto note = notes.find(plugin["name"].get<std::string>());
     plugin["quarantine"] = note != notes.end() ? Json(note->second) : Json();
   }
-  return printAsJson(json);
+  return printJson(json);
 }
 
 int list(bool details) {
@@ -73,7 +68,7 @@ int info(const std::string& name, bool json) {
   if (json) {
     Json facts = classJson(**found);
     facts["quarantine"] = note != notes.end() ? Json(note->second) : Json();
-    return printAsJson(facts);
+    return printJson(facts);
   }
   printClass(**found);
   if (note != notes.end()) std::printf("\n%s\n", note->second.c_str());

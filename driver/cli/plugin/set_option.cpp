@@ -95,7 +95,7 @@ std::vector<scene::Value> SetOption::valuesFor(const host::ClassInfo& info) {
 std::vector<std::string> missing(const host::ClassInfo& info, const std::vector<scene::Value>& values) {
   std::vector<std::string> missing;
   for (const host::ParamInfo& param : info.params) {
-    const bool has = std::any_of(values.begin(), values.end(), [&](const auto& value) { return value.id == param.id; });
+    const bool has = givenIn(values, param.id) != nullptr;
     if (has || (param.flags & HSP_P_REQUIRED) == 0) continue;
     missing.push_back("plugin '" + info.name + "' needs the parameter " + param.id + " (" + param.doc +
                       "); give --set " + param.id + "=" + placeholder(param.kind));
@@ -106,7 +106,7 @@ std::vector<std::string> missing(const host::ClassInfo& info, const std::vector<
 std::vector<EmptyArray> emptyArrays(const host::ClassInfo& info, const std::vector<scene::Value>& values) {
   std::vector<EmptyArray> found;
   for (const host::ParamInfo& param : info.params) {
-    const bool has = std::any_of(values.begin(), values.end(), [&](const auto& value) { return value.id == param.id; });
+    const bool has = givenIn(values, param.id) != nullptr;
     const std::string initial = param.def_text.value_or("");
     const bool empty = initial.find_first_not_of(" []") == std::string::npos;
     if (has || !empty || param.kind != HSP_ARRAY || (param.flags & HSP_P_REQUIRED) != 0) continue;

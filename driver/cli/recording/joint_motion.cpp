@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/recording/joint_motion.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -13,18 +12,12 @@ using Eigen::Vector3d;
 
 constexpr double kHinge = 1;  // index of `hinge` among the words of `joint`
 
-const scene::Value* valueOf(const scene::Model& model, const char* id) {
-  const auto found = std::find_if(model.parameters.begin(), model.parameters.end(),
-                                  [id](const scene::Value& value) { return value.id == id; });
-  return found != model.parameters.end() ? &*found : nullptr;
-}
-
 }  // namespace
 
 std::optional<JointMotion> JointMotion::of(const scene::Model& model) {
-  const scene::Value *joint = valueOf(model, "joint"), *limits = valueOf(model, "limits");
+  const scene::Value *joint = givenIn(model.parameters, "joint"), *limits = givenIn(model.parameters, "limits");
   if (joint == nullptr || joint->number == 0) return {};
-  const scene::Value* axis = valueOf(model, "axis");
+  const scene::Value* axis = givenIn(model.parameters, "axis");
   const bool given = axis != nullptr && axis->numbers.size() == 3;
   JointMotion motion(model.pose, given ? Vector3d(axis->numbers.data()) : Vector3d::UnitY(), joint->number == kHinge);
   if (limits != nullptr && limits->numbers.size() == 2) motion.limits_ = {limits->numbers[0], limits->numbers[1]};

@@ -154,7 +154,7 @@ int print(const servo::ReplayOutcome& outcome) {
   return verdictOf(outcome);
 }
 
-int printJson(const servo::ReplayOutcome& outcome) {
+int printAsJson(const servo::ReplayOutcome& outcome) {
   Json json{{"same", !outcome.first.has_value()},
             {"ticks", outcome.ticks},
             {"recorded_ticks", outcome.recorded_ticks},
@@ -167,7 +167,7 @@ int printJson(const servo::ReplayOutcome& outcome) {
                                 {"what", first->what},
                                 {"recorded", first->recorded},
                                 {"replayed", first->replayed}};
-  std::printf("%s\n", json.dump(2).c_str());
+  printJson(json);
   return verdictOf(outcome);
 }
 
@@ -191,7 +191,7 @@ int replay(const ReplayArguments& options) {
     return fail(kBadInput, options.file + ": " + again.error() + (damage.empty() ? "" : ", because " + damage));
   servo::ReplayOutcome outcome = (*again)->run();
   if (!damage.empty()) outcome.note += (outcome.note.empty() ? "" : "; ") + damage;
-  const int code = options.json ? printJson(outcome) : print(outcome);
+  const int code = options.json ? printAsJson(outcome) : print(outcome);
   return code == kWorked && !damage.empty() ? kPartly : code;
 }
 

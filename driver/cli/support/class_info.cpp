@@ -190,11 +190,7 @@ void printClass(const host::ClassInfo& info, const std::vector<scene::Value>& va
     std::printf("  moves    %s\n  deforms  %s\n", (info.flags & HSP_C_MOVES) != 0 ? "may" : "no",
                 (info.flags & HSP_C_DEFORMS) != 0 ? "may" : "no");
   std::printf("\nparameters%s\n", info.params.empty() ? ": none" : "");
-  for (const host::ParamInfo& param : info.params) {
-    const auto given =
-        std::find_if(values.begin(), values.end(), [&](const scene::Value& value) { return value.id == param.id; });
-    printParam(param, given != values.end() ? &*given : nullptr);
-  }
+  for (const host::ParamInfo& param : info.params) printParam(param, givenIn(values, param.id));
 }
 
 std::string searchedText(const std::vector<std::filesystem::path>& dirs) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "document/json_text.hpp"
 #include "hapticd/abi.h"
 
 namespace hapticd::cli {
@@ -90,6 +91,11 @@ int fail(int exit_code, const std::string& message) {
   SetupErrors::print();
   std::fprintf(stderr, "error: %s\n", message.c_str());
   return exit_code;
+}
+
+int printJson(const nlohmann::ordered_json& json) {
+  std::printf("%s\n", document::jsonLines(json).c_str());
+  return kWorked;
 }
 
 void logToTerminal(int level, const std::string& who, const std::string& text) {

@@ -5,6 +5,7 @@
 /// commands.hpp.
 #pragma once
 #include <cstdio>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -27,6 +28,10 @@ std::string wrongPicture(const std::string& file);
 
 /// Prints "error: MESSAGE" and returns the exit code.
 int fail(int exit_code, const std::string& message);
+
+/// Prints JSON on standard output, for programs, and returns kWorked. Bytes that are not UTF-8 are replaced, because
+/// texts may come from a plugin, an arm or a file's name.
+int printJson(const nlohmann::ordered_json& json);
 
 /// Prints a message of a plugin or module as one line on standard error.
 void logToTerminal(int level, const std::string& who, const std::string& text);

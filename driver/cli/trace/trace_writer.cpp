@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/regular_file.hpp"
+#include "document/csv.hpp"
 
 namespace hapticd::cli {
 
@@ -15,15 +16,6 @@ namespace {
 constexpr const char* kHeader =
     "t,model,feature,u,v,px,py,pz,nx,ny,nz,depth,fx,fy,fz,tx,ty,tz,contact,iterations,status,"
     "mx,my,mz,mqw,mqx,mqy,mqz\n";
-
-/// Returns a name as a CSV field, in quotes if it has a comma, quote or line end.
-std::string field(const std::string& name) {
-  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
-  std::string quoted(1, '"');
-  for (const char c : name) quoted.append(c == '"' ? 2 : 1, c);
-  quoted += '"';
-  return quoted;
-}
 
 }  // namespace
 
@@ -37,7 +29,7 @@ Result<std::unique_ptr<TraceWriter>> TraceWriter::open(const std::string& file, 
 
 TraceWriter::TraceWriter(std::FILE* out, std::string file, const scene::Scene& scene, std::vector<uint32_t> models)
     : out_(out), file_(std::move(file)), models_(std::move(models)) {
-  for (const scene::Model& model : scene.models) names_.push_back(field(model.name));
+  for (const scene::Model& model : scene.models) names_.push_back(document::csvField(model.name));
 }
 
 namespace {

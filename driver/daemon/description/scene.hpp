@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "document/problem.hpp"
@@ -32,6 +33,19 @@ struct Value {
   std::vector<double> numbers;
   Place place;
 };
+
+/// [any] Returns the value that the files give for a parameter, or nullptr if they give none.
+inline const Value* givenIn(const std::vector<Value>& values, std::string_view id) {
+  for (const Value& value : values)
+    if (value.id == id) return &value;
+  return nullptr;
+}
+
+/// [any] Returns the number that the files give for a parameter, or `otherwise` if they give none.
+inline double numberIn(const std::vector<Value>& values, std::string_view id, double otherwise = 0) {
+  const Value* value = givenIn(values, id);
+  return value != nullptr ? value->number : otherwise;
+}
 
 /// One point of a kinematic path; poses between two points are interpolated (linear, and slerp).
 struct PathPoint {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/counted.hpp"
 #include "base/nearest_word.hpp"
 #include "document/correction.hpp"
 #include "document/suggestion.hpp"
@@ -282,10 +283,6 @@ static std::string suggestDecimalsBeyond(const Node& list, const host::ParamInfo
   return beyond ? suggestDecimals(list, 2) : "";
 }
 
-static std::string numbersText(size_t count) {
-  return std::to_string(count) + (count == 1 ? " number" : " numbers");
-}
-
 /// Returns what is wrong with a text in the place of a list.
 static std::string notAList(const Node& node, const host::ParamInfo& param) {
   const std::string hint = suggestList(node, param.min_count);
@@ -316,7 +313,7 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
       if (item.isSequence() && param.columns > 1 && item.items.size() != param.columns) {
         shaped = false;
         in_->problem(item, path,
-                     "it has " + numbersText(item.items.size()) + ", expected " + std::to_string(param.columns));
+                     "it has " + counted(item.items.size(), "number") + ", expected " + std::to_string(param.columns));
       } else if (item.isSequence())
         for (size_t j = 0; j < item.items.size(); ++j) add(item.items[j], path + "[" + std::to_string(j) + "]", j);
       else
@@ -331,7 +328,7 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
   const bool ragged = param.columns > 1 && count % param.columns != 0;
   if (!ragged && count >= param.min_count && count <= param.max_count) return true;
   const std::string advice = count > param.min_count ? document::suggestDecimals(node, 1) : "";
-  in_->problem(node, key, numbersText(count) + ", expected " + countText(param) + advice);
+  in_->problem(node, key, counted(count, "number") + ", expected " + countText(param) + advice);
   return false;
 }
 

@@ -110,7 +110,7 @@ enum {
   HAPTICD_REFUSED, /* records of a lead were refused (reported once per second); model or probe, value: how many so far,
                       code: as HAPTICD_JOINED, plus for a target 16 times the reason (1 a number is not finite, 2 the
                       time is wrong, 3 the position is too far away, 4 the orientation is not a unit quaternion) */
-  HAPTICD_QUARANTINED, /* models of a plugin were left out, because it ended an earlier run */
+  HAPTICD_QUARANTINED, /* no daemon sends it: a run names the models that it leaves out before its first tick */
   HAPTICD_STALLED, /* the servo ran no tick for some time: the process was stopped, or got no CPU; value: time in s */
   HAPTICD_EVENT_KINDS /* one more than the last kind */
 };

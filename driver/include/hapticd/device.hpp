@@ -2,9 +2,6 @@
 /// For a device module in C++: derive from hapticd::Device, list the parameters, write open, start, read, write, stop
 /// and close, and name the class in HAPTICD_DEVICES(...). device.h, the C ABI behind it, says what each call must do.
 #pragma once
-#include <exception>
-#include <new>
-
 #include "device.h"
 #include "parameters.hpp"
 
@@ -53,20 +50,9 @@ struct DeviceClass {
   static T& self(hdv_device* device) { return *reinterpret_cast<T*>(device); }
 
   static hdv_device* create(const hdv_class*, const hsp_host* host) {
-    try {
-      T* object = new T;
-      static_cast<Device*>(object)->host_ = host;
-      detail::applyDefaults(*object, kFields);
-      return reinterpret_cast<hdv_device*>(object);
-    } catch (const std::exception& e) {
-      detail::logError(host, std::string(T::kInfo.name) + ": " + e.what());
-      return nullptr;
-    } catch (...) {
-      detail::logError(host, std::string(T::kInfo.name) +
-                                 ": the constructor threw an object that is not a std::exception; expected "
-                                 "std::runtime_error with a text for the user");
-      return nullptr;
-    }
+    T* object = detail::make(host, kFields);
+    if (object != nullptr) static_cast<Device*>(object)->host_ = host;
+    return reinterpret_cast<hdv_device*>(object);
   }
   static void destroy(hdv_device* device) { delete &self(device); }
 
@@ -82,10 +68,10 @@ struct DeviceClass {
   }
 
   static hsp_status open(hdv_device* device, hdv_info* info) {
-    return move(device, State::kClosed, State::kOpen, [&](T& object) { object.open(*info); });
+    return move(device, State::kClosed, State::kOpen, "open()", [&](T& object) { object.open(*info); });
   }
   static hsp_status start(hdv_device* device, const hdv_start* how) {
-    return move(device, State::kOpen, State::kStarted, [&](T& object) { object.start(*how); });
+    return move(device, State::kOpen, State::kStarted, "start()", [&](T& object) { object.start(*how); });
   }
   static hsp_status read(hdv_device* device, uint64_t now_ns, hdv_sample* sample) noexcept HSP_RT {
     if (base(device).state_ != State::kStarted) return HSP_E_STATE;
@@ -132,23 +118,12 @@ struct DeviceClass {
   static Device& base(hdv_device* device) { return self(device); }
 
   template <class Action>
-  static hsp_status move(hdv_device* device, State from, State to, Action action) {
+  static hsp_status move(hdv_device* device, State from, State to, const char* what, Action action) {
     if (base(device).state_ != from) return HSP_E_STATE;
-    try {
+    return detail::guarded(base(device).host_, "", what, HSP_E_IO, [&] {
       action(self(device));
       base(device).state_ = to;
-      return HSP_OK;
-    } catch (const std::bad_alloc&) {
-      return HSP_E_NOMEM;
-    } catch (const std::exception& e) {
-      detail::logError(base(device).host_, e.what());
-      return HSP_E_IO;
-    } catch (...) {
-      detail::logError(base(device).host_,
-                       "a function threw an object that is not a std::exception; expected std::runtime_error with a "
-                       "text for the user");
-      return HSP_E_IO;
-    }
+    });
   }
 };
 

@@ -2,10 +2,15 @@
 /// Parameter tables for plugins and device modules in C++. One line per parameter gives its row in the C table, its
 /// default, its checks and the member that gets the value. shape.hpp and device.hpp include this header.
 #pragma once
+#if __cplusplus < 202002L
+#error "the C++ headers of hapticd need C++20: compile with -std=c++20"
+#endif
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -158,6 +163,25 @@ inline void logError(const hsp_host* host, const std::string& text) {
   if (host != nullptr && host->log != nullptr) host->log(host, HSP_LOG_ERROR, text.c_str());
 }
 
+/// [main] Calls `action`. The text of an exception, after `before`, becomes the error that the user reads. Returns
+/// HSP_OK, HSP_E_NOMEM, or `failed` after any other exception. @param what the function that `action` calls
+template <class Action>
+hsp_status guarded(const hsp_host* host, const char* before, const char* what, hsp_status failed, Action action) {
+  try {
+    action();
+    return HSP_OK;
+  } catch (const std::bad_alloc&) {
+    return HSP_E_NOMEM;
+  } catch (const std::exception& e) {
+    logError(host, std::string(before) + e.what());
+  } catch (...) {
+    logError(host, std::string(before) + what +
+                       " threw an object that is not a std::exception; expected std::runtime_error with a text for the "
+                       "user");
+  }
+  return failed;
+}
+
 /// [main] Puts the defaults of the table into the members of a new object. This function is not inlined, because g++ 12
 /// would then warn about members that the object does not have.
 template <class T, size_t N>
@@ -174,6 +198,19 @@ template <class T, size_t N>
       for (size_t i = 0; i < 3; ++i) (object.*m)[i] = i < numbers.size() ? numbers[i] : 0;
     }
   }
+}
+
+/// [main] Makes an object with the defaults of its table. Returns nullptr if that fails, after it has logged why.
+template <class T, size_t N>
+T* make(const hsp_host* host, const std::array<Field<T>, N>& fields) {
+  T* object = nullptr;
+  const std::string before = std::string(T::kInfo.name) + ": ";
+  const hsp_status made = guarded(host, before.c_str(), "the constructor", HSP_E_ARG, [&] {
+    object = new T;
+    applyDefaults(*object, fields);
+  });
+  if (made == HSP_E_NOMEM) logError(host, before + "there is not enough memory");
+  return made == HSP_OK ? object : nullptr;
 }
 
 inline bool inRange(const hsp_param& p, double x) {

@@ -2,11 +2,6 @@
 /// For a shape plugin in C++: derive from hapticd::Shape, list the parameters, write activate() and touch() (or
 /// step()), name the class in HAPTICD_SHAPES(...). shape.h says what each call must do; plugins/template is an example.
 #pragma once
-#if __cplusplus < 202002L
-#error "hapticd/shape.hpp needs C++20: compile with -std=c++20"
-#endif
-#include <exception>
-#include <new>
 #include <span>
 
 #include "parameters.hpp"
@@ -72,20 +67,9 @@ struct ShapeClass {
   static T& self(hsp_shape* shape) { return *reinterpret_cast<T*>(shape); }
 
   static hsp_shape* create(const hsp_class*, const hsp_host* host) {
-    try {
-      T* object = new T;
-      static_cast<Shape*>(object)->host_ = host;
-      detail::applyDefaults(*object, kFields);
-      return reinterpret_cast<hsp_shape*>(object);
-    } catch (const std::exception& e) {
-      detail::logError(host, std::string(T::kInfo.name) + ": " + e.what());
-      return nullptr;
-    } catch (...) {
-      detail::logError(host, std::string(T::kInfo.name) +
-                                 ": the constructor threw an object that is not a std::exception; expected "
-                                 "std::runtime_error with a text for the user");
-      return nullptr;
-    }
+    T* object = detail::make(host, kFields);
+    if (object != nullptr) static_cast<Shape*>(object)->host_ = host;
+    return reinterpret_cast<hsp_shape*>(object);
   }
   static void destroy(hsp_shape* shape) { delete &self(shape); }
 
@@ -99,21 +83,10 @@ struct ShapeClass {
 
   static hsp_status activate(hsp_shape* shape, const hsp_activation* activation, hsp_report* report) {
     if (base(shape).active_) return HSP_E_STATE;
-    try {
+    return detail::guarded(base(shape).host_, "", "activate()", HSP_E_ARG, [&] {
       self(shape).activate(*activation, *report);
       base(shape).active_ = true;
-      return HSP_OK;
-    } catch (const std::bad_alloc&) {
-      return HSP_E_NOMEM;
-    } catch (const std::exception& e) {
-      detail::logError(base(shape).host_, e.what());
-      return HSP_E_ARG;
-    } catch (...) {
-      detail::logError(base(shape).host_,
-                       "activate() threw an object that is not a std::exception; expected std::runtime_error with a "
-                       "text for the user");
-      return HSP_E_ARG;
-    }
+    });
   }
   static void deactivate(hsp_shape* shape) {
     if (base(shape).active_) self(shape).deactivate();

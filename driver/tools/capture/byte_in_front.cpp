@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 
 #include "capture/layout_hint.hpp"
 #include "capture/report_table.hpp"
@@ -49,11 +50,7 @@ enum class Judgement { kNone, kRight, kWrong };
 /// Judges the reports without their first byte, or with it.
 Judgement judged(codec::Wire wire, Capture capture, size_t size, bool without_first) {
   const std::vector<codec::Field>& fields = wire.input.fields;
-  const bool judges = std::any_of(fields.begin(), fields.end(), [](const codec::Field& field) {
-    return field.role == codec::Role::kChecksum || field.role == codec::Role::kConstant ||
-           field.role == codec::Role::kFirmware;
-  });
-  if (!judges) return Judgement::kNone;
+  if (std::none_of(fields.begin(), fields.end(), std::mem_fn(&codec::Field::judges))) return Judgement::kNone;
   if (without_first)
     for (Transfer& transfer : capture.transfers) transfer.bytes.erase(transfer.bytes.begin());
   wire.input.size = size - (without_first ? 1 : 0);

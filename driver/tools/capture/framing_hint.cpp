@@ -51,7 +51,7 @@ bool judges(const codec::Wire& wire) {
     const bool mark =
         field.role == Role::kConstant && field.bits == 8 &&
         (field.at == 0 ? wire.framing.start >= 0 : field.at + 1u == wire.input.size && wire.framing.end >= 0);
-    return field.role == Role::kChecksum || field.role == Role::kFirmware || (field.role == Role::kConstant && !mark);
+    return field.judges() && !mark;
   });
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -124,12 +125,8 @@ std::optional<int> everyFirst(const Bytes& bytes, size_t size) {
 /// Returns which share of the reports would be good with another id and size. Returns nothing if every report would be
 /// good, because there is no checksum, firmware number or constant.
 std::optional<double> goodWith(codec::Wire wire, int id, size_t size, const Capture& capture) {
-  const auto judges = [](const codec::Field& field) {
-    return field.role == codec::Role::kChecksum || field.role == codec::Role::kConstant ||
-           field.role == codec::Role::kFirmware;
-  };
   std::vector<codec::Field>& fields = wire.input.fields;
-  if (std::none_of(fields.begin(), fields.end(), judges)) return std::nullopt;
+  if (std::none_of(fields.begin(), fields.end(), std::mem_fn(&codec::Field::judges))) return std::nullopt;
   wire.input.id = id, wire.input.size = size;
   for (codec::Field& field : fields) {
     if (field.at + field.bytes() > size || field.to > size) return 0.0;

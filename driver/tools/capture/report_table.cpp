@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "base/counted.hpp"
 #include "capture/resync.hpp"
 #include "codec/framer.hpp"
 
@@ -37,10 +38,6 @@ const char* wordOf(Verdict verdict) {
   return "?";
 }
 
-bool has(const codec::Report& report, Role role) {
-  return std::any_of(report.fields.begin(), report.fields.end(), [&](const Field& f) { return f.role == role; });
-}
-
 /// Returns the value in hexadecimal with all digits of the field, as in a dump of its bytes.
 std::string hex(uint64_t value, const Field& field) {
   char text[24];
@@ -65,11 +62,6 @@ std::string whyWrong(const Field& field, std::span<const uint8_t> body) {
     default:
       return "the field" + at + " is not a number";
   }
-}
-
-/// Returns a count with its noun, such as "1 report" or "3 reports".
-std::string counted(size_t count, const char* what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
 class Reader {
@@ -182,13 +174,13 @@ std::vector<Column> columnsOf(const codec::Report& report, size_t joints) {
                                                {Role::kTorque, "torque"},
                                                {Role::kReference, "reference"}};
   for (const auto& [role, name] : each)
-    for (size_t i = 0; has(report, role) && i < joints; ++i) columns.push_back({name + std::to_string(i + 1), role, i});
+    for (size_t i = 0; report.has(role) && i < joints; ++i) columns.push_back({name + std::to_string(i + 1), role, i});
   const std::pair<Role, const char*> once[] = {
       {Role::kButton, "buttons"}, {Role::kSequence, "sequence"},   {Role::kStarts, "starts"},
       {Role::kTime, "clock"},     {Role::kFault, "fault"},         {Role::kCalibrated, "calibrated"},
       {Role::kEnable, "enable"},  {Role::kCalibrate, "calibrate"}, {Role::kFollow, "follow"}};
   for (const auto& [role, name] : once)
-    if (has(report, role)) columns.push_back({name, role, 0});
+    if (report.has(role)) columns.push_back({name, role, 0});
   return columns;
 }
 

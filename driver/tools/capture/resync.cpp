@@ -24,10 +24,7 @@ bool begins(const codec::Wire& wire, std::span<const uint8_t> bytes, size_t at) 
 
 size_t skipOddBytes(const codec::Wire& wire, std::span<const uint8_t> bytes, size_t at,
                     const std::function<void(std::span<const uint8_t>)>& odd) {
-  const std::vector<codec::Field>& fields = wire.input.fields;
-  const bool judged = wire.input.id >= 0 && std::any_of(fields.begin(), fields.end(), [](const codec::Field& field) {
-                        return field.role == codec::Role::kChecksum;
-                      });
+  const bool judged = wire.input.id >= 0 && wire.input.has(codec::Role::kChecksum);
   const size_t size = wire.input.bytes();
   if (!judged || goodAt(wire, bytes, at) || goodAt(wire, bytes, at + size)) return at;
   constexpr size_t kReports = 8;  // [reports] length of the search; the caller repeats it one report farther on

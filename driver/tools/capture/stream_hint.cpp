@@ -5,8 +5,11 @@
 #include <array>
 #include <bit>
 #include <cstdio>
+#include <functional>
 #include <optional>
 #include <vector>
+
+#include "base/counted.hpp"
 
 namespace hapticd::capture {
 namespace {
@@ -66,10 +69,7 @@ std::string framingOf(const Header& header) {
 
 /// Returns true if a report has a checksum, constant or firmware number, which would be wrong at another place.
 bool tells(const codec::Report& report) {
-  return std::any_of(report.fields.begin(), report.fields.end(), [](const codec::Field& field) {
-    return field.role == codec::Role::kChecksum || field.role == codec::Role::kConstant ||
-           field.role == codec::Role::kFirmware;
-  });
+  return std::any_of(report.fields.begin(), report.fields.end(), std::mem_fn(&codec::Field::judges));
 }
 
 /// Returns the number of bits of a report that are right by chance at a wrong place: of its checksum, and of its
@@ -77,9 +77,7 @@ bool tells(const codec::Report& report) {
 double tellingBits(const codec::Report& report) {
   double bits = 0;
   for (const codec::Field& field : report.fields)
-    if (field.role == codec::Role::kChecksum || field.role == codec::Role::kConstant ||
-        field.role == codec::Role::kFirmware)
-      bits += field.bits;
+    if (field.judges()) bits += field.bits;
   return bits;
 }
 
@@ -138,8 +136,8 @@ std::string beginHint(const codec::Wire& wire, const Bytes& bytes, const Decoded
                            " on, " + howMany(found[0]) + " are good; ";
   if (mark != fields.end())
     return told + "give " + framingOf({static_cast<uint8_t>(mark->code), before}) + ", and the reports are found\n";
-  return told + "leave out the first " + std::to_string(before) + (before == 1 ? " byte" : " bytes") + " (tail -c +" +
-         std::to_string(before + 1) + " FILE)\n";
+  return told + "leave out the first " + counted(before, "byte") + " (tail -c +" + std::to_string(before + 1) +
+         " FILE)\n";
 }
 
 /// Finds the size of reports, and where they begin, from a byte that they have in common.

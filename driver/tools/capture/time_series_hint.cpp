@@ -16,12 +16,6 @@ using codec::Verdict;
 
 constexpr size_t kFewestReports = 20;  ///< for fewer reports no hint is given
 
-const Field* fieldOf(const codec::Wire& wire, Role role) {
-  const auto found = std::find_if(wire.input.fields.begin(), wire.input.fields.end(),
-                                  [role](const Field& field) { return field.role == role; });
-  return found == wire.input.fields.end() ? nullptr : &*found;
-}
-
 std::vector<const DecodedReport*> goodOnes(const Decoded& decoded) {
   std::vector<const DecodedReport*> good;
   for (const DecodedReport& report : decoded.reports)
@@ -40,7 +34,7 @@ size_t howMany(const DecodedReports& reports, const Says& says) {
 std::string flags(const codec::Wire& wire, const DecodedReports& reports) {
   const std::string all = "all " + std::to_string(reports.size()) + " reports";
   std::string text;
-  const Field *fault = fieldOf(wire, Role::kFault), *calibrated = fieldOf(wire, Role::kCalibrated);
+  const Field *fault = wire.input.find(Role::kFault), *calibrated = wire.input.find(Role::kCalibrated);
   if (fault != nullptr && howMany(reports, [](const codec::State& state) { return state.fault; }) == reports.size())
     text += "the field fault is set in " + all + ", so no torque would go out: " +
             (fault->inverted ? "if 0 means that all is well, remove inverted: true"
@@ -57,7 +51,7 @@ std::string flags(const codec::Wire& wire, const DecodedReports& reports) {
 /// Returns a hint if the field `starts` changes in many reports, as if the device restarted each time. The field then
 /// probably counts reports (`counter`), or is a clock (`time`), and was described wrongly.
 std::string starts(const codec::Wire& wire, const DecodedReports& reports) {
-  if (fieldOf(wire, Role::kStarts) == nullptr) return "";
+  if (!wire.input.has(Role::kStarts)) return "";
   size_t changes = 0;
   for (size_t i = 1; i < reports.size(); ++i)
     changes += reports[i]->state.starts != reports[i - 1]->state.starts ? 1 : 0;
@@ -69,7 +63,7 @@ std::string starts(const codec::Wire& wire, const DecodedReports& reports) {
 
 /// Returns a hint if a counter does not count, but does so in the other byte order.
 std::string counter(const codec::Wire& wire, const Decoded& decoded, const DecodedReports& reports) {
-  const Field* field = fieldOf(wire, Role::kSequence);
+  const Field* field = wire.input.find(Role::kSequence);
   if (field == nullptr || field->bits % 8 != 0 || field->bits < 16 || field->bits > 32 || field->bit_skip != 0 ||
       codec::isText(field->type) || 2 * (decoded.gaps + decoded.repeats) < reports.size())
     return "";
@@ -121,7 +115,7 @@ std::string rate(const codec::Wire& wire, const DecodedReports& reports, double 
 
 /// Compares the arm's own clock with wire.rate, because one of the two may be in other units.
 std::string clock(const codec::Wire& wire, const DecodedReports& reports) {
-  if (fieldOf(wire, Role::kTime) == nullptr || wire.exchange == codec::Exchange::kPoll || !(wire.rate > 0)) return "";
+  if (!wire.input.has(Role::kTime) || wire.exchange == codec::Exchange::kPoll || !(wire.rate > 0)) return "";
   std::vector<double> between;
   for (size_t i = 1; i < reports.size(); ++i)
     if (reports[i]->state.clock > reports[i - 1]->state.clock)  // a clock that restarts is left out

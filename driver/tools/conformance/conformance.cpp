@@ -39,7 +39,7 @@ std::string setAtRandom(Subject& subject, const Recipe& recipe, Dice& unit) {
   const hsp_class& c = subject.description();
   for (uint32_t i = 0; i < c.param_count; ++i) {
     const hsp_param& p = paramAt(c, i);
-    if (p.kind > HSP_ENUM || recipe.find(p.id) != nullptr || unit() < 0.5) continue;
+    if (p.kind > HSP_ENUM || givenIn(recipe.set, p.id) != nullptr || unit() < 0.5) continue;
     hsp_value value{};
     value.kind = p.kind;
     const double most = p.kind == HSP_ENUM ? p.choice_count - 1.0 : p.max, least = p.kind == HSP_ENUM ? 0 : p.min;

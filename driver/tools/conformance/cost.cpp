@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/clock.hpp"
+#include "base/counted.hpp"
 #include "conformance/allocation_place.hpp"
 #include "conformance/building_blocks.hpp"
 #include "conformance/lock_count.hpp"
@@ -98,9 +99,8 @@ Verdict noAllocation(const Recipe& recipe, uint64_t) {
   });
   const uint64_t count = made.subject->allocations();
   if (count == 0) return "";
-  return std::to_string(count) + (count == 1 ? " allocation in " : " allocations in ") + std::to_string(steps) +
-         " steps, first with the probe at " + text(first) + firstAllocationIn(recipe.file) +
-         "; expected memory that activate() takes";
+  return counted(count, "allocation") + " in " + std::to_string(steps) + " steps, first with the probe at " +
+         text(first) + firstAllocationIn(recipe.file) + "; expected memory that activate() takes";
 }
 
 Verdict noLock(const Recipe& recipe, uint64_t) {
@@ -116,9 +116,8 @@ Verdict noLock(const Recipe& recipe, uint64_t) {
   });
   const uint64_t locks = made.subject->locks();
   if (locks == 0) return "";
-  return std::to_string(locks) + (locks == 1 ? " lock in " : " locks in ") + std::to_string(steps) +
-         " steps, first after the probe was at " + text(first) +
-         "; do not lock in a step: another thread that holds the lock would make the servo wait";
+  return counted(locks, "lock") + " in " + std::to_string(steps) + " steps, first after the probe was at " +
+         text(first) + "; do not lock in a step: another thread that holds the lock would make the servo wait";
 }
 
 /// Fails if a step makes a system call. Most often this is a print, so output is not buffered here: each line is then a

@@ -38,11 +38,6 @@ Usage usageOfThread() {
 
 }  // namespace
 
-const scene::Value* Recipe::find(const char* id) const {
-  const auto found = std::find_if(set.begin(), set.end(), [&](const scene::Value& value) { return value.id == id; });
-  return found != set.end() ? &*found : nullptr;
-}
-
 bool sameBits(const Answer& a, const Answer& b) {
   return a.status == b.status && a.contacts.size() == b.contacts.size() &&
          std::memcmp(a.contacts.data(), b.contacts.data(), a.contacts.size() * sizeof(hsp_contact)) == 0 &&
@@ -115,7 +110,7 @@ Result<std::unique_ptr<Subject>> Subject::make(const Recipe& recipe) {
   }
   if (subject->shape_ == nullptr) return Error{"create() made no instance: " + subject->services_->lastError()};
   for (uint32_t i = 0; i < c.param_count; ++i) {
-    const scene::Value* given = recipe.find(paramAt(c, i).id);
+    const scene::Value* given = givenIn(recipe.set, paramAt(c, i).id);
     if (host::damps(c, i))
       subject->damping_ = std::max(subject->damping_, given != nullptr ? given->number : paramAt(c, i).def);
     if (given == nullptr) continue;

@@ -22,9 +22,6 @@ struct Recipe {
   /// Parameters that were checked against the plugin's table; all others keep their defaults.
   std::vector<scene::Value> set;
   Touch touch;  ///< where the shape can be touched; empty until such a place was searched for
-
-  /// Returns the value of a parameter, or nullptr if it keeps its default.
-  const scene::Value* find(const char* id) const;
 };
 
 /// The answer to one step; some tests compare it bit for bit.

@@ -48,10 +48,9 @@ void checkModel(const scene::Scene& scene, size_t index, const scene::Device& de
                 double alone, double stiffness, document::Problems& problems) {
   const scene::Model& model = scene.models[index];
   const std::string key = "models[" + std::to_string(index) + "]";
-  const auto given = std::find_if(model.parameters.begin(), model.parameters.end(),
-                                  [](const scene::Value& value) { return value.id == "stiffness"; });
-  const bool named = given != model.parameters.end() &&
-                     given->place.line > 0;  // otherwise it is the plugin's default, or comes from a geometry file
+  const scene::Value* given = givenIn(model.parameters, "stiffness");
+  // A value without a place is the plugin's default, or comes from a geometry file.
+  const bool named = given != nullptr && given->place.line > 0;
   const auto warn = [&](const std::string& what) {
     document::report(problems, named ? given->place : model.place, named ? key + ".parameters.stiffness" : key, what);
   };

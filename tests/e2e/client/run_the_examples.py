@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -15,7 +16,10 @@ import time
 HAPTICD, SOURCE, BUTTON = sys.argv[1:4]
 CLIENT = os.path.join(SOURCE, "driver", "doors", "client", "python")
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
-from e2e import check, finish, until
+sys.path.insert(0, CLIENT)
+from daemon import Daemon
+from e2e import check, finish
+from hapticd import FAULTS
 
 SCENE = """hapticd: 1
 servo: {{rate: 1000}}
@@ -34,7 +38,7 @@ def example(name, *arguments, without=()):
     """@param without variables of the environment that the example does not get"""
     given = {key: value for key, value in environment.items() if key not in without}
     done = subprocess.run([sys.executable, os.path.join(CLIENT, "examples", name), "--name", "lib", *arguments],
-                          env=dict(given, PYTHONPATH=CLIENT), capture_output=True, text=True, timeout=120)
+                          env=given, capture_output=True, text=True, timeout=120)
     return done.returncode, done.stdout, done.stderr
 
 
@@ -103,8 +107,6 @@ lead(PoseLead).put([0.1, 0, 0])
 def alone():
     done = subprocess.run([sys.executable, "-c", ALONE], env=dict(os.environ, PYTHONPATH=CLIENT), capture_output=True, text=True, timeout=120)
     words = re.search(r"kNames\[\] = \{(.*?)\};", open(os.path.join(SOURCE, "driver/daemon/record/picture.cpp")).read(), re.S)[1]
-    sys.path.insert(0, CLIENT)
-    from hapticd import FAULTS
     words = re.findall(r'"([^"]*)"', words)
     check("faults have the words of the pictures", [w.replace("stopped", "held or stopped") for w in words] == list(FAULTS) and len(words) == 13, (words, FAULTS))
     for name in ("button.py", "experiment.py", "move_door.py", "plot_live.py", "record_to_pandas.py", "spring.py"):
@@ -144,16 +146,15 @@ models:
 
 def experiment(folder):
     """Two stimuli in random order, each felt while the hand came from outside."""
+    soft, hard = (STIMULUS.format(source=SOURCE, stiffness=stiffness) for stiffness in (200, 1000))
     scenes = [os.path.join(folder, name) for name in ("soft.yaml", "hard.yaml")]
-    for scene, stiffness in zip(scenes, (200, 1000)):
+    for scene, text in zip(scenes, (soft, hard)):
         with open(scene, "w") as file:
-            file.write(STIMULUS.format(source=SOURCE, stiffness=stiffness))
+            file.write(text)
     out = os.path.join(folder, "session")
-    with subprocess.Popen([HAPTICD, "run", scenes[0], "--name", "trials"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as run:
-        subprocess.run([HAPTICD, "ctl", "--name", "trials", "--wait", "30", "status"], env=environment, stdout=subprocess.DEVNULL, timeout=60)
+    with Daemon(HAPTICD, folder, "trials", soft):
         done = subprocess.run([sys.executable, os.path.join(CLIENT, "examples", "experiment.py"), *scenes, "--name", "trials", "--trials", "4", "--seconds",
-                               "2.5", "--out", out], env=dict(environment, PYTHONPATH=CLIENT), input="\n" * 4, capture_output=True, text=True, timeout=200)
-        run.terminate()
+                               "2.5", "--out", out], env=environment, input="\n" * 4, capture_output=True, text=True, timeout=200)
     table = list(csv.DictReader(open(os.path.join(out, "trials.csv")))) if done.returncode == 0 else []
     force = {name: [float(row["force_n"]) for row in table if row["scene"].endswith(name)] for name in ("soft.yaml", "hard.yaml")}
     check("experiment.py presents each stimulus equally often", [len(f) for f in force.values()] == [2, 2], (done, table))
@@ -196,17 +197,9 @@ except hapticd.HapticdError as error:
 
 def pushes(folder):
     """What ends a push is told at once, not only where the program ends it."""
-    scene = os.path.join(folder, "push.yaml")
-    with open(scene, "w") as file:
-        file.write("hapticd: 1\nclients: add\nmodels: []\n")
-    victim = subprocess.Popen([HAPTICD, "run", scene, "--name", "push"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    for _ in range(600):
-        if os.path.exists(os.path.join(folder, "push.sock")):
-            break
-        time.sleep(0.05)
-    done = subprocess.run([sys.executable, "-c", PUSHES, str(victim.pid)], env=dict(environment, PYTHONPATH=CLIENT), capture_output=True, text=True, timeout=300)
-    victim.kill()
-    victim.wait()
+    victim = Daemon(HAPTICD, folder, "push", "hapticd: 1\nclients: add\nmodels: []\n")
+    done = subprocess.run([sys.executable, "-c", PUSHES, str(victim.process.pid)], env=environment, capture_output=True, text=True, timeout=300)
+    victim.stop(signal.SIGKILL)
     told = done.stderr.split("before end()")[0]
     check("what a callback raises is told at once", done.returncode == 0 and "ValueError: no force today" in told, done.stderr)
     check("and so is the end of the daemon", "the daemon is gone" in done.stderr, done.stderr)
@@ -234,25 +227,20 @@ models:
 
 def snaps(folder, stop):
     """Programs that react to a button and end with their daemon: quietly where it is stopped, and told where it is killed."""
-    scene = os.path.join(folder, "snaps.yaml")
-    with open(scene, "w") as file:
-        file.write(SNAPS.format(source=SOURCE))
-    daemon = subprocess.Popen([HAPTICD, "run", scene, "--name", "snaps"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    there = dict(environment, PYTHONPATH=CLIENT)
-    until(lambda: os.path.exists(os.path.join(folder, "snaps.sock")), 30)
+    daemon = Daemon(HAPTICD, folder, "snaps", SNAPS.format(source=SOURCE))
     python = [sys.executable, os.path.join(CLIENT, "examples", "button.py"), "--name", "snaps"]
     programs = {"button.c": [BUTTON, "snaps"], "button.py": python, "a program that follows, leads and pushes": [sys.executable, "-c", FOLLOWS]}
-    running = {name: subprocess.Popen(command, env=there, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for name, command in programs.items()}
+    running = {name: subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for name, command in programs.items()}
     said = {name: "".join(program.stdout.readline() for _ in range(2 if "button" in name else 1)) for name, program in running.items()}
     time.sleep(0.3)
     if stop:
-        subprocess.run([HAPTICD, "ctl", "--name", "snaps", "clear"], env=environment, capture_output=True)  # a busy machine may have latched a fault
-        told = subprocess.run([HAPTICD, "ctl", "--name", "snaps", "events"], env=environment, capture_output=True, text=True, timeout=60).stdout
+        daemon.ctl("clear")  # a busy machine may have latched a fault
+        told = daemon.ctl("events")[1]
         clicks = [json.loads(line).get("snapped") for line in told.splitlines() if '"click"' in line]
         check("clicks go in and out in turn", len(clicks) > 1 and clicks == ["in", "out"] * (len(clicks) // 2) + ["in"] * (len(clicks) % 2), clicks)
-        subprocess.run([HAPTICD, "ctl", "--name", "snaps", "stop"], env=environment, capture_output=True, timeout=60)
+        daemon.ctl("stop")
     else:
-        daemon.kill()
+        daemon.process.kill()
     for name, program in running.items():
         out, err = program.communicate(timeout=60)
         err = re.sub(r".*answers came more than 20 ms.*\n(  .*\n)?", "", err)  # the machine was busy
@@ -262,29 +250,18 @@ def snaps(folder, stop):
         else:
             check(f"{name} is told that its daemon was killed", program.returncode == 1 and "was killed, or it crashed" in err, (program.returncode, out[-200:], err))
         check(f"{name} said what it saw", "snapped in" in said[name] or said[name] == "ready\n", said[name])
-    daemon.kill()
-    daemon.wait()
+    daemon.stop(signal.SIGKILL)
 
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
-    environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
-    scene = os.path.join(folder, "scene.yaml")
-    with open(scene, "w") as file:
-        file.write(SCENE.format(source=SOURCE))
     with open(os.path.join(folder, "door.csv"), "w") as file:
         file.write("t,x,y,z,qw,qx,qy,qz\n0,0,-0.3,0,1,0,0,0\n")
-    daemon = subprocess.Popen([HAPTICD, "run", scene, "--name", "lib"], env=environment, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.DEVNULL)
-    for _ in range(600):
-        if os.path.exists(os.path.join(folder, "lib.sock")):
-            break
-        time.sleep(0.05)
-    alone()
-    examples(folder)
-    experiment(folder)
-    pushes(folder)
-    snaps(folder, True)
-    snaps(folder, False)
-    daemon.terminate()
-    check("the run ends in order", daemon.wait(timeout=30) == 0)
+    with Daemon(HAPTICD, folder, "lib", SCENE.format(source=SOURCE)) as lib:
+        environment = dict(lib.environment, PYTHONPATH=CLIENT)
+        alone()
+        examples(folder)
+        experiment(folder)
+        pushes(folder)
+        snaps(folder, True)
+        snaps(folder, False)
 finish()

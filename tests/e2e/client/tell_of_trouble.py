@@ -19,11 +19,12 @@ CLIENT = os.path.join(SOURCE, "driver", "doors", "client", "python")
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
 sys.path.insert(0, CLIENT)
 import hapticd
+from daemon import Daemon
 from e2e import check, finish, until
 
-SCENE = """hapticd: 1
+SCENE = f"""hapticd: 1
 servo: {{rate: 1000}}
-device: {source}/config/devices/simulated-premium15.yaml
+device: {SOURCE}/config/devices/simulated-premium15.yaml
 hand: {{script: guided, tremor: 0, wander: 0}}
 clients: {{mode: add, max_force: 3}}
 models:
@@ -31,7 +32,7 @@ models:
     plugin: nurbs_rigid
     motion: kinematic
     pose: {{position: [0, -0.3, 0]}}
-    parameters: {{geometry: {source}/config/models/box.yaml, stiffness: 500}}
+    parameters: {{geometry: {SOURCE}/config/models/box.yaml, stiffness: 500}}
 """
 ARM = "simulated Premium 1.5"
 PROGRAM = """
@@ -43,31 +44,15 @@ with hapticd.connect("trouble") as h:
 """
 
 
-class Daemon:
-    def __init__(self, folder):
-        self.folder = folder
-        self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder, PYTHONPATH=CLIENT)
-        scene, self.log = os.path.join(folder, "scene.yaml"), os.path.join(folder, "log.txt")
-        with open(scene, "w") as file:
-            file.write(SCENE.format(source=SOURCE))
-        with open(self.log, "w") as log:
-            self.run = subprocess.Popen([HAPTICD, "run", scene, "--name", "trouble"], env=self.environment,
-                                        stdout=subprocess.DEVNULL, stderr=log)
-        hapticd.connect("trouble", folder=folder, wait=30).close()
+def start(folder):
+    daemon = Daemon(HAPTICD, folder, "trouble", SCENE)
+    daemon.environment["PYTHONPATH"] = CLIENT
+    return daemon
 
-    def connect(self):
-        return hapticd.connect("trouble", folder=self.folder)
 
-    def says(self, *words):
-        """The log has a line with all of these words."""
-        def found():
-            with open(self.log) as log:
-                return any(all(word in line for word in words) for line in log)
-        return until(found, 30)
-
-    def told(self):
-        with open(self.log) as log:
-            return log.read()
+def says(daemon, *words):
+    """The log has a line with all of these words."""
+    return until(lambda: any(all(word in line for word in words) for line in daemon.log().splitlines()), 30)
 
 
 def warned(action):
@@ -97,25 +82,25 @@ def held(daemon):
         texts = warned(lambda _: h.lead_force(ARM).end())
         check("who begins on an arm that is held is warned", any("held" in t and "hapticd ctl clear" in t for t in texts), texts)
         h.clear()
-        check("the log tells of the hold", daemon.says(ARM, "the arm is held") and daemon.says("hapticd ctl clear"), daemon.told())
-        check("and of its end in matching words", daemon.says(ARM, "the hold is over"), daemon.told())
+        check("the log tells of the hold", says(daemon, ARM, "the arm is held") and says(daemon, "hapticd ctl clear"), daemon.log())
+        check("and of its end in matching words", says(daemon, ARM, "the hold is over"), daemon.log())
 
 
 def logged(daemon):
     """Who pushes, asks for more than it gets, falls silent, and dies."""
     victim = subprocess.Popen([sys.executable, "-c", PROGRAM, "100"], env=daemon.environment)
     name = f"process {victim.pid} (python"
-    check("the log names the program that pushes", daemon.says(ARM, name, "pushes on it"), daemon.told())
-    check("it tells who asks for more than it gets", daemon.says(name, "asked for 100 N and gets 3 N at most"), daemon.told())
+    check("the log names the program that pushes", says(daemon, ARM, name, "pushes on it"), daemon.log())
+    check("it tells who asks for more than it gets", says(daemon, name, "asked for 100 N and gets 3 N at most"), daemon.log())
     victim.send_signal(signal.SIGSTOP)
-    check("and who fell silent", daemon.says(name, "fell silent while it pushed with 3 N"), daemon.told())
+    check("and who fell silent", says(daemon, name, "fell silent while it pushed with 3 N"), daemon.log())
     victim.send_signal(signal.SIGCONT)
-    check("and that it came back", daemon.says(name, "answers again"), daemon.told())
+    check("and that it came back", says(daemon, name, "answers again"), daemon.log())
     with daemon.connect() as h:
         until(lambda: h.status()["devices"][0]["clients"][0]["force_n"] > 0)
     victim.kill()
     victim.wait()
-    check("and what it did as it died", daemon.says(name, "ended"), daemon.told())
+    check("and what it did as it died", says(daemon, name, "ended"), daemon.log())
     with daemon.connect() as h:
         lost = [e for e in h.ask(do="events")["events"] if e["event"] == "lost" and e.get("pid") == victim.pid]
         check("events name the program, and what it did", lost and "python" in lost[-1]["program"] and lost[-1]["does"] == "pushes", lost)
@@ -125,10 +110,10 @@ def refused(daemon):
     with daemon.connect() as h, h.lead_force(ARM) as lead:
         lead._slot.put(hapticd._lead._PUSH.pack(h.state(ARM).tick, float("nan"), 0, 0, 0, 0, 0, 0, 0))
         check("a refused answer is told with its process and reason",
-              daemon.says(f"process {os.getpid()}", "refused so far: a number is not finite"), daemon.told())
+              says(daemon, f"process {os.getpid()}", "refused so far: a number is not finite"), daemon.log())
         told = [e for e in h.ask(do="events")["events"] if e["event"] == "refused"]
         check("also by events", told and told[-1]["pid"] == os.getpid() and "not finite" in told[-1]["why"], told)
-    check("who ends in order is told so", daemon.says(f"process {os.getpid()}", "no longer pushes on it"), daemon.told())
+    check("who ends in order is told so", says(daemon, f"process {os.getpid()}", "no longer pushes on it"), daemon.log())
 
 
 def pushed_again(daemon):
@@ -169,9 +154,9 @@ def late(daemon):
     """An answer that came too late for its request is no other's, and brings no memory for another."""
     with daemon.connect() as h:
         h.timeout = 0.2
-        daemon.run.send_signal(signal.SIGSTOP)
+        daemon.process.send_signal(signal.SIGSTOP)
         given_up = raises(lambda: h.lead_model("door"), "did not answer")
-        daemon.run.send_signal(signal.SIGCONT)
+        daemon.process.send_signal(signal.SIGCONT)
         h.timeout = 10
         h.ask(do="geometry", model="door", **{"as": "memory"})
         h.clear()
@@ -187,7 +172,7 @@ def forgotten(daemon):
         def full():
             lines.append(socket.socket(socket.AF_UNIX))
             with contextlib.suppress(OSError):  # others are sent away too
-                lines[-1].connect(os.path.join(daemon.folder, "trouble.sock"))
+                lines[-1].connect(daemon.socket)
                 lines[-1].sendall(b'{"do":"snapshot"}\n')
             time.sleep(0.05)
             return h._line.ended()
@@ -230,8 +215,8 @@ def told_by_ctl(daemon):
                             stderr=subprocess.PIPE, text=True)
     with daemon.connect() as h:
         until(lambda: h.models["door"].leader == line.pid)
-    daemon.run.kill()
-    daemon.run.wait()
+    daemon.process.kill()
+    daemon.process.wait()
     _, told = line.communicate("0 -0.3 0\n", timeout=60)
     check("ctl lead fails where its daemon was killed", line.returncode == 1 and "has ended" in told, (line.returncode, told))
 
@@ -252,8 +237,8 @@ def dies(daemon):
     next(rows)
     push = h.push(ARM, lambda state: [0, 0, 1])
     until(lambda: push.answers > 0)
-    daemon.run.kill()
-    daemon.run.wait()
+    daemon.process.kill()
+    daemon.process.wait()
     check("a push learns that its daemon is gone", until(lambda: push.error is not None))
     check("and raises it", raises(push.end))
     check("old rows are not given out as new ones", raises(lambda: h.rows("ticks", last=1)))
@@ -265,7 +250,7 @@ def dies(daemon):
     check("who waits for events too", raises(lambda: [None for _ in events]))
     check("leaving the with tells it", raises(lambda: h.__exit__(None, None, None)))
     check("and a closed client knows that its daemon ended", h.ended() and h.died())
-    another = Daemon(daemon.folder)  # of the same name
+    another = start(daemon.folder)  # of the same name
     rest, _ = program.communicate("\n", timeout=120)
     told_by_ctl(another)
     print(rest, end="")
@@ -273,10 +258,10 @@ def dies(daemon):
 
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
-    one = Daemon(scratch)
+    one = start(scratch)
     try:
         for case in (held, logged, refused, pushed_again, late, forgotten, many_files, closed, dies):
             case(one)
     finally:
-        one.run.kill()  # also where a case did not come to its end
+        one.process.kill()  # also where a case did not come to its end
 finish()

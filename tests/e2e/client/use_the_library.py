@@ -8,19 +8,18 @@ import re
 import subprocess
 import sys
 import tempfile
-import time
 
 HAPTICD, SOURCE, EVERYTHING, SPRING, LEAD_MODEL = sys.argv[1:6]
 CLIENT = os.path.join(SOURCE, "driver", "doors", "client", "python")
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
 sys.path.insert(0, CLIENT)
-import hapticd
 import numpy
+from daemon import Daemon
 from e2e import check, finish
 
-SCENE = """hapticd: 1
+SCENE = f"""hapticd: 1
 servo: {{rate: 1000}}
-device: {source}/config/devices/simulated-premium15.yaml
+device: {SOURCE}/config/devices/simulated-premium15.yaml
 hand: {{script: guided, tremor: 0, wander: 0}}
 clients: add
 models:
@@ -28,7 +27,7 @@ models:
     plugin: nurbs_rigid
     motion: kinematic
     path: door.csv
-    parameters: {{geometry: {source}/config/models/box.yaml, stiffness: 500}}
+    parameters: {{geometry: {SOURCE}/config/models/box.yaml, stiffness: 500}}
 """
 ARM = "simulated Premium 1.5"
 
@@ -82,25 +81,16 @@ def links(client):
 
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
-    environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
-    scene = os.path.join(folder, "scene.yaml")
-    with open(scene, "w") as file:
-        file.write(SCENE.format(source=SOURCE))
     with open(os.path.join(folder, "door.csv"), "w") as file:
         file.write("t,x,y,z,qw,qx,qy,qz\n0,0,-0.2,0,1,0,0,0\n")
-    daemon = subprocess.Popen([HAPTICD, "run", scene, "--name", "lib"], env=environment, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.DEVNULL)
-    for _ in range(600):
-        if os.path.exists(os.path.join(folder, "lib.sock")):
-            break
-        time.sleep(0.05)
+    daemon = Daemon(HAPTICD, folder, "lib", SCENE)
+    environment = daemon.environment
     done = subprocess.run([EVERYTHING, "lib", ARM, "door"], env=environment, capture_output=True, text=True, timeout=120)
     print(done.stdout, end="")
     check("every function of the library", done.returncode == 0, done.stdout[-2000:] + done.stderr)
     examples(folder)
-    with hapticd.connect("lib", folder=folder) as client:
+    with daemon.connect() as client:
         leads_a_model(client)
         links(client)
-    daemon.terminate()
-    check("the run ends in order", daemon.wait(timeout=30) == 0)
+    check("the run ends in order", daemon.stop() == 0)
 finish()

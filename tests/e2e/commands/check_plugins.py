@@ -7,6 +7,7 @@ import glob
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -45,6 +46,13 @@ for name, test in (("bad_crash", "descriptor-complete"), ("bad_no_symbol", "desc
                    ("bad_magic", "descriptor-complete"), ("bad_no_step", "descriptor-complete")):
     code, tests, failed, err = examined(os.path.join(BROKEN, name + ".so"))
     check(f"{name} fails by {test}", code == 1 and any(t == test for _, t in failed), (code, failed, err[-300:]))
+
+# JSON is UTF-8, whatever the bytes of a file's name: what can't be read in them is replaced.
+with tempfile.TemporaryDirectory() as folder:
+    odd = os.path.join(os.fsencode(folder), b"\xff.so")
+    shutil.copy(os.path.join(BROKEN, "bad_no_symbol.so"), odd)
+    code, tests, failed, err = examined(odd)
+    check("a file whose name is not UTF-8 is checked like others", code == 1 and any(t == "descriptor-complete" for _, t in failed), (code, failed, err[-300:]))
 
 code, tests, failed, err = examined(SHAPES)
 for shape, test in (("allocating", "no-allocation-in-step"), ("rude", "no-lock-in-step"), ("misbehaving", "finite-outputs"),

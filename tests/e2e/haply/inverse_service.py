@@ -13,7 +13,6 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
 
 import numpy
 
@@ -22,7 +21,7 @@ import socket_pair
 HAPTICD, SOURCE, SERVICE = sys.argv[1:4]
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
 sys.path.insert(0, os.path.join(SOURCE, "driver", "doors", "client", "python"))
-import hapticd
+from daemon import Daemon
 from e2e import check, finish, until
 
 FAR = """hapticd: 1
@@ -78,31 +77,10 @@ class Documented:
             pass
 
 
-def answers(path):
-    with socket.socket(socket.AF_UNIX) as line:
-        try:
-            line.connect(path)
-        except OSError:
-            return False
-    return True
-
-
 def daemon(folder, name, text, port=0, more=""):
-    scene = os.path.join(folder, name + ".yaml")
-    with open(scene, "w") as file:
-        file.write(text.format(source=SOURCE))
     with open(os.path.join(folder, "arm.yaml"), "w") as file:
         file.write(ARM.format(port=port, more=more))
-    environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
-    with open(os.path.join(folder, name + ".log"), "w") as log:
-        run = subprocess.Popen([HAPTICD, "run", scene, "--name", name, "--allow-non-rt"], env=environment, stdout=log, stderr=log)
-    until(lambda: answers(os.path.join(folder, name + ".sock")) or run.poll() is not None, 30)
-    return run
-
-
-def log(folder, name):
-    with open(os.path.join(folder, name + ".log")) as file:
-        return file.read()
+    return Daemon(HAPTICD, folder, name, text.format(source=SOURCE), "--allow-non-rt")
 
 
 def last(client, *columns):
@@ -124,7 +102,7 @@ def module(folder):
     """The documented messages become an arm, and its forces the documented commands."""
     service = Documented((0.003, -0.045, -0.002))  # right, away, up: 45 mm toward the user
     run = daemon(folder, "module", NEAR, service.port)
-    with hapticd.connect("module", folder=folder) as client:
+    with run.connect() as client:
         until(lambda: client.streams["ticks"].written > 1000, 60)
         check("x is right, z up there, and what is away is behind here", last(client, "arm0_x", "arm0_y", "arm0_z") == [0.003, -0.002, 0.045],
               last(client, "arm0_x", "arm0_y", "arm0_z"))
@@ -133,8 +111,7 @@ def module(folder):
         until(lambda: asked_for(client, service)[0] < 1e-6)  # once the ramp is over, nothing moves any more
         off, told = asked_for(client, service)
         check("its force is asked for in their axes", off < 1e-6, told)
-    run.terminate()
-    check("the run ends in order", run.wait(timeout=30) == 0, log(folder, "module"))
+    check("the run ends in order", run.stop() == 0, run.log())
     check("it introduces itself once", "session" in service.heard[0] and "session" not in service.heard[1])
     check("the last force is none", service.heard[-1]["inverse3"][0]["commands"]["set_cursor_force"]["values"] == ZERO,
           service.heard[-1])
@@ -143,22 +120,20 @@ def module(folder):
 def troubles(folder):
     service = Documented((0, -0.06, 0), lost_after=2000)
     run = daemon(folder, "lost", NEAR, service.port)
-    with hapticd.connect("lost", folder=folder) as client:
+    with run.connect() as client:
         check("a service that goes is an arm that is lost", until(lambda: last(client, "arm0_fault") == [LOST], 60))
-    run.terminate()
-    run.wait(timeout=30)
+    run.stop()
     service = Documented((0, -0.06, 0), power_supply=False)
     run = daemon(folder, "dark", NEAR, service.port)
-    with hapticd.connect("dark", folder=folder) as client:
+    with run.connect() as client:
         check("one without power gives no force", until(lambda: last(client, "arm0_fault")[0] == FAULTY), last(client, "arm0_fault"))
-    run.terminate()
-    run.wait(timeout=30)
+    run.stop()
     service = Documented((0, 0, 0))
     run = daemon(folder, "other", NEAR, service.port, ', device_id: "077"')
-    check("an arm that is not there is told", run.wait(timeout=30) != 0 and '"049D", "0001"' in log(folder, "other"), log(folder, "other"))
+    check("an arm that is not there is told", run.process.wait(timeout=30) != 0 and '"049D", "0001"' in run.log(), run.log())
     run = daemon(folder, "nobody", NEAR, 1)
-    check("no service is told with its cure", run.wait(timeout=30) != 0 and "haply-inverse-service" in log(folder, "nobody"),
-          log(folder, "nobody"))
+    check("no service is told with its cure", run.process.wait(timeout=30) != 0 and "haply-inverse-service" in run.log(),
+          run.log())
 
 
 class Service:
@@ -235,7 +210,7 @@ def circle(folder, far):
     """A daemon drives the arm of another one, through both."""
     service = Service(folder, "far")
     near_run = daemon(folder, "near", NEAR, service.port)
-    with hapticd.connect("near", folder=folder) as near:
+    with near_run.connect() as near:
         until(lambda: near.streams["ticks"].written > 4000, 60)
         seen, there = near.rows("ticks", last=2000), far.rows("ticks", last=6000)
         places = {row.tobytes() for row in numpy.round(numpy.stack([there["arm0_" + c] for c in "xyz"], axis=1), 9)}
@@ -243,8 +218,7 @@ def circle(folder, far):
         check("positions are those of the far arm", known > 0.95, known)
         felt = until(lambda: numpy.abs(far.rows("ticks", last=1000)["arm0_client_fz"]).max() > 0.2)
         check("the near ball is felt there", felt, numpy.abs(far.rows("ticks", last=1000)["arm0_client_fz"]).max())
-    near_run.send_signal(signal.SIGKILL)
-    near_run.wait()
+    near_run.stop(signal.SIGKILL)
     check("the far arm is free when the near daemon dies",
           until(lambda: last(far, "arm0_client_fx", "arm0_client_fy", "arm0_client_fz") == [0, 0, 0]))
     service.end()
@@ -254,9 +228,8 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as place:
     module(place)
     troubles(place)
     far_run = daemon(place, "far", FAR)
-    with hapticd.connect("far", folder=place) as far_client:
+    with far_run.connect() as far_client:
         offers(place, far_client)
         circle(place, far_client)
-    far_run.terminate()
-    check("the far run ends in order", far_run.wait(timeout=30) == 0)
+    check("the far run ends in order", far_run.stop() == 0)
 finish()

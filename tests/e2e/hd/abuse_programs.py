@@ -17,7 +17,7 @@ HOW_MANY = int(sys.argv[4]) if len(sys.argv) > 4 else 24
 SEED = int(sys.argv[5]) if len(sys.argv) > 5 else 1
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
 sys.path.insert(0, os.path.join(SOURCE, "driver", "doors", "client", "python"))
-import hapticd
+from daemon import Daemon
 from e2e import check, finish, until
 
 SCENE = """hapticd: 1
@@ -29,10 +29,10 @@ models: []
 TOGETHER = 4  # at one time; the arm has 8 places
 
 
-def start(environment, number):
+def start(number):
     words = (["hd_random", str(number), "60"] if number % 3 == 0 else
              ["hd_forces", ("spring", "clamp", "wall")[number % 3], "60"])
-    return subprocess.Popen([os.path.join(PROGRAMS, words[0]), *words[1:]], env=environment, stdout=subprocess.DEVNULL,
+    return subprocess.Popen([os.path.join(PROGRAMS, words[0]), *words[1:]], env=daemon.environment, stdout=subprocess.DEVNULL,
                             stderr=subprocess.DEVNULL)
 
 
@@ -46,8 +46,8 @@ def mistreat(chance, program):
     program.send_signal(chance.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGSTOP, signal.SIGUSR1]))
 
 
-def batch(chance, environment, first):
-    programs = [start(environment, first + i) for i in range(TOGETHER)]
+def batch(chance, first):
+    programs = [start(first + i) for i in range(TOGETHER)]
     for i, program in enumerate(programs):
         if (first + i) % 3 != 0:
             mistreat(chance, program)
@@ -88,33 +88,24 @@ def resources(pid):
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
     library = os.path.join(os.path.dirname(HAPTICD), "..", "lib", "hapticd", "hdapi")
-    environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder, HAPTICD_NAME="abused",
-                       LD_LIBRARY_PATH=library)
-    scene = os.path.join(folder, "scene.yaml")
-    with open(scene, "w") as file:
-        file.write(SCENE.format(source=SOURCE))
-    daemon = subprocess.Popen([HAPTICD, "run", scene, "--name", "abused"], env=environment, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.DEVNULL)
-    until(lambda: os.path.exists(os.path.join(folder, "abused.sock")))
-    chance = random.Random(SEED)
-    with hapticd.connect("abused", folder=folder) as client:
-        comings = Comings()
-        batch(chance, environment, 1)  # what is made once is made
-        until(lambda: not client.status()["devices"][0]["clients"])
-        before = resources(daemon.pid)
-        stays = 0
-        for first in range(0, HOW_MANY, TOGETHER):
-            stays += not batch(chance, environment, first)
-            until(comings.match)
-        check(f"{HOW_MANY} programs: no force stays", stays == 0, stays)
-        check("no place of theirs stays", until(lambda: not client.status()["devices"][0]["clients"]),
-              client.status()["devices"][0]["clients"])
-        check("no descriptor and no thread of the daemon's stays", until(lambda: resources(daemon.pid) == before),
-              (before, resources(daemon.pid)))
-        check("who joined was told to have left", until(comings.match) and comings.joined > 0, vars(comings))
-        rows = client.rows("ticks", last=8000)
-        sent = max(abs(rows["arm0_sent_f" + c]).max() for c in "xyz")
-        check("the daemon's limit held", sent <= 8.5 * 1.0001, sent)
-    daemon.terminate()
-    check("the run ends in order", daemon.wait(timeout=30) == 0)
+    with Daemon(HAPTICD, folder, "abused", SCENE.format(source=SOURCE), HAPTICD_NAME="abused", LD_LIBRARY_PATH=library) as daemon:
+        chance = random.Random(SEED)
+        with daemon.connect() as client:
+            comings = Comings()
+            batch(chance, 1)  # what is made once is made
+            until(lambda: not client.status()["devices"][0]["clients"])
+            before = resources(daemon.process.pid)
+            stays = 0
+            for first in range(0, HOW_MANY, TOGETHER):
+                stays += not batch(chance, first)
+                until(comings.match)
+            check(f"{HOW_MANY} programs: no force stays", stays == 0, stays)
+            check("no place of theirs stays", until(lambda: not client.status()["devices"][0]["clients"]),
+                  client.status()["devices"][0]["clients"])
+            check("no descriptor and no thread of the daemon's stays", until(lambda: resources(daemon.process.pid) == before),
+                  (before, resources(daemon.process.pid)))
+            check("who joined was told to have left", until(comings.match) and comings.joined > 0, vars(comings))
+            rows = client.rows("ticks", last=8000)
+            sent = max(abs(rows["arm0_sent_f" + c]).max() for c in "xyz")
+            check("the daemon's limit held", sent <= 8.5 * 1.0001, sent)
 finish()

@@ -18,7 +18,7 @@ HAPTICD, SOURCE, PROGRAMS = sys.argv[1:4]
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
 sys.path.insert(0, os.path.join(SOURCE, "driver", "doors", "client", "python"))
-import hapticd
+from daemon import Daemon
 from e2e import check, finish, until
 
 HEAD = """hapticd: 1
@@ -73,44 +73,11 @@ models: []
 ARM = "simulated Premium 1.5"
 
 
-class Daemon:
-    """A run of a scene under its own name, for as long as the `with`."""
+class ArmDaemon(Daemon):
+    """A daemon on whose arm programs of the HDAPI are run."""
 
     def __init__(self, folder, name, text):
-        self.folder, self.name = folder, name
-        self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
-        self.scene = os.path.join(folder, name + ".yaml")
-        with open(self.scene, "w") as file:
-            file.write(text)
-
-    def start(self):
-        with open(os.path.join(self.folder, self.name + ".log"), "a") as log:
-            self.run = subprocess.Popen([HAPTICD, "run", self.scene, "--name", self.name], env=self.environment,
-                                        stdout=subprocess.DEVNULL, stderr=log)
-        until(self.answers, 30)
-        return self
-
-    def answers(self):
-        try:
-            return bool(self.connect().status())
-        except (hapticd.HapticdError, OSError):
-            return False
-
-    __enter__ = start
-
-    def log(self):
-        with open(os.path.join(self.folder, self.name + ".log")) as log:
-            return log.read()
-
-    def stop(self, how=signal.SIGTERM):
-        self.run.send_signal(how)
-        return self.run.wait(timeout=30)
-
-    def __exit__(self, *_):
-        check(f"the run {self.name} ends in order", self.stop() == 0)
-
-    def connect(self):
-        return hapticd.connect(self.name, folder=self.folder)
+        super().__init__(HAPTICD, folder, name, text)
 
     def command(self, program, *arguments):
         return [HAPTICD, "client", "--name", self.name, os.path.join(PROGRAMS, "hd_" + program), *arguments]
@@ -225,7 +192,7 @@ def poll(daemon):
 def sphere(folder):
     """The program's ball and the scene's, which is as large and as stiff, are felt at the same place."""
     hand = "{script: guided, tremor: 0, wander: 0}"
-    with Daemon(folder, "ball", scene(SPHERE, hand=hand)) as daemon, daemon.connect() as client:
+    with ArmDaemon(folder, "ball", scene(SPHERE, hand=hand)) as daemon, daemon.connect() as client:
         with client.lead_hand(ARM) as lead:
             for step in range(100):
                 lead.put([0.004 * step / 100, 0.003, 0.06 - 0.013 * step / 100])
@@ -248,7 +215,7 @@ def wall(daemon):
 
 
 def two_arms(folder):
-    with Daemon(folder, "two", TWO.format(source=SOURCE)) as daemon, daemon.connect() as client:
+    with ArmDaemon(folder, "two", TWO.format(source=SOURCE)) as daemon, daemon.connect() as client:
         daemon.program("two_arms", "left", "right")
         pushes = client.rows("pushes", last=2000)
         left, right = pushes[pushes["arm"] == 0], pushes[pushes["arm"] == 1]
@@ -260,7 +227,7 @@ def six(folder):
     """Torques of joints reach the motors as they were asked for; coordinates are those that the scene and the device say."""
     with open(os.path.join(folder, "six-arm.yaml"), "w") as file:
         file.write(SIX_ARM)
-    with Daemon(folder, "six", SIX.format(folder=folder)) as daemon, daemon.connect() as client:
+    with ArmDaemon(folder, "six", SIX.format(folder=folder)) as daemon, daemon.connect() as client:
         done = daemon.program("six")
         ticks, pushes = client.rows("ticks", last=5000), client.rows("pushes", last=1000)
     saw = [float(word) for word in done.stdout.split("saw ")[1].split()]
@@ -282,7 +249,7 @@ def six(folder):
 
 
 def outage(folder):
-    daemon = Daemon(folder, "short", scene()).start()
+    daemon = ArmDaemon(folder, "short", scene())
     program = subprocess.Popen(daemon.command("outage"), env=daemon.environment, stdin=subprocess.PIPE,
                                stdout=subprocess.PIPE, text=True)
     check("it is ready", program.stdout.readline() == "ready\n")
@@ -300,7 +267,7 @@ def outage(folder):
 
 def told(folder):
     """A hold, and a force beyond the limit."""
-    with Daemon(folder, "told", scene(hand="{script: guided}")) as daemon, daemon.connect() as client:
+    with ArmDaemon(folder, "told", scene(hand="{script: guided}")) as daemon, daemon.connect() as client:
         daemon.program("told", "limit")
         client.clear()
         program = subprocess.Popen(daemon.command("told", "hold"), env=daemon.environment, stdout=subprocess.PIPE,
@@ -332,7 +299,7 @@ def killed(folder):
 
 def refused(folder):
     """What a program and its user are told where it cannot work."""
-    with Daemon(folder, "off", scene(clients="off")) as daemon:
+    with ArmDaemon(folder, "off", scene(clients="off")) as daemon:
         done = subprocess.run(daemon.command("forces", "spring", "0.2"), env=daemon.environment, capture_output=True,
                               text=True, timeout=60)
         check("a scene that lets nobody push is an error of forces, with a cure",
@@ -374,7 +341,7 @@ def command(folder):
 
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as place:
-    with Daemon(place, "plain", scene()) as plain_daemon:
+    with ArmDaemon(place, "plain", scene()) as plain_daemon:
         plain(plain_daemon)
         if not os.environ.get("HAPTICD_SANITIZE"):  # Python lacks the runtime that such a library needs
             python(plain_daemon)

@@ -13,6 +13,8 @@ import tempfile
 HAPTICD, SOURCE = sys.argv[1], sys.argv[2]
 PYTHON = os.path.join(SOURCE, "driver", "doors", "client", "python")
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
+sys.path.insert(0, PYTHON)
+from daemon import Daemon
 from e2e import check, finish, until
 
 SCENE = f"""hapticd: 1
@@ -25,43 +27,36 @@ ARM = "simulated Premium 1.5"
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 
-class Run:
+class Run(Daemon):
     """A run of a scene, its report, and what other commands say meanwhile."""
 
-    def __init__(self, folder, clients):
-        self.folder = folder
-        self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
-        self.report = os.path.join(folder, "report.json")
-        scene = os.path.join(folder, "scene.yaml")
-        with open(scene, "w") as file:
-            file.write(SCENE.replace("CLIENTS", clients))
-        self.run = subprocess.Popen([HAPTICD, "run", scene, "--name", "figures", "--report", self.report],
-                                    env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        until(lambda: os.path.exists(os.path.join(folder, "figures.sock")), 30)
-
-    def ask(self, *arguments):
-        return subprocess.run([HAPTICD, *arguments], env=self.environment, capture_output=True, text=True, timeout=120)
+    def __init__(self, folder, name, clients):
+        self.report = os.path.join(folder, name + ".json")
+        super().__init__(HAPTICD, folder, name, SCENE.replace("CLIENTS", clients), "--report", self.report)
 
     def clients(self):
-        return json.loads(self.ask("top", "--name", "figures", "--once", "--json").stdout)["clients"]
+        return json.loads(self.run("top", "--name", self.name, "--once", "--json")[1])["clients"]
 
     def advice(self):
-        checks = json.loads(self.ask("doctor", "--seconds", "0", "--json").stdout)["checks"]
+        checks = json.loads(self.run("doctor", "--seconds", "0", "--json")[1])["checks"]
         return next(one for one in checks if one["name"] == "clients")
 
+    def table(self):
+        return self.run("top", "--name", self.name, "--once")[1]
+
     def pusher(self):
-        return subprocess.Popen([sys.executable, os.path.join(HERE, "pusher.py"), PYTHON, "figures", self.folder, ARM])
+        return subprocess.Popen([sys.executable, os.path.join(HERE, "pusher.py"), PYTHON, self.name, self.folder, ARM])
 
     def end(self):
-        self.run.send_signal(signal.SIGTERM)
-        told, _ = self.run.communicate(timeout=30)
+        """The summary and the report."""
+        self.stop()
         with open(self.report) as file:
-            return told, json.load(file)
+            return self.summary(), json.load(file)
 
 
 def told_meanwhile(run):
     check("nobody pushes, and doctor says so", run.advice()["verdict"] == "ok", run.advice())
-    check("nor in top", run.clients() == [] and "PROGRAM" not in run.ask("top", "--name", "figures", "--once").stdout)
+    check("nor in top", run.clients() == [] and "PROGRAM" not in run.table())
     program = run.pusher()
     pushes = until(lambda: any(one["answers"] > 300 and one["force_n"] == 2 for one in run.clients()), 60)
     one = run.clients()[0]
@@ -69,7 +64,7 @@ def told_meanwhile(run):
     check("by its name", one["program"].endswith(" pusher.py"), one)
     check("its force now and the largest", one["force_n"] == 2 and one["largest_n"] == 2, one)
     check("and which part came in time", 0 <= one["same_tick"] < 0.95 and one["same_tick"] + one["next_tick"] <= 1, one)
-    text = run.ask("top", "--name", "figures", "--once").stdout
+    text = run.table()
     check("as a table too", "PROGRAM" in text and "pusher.py" in text and "LATE" in text, text)
     advice = run.advice()
     check("doctor tells of a program that comes late, and what to do",
@@ -88,7 +83,7 @@ def stalls(run, program):
 
 def watched(folder):
     """A scene that lets programs look on."""
-    run = Run(folder, "{mode: add, push: false}")
+    run = Run(folder, "watched", "{mode: add, push: false}")
     program = run.pusher()
     check("push: false lets nobody push", program.wait(timeout=60) != 0)
     told, report = run.end()
@@ -96,7 +91,7 @@ def watched(folder):
 
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as place:
-    first = Run(place, "add")
+    first = Run(place, "figures", "add")
     stalls(first, told_meanwhile(first))
     again = first.pusher()
     until(lambda: any(one["answers"] > 300 for one in first.clients()), 60)

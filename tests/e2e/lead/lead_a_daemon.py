@@ -22,53 +22,25 @@ HAPTICD, SOURCE = sys.argv[1], sys.argv[2]
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
 sys.path.insert(0, os.path.join(SOURCE, "driver", "doors", "client", "python"))
 import hapticd
+from daemon import Daemon
 from e2e import check, finish, refused, until
 
-SCENE = """hapticd: 1
+SCENE = f"""hapticd: 1
 servo: {{rate: 1000}}
-device: {source}/config/devices/simulated-premium15.yaml
+device: {SOURCE}/config/devices/simulated-premium15.yaml
 hand: {{script: guided, tremor: 0, wander: 0}}
 models:
   - name: ball
     plugin: nurbs_rigid
-    parameters: {{geometry: {source}/config/models/sphere.yaml, stiffness: 800}}
+    parameters: {{geometry: {SOURCE}/config/models/sphere.yaml, stiffness: 800}}
   - name: door
     plugin: nurbs_rigid
     motion: kinematic
     path: door.csv
-    parameters: {{geometry: {source}/config/models/box.yaml, stiffness: 500}}
+    parameters: {{geometry: {SOURCE}/config/models/box.yaml, stiffness: 500}}
 """
 ARM = "simulated Premium 1.5"
 START = (0.0, -0.3, 0.0)  # m: where the door stands, out of reach
-
-
-class Daemon:
-    def __init__(self, folder, *options):
-        self.folder = folder
-        self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
-        scene = os.path.join(folder, "scene.yaml")
-        with open(scene, "w") as file:
-            file.write(SCENE.format(source=SOURCE))
-        with open(os.path.join(folder, "door.csv"), "w") as file:
-            file.write("t,x,y,z,qw,qx,qy,qz\n0,{},{},{},1,0,0,0\n".format(*START))
-        self.run = subprocess.Popen([HAPTICD, "run", scene, "--name", "x", *options], env=self.environment,
-                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        for _ in range(300):
-            if os.path.exists(os.path.join(folder, "x.sock")):
-                break
-            time.sleep(0.05)
-
-    def connect(self):
-        return hapticd.connect("x", folder=self.folder)
-
-    def ctl(self, *arguments, stdin=""):
-        done = subprocess.run([HAPTICD, "ctl", "--name", "x", *arguments], env=self.environment, input=stdin,
-                              capture_output=True, text=True, timeout=60)
-        return done.returncode, done.stdout, done.stderr
-
-    def stop(self):
-        self.run.send_signal(signal.SIGTERM)
-        return self.run.wait(timeout=30)
 
 
 def door(rows):
@@ -256,13 +228,13 @@ def answers(daemon):
         check("ctl get", code == 0 and json.loads(out)["value"] == 700, out)
         code, out, _ = daemon.ctl("events")
         check("ctl events", code == 0 and '"joined"' in out, out[-500:])
-        code, out, err = daemon.ctl("lead", "door", "--hold", "1.5", stdin="0 -0.25 0\n0, -0.2, 0, 1, 0, 0, 0\n")
+        code, out, err = daemon.ctl("lead", "door", "--hold", "1.5", given="0 -0.25 0\n0, -0.2, 0, 1, 0, 0, 0\n")
         check("ctl lead moves a model", code == 0 and abs(height(client) + 0.2) < 1e-6, (err, height(client)))
-        code, out, err = daemon.ctl("lead", "door", stdin="0 0\n")
+        code, out, err = daemon.ctl("lead", "door", given="0 0\n")
         check("ctl lead tells of a line that is none", code == 2 and "line 1" in err, err)
-        code, out, err = daemon.ctl("lead", "door", stdin="0 -0.2 0\n0 -250 0\n")
+        code, out, err = daemon.ctl("lead", "door", given="0 -0.2 0\n0 -250 0\n")
         check("and of one that is too far away, as in mm", code == 2 and "line 2" in err and "10 m" in err, err)
-        code, out, err = daemon.ctl("lead", "door", stdin="0 -0.2 0 1 1 0 0\n")
+        code, out, err = daemon.ctl("lead", "door", given="0 -0.2 0 1 1 0 0\n")
         check("and of an orientation that is none", code == 2 and "line 1" in err and "the quaternion has length 1.41421, expected 1" in err, err)
         code, out, err = daemon.ctl("lead")
         check("ctl lead needs a target", code == 2, err)
@@ -273,7 +245,7 @@ def subscribers_are_bounded(daemon):
     crowd = []
     for _ in range(26):
         crowd.append(socket.socket(socket.AF_UNIX))
-        crowd[-1].connect(os.path.join(daemon.folder, "x.sock"))
+        crowd[-1].connect(daemon.socket)
         crowd[-1].sendall(b'{"do":"subscribe","id":"s"}\n')
     told = [json.loads(client.makefile().readline()) for client in crowd]
     check("only so many may stay", sum(t["ok"] for t in told) <= 24 and not told[-1]["ok"] and told[-1]["code"] == "too_many", told[-1])
@@ -285,7 +257,9 @@ def subscribers_are_bounded(daemon):
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     recording = os.path.join(scratch, "led.h5")
-    daemon = Daemon(scratch, "--record", recording)
+    with open(os.path.join(scratch, "door.csv"), "w") as file:
+        file.write("t,x,y,z,qw,qx,qy,qz\n0,{},{},{},1,0,0,0\n".format(*START))
+    daemon = Daemon(HAPTICD, scratch, "x", SCENE, "--record", recording)
     leads_a_model(daemon)
     leader_dies(daemon, signal.SIGKILL)
     leader_dies(daemon, signal.SIGSTOP)
@@ -296,7 +270,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     check("the run ends in order", daemon.stop() == 0)
     done = subprocess.run([HAPTICD, "replay", recording], capture_output=True, text=True, timeout=120)
     check("and replays to the last bit", done.returncode == 0, done.stdout + done.stderr)
-    virtual = Daemon(scratch, "--virtual-time", "--for", "100000")
+    virtual = Daemon(HAPTICD, scratch, "virtual", SCENE, "--virtual-time", "--for", "100000")
     with virtual.connect() as client:
         check("a run in virtual time is not led", refused(lambda: client.lead_model("door"), "virtual"))
     virtual.stop()

@@ -21,7 +21,7 @@ HAPTICD, SOURCE = sys.argv[1], sys.argv[2]
 PYTHON = os.path.join(SOURCE, "driver", "doors", "client", "python")
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
 sys.path.insert(0, PYTHON)
-import hapticd
+from daemon import Daemon
 from e2e import check, finish, refused, until
 
 SCENE = """hapticd: 1
@@ -36,25 +36,11 @@ models:
 """
 ARM = "simulated Premium 1.5"
 BOUND = 3.0  # N
+STILL = "tremor: 0, wander: 0"
 
 
-class Daemon:
-    def __init__(self, folder, name, clients, *options, hand="tremor: 0, wander: 0"):
-        self.folder, self.name = folder, name
-        self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
-        scene = os.path.join(folder, name + ".yaml")
-        with open(scene, "w") as file:
-            file.write(SCENE.format(source=SOURCE, clients=clients, hand=hand))
-        self.run = subprocess.Popen([HAPTICD, "run", scene, "--name", name, *options], env=self.environment,
-                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        until(lambda: os.path.exists(os.path.join(folder, name + ".sock")), 30)
-
-    def connect(self):
-        return hapticd.connect(self.name, folder=self.folder)
-
-    def stop(self):
-        self.run.send_signal(signal.SIGTERM)
-        return self.run.wait(timeout=30)
+def scene(clients, hand=STILL):
+    return SCENE.format(source=SOURCE, clients=clients, hand=hand)
 
 
 def raises(action):
@@ -194,12 +180,12 @@ def libc_hole(fd):
 
 
 def others(scratch):
-    closed = Daemon(scratch, "closed", "off")
+    closed = Daemon(HAPTICD, scratch, "closed", scene("off"))
     with closed.connect() as client:
         check("a scene without clients is not pushed", refused(lambda: client.lead_force(ARM), "clients: add"))
         check("and has no rows for it", client.streams["pushes"].written == 0)
     closed.stop()
-    alone = Daemon(scratch, "alone", "{mode: instead, exclusive: true}")
+    alone = Daemon(HAPTICD, scratch, "alone", scene("{mode: instead, exclusive: true}"))
     with alone.connect() as client, alone.connect() as second:
         with client.lead_force(ARM):
             check("the second of an exclusive scene is refused, and told the first",
@@ -222,14 +208,14 @@ def others(scratch):
     wrong = os.path.join(scratch, "wrong.yaml")
     for clients, said in (("maybe", "clients"), ("{mode: add, max_force: -1}", "clients.max_force"), ("{exclusive: true}", "clients.mode")):
         with open(wrong, "w") as file:
-            file.write(SCENE.format(source=SOURCE, clients=clients, hand="tremor: 0, wander: 0"))
+            file.write(scene(clients))
         done = subprocess.run([HAPTICD, "check", wrong], capture_output=True, text=True, timeout=60)
         check(f"clients: {clients} is refused by name", done.returncode == 2 and said in done.stdout + done.stderr, done.stdout)
 
 
 def is_sent_as_asked(scratch):
     """A hand that trembles is pushed steadily, and by a soft spring: the passivity controller leaves both alone."""
-    daemon = Daemon(scratch, "steady", "add", hand="tremor: 0.02, wander: 0.02")
+    daemon = Daemon(HAPTICD, scratch, "steady", scene("add", hand="tremor: 0.02, wander: 0.02"))
     with daemon.connect() as client:
         start = client.state(ARM).position[0]
         for name, force in (("a push of 0.7 N", lambda state: (0.7, 0.0, 0.0)),
@@ -248,7 +234,7 @@ def is_sent_as_asked(scratch):
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     recording = os.path.join(scratch, "pushed.h5")
-    daemon = Daemon(scratch, "p", f"{{mode: add, max_force: {BOUND}}}", "--record", recording)
+    daemon = Daemon(HAPTICD, scratch, "p", scene(f"{{mode: add, max_force: {BOUND}}}"), "--record", recording)
     is_pushed(daemon)
     leader_ends(daemon, signal.SIGKILL)
     leader_ends(daemon, signal.SIGSTOP)

@@ -3,13 +3,10 @@
 
 Usage: refused_pushes.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
 """
-import atexit
 import json
 import math
 import os
-import signal
 import struct
-import subprocess
 import sys
 import tempfile
 import time
@@ -18,12 +15,12 @@ import warnings
 HAPTICD, SOURCE = sys.argv[1], sys.argv[2]
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
 sys.path.insert(0, os.path.join(SOURCE, "driver", "doors", "client", "python"))
-import hapticd
+from daemon import Daemon
 from e2e import check, finish, until
 
-SCENE = """hapticd: 1
+SCENE = f"""hapticd: 1
 servo: {{rate: 1000}}
-device: {source}/config/devices/simulated-premium15.yaml
+device: {SOURCE}/config/devices/simulated-premium15.yaml
 hand: {{script: guided, tremor: 0, wander: 0}}
 clients: {{mode: add, max_force: 3}}
 models: []
@@ -81,24 +78,16 @@ def raw(client):
 
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
-    scene, report = os.path.join(scratch, "scene.yaml"), os.path.join(scratch, "report.json")
-    with open(scene, "w") as file:
-        file.write(SCENE.format(source=SOURCE))
-    environment = dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch)
-    log = os.path.join(scratch, "log")
-    with open(log, "w") as told:
-        run = subprocess.Popen([HAPTICD, "run", scene, "--name", "refuses", "--report", report], env=environment,
-                               stdout=subprocess.PIPE, stderr=told, text=True)
-    atexit.register(run.kill)
-    until(lambda: os.path.exists(os.path.join(scratch, "refuses.sock")), 30)
+    report = os.path.join(scratch, "report.json")
+    daemon = Daemon(HAPTICD, scratch, "refuses", SCENE, "--report", report)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        with hapticd.connect("refuses", folder=scratch) as client:
+        with daemon.connect() as client:
             python(client)
             counted(client)
-        with hapticd.connect("refuses", folder=scratch) as client:
+        with daemon.connect() as client:
             last = raw(client)
-        with hapticd.connect("refuses", folder=scratch) as client:
+        with daemon.connect() as client:
             with client.lead_hand(ARM) as hand:
                 hand._put(struct.pack("<14d", 0.03, 0, 0, *[0] * 11))
                 check("a hand's target needs no orientation",
@@ -106,14 +95,12 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
                 hand._put(struct.pack("<14d", 30, 0, 0, 1, *[0] * 10))
                 seen = lambda: [e for e in client.ask(do="events")["events"] if e["event"] == "refused" and "farther" in e.get("why", "")]
                 check("an event says why a target was refused", until(seen, 30), client.ask(do="events"))
-    run.send_signal(signal.SIGTERM)
-    out, _ = run.communicate(timeout=30)
+    daemon.stop()
+    out, text = daemon.summary(), daemon.log()
     with open(report) as file:
         programs = json.load(file)["clients"]
     check("the report has the same", any(one["refused"] >= last["refused"] and one["asked_n"] == 7 and one["bounded"] > 0
                                          and one["why"] for one in programs), programs)
     check("and the summary", "answers were refused" in out and "asked for up to 7 N" in out, out)
-    with open(log) as told:
-        text = told.read()
     check("the log says why a target was refused", "refused so far: its position is farther" in text, text)
 finish()

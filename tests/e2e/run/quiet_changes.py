@@ -13,7 +13,7 @@ import tempfile
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import can_lock_memory, check, finish, program
+from e2e import can_lock_memory, check, finish, program, until
 
 HAPTICD, SOURCE, CRASHING, WITNESS = (os.path.abspath(argument) for argument in sys.argv[1:5])
 SCENES = os.path.join(SOURCE, "config", "scenes")
@@ -25,15 +25,6 @@ def sceneOf(folder, plugin):
     file = os.path.join(folder, plugin + ".yaml")
     open(file, "w").write(f"hapticd: 1\nmodels:\n  - {{name: {plugin}, plugin: {plugin}}}\n")
     return file
-
-
-def until(predicate, seconds=20):
-    limit = time.monotonic() + seconds
-    while time.monotonic() < limit:
-        if predicate():
-            return True
-        time.sleep(0.05)
-    return False
 
 
 def changes(ctl, folder):

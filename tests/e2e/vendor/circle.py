@@ -5,7 +5,6 @@ Usage: circle.py HAPTICD SOURCE LIBHD     prints one line per case; exit 1 when 
 """
 import os
 import signal
-import subprocess
 import sys
 import tempfile
 
@@ -14,7 +13,7 @@ import numpy
 HAPTICD, SOURCE, LIBRARY = sys.argv[1:4]
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
 sys.path.insert(0, os.path.join(SOURCE, "driver", "doors", "client", "python"))
-import hapticd
+from daemon import Daemon
 from e2e import check, finish, until
 
 FAR = """hapticd: 1
@@ -38,24 +37,12 @@ LOST = 2  # the fault of a device that is gone
 
 
 def daemon(folder, name, text, **more):
-    scene = os.path.join(folder, name + ".yaml")
-    with open(scene, "w") as file:
-        file.write(text.format(source=SOURCE))
-    environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder, **more)
-    with open(os.path.join(folder, name + ".log"), "w") as log:
-        run = subprocess.Popen([HAPTICD, "run", scene, "--name", name, "--allow-non-rt"], env=environment, stdout=log, stderr=log)
-    until(lambda: os.path.exists(os.path.join(folder, name + ".sock")) or run.poll() is not None, 30)
-    return run
+    return Daemon(HAPTICD, folder, name, text.format(source=SOURCE), "--allow-non-rt", **more)
 
 
 def arm(folder, library=LIBRARY, more="force: 5"):
     with open(os.path.join(folder, "arm.yaml"), "w") as file:
         file.write(ARM.format(library=library, more=more))
-
-
-def log(folder, name):
-    with open(os.path.join(folder, name + ".log")) as file:
-        return file.read()
 
 
 def vector(rows, prefix):
@@ -96,36 +83,33 @@ def main(folder):
     arm(folder)
     far_run = daemon(folder, "far", FAR)
     near_run = daemon(folder, "near", NEAR, HAPTICD_NAME="far")
-    with hapticd.connect("far", folder=folder) as far:
-        with hapticd.connect("near", folder=folder) as near:
+    with far_run.connect() as far:
+        with near_run.connect() as near:
             check("the arm says its vendor's name for it", near.about["devices"][0]["info"]["product"] == "PHANTOM Premium 1.5")
             closed(folder, near, far)
-        near_run.kill()
-        near_run.wait()
+        near_run.stop(signal.SIGKILL)
         check("the far arm is free when the near daemon dies",
               until(lambda: pushed(far) == 0))
     near_run = daemon(folder, "near2", NEAR, HAPTICD_NAME="far")
-    with hapticd.connect("near2", folder=folder) as near:
+    with near_run.connect() as near:
         check("the near daemon ticks again", until(lambda: near.streams["ticks"].written > 100))  # it can be asked before
-        far_run.send_signal(signal.SIGKILL)
-        far_run.wait()
+        far_run.stop(signal.SIGKILL)
         check("the near daemon tells that the arm is lost", until(lambda: fault(near) == LOST), fault(near))
         check("and sends no force", until(lambda: numpy.abs(vector(near.rows("ticks", last=50), "arm0_sent_f")).max() == 0))
-    near_run.terminate()
-    near_run.wait(timeout=30)
-    check("its log says what to do", "lost the arm" in log(folder, "near2"), log(folder, "near2"))
+    near_run.stop()
+    check("its log says what to do", "lost the arm" in near_run.log(), near_run.log())
 
 
 def refused(folder):
     """What is missing is told with its cure."""
     arm(folder, "/no/such/libHD.so")
     run = daemon(folder, "none", NEAR)
-    check("a library that is none", run.wait(timeout=30) != 0 and "install the vendor's driver" in log(folder, "none"),
-          log(folder, "none"))
+    check("a library that is none", run.process.wait(timeout=30) != 0 and "install the vendor's driver" in run.log(),
+          run.log())
     arm(folder)
     run = daemon(folder, "nobody", NEAR, HAPTICD_NAME="nobody")
-    check("an arm that is none", run.wait(timeout=30) != 0 and "cannot open its default arm" in log(folder, "nobody"),
-          log(folder, "nobody"))
+    check("an arm that is none", run.process.wait(timeout=30) != 0 and "cannot open its default arm" in run.log(),
+          run.log())
 
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as place:

@@ -4,7 +4,6 @@
 Usage: dhd.py HAPTICD SOURCE LIBDHD     prints one line per case; exit 1 when one is off.
 """
 import os
-import subprocess
 import sys
 import tempfile
 
@@ -13,7 +12,7 @@ import numpy
 HAPTICD, SOURCE, LIBRARY = sys.argv[1:4]
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
 sys.path.insert(0, os.path.join(SOURCE, "driver", "doors", "client", "python"))
-import hapticd
+from daemon import Daemon
 from e2e import check, finish, until
 
 SCENE = """hapticd: 1
@@ -32,17 +31,9 @@ LOST = 2  # the fault of a device that is gone
 
 
 def start(folder, name, library=LIBRARY, index=0, **more):
-    with open(os.path.join(folder, "scene.yaml"), "w") as file:
-        file.write(SCENE.format(source=SOURCE))
     with open(os.path.join(folder, "arm.yaml"), "w") as file:
         file.write(ARM.format(library=library, index=index))
-    environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder,
-                       FAKE_DHD_LOG=os.path.join(folder, name + ".calls"), **more)
-    with open(os.path.join(folder, name + ".log"), "w") as log:
-        run = subprocess.Popen([HAPTICD, "run", os.path.join(folder, "scene.yaml"), "--name", name, "--allow-non-rt"], env=environment,
-                               stdout=log, stderr=log)
-    until(lambda: os.path.exists(os.path.join(folder, name + ".sock")) or run.poll() is not None, 30)
-    return run
+    return Daemon(HAPTICD, folder, name, SCENE.format(source=SOURCE), "--allow-non-rt", FAKE_DHD_LOG=os.path.join(folder, name + ".calls"), **more)
 
 
 def text(folder, file):
@@ -52,15 +43,14 @@ def text(folder, file):
 
 def presses(folder):
     run = start(folder, "dhd")
-    with hapticd.connect("dhd", folder=folder) as client:
+    with run.connect() as client:
         check("the arm says its name", client.about["devices"][0]["info"]["product"] == "fake omega")
         until(lambda: client.streams["ticks"].written > 4000, 60)
         row = client.rows("ticks", last=50)[-1]
         check("x to the user is the world's z, y its x, z its y", row["arm0_x"] == 0.003 and row["arm0_y"] == -0.002 and
               0.04 < row["arm0_z"] < 0.06, row)
         check("buttons are told", row["arm0_buttons"] == 2)
-    run.terminate()
-    check("the run ends in order", run.wait(timeout=30) == 0)
+    check("the run ends in order", run.stop() == 0)
     lines = text(folder, "dhd.calls").splitlines()
     check("forces are on from the start and off at the end, when the arm is closed",
           lines[0] == "enable 1" and lines[-2:] == ["enable 0", "close"], lines[-3:])
@@ -75,20 +65,19 @@ def presses(folder):
 
 def is_lost(folder):
     run = start(folder, "lost", FAKE_DHD_LOST="3000")
-    with hapticd.connect("lost", folder=folder) as client:
+    with run.connect() as client:
         check("an arm that is unplugged is lost", until(lambda: LOST in client.rows("ticks", last=50)["arm0_fault"]))
-    run.terminate()
-    run.wait(timeout=30)
-    check("which is told", "lost the arm" in text(folder, "lost.log"), text(folder, "lost.log"))
+    run.stop()
+    check("which is told", "lost the arm" in run.log(), run.log())
 
 
 def refused(folder):
     run = start(folder, "none", library="/no/such/libdhd.so")
-    check("a library that is none", run.wait(timeout=30) != 0 and "install the vendor's driver" in text(folder, "none.log"),
-          text(folder, "none.log"))
+    check("a library that is none", run.process.wait(timeout=30) != 0 and "install the vendor's driver" in run.log(),
+          run.log())
     run = start(folder, "other", index=3)
-    check("an arm that is none", run.wait(timeout=30) != 0 and "no such arm" in text(folder, "other.log"),
-          text(folder, "other.log"))
+    check("an arm that is none", run.process.wait(timeout=30) != 0 and "no such arm" in run.log(),
+          run.log())
 
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as place:

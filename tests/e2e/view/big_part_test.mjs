@@ -79,62 +79,54 @@ test('a part of a million triangles is drawn, live and of a recording, and the p
   }
 });
 
-test('axes with letters and the width of the grid tell how large things are, at every zoom, also in a saved picture', async () => {
-  const own = new Sandbox();
-  let page;
-  try {
-    const {url} = await own.show(scenes('teapot'));
-    page = await browser.page(url);
-    await shown(page);
-    /** The label, and how many pixels a square of the grid is wide in the middle of the picture. */
-    const ruler = () => page.evaluate(async () => {
-      await new Promise((resolve) => requestAnimationFrame(resolve));
-      const {view} = window.hapticdView, {grid, orbit, ruler: {pitch}} = view, place = orbit.center.clone(), right = orbit.right();
-      const at = [0, pitch].map((way) => view.project(place.clone().addScaledVector(right, way)).x);
-      const lines = grid.geometry.getAttribute('position'), xs = new Set();
-      for (let i = 0; i < lines.count; ++i) xs.add(Math.round((lines.getX(i) + grid.position.x) / pitch * 1e3) / 1e3);
-      return {label: document.querySelector('#ruler').getAttribute('aria-label'), pitch, pixels: at[1] - at[0], whole: [...xs].every(Number.isInteger), lines: xs.size};
-    });
-    const first = await ruler();
-    assert.match(first.label, /^Axes x, y, z; grid (10|20|50) mm$/);
-    assert.equal(first.label.match(/(\d+) mm/)[1], String(Math.round(first.pitch * 1e3)));
-    const seen = [];
-    for (const step of [0.35, 0.35, 0.35, 0.35, 1 / 0.35, 1 / 0.35, 30]) {
-      await page.evaluate((factor) => { const {view} = window.hapticdView; view.orbit.zoom(factor); view.dirty = true; }, step);
-      const now = await ruler();
-      seen.push(now.label);
-      assert.ok(now.pixels >= 27.9 && now.pixels <= 70.1, `a square is ${now.pixels} pixels wide`);
-      assert.ok(now.whole, 'lines are at multiples of the width');
-      assert.ok(now.lines >= 3 && now.lines <= 122, `${now.lines} lines`);
-    }
-    assert.ok(new Set(seen).size >= 4 && seen.some((label) => /grid [125]00 mm|grid \d m/.test(label)) && seen.some((label) => /grid [125] mm/.test(label)), seen.join());
-    await page.locator('#fit').click();
-    await page.locator('[data-show="grid"]').evaluate((box) => box.click());
-    assert.match((await ruler()).label, /z; \d+ mm$/, 'without the floor it is a plain scale');
-    // pixels of the letters' and axes' colours, on the page and in the picture that a user saves
-    const painted = await page.evaluate(async () => {
-      const {view} = window.hapticdView, image = await createImageBitmap(await view.picture());
-      const count = (source, x, y, width, height) => {
-        const copy = Object.assign(document.createElement('canvas'), {width, height}), context = copy.getContext('2d');
-        context.drawImage(source, -x, -y);
-        const {data} = context.getImageData(0, 0, width, height);
-        let red = 0, green = 0, blue = 0;
-        for (let i = 0; i < data.length; i += 4) {
-          const [r, g, b, a] = data.subarray(i, i + 4);
-          if (a < 200) continue;
-          red += r > 150 && g < 120 && b < 120;
-          green += g > 120 && r < 100 && b < 140;
-          blue += b > 150 && r < 100 && g < 140;
-        }
-        return [red, green, blue];
-      };
-      const page = view.ruler.canvas;
-      return {page: count(page, 0, 0, page.width, page.height), saved: count(image, 0, image.height - 90, 170, 90)};
-    });
-    for (const [where, colours] of Object.entries(painted)) assert.ok(colours.every((pixels) => pixels > 12), `${where}: ${colours} pixels of x, y, z`);
-    assert.deepEqual(page.wrong, []);
-  } finally {
-    await page?.close();
-    await own.close();
+test('axes with letters and the width of the grid tell how large things are, at every zoom, also in a saved picture', () => browser.sandboxed(async (sandbox, open) => {
+  const {url} = await sandbox.show(scenes('teapot'));
+  const page = await open(url);
+  await shown(page);
+  /** The label, and how many pixels a square of the grid is wide in the middle of the picture. */
+  const ruler = () => page.evaluate(async () => {
+    await new Promise((resolve) => requestAnimationFrame(resolve));
+    const {view} = window.hapticdView, {grid, orbit, ruler: {pitch}} = view, place = orbit.center.clone(), right = orbit.right();
+    const at = [0, pitch].map((way) => view.project(place.clone().addScaledVector(right, way)).x);
+    const lines = grid.geometry.getAttribute('position'), xs = new Set();
+    for (let i = 0; i < lines.count; ++i) xs.add(Math.round((lines.getX(i) + grid.position.x) / pitch * 1e3) / 1e3);
+    return {label: document.querySelector('#ruler').getAttribute('aria-label'), pitch, pixels: at[1] - at[0], whole: [...xs].every(Number.isInteger), lines: xs.size};
+  });
+  const first = await ruler();
+  assert.match(first.label, /^Axes x, y, z; grid (10|20|50) mm$/);
+  assert.equal(first.label.match(/(\d+) mm/)[1], String(Math.round(first.pitch * 1e3)));
+  const seen = [];
+  for (const step of [0.35, 0.35, 0.35, 0.35, 1 / 0.35, 1 / 0.35, 30]) {
+    await page.evaluate((factor) => { const {view} = window.hapticdView; view.orbit.zoom(factor); view.dirty = true; }, step);
+    const now = await ruler();
+    seen.push(now.label);
+    assert.ok(now.pixels >= 27.9 && now.pixels <= 70.1, `a square is ${now.pixels} pixels wide`);
+    assert.ok(now.whole, 'lines are at multiples of the width');
+    assert.ok(now.lines >= 3 && now.lines <= 122, `${now.lines} lines`);
   }
-});
+  assert.ok(new Set(seen).size >= 4 && seen.some((label) => /grid [125]00 mm|grid \d m/.test(label)) && seen.some((label) => /grid [125] mm/.test(label)), seen.join());
+  await page.locator('#fit').click();
+  await page.locator('[data-show="grid"]').evaluate((box) => box.click());
+  assert.match((await ruler()).label, /z; \d+ mm$/, 'without the floor it is a plain scale');
+  // pixels of the letters' and axes' colours, on the page and in the picture that a user saves
+  const painted = await page.evaluate(async () => {
+    const {view} = window.hapticdView, image = await createImageBitmap(await view.picture());
+    const count = (source, x, y, width, height) => {
+      const copy = Object.assign(document.createElement('canvas'), {width, height}), context = copy.getContext('2d');
+      context.drawImage(source, -x, -y);
+      const {data} = context.getImageData(0, 0, width, height);
+      let red = 0, green = 0, blue = 0;
+      for (let i = 0; i < data.length; i += 4) {
+        const [r, g, b, a] = data.subarray(i, i + 4);
+        if (a < 200) continue;
+        red += r > 150 && g < 120 && b < 120;
+        green += g > 120 && r < 100 && b < 140;
+        blue += b > 150 && r < 100 && g < 140;
+      }
+      return [red, green, blue];
+    };
+    const page = view.ruler.canvas;
+    return {page: count(page, 0, 0, page.width, page.height), saved: count(image, 0, image.height - 90, 170, 90)};
+  });
+  for (const [where, colours] of Object.entries(painted)) assert.ok(colours.every((pixels) => pixels > 12), `${where}: ${colours} pixels of x, y, z`);
+}));

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // A real browser without a screen: Debian's Chromium, whose processor plays the graphics card.
+import assert from 'node:assert/strict';
 import {mkdirSync, mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {chromium} from 'playwright-core';
-import {root} from './program.mjs';
+import {root, Sandbox} from './program.mjs';
 
 const kFlags = ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync', '--autoplay-policy=no-user-gesture-required'];
@@ -32,6 +33,26 @@ export class Browser {
     page.on('console', (message) => { if (message.type() === 'error') page.wrong.push(message.text()); });
     await page.goto(url);
     return page;
+  }
+
+  /** Runs `use(sandbox, open)` with programs and files of its own. open(url, before) gives a page, in which nothing may
+   * go wrong. `picture` is the name of a picture of the last page if the test fails. */
+  async sandboxed(use, picture = '') {
+    const sandbox = new Sandbox(), pages = [];
+    const open = async (url, before) => {
+      pages.push(await this.page(url, before));
+      return pages.at(-1);
+    };
+    try {
+      await use(sandbox, open);
+      for (const page of pages) assert.deepEqual(page.wrong, [], 'nothing went wrong in the page');
+    } catch (error) {
+      if (picture) await pages.at(-1)?.screenshot({path: join(pictures, `${picture}.png`)}).catch(() => {});
+      throw error;
+    } finally {
+      for (const page of pages) await page.close();
+      await sandbox.close();
+    }
   }
 
   async close() {

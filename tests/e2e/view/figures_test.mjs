@@ -8,7 +8,7 @@ import {join} from 'node:path';
 import {test} from 'node:test';
 import {WebSocket} from 'ws';
 import {Browser, shown} from './browser.mjs';
-import {hapticd, Sandbox, scenes, until} from './program.mjs';
+import {hapticd, Sandbox, scenes} from './program.mjs';
 
 const kPages = 8;
 const pause = (seconds) => new Promise((resolve) => setTimeout(resolve, 1000 * seconds));

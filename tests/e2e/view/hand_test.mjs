@@ -7,7 +7,7 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {Browser, keepSockets, pictures, shown} from './browser.mjs';
-import {hapticd, Sandbox, scenes, until} from './program.mjs';
+import {hapticd, scenes, until} from './program.mjs';
 
 let browser;
 before(async () => { browser = await Browser.open({width: 900, height: 620}); }); // few pixels: a processor draws them
@@ -16,24 +16,13 @@ after(async () => { await browser.close(); });
 const kPatience = 120; // s: a machine that is busy is slow, not wrong
 
 /** A page on `hapticd run SCENE --view`. `before` may prepare it before it opens. */
-const guided = async (scene, use, before) => {
-  const sandbox = new Sandbox();
-  let page;
-  try {
-    const {daemon, url} = await sandbox.show(scenes(scene));
-    page = await browser.page(url, before);
-    await shown(page);
-    await page.waitForFunction(() => window.hapticdView.fitted && !window.hapticdView.fitWhenTip); // the camera rests
-    await use(page, sandbox, daemon);
-    assert.deepEqual(page.wrong, [], 'nothing went wrong in the page');
-  } catch (error) {
-    await page?.screenshot({path: join(pictures, `hand-${scene}-failed.png`)}).catch(() => {});
-    throw error;
-  } finally {
-    await page?.close();
-    await sandbox.close();
-  }
-};
+const guided = (scene, use, before) => browser.sandboxed(async (sandbox, open) => {
+  const {daemon, url} = await sandbox.show(scenes(scene));
+  const page = await open(url, before);
+  await shown(page);
+  await page.waitForFunction(() => window.hapticdView.fitted && !window.hapticdView.fitWhenTip); // the camera rests
+  await use(page, sandbox, daemon);
+}, `hand-${scene}-failed`);
 
 /** Where the tip of an arm, and the middle of everything, are on the page. */
 const places = (page, arm = 0) => page.evaluate((index) => {

@@ -16,25 +16,14 @@ before(async () => { browser = await Browser.open({width: 1000, height: 660}); }
 after(async () => { await browser.close(); });
 
 /** A page on a daemon whose hand follows its script. */
-const scripted = async (scene, use, models) => {
-  const sandbox = new Sandbox();
-  let page;
-  try {
-    sandbox.start(['run', scenes(scene), '--name', 'test']);
-    const view = sandbox.start(['view', '--name', 'test', '--control']);
-    const [url] = await view.says(/http:\S+/);
-    page = await browser.page(url);
-    await shown(page, models);
-    await use(page, sandbox);
-    assert.deepEqual(page.wrong, [], 'nothing went wrong in the page');
-  } catch (error) {
-    await page?.screenshot({path: join(pictures, `${scene}-failed.png`)}).catch(() => {});
-    throw error;
-  } finally {
-    await page?.close();
-    await sandbox.close();
-  }
-};
+const scripted = (scene, use, models) => browser.sandboxed(async (sandbox, open) => {
+  sandbox.start(['run', scenes(scene), '--name', 'test']);
+  const view = sandbox.start(['view', '--name', 'test', '--control']);
+  const [url] = await view.says(/http:\S+/);
+  const page = await open(url);
+  await shown(page, models);
+  await use(page, sandbox);
+}, `${scene}-failed`);
 
 for (const scene of all) {
   test(`${scene}: the tip is where its row says, the plots are drawn, no error`, async () => {
@@ -79,92 +68,68 @@ function ball(radius, rings) {
   return `${lines.join('\n')}\n`;
 }
 
-test('a part file of 20 000 triangles is drawn with its normals', async () => {
-  const sandbox = new Sandbox();
-  let page;
-  try {
-    const file = (name) => join(sandbox.folder, name);
-    writeFileSync(file('ball.obj'), ball(0.04, 70));
-    execFileSync(hapticd, ['import', file('ball.obj'), '-o', file('ball.hpart'), '--smooth-angle', '30'], {stdio: 'ignore'});
-    writeFileSync(file('ball.yaml'), `hapticd: 1\nservo: {rate: 1000}\ndevice: ${join(root, 'config', 'devices', 'simulated-premium15.yaml')}\n` +
-      'hand: {radius: 0.046}\nmodels:\n  - {name: ball, plugin: nurbs_rigid, parameters: {geometry: ball.hpart, stiffness: 600}}\n');
-    sandbox.start(['run', file('ball.yaml'), '--name', 'test']);
-    const [url] = await sandbox.start(['view', '--name', 'test']).says(/http:\S+/);
-    page = await browser.page(url);
-    await shown(page);
-    const drawn = await page.evaluate(() => {
-      const model = window.hapticdView.view.models.byIndex.get(0), normal = model.mesh.geometry.getAttribute('normal'), place = model.mesh.geometry.getAttribute('position');
-      let worst = 1;
-      for (let i = 0; i < normal.count; ++i) {
-        const n = [normal.getX(i), normal.getY(i), normal.getZ(i)], p = [place.getX(i), place.getY(i), place.getZ(i)];
-        if (Math.abs(p[1]) < 0.039) worst = Math.min(worst, n.reduce((sum, v, k) => sum + v * p[k], 0) / Math.hypot(...p) / Math.hypot(...n));
-      }
-      return {triangles: model.triangles, worst};
-    });
-    assert.ok(drawn.triangles > 19000, `${drawn.triangles} triangles`);
-    assert.ok(drawn.worst > 0.99, `normals point out of the ball within ${drawn.worst}`);
-    await page.screenshot({path: join(pictures, 'part.png')});
-    assert.deepEqual(page.wrong, []);
-  } finally {
-    await page?.close();
-    await sandbox.close();
-  }
-});
+test('a part file of 20 000 triangles is drawn with its normals', () => browser.sandboxed(async (sandbox, open) => {
+  const file = (name) => join(sandbox.folder, name);
+  writeFileSync(file('ball.obj'), ball(0.04, 70));
+  execFileSync(hapticd, ['import', file('ball.obj'), '-o', file('ball.hpart'), '--smooth-angle', '30'], {stdio: 'ignore'});
+  writeFileSync(file('ball.yaml'), `hapticd: 1\nservo: {rate: 1000}\ndevice: ${join(root, 'config', 'devices', 'simulated-premium15.yaml')}\n` +
+    'hand: {radius: 0.046}\nmodels:\n  - {name: ball, plugin: nurbs_rigid, parameters: {geometry: ball.hpart, stiffness: 600}}\n');
+  sandbox.start(['run', file('ball.yaml'), '--name', 'test']);
+  const [url] = await sandbox.start(['view', '--name', 'test']).says(/http:\S+/);
+  const page = await open(url);
+  await shown(page);
+  const drawn = await page.evaluate(() => {
+    const model = window.hapticdView.view.models.byIndex.get(0), normal = model.mesh.geometry.getAttribute('normal'), place = model.mesh.geometry.getAttribute('position');
+    let worst = 1;
+    for (let i = 0; i < normal.count; ++i) {
+      const n = [normal.getX(i), normal.getY(i), normal.getZ(i)], p = [place.getX(i), place.getY(i), place.getZ(i)];
+      if (Math.abs(p[1]) < 0.039) worst = Math.min(worst, n.reduce((sum, v, k) => sum + v * p[k], 0) / Math.hypot(...p) / Math.hypot(...n));
+    }
+    return {triangles: model.triangles, worst};
+  });
+  assert.ok(drawn.triangles > 19000, `${drawn.triangles} triangles`);
+  assert.ok(drawn.worst > 0.99, `normals point out of the ball within ${drawn.worst}`);
+  await page.screenshot({path: join(pictures, 'part.png')});
+}));
 
-test('the parts of an assembly can be told apart, and an arm at the end of its range says so', async () => {
-  const sandbox = new Sandbox();
-  let page;
-  try {
-    const file = join(sandbox.folder, 'far.yaml'), sphere = join(root, 'config', 'models', 'sphere.yaml');
-    // The hand pulls the tip toward the base of the arm, to where joint 3 ends.
-    writeFileSync(file, `hapticd: 1\ndevice: ${join(root, 'config', 'devices', 'simulated-premium15.yaml')}\n` +
-      'hand: {script: hold, center: [0, 0.09, -0.14], radius: 0.011, approach: 0.06}\nmodels:\n' +
-      ['one', 'two'].map((name, i) => `  - {name: ${name}, plugin: nurbs_rigid, pose: {position: [${0.2 * i}, -0.2, 0]}, parameters: {geometry: ${sphere}}}\n`).join(''));
-    sandbox.start(['run', file, '--name', 'test']);
-    const [url] = await sandbox.start(['view', '--name', 'test']).says(/http:\S+/);
-    page = await browser.page(url);
-    await shown(page, 2);
-    const colors = await page.evaluate(() => [0, 1].map((i) => window.hapticdView.view.models.byIndex.get(i).mesh.material.color.getHexString()));
-    assert.notEqual(colors[0], colors[1]);
-    const said = () => page.locator('#foot').textContent();
-    await until(async () => /joint 3 is at the end of the range/.test(await said()), kPatience, 'a word about joint 3');
-    assert.deepEqual(page.wrong, []);
-  } finally {
-    await page?.close();
-    await sandbox.close();
-  }
-});
+test('the parts of an assembly can be told apart, and an arm at the end of its range says so', () => browser.sandboxed(async (sandbox, open) => {
+  const file = join(sandbox.folder, 'far.yaml'), sphere = join(root, 'config', 'models', 'sphere.yaml');
+  // The hand pulls the tip toward the base of the arm, to where joint 3 ends.
+  writeFileSync(file, `hapticd: 1\ndevice: ${join(root, 'config', 'devices', 'simulated-premium15.yaml')}\n` +
+    'hand: {script: hold, center: [0, 0.09, -0.14], radius: 0.011, approach: 0.06}\nmodels:\n' +
+    ['one', 'two'].map((name, i) => `  - {name: ${name}, plugin: nurbs_rigid, pose: {position: [${0.2 * i}, -0.2, 0]}, parameters: {geometry: ${sphere}}}\n`).join(''));
+  sandbox.start(['run', file, '--name', 'test']);
+  const [url] = await sandbox.start(['view', '--name', 'test']).says(/http:\S+/);
+  const page = await open(url);
+  await shown(page, 2);
+  const colors = await page.evaluate(() => [0, 1].map((i) => window.hapticdView.view.models.byIndex.get(i).mesh.material.color.getHexString()));
+  assert.notEqual(colors[0], colors[1]);
+  const said = () => page.locator('#foot').textContent();
+  await until(async () => /joint 3 is at the end of the range/.test(await said()), kPatience, 'a word about joint 3');
+}));
 
-test('beside a model without triangles stands why it is not drawn, for as long as it is there', async () => {
-  const sandbox = new Sandbox();
-  let page;
-  try {
-    const file = (name) => join(sandbox.folder, name);
-    execFileSync('gcc', ['-shared', '-fPIC', '-DVERSIONED_NAME=c_ball', '-I', join(root, 'driver/include/hapticd'),
-      join(root, 'tests/abi/plugins/versioned_sphere.c'), '-o', file('c_ball.so'), '-lm']);
-    writeFileSync(file('unseen.yaml'), `hapticd: 1\ndevice: ${join(root, 'config', 'devices', 'simulated-premium15.yaml')}\n` +
-      'models:\n  - {name: unseen, plugin: c_ball}\n  - {name: seen, plugin: template, pose: {position: [0.2, 0, 0]}}\n');
-    sandbox.start(['--plugin-path', sandbox.folder, 'run', file('unseen.yaml'), '--name', 'test', '--allow-non-rt']);
-    const [url] = await sandbox.start(['view', '--name', 'test', '--control']).says(/http:\S+/);
-    page = await browser.page(url);
-    const told = (name) => page.evaluate((model) => {
-      const words = document.querySelector(`[data-model="${model}"] .drawing`);
-      return words ? {hidden: words.hidden, text: words.textContent} : null;
-    }, name);
-    await until(async () => (await told('unseen'))?.hidden === false, kPatience, 'a word beside the model');
-    assert.match((await told('unseen')).text, /hsp\.geometry\/1.*can still be felt/);
-    await new Promise((resolve) => setTimeout(resolve, 7000)); // a notice is gone after 6 s
-    await page.evaluate(() => document.querySelector('[data-model="seen"] header button').click()); // the list is made anew
-    await until(() => page.evaluate(() => document.querySelector('[data-model="seen"] header button').textContent === 'Enable'), kPatience, 'a new list');
-    assert.equal((await told('unseen')).hidden, false);
-    assert.equal((await told('seen')).hidden, true, 'what is drawn has no such word');
-    await page.screenshot({path: join(pictures, 'unseen.png')});
-    assert.deepEqual(page.wrong, []);
-  } finally {
-    await page?.close();
-    await sandbox.close();
-  }
-});
+test('beside a model without triangles stands why it is not drawn, for as long as it is there', () => browser.sandboxed(async (sandbox, open) => {
+  const file = (name) => join(sandbox.folder, name);
+  execFileSync('gcc', ['-shared', '-fPIC', '-DVERSIONED_NAME=c_ball', '-I', join(root, 'driver/include/hapticd'),
+    join(root, 'tests/abi/plugins/versioned_sphere.c'), '-o', file('c_ball.so'), '-lm']);
+  writeFileSync(file('unseen.yaml'), `hapticd: 1\ndevice: ${join(root, 'config', 'devices', 'simulated-premium15.yaml')}\n` +
+    'models:\n  - {name: unseen, plugin: c_ball}\n  - {name: seen, plugin: template, pose: {position: [0.2, 0, 0]}}\n');
+  sandbox.start(['--plugin-path', sandbox.folder, 'run', file('unseen.yaml'), '--name', 'test', '--allow-non-rt']);
+  const [url] = await sandbox.start(['view', '--name', 'test', '--control']).says(/http:\S+/);
+  const page = await open(url);
+  const told = (name) => page.evaluate((model) => {
+    const words = document.querySelector(`[data-model="${model}"] .drawing`);
+    return words ? {hidden: words.hidden, text: words.textContent} : null;
+  }, name);
+  await until(async () => (await told('unseen'))?.hidden === false, kPatience, 'a word beside the model');
+  assert.match((await told('unseen')).text, /hsp\.geometry\/1.*can still be felt/);
+  await new Promise((resolve) => setTimeout(resolve, 7000)); // a notice is gone after 6 s
+  await page.evaluate(() => document.querySelector('[data-model="seen"] header button').click()); // the list is made anew
+  await until(() => page.evaluate(() => document.querySelector('[data-model="seen"] header button').textContent === 'Enable'), kPatience, 'a new list');
+  assert.equal((await told('unseen')).hidden, false);
+  assert.equal((await told('seen')).hidden, true, 'what is drawn has no such word');
+  await page.screenshot({path: join(pictures, 'unseen.png')});
+}));
 
 /** [m] Of compliance control the rows have the virtual mass; the arm follows it, by 0.9 mm at most in 4 s of that scene. */
 const kBehind = {compliance: 5e-3};

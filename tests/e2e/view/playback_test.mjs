@@ -6,130 +6,98 @@ import {existsSync, readFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {Browser, keepSockets, look, pictures, shown} from './browser.mjs';
-import {hapticd, Sandbox, scenes, until} from './program.mjs';
+import {hapticd, scenes, until} from './program.mjs';
 
 const kPatience = 120; // s: a machine that is busy is slow, not wrong
 let browser;
 before(async () => { browser = await Browser.open({width: 1000, height: 660}); }); // few pixels: a processor draws them
 after(async () => { await browser.close(); });
 
-test('a recording has a slider, and its rows are those of the file', async () => {
-  const sandbox = new Sandbox();
-  let page;
-  try {
-    const h5 = join(sandbox.folder, 'run.h5'), csv = join(sandbox.folder, 'ticks.csv');
-    execFileSync(hapticd, ['run', scenes('button'), '--virtual-time', '--for', '6', '--record', h5], {stdio: 'ignore'});
-    execFileSync(hapticd, ['export', h5, '--csv', csv, '--stream', 'ticks']);
-    const [head, ...rows] = readFileSync(csv, 'utf8').trimEnd().split('\n').map((r) => r.split(','));
-    const view = sandbox.start(['view', '--file', h5]);
-    const [url] = await view.says(/http:\S+/);
-    page = await browser.page(url);
-    await shown(page, 1);
-    await page.locator('#play').click(); // it plays by itself
-    await page.waitForFunction(() => window.hapticdView.timeline.state.playing === false);
-    for (const t of [4.5, 1.25, 5.9, 0]) {
-      await page.locator('#seek').evaluate((slider, value) => { slider.value = value; slider.dispatchEvent(new Event('input')); }, t);
-      const seen = await until(async () => {
-        const s = await look(page);
-        return Math.abs(s.t - t) < 2e-3 ? s : null;
-      }, kPatience, `a row at ${t} s`);
-      const row = rows.find((r) => Number(r[0]) === seen.tick), at = (name) => Number(row[head.indexOf(name)]);
-      const depth = at('depth');
-      assert.ok(Object.is(seen.depth, depth), `depth ${seen.depth}, in the file ${depth}`);
-      const tip = await page.evaluate(() => window.hapticdView.now.arms[0].now.position);
-      assert.deepEqual(tip, ['arm0_x', 'arm0_y', 'arm0_z'].map(at));
-    }
-    await page.locator('#speed').selectOption('4');
-    await page.waitForFunction(() => window.hapticdView.timeline.state.playing);
-    await until(async () => (await look(page)).t > 3, kPatience, 'three seconds, four times as fast');
-    await page.screenshot({path: join(pictures, 'recording.png')});
-    assert.deepEqual(page.wrong, []);
-    assert.equal(await page.locator('#run-tools').isVisible(), false, 'a recording cannot be changed');
-  } finally {
-    await page?.close();
-    await sandbox.close();
+test('a recording has a slider, and its rows are those of the file', () => browser.sandboxed(async (sandbox, open) => {
+  const h5 = join(sandbox.folder, 'run.h5'), csv = join(sandbox.folder, 'ticks.csv');
+  execFileSync(hapticd, ['run', scenes('button'), '--virtual-time', '--for', '6', '--record', h5], {stdio: 'ignore'});
+  execFileSync(hapticd, ['export', h5, '--csv', csv, '--stream', 'ticks']);
+  const [head, ...rows] = readFileSync(csv, 'utf8').trimEnd().split('\n').map((r) => r.split(','));
+  const view = sandbox.start(['view', '--file', h5]);
+  const [url] = await view.says(/http:\S+/);
+  const page = await open(url);
+  await shown(page, 1);
+  await page.locator('#play').click(); // it plays by itself
+  await page.waitForFunction(() => window.hapticdView.timeline.state.playing === false);
+  for (const t of [4.5, 1.25, 5.9, 0]) {
+    await page.locator('#seek').evaluate((slider, value) => { slider.value = value; slider.dispatchEvent(new Event('input')); }, t);
+    const seen = await until(async () => {
+      const s = await look(page);
+      return Math.abs(s.t - t) < 2e-3 ? s : null;
+    }, kPatience, `a row at ${t} s`);
+    const row = rows.find((r) => Number(r[0]) === seen.tick), at = (name) => Number(row[head.indexOf(name)]);
+    const depth = at('depth');
+    assert.ok(Object.is(seen.depth, depth), `depth ${seen.depth}, in the file ${depth}`);
+    const tip = await page.evaluate(() => window.hapticdView.now.arms[0].now.position);
+    assert.deepEqual(tip, ['arm0_x', 'arm0_y', 'arm0_z'].map(at));
   }
-});
+  await page.locator('#speed').selectOption('4');
+  await page.waitForFunction(() => window.hapticdView.timeline.state.playing);
+  await until(async () => (await look(page)).t > 3, kPatience, 'three seconds, four times as fast');
+  await page.screenshot({path: join(pictures, 'recording.png')});
+  assert.equal(await page.locator('#run-tools').isVisible(), false, 'a recording cannot be changed');
+}));
 
-test('a recording goes on where it was when the connection is back', async () => {
-  const sandbox = new Sandbox();
-  let page;
-  try {
-    const h5 = join(sandbox.folder, 'run.h5');
-    execFileSync(hapticd, ['run', scenes('sphere'), '--virtual-time', '--for', '6', '--record', h5], {stdio: 'ignore'});
-    const [url] = await sandbox.start(['view', '--file', h5]).says(/http:\S+/);
-    page = await browser.page(url, keepSockets);
-    await shown(page);
-    await page.locator('#speed').selectOption('0.25');
-    await page.locator('#loop').uncheck();
-    await page.locator('#play').click();
-    await page.waitForFunction(() => window.hapticdView.timeline.state.playing === false);
-    await page.locator('#seek').evaluate((slider) => { slider.value = 4.5; slider.dispatchEvent(new Event('input')); });
-    await until(async () => Math.abs((await look(page)).t - 4.5) < 2e-3, kPatience, 'a row at 4.5 s');
-    await page.evaluate(() => window.sockets.at(-1).close());
-    await until(() => page.evaluate(() => window.sockets.length === 2 && window.sockets[1].readyState === 1), kPatience, 'the connection');
-    await until(async () => {
-      const state = await page.evaluate(() => window.hapticdView.timeline.state);
-      return !state.playing && !state.loop && state.speed === 0.25 && Math.abs(state.t - 4.5) < 5e-3;
-    }, kPatience, 'the same place, paused');
-    await page.waitForFunction(() => window.hapticdView.now?.arms.every((arm) => arm.now)); // rows come after the place
-    await until(async () => Math.abs((await look(page)).t - 4.5) < 5e-3, kPatience, 'its row');
-    assert.deepEqual(page.wrong, []);
-  } finally {
-    await page?.close();
-    await sandbox.close();
-  }
-});
-
-test('what a crash left is shown, plays in a loop, and its events have times', async () => {
-  const sandbox = new Sandbox();
-  let page;
-  try {
-    const daemon = sandbox.start(['run', scenes('button'), '--name', 'test']);
-    await until(() => existsSync(join(sandbox.folder, 'test.sock')), kPatience, 'a daemon');
-    await new Promise((resolve) => setTimeout(resolve, 4000));
-    await daemon.end('SIGKILL');
-    const [url] = await sandbox.start(['view', '--file', join(sandbox.folder, 'test.blackbox.h5')]).says(/http:\S+/);
-    page = await browser.page(url);
-    await shown(page);
+test('a recording goes on where it was when the connection is back', () => browser.sandboxed(async (sandbox, open) => {
+  const h5 = join(sandbox.folder, 'run.h5');
+  execFileSync(hapticd, ['run', scenes('sphere'), '--virtual-time', '--for', '6', '--record', h5], {stdio: 'ignore'});
+  const [url] = await sandbox.start(['view', '--file', h5]).says(/http:\S+/);
+  const page = await open(url, keepSockets);
+  await shown(page);
+  await page.locator('#speed').selectOption('0.25');
+  await page.locator('#loop').uncheck();
+  await page.locator('#play').click();
+  await page.waitForFunction(() => window.hapticdView.timeline.state.playing === false);
+  await page.locator('#seek').evaluate((slider) => { slider.value = 4.5; slider.dispatchEvent(new Event('input')); });
+  await until(async () => Math.abs((await look(page)).t - 4.5) < 2e-3, kPatience, 'a row at 4.5 s');
+  await page.evaluate(() => window.sockets.at(-1).close());
+  await until(() => page.evaluate(() => window.sockets.length === 2 && window.sockets[1].readyState === 1), kPatience, 'the connection');
+  await until(async () => {
     const state = await page.evaluate(() => window.hapticdView.timeline.state);
-    assert.ok(state.to - state.from > 2, `it holds ${state.to - state.from} s`);
-    await page.locator('#speed').selectOption('4');
-    const times = [];
-    await until(async () => {
-      times.push((await look(page)).t);
-      return times.some((t, i) => i > 0 && t < times[i - 1] - 1);
-    }, kPatience, 'its beginning after its end');
-    await page.locator('#loop').uncheck();
-    await until(() => page.evaluate(() => window.hapticdView.timeline.state.playing === false), kPatience, 'a stop at the end');
-    await page.getByRole('tab', {name: 'Events'}).click();
-    await page.getByText('button: click').first().waitFor();
-    await page.screenshot({path: join(pictures, 'crash.png')});
-    assert.deepEqual(page.wrong, []);
-  } finally {
-    await page?.close();
-    await sandbox.close();
-  }
-});
+    return !state.playing && !state.loop && state.speed === 0.25 && Math.abs(state.t - 4.5) < 5e-3;
+  }, kPatience, 'the same place, paused');
+  await page.waitForFunction(() => window.hapticdView.now?.arms.every((arm) => arm.now)); // rows come after the place
+  await until(async () => Math.abs((await look(page)).t - 4.5) < 5e-3, kPatience, 'its row');
+}));
 
-test('a daemon that ends and starts again is followed', async () => {
-  const sandbox = new Sandbox();
-  let page;
-  try {
-    const first = sandbox.start(['run', scenes('sphere'), '--name', 'test']);
-    const view = sandbox.start(['view', '--name', 'test']);
-    const [url] = await view.says(/http:\S+/);
-    page = await browser.page(url);
-    await shown(page);
-    await first.end('SIGINT');
-    await page.locator('#status', {hasText: 'ended'}).waitFor();
-    sandbox.start(['run', scenes('torus'), '--name', 'test']);
-    await page.locator('#scene-name', {hasText: 'torus.yaml'}).waitFor();
-    await shown(page);
-    assert.equal(await page.locator('#run-tools').isVisible(), false, 'without --control there is nothing to press');
-    assert.deepEqual(page.wrong, []);
-  } finally {
-    await page?.close();
-    await sandbox.close();
-  }
-});
+test('what a crash left is shown, plays in a loop, and its events have times', () => browser.sandboxed(async (sandbox, open) => {
+  const daemon = sandbox.start(['run', scenes('button'), '--name', 'test']);
+  await until(() => existsSync(join(sandbox.folder, 'test.sock')), kPatience, 'a daemon');
+  await new Promise((resolve) => setTimeout(resolve, 4000));
+  await daemon.end('SIGKILL');
+  const [url] = await sandbox.start(['view', '--file', join(sandbox.folder, 'test.blackbox.h5')]).says(/http:\S+/);
+  const page = await open(url);
+  await shown(page);
+  const state = await page.evaluate(() => window.hapticdView.timeline.state);
+  assert.ok(state.to - state.from > 2, `it holds ${state.to - state.from} s`);
+  await page.locator('#speed').selectOption('4');
+  const times = [];
+  await until(async () => {
+    times.push((await look(page)).t);
+    return times.some((t, i) => i > 0 && t < times[i - 1] - 1);
+  }, kPatience, 'its beginning after its end');
+  await page.locator('#loop').uncheck();
+  await until(() => page.evaluate(() => window.hapticdView.timeline.state.playing === false), kPatience, 'a stop at the end');
+  await page.getByRole('tab', {name: 'Events'}).click();
+  await page.getByText('button: click').first().waitFor();
+  await page.screenshot({path: join(pictures, 'crash.png')});
+}));
+
+test('a daemon that ends and starts again is followed', () => browser.sandboxed(async (sandbox, open) => {
+  const first = sandbox.start(['run', scenes('sphere'), '--name', 'test']);
+  const view = sandbox.start(['view', '--name', 'test']);
+  const [url] = await view.says(/http:\S+/);
+  const page = await open(url);
+  await shown(page);
+  await first.end('SIGINT');
+  await page.locator('#status', {hasText: 'ended'}).waitFor();
+  sandbox.start(['run', scenes('torus'), '--name', 'test']);
+  await page.locator('#scene-name', {hasText: 'torus.yaml'}).waitFor();
+  await shown(page);
+  assert.equal(await page.locator('#run-tools').isVisible(), false, 'without --control there is nothing to press');
+}));

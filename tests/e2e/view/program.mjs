@@ -2,7 +2,6 @@
 // The program under test: that of the build folder, or of HAPTICD_BIN.
 import {spawn} from 'node:child_process';
 import {mkdtempSync, rmSync} from 'node:fs';
-import {tmpdir} from 'node:os';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
 

@@ -5,7 +5,6 @@ Usage: blame_test.py HAPTICD RIG.so ENDING_SHAPES.so SOURCE_DIR     prints one l
 """
 import os
 import signal
-import subprocess
 import sys
 import time
 from multiprocessing.pool import ThreadPool

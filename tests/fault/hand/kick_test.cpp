@@ -119,8 +119,8 @@ TEST(KickOnPurpose, ThatIsNotReportedIsToldWithItsSizeItsTimeAndTheCure) {
   Kicked kicked(kicking(kSteps, 8));
   const ModelState& model = kicked.scenario.core().models()[0];
   EXPECT_EQ(model.guard.fault(), ShapeFault::kJump);
-  EXPECT_NEAR(model.pull.force, 8, 1e-9) << "out of nothing";
-  EXPECT_NEAR(model.pull.t, 0.1, 2e-3) << "after a hundred ticks of peace";
+  EXPECT_NEAR(model.breach.force, 8, 1e-9) << "out of nothing";
+  EXPECT_NEAR(model.breach.t, 0.1, 2e-3) << "after a hundred ticks of peace";
   const std::string why = silenceReason(model);
   EXPECT_NE(why.find("; the largest jump was 8 N at 0.1"), std::string::npos) << why;
   EXPECT_NE(why.find("if on purpose, call reportJumps(report, 8)"), std::string::npos) << why;
@@ -147,7 +147,7 @@ TEST(SurfaceThatOnlyPushes, IsSilencedAndNamedWhenItPulls) {
   Scenario scenario({.models = {hostile("pulling", {value(1, HSP_BOOL, 1)})}, .limit = bare});
   EXPECT_LE(largest(press(scenario)), 0.1) << "found with the first newton";
   EXPECT_EQ(scenario.trouble(), ShapeFault::kPulls);
-  const Pull& pull = scenario.core().models()[0].pull;
+  const Breach& pull = scenario.core().models()[0].breach;
   EXPECT_NEAR(pull.t, 0.101, 1e-9) << "the first tick inside: 0.1 m/s, from 10 mm above";
   EXPECT_NEAR(pull.depth, 1e-4, 1e-9);
   EXPECT_NEAR(pull.force, 800 * 1e-4, 1e-6);

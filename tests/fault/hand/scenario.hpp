@@ -133,7 +133,7 @@ class Scenario {
  private:
   scene::Scene scene_;
   std::unique_ptr<World> world_;
-  std::vector<std::unique_ptr<Arm>> arms_;
+  Arms arms_;
   std::unique_ptr<Telemetry> telemetry_;
   std::unique_ptr<Loop> loop_;
   rig::Page* page_ = nullptr;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/clock.hpp"
 #include "base/result.hpp"
@@ -197,5 +198,8 @@ class Arm {
   Probe probe_;
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
 };
+
+/// The arms of a run, in the order of the scene.
+using Arms = std::vector<std::unique_ptr<Arm>>;
 
 }  // namespace hapticd::servo

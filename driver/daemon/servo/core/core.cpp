@@ -209,7 +209,7 @@ void Core::fillProbe(const ModelState& model, const Probe& probe, uint32_t index
 
 void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT {
   ModelState& model = models_[index];
-  if (model.guard.quarantined() && model.guard.gain(false, false, dt) == 0) return clearContacts(index);
+  if (model.guard.silenced() && model.guard.gain(false, false, dt) == 0) return clearContacts(index);
   for (uint32_t i = 0; i < probe_count_; ++i) {
     fillProbe(model, probes[i], i, t);
     outputs_[i] = hsp_contact{};
@@ -217,7 +217,7 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   hsp_pose pose = model.pose;
   callShape(model, dt, pose);
   const ShapeFault fault = checkAnswer(model, index, dt, pose);
-  if (model.pull.force > 0 && model.pull.t < 0) model.pull.t = t;
+  if (model.breach.force > 0 && model.breach.t < 0) model.breach.t = t;
   const double gain_before = model.guard.gain();
   const bool good = fault == ShapeFault::kNone;
   double pace = dt;
@@ -262,7 +262,7 @@ void Core::callShape(ModelState& model, double dt, hsp_pose& pose) noexcept HSP_
   model.change_count = 0;
 
   const CostStart begun = beginCost();
-  model.status = model.guard.quarantined() ? HSP_E_STATE : model.shape->step(step);
+  model.status = model.guard.silenced() ? HSP_E_STATE : model.shape->step(step);
   if (model.level > 0) {
     ++model.degraded_ticks;
     if (model.status == HSP_OK) model.status = HSP_DEGRADED;

@@ -58,7 +58,7 @@ struct ModelState {
   bool moves = false;   ///< true if its pose may change
   hsp_status status = HSP_OK;
   hsp_status failed_status = HSP_OK;  ///< the first status that step() returned and that the ABI does not allow
-  Pull pull;  ///< the pull for which it was silenced; if there is none, the largest jump of its force
+  Breach breach;  ///< the pull for which it was silenced; if there is none, the largest jump of its force
   Guard guard;
   ClaimBounds claims;         ///< bounds on the change of its force
   bool overran = false;       ///< its last step took too long, and was counted against it (Guard::strike())

@@ -59,15 +59,15 @@ namespace {
 /// [s] a model counts as free after this time; a search runs every 5 ms, less often on a busy machine
 constexpr double kFreeFor = 0.05;
 
-/// Keeps in model.pull the largest jump of force so far, as the max_jump that the plugin would have to claim so that
-/// this jump is allowed. The time of the jump (pull.t) is filled in after the step.
+/// Keeps in model.breach the largest jump of force so far, as the max_jump that the plugin would have to claim so that
+/// this jump is allowed. The time of the jump (breach.t) is filled in after the step.
 void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, const hsp_contact& out) noexcept HSP_RT {
   const double size = step.force.norm();
   const double felt = step.max_force > 0 && size > step.max_force ? step.max_force / size : 1;
   const double jump = std::max(Claim::kStep, model.claims.jump) + (felt * step.force - let).norm();
-  if (jump <= model.pull.force) return;
+  if (jump <= model.breach.force) return;
   const bool inside = (out.flags & HSP_OUT_TRACED) != 0 && out.depth_m >= 0;
-  model.pull = Pull{-1, inside ? out.depth_m : -1, jump};
+  model.breach = Breach{-1, inside ? out.depth_m : -1, jump};
 }
 
 /// Returns where the motion of a model in this step has carried a place of it, in the world frame.
@@ -162,7 +162,7 @@ void Core::fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP
 bool Core::pulls(ModelState& model) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     if (!pullsIn(outputs_[i], model.frame.pointToModel(last_position_[i]))) continue;
-    model.pull = Pull{-1, outputs_[i].depth_m, ConstMap(outputs_[i].force).norm()};
+    model.breach = Breach{-1, outputs_[i].depth_m, ConstMap(outputs_[i].force).norm()};
     return true;
   }
   return false;

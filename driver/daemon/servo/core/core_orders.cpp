@@ -52,7 +52,7 @@ bool Core::adopt(ModelState& place, const Order& order) noexcept HSP_RT {
   if (place.shape != nullptr || order.model == nullptr) return false;
   std::swap(place, *order.model);
   ++present_;
-  place.guard.silence();  // so that the force of the new model fades in
+  place.guard.startAtZero();  // so that the force of the new model fades in
   place.until_free = true;
   place.free_for = 0;
   listLive();

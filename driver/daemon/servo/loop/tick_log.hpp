@@ -3,8 +3,6 @@
 /// status pages.
 #pragma once
 #include <cstdint>
-#include <memory>
-#include <vector>
 
 #include "base/clock.hpp"
 #include "servo/arm/arm.hpp"
@@ -12,8 +10,6 @@
 #include "servo/core/order.hpp"
 
 namespace hapticd::servo {
-
-using Arms = std::vector<std::unique_ptr<Arm>>;
 
 /// How long a tick took.
 struct TickDuration {

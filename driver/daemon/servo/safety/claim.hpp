@@ -130,8 +130,8 @@ class Claim {
   Eigen::Vector4d orientation_ = Eigen::Vector4d::UnitW();
 };
 
-/// A pull by a surface that claims to push only, or the largest jump of a model's force.
-struct Pull {
+/// A force that broke the claims of a shape: a pull, although it claims to push only, or the largest jump.
+struct Breach {
   double t = -1;      ///< [s] time since the start of the run; negative: unknown
   double depth = -1;  ///< [m] depth that the shape reported; negative: unknown or outside
   double force = 0;   ///< [N] force of the pull, or size of the jump

@@ -13,7 +13,7 @@ ShapeFault Guard::check(hsp_status status, bool finite) noexcept HSP_RT {
 }
 
 ShapeFault Guard::enter(ShapeFault fault) noexcept HSP_RT {
-  if (!quarantined()) fault_ = fault;
+  if (!silenced()) fault_ = fault;
   return fault;
 }
 

@@ -51,11 +51,11 @@ class Guard {
   double gain(bool good, bool wanted, double dt) noexcept HSP_RT;
 
   /// [rt] Sets the factor to zero; gain() fades the force in from there.
-  void silence() noexcept HSP_RT { gain_ = 0; }
+  void startAtZero() noexcept HSP_RT { gain_ = 0; }
 
   /// Returns the factor of the last tick.
   double gain() const noexcept { return gain_; }
-  bool quarantined() const noexcept { return fault_ > ShapeFault::kLost; }
+  bool silenced() const noexcept { return fault_ > ShapeFault::kLost; }
   /// the fault for which the shape was silenced; else kLost or kNone
   ShapeFault fault() const noexcept { return fault_; }
 

@@ -19,7 +19,6 @@ namespace hapticd::servo {
 
 class EventLog {
  public:
-  using Arms = std::vector<std::unique_ptr<Arm>>;
   using Named = PlaceNames::Named;
 
   /// [main] @param places most models that the run can have @param devices the arms, in order

@@ -12,7 +12,7 @@ namespace hapticd::servo {
 namespace {
 
 /// Describes a pull, such as ", at 1.234 s with 0.42 N at a depth of 0.525 mm", as far as it is known.
-std::string placeOf(const Pull& pull) {
+std::string placeOf(const Breach& pull) {
   if (pull.t < 0) return "";
   std::string text = fmt::format(", at {:.3f} s with {:.3g} N", pull.t, pull.force);
   if (pull.depth >= 0) text += fmt::format(" at a depth of {:.3g} mm", pull.depth * 1e3);
@@ -20,7 +20,7 @@ std::string placeOf(const Pull& pull) {
 }
 
 /// Describes a jump, such as "; the largest jump was 5.85 N at 2.134 s at a depth of 3.9 mm", as far as it is known.
-std::string sizeOf(const Pull& jump) {
+std::string sizeOf(const Breach& jump) {
   if (!(jump.force > 0)) return "";
   std::string text = fmt::format("; the largest jump was {:.3g} N", jump.force);
   if (jump.t >= 0) text += fmt::format(" at {:.3f} s", jump.t);
@@ -29,7 +29,7 @@ std::string sizeOf(const Pull& jump) {
 }
 
 /// Returns the cure if the jumps are intended: the call of reportJumps() with the largest jump, rounded up.
-std::string onPurpose(const Pull& jump) {
+std::string onPurpose(const Breach& jump) {
   if (!(jump.force > 0)) return "";
   const double unit = std::pow(10, std::floor(std::log10(jump.force)) - 1);
   return fmt::format("if on purpose, call reportJumps(report, {:.6g}) in its activate(); if not, ",
@@ -37,7 +37,7 @@ std::string onPurpose(const Pull& jump) {
 }
 
 /// Returns what may be wrong with a shape that pulled. If its depth was zero, the author may have forgotten to set it.
-std::string causeOf(const Pull& pull) {
+std::string causeOf(const Breach& pull) {
   const std::string sign = "its force has the wrong sign";
   return pull.depth == 0 ? "its depth_m was left at 0 inside, or " + sign : sign;
 }
@@ -47,25 +47,24 @@ std::string causeOf(const Pull& pull) {
 std::string silenceReason(const ModelState& model) {
   if (model.shape == nullptr) return "";
   return silenceReason(model.shape->name(), model.shape->file().string(), model.guard.fault(), model.failed_status,
-                       model.pull);
+                       model.breach);
 }
 
 std::string silenceReason(const hapticd_event& event, const std::string& model, const std::string& file) {
-  const auto trouble = static_cast<ShapeFault>(event.code);
-  if (trouble == ShapeFault::kJump) return silenceReason(model, file, trouble, 0, {-1, -1, event.value});
-  if (trouble != ShapeFault::kPulls) return silenceReason(model, file, trouble, static_cast<int32_t>(event.value));
-  return silenceReason(model, file, trouble, 0, {event.t, -1, event.value});
+  const auto fault = static_cast<ShapeFault>(event.code);
+  if (fault == ShapeFault::kJump) return silenceReason(model, file, fault, 0, {-1, -1, event.value});
+  if (fault != ShapeFault::kPulls) return silenceReason(model, file, fault, static_cast<int32_t>(event.value));
+  return silenceReason(model, file, fault, 0, {event.t, -1, event.value});
 }
 
-std::string silenceReason(const std::string& model, const std::string& file, ShapeFault trouble,
-                          int32_t failed_status) {
-  return silenceReason(model, file, trouble, failed_status, Pull());
+std::string silenceReason(const std::string& model, const std::string& file, ShapeFault fault, int32_t failed_status) {
+  return silenceReason(model, file, fault, failed_status, Breach());
 }
 
-std::string silenceReason(const std::string& model, const std::string& file, ShapeFault trouble, int32_t failed_status,
-                          const Pull& pull) {
+std::string silenceReason(const std::string& model, const std::string& file, ShapeFault fault, int32_t failed_status,
+                          const Breach& breach) {
   const std::string who = "model " + model + ": its plugin ", check = "hapticd plugin check " + file;
-  switch (trouble) {
+  switch (fault) {
     case ShapeFault::kNone:
     case ShapeFault::kLost:
       return "";
@@ -77,8 +76,8 @@ std::string silenceReason(const std::string& model, const std::string& file, Sha
     case ShapeFault::kOverrun:
       return who + "took longer than the budget of a tick, several times; it was silenced; measure it with: " + check;
     case ShapeFault::kJump:
-      return who + "gave forces that jumped by more than its claimed stiffness allows" + sizeOf(pull) +
-             "; it was silenced; " + onPurpose(pull) + "test it with: " + check;
+      return who + "gave forces that jumped by more than its claimed stiffness allows" + sizeOf(breach) +
+             "; it was silenced; " + onPurpose(breach) + "test it with: " + check;
     case ShapeFault::kTwists:
       return who +
              "gave torques that jumped by more than its claimed stiffness allows; it was silenced; test it with: " +
@@ -92,7 +91,7 @@ std::string silenceReason(const std::string& model, const std::string& file, Sha
     case ShapeFault::kNotUnit:
       return who + "gave a pose whose quaternion does not have length 1; it was silenced; find the step with: " + check;
     case ShapeFault::kPulls:
-      return who + "pulled the probe into its surface" + placeOf(pull) + ": " + causeOf(pull) +
+      return who + "pulled the probe into its surface" + placeOf(breach) + ": " + causeOf(breach) +
              ", although it reports to push only (HSP_R_PUSHES); it was silenced; test it with: " + check +
              ", which also says where";
   }

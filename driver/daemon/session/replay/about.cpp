@@ -148,8 +148,8 @@ std::string fingerprint(const std::string& file) {
   return fmt::format("{:016x}", hash);
 }
 
-record::About aboutRun(const scene::Scene& scene, const World& world, const std::vector<std::unique_ptr<Arm>>& arms,
-                       const RunFacts& facts, const std::vector<record::StreamSpec>& streams) {
+record::About aboutRun(const scene::Scene& scene, const World& world, const Arms& arms, const RunFacts& facts,
+                       const std::vector<record::StreamSpec>& streams) {
   Json models = Json::array(), devices = Json::array();
   for (const auto& shape : world.shapes()) {
     if (!shape) continue;

@@ -25,8 +25,8 @@ struct RunFacts {
 };
 
 /// [main] Describes the run. @param streams the result of flightStreams()
-record::About aboutRun(const scene::Scene& scene, const World& world, const std::vector<std::unique_ptr<Arm>>& arms,
-                       const RunFacts& facts, const std::vector<record::StreamSpec>& streams);
+record::About aboutRun(const scene::Scene& scene, const World& world, const Arms& arms, const RunFacts& facts,
+                       const std::vector<record::StreamSpec>& streams);
 
 /// A file on which forces depend, with its fingerprint during the run.
 struct Fingerprint {

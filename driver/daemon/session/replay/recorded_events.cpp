@@ -62,7 +62,7 @@ std::vector<RecordedMessage> messagesOf(const record::Recording& recording, cons
   if (events == nullptr) return messages;
   const EventColumns columns(*events);
   if (!columns.all()) return messages;
-  const std::vector<std::unique_ptr<Arm>> no_arms;
+  const Arms no_arms;
   std::vector<EventLog::Named> devices;
   for (const scene::Device& device : run.scene.devices) devices.push_back({device.name, device.file.string()});
   EventLog log(kMostPlaces, std::move(devices), no_arms);

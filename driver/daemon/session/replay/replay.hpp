@@ -51,7 +51,7 @@ class Replay {
   std::vector<std::unique_ptr<host::Playback>> playbacks_;
   bool paced_ = false;  ///< true if the samples of an arm drove the recorded run
   std::unique_ptr<World> world_;
-  std::vector<std::unique_ptr<Arm>> arms_;
+  Arms arms_;
   std::unique_ptr<Telemetry> telemetry_;
   std::unique_ptr<Player> player_;
   std::unique_ptr<Loop> loop_;

@@ -108,7 +108,7 @@ class Runner {
   const Loop& loop() const { return *loop_; }
   Nanoseconds wallTime() const { return wall_time_; }       ///< [main] duration of the loop
   size_t residentBytes() const { return resident_bytes_; }  ///< [main] memory of the process at the end of the run
-  const std::vector<std::unique_ptr<Arm>>& arms() const { return arms_; }
+  const Arms& arms() const { return arms_; }
   const scene::Scene& scene() const { return scene_; }
   const record::Recorder* recorder() const { return recorder_.get(); }  ///< nullptr if there is no recording
 
@@ -151,7 +151,7 @@ class Runner {
   scene::Scene scene_;
   RunOptions options_;
   std::unique_ptr<World> world_;
-  std::vector<std::unique_ptr<Arm>> arms_;
+  Arms arms_;
   std::unique_ptr<Telemetry> telemetry_;
   std::unique_ptr<EventLog> event_log_;
   Shared shared_;

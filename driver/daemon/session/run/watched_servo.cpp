@@ -5,7 +5,7 @@
 
 namespace hapticd::servo {
 
-WatchedServo::WatchedServo(Loop& loop, std::vector<std::unique_ptr<Arm>>& arms, const Telemetry& telemetry)
+WatchedServo::WatchedServo(Loop& loop, Arms& arms, const Telemetry& telemetry)
     : loop_(loop), arms_(arms), telemetry_(telemetry) {
   for (const auto& arm : arms_) simulated_ = simulated_ && arm->simulated();
 }

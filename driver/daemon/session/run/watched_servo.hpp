@@ -13,7 +13,7 @@ namespace hapticd::servo {
 class WatchedServo final : public watch::WatchTarget {
  public:
   /// [main] The arguments must outlive this object.
-  WatchedServo(Loop& loop, std::vector<std::unique_ptr<Arm>>& arms, const Telemetry& telemetry);
+  WatchedServo(Loop& loop, Arms& arms, const Telemetry& telemetry);
 
   uint64_t ticks() const noexcept override { return loop_.ticks(); }
   Nanoseconds tickBegun() const noexcept override { return loop_.tickBegun(); }
@@ -30,7 +30,7 @@ class WatchedServo final : public watch::WatchTarget {
 
  private:
   Loop& loop_;
-  std::vector<std::unique_ptr<Arm>>& arms_;
+  Arms& arms_;
   const Telemetry& telemetry_;
   bool simulated_ = true;
 };

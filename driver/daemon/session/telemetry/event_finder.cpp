@@ -52,7 +52,7 @@ void EventFinder::order(const Order& order) noexcept HSP_RT {
   }
 }
 
-void EventFinder::tick(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+void EventFinder::tick(double t, const Core& core, const Arms& arms) noexcept HSP_RT {
   if (t - last_t_ >= kStalled) add(HAPTICD_STALLED, -1, -1, 0, t - last_t_);
   last_t_ = t;
   if (leaving_ > 0) findLeft(core);
@@ -94,11 +94,11 @@ void EventFinder::check(double t, uint32_t index, const Core& core) noexcept HSP
       add(HAPTICD_TOUCH, number, by, 0, Eigen::Map<const Vector3d>(contact.world.force).norm());
     note.touched[probe] = t;
   }
-  if (model.guard.quarantined() && note.trouble != model.guard.fault()) {
-    note.trouble = model.guard.fault();
-    const bool sized = note.trouble == ShapeFault::kPulls || note.trouble == ShapeFault::kJump;
-    const double value = sized ? model.pull.force : model.failed_status;
-    add(HAPTICD_SILENCED, number, -1, static_cast<uint32_t>(note.trouble), value);
+  if (model.guard.silenced() && note.fault != model.guard.fault()) {
+    note.fault = model.guard.fault();
+    const bool sized = note.fault == ShapeFault::kPulls || note.fault == ShapeFault::kJump;
+    const double value = sized ? model.breach.force : model.failed_status;
+    add(HAPTICD_SILENCED, number, -1, static_cast<uint32_t>(note.fault), value);
   }
   if (model.level != note.level) {
     add(model.level > 0 ? HAPTICD_DEGRADED : HAPTICD_RESTORED, number, -1, 0, model.level);

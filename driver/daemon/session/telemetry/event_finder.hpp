@@ -31,25 +31,23 @@ class EventFinder {
   /// [rt] Called for each order that this tick obeys.
   void order(const Order& order) noexcept HSP_RT;
   /// [rt] Called after a tick at t [s]: finds its events.
-  void tick(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+  void tick(double t, const Core& core, const Arms& arms) noexcept HSP_RT;
 
   /// [rt] Returns the events of this tick, not yet numbered; valid until forget().
   std::span<const hapticd_event> found() const noexcept { return {found_.data(), count_}; }
   void forget() noexcept HSP_RT { count_ = 0; }  ///< [rt] removes the events of this tick
 
  private:
-  /// The state of a model one tick ago.
-  struct ModelNote {
-    std::array<double, link::kMaxProbes> touched = never();  ///< [s] time when each probe was last inside
-    uint32_t level = 0;
-    ShapeFault trouble = ShapeFault::kNone;
-    bool leaving = false;
-    uint64_t refused = 0;
-    double refused_told = -kRefusedPeriod;
-  };
   struct RefusedNote {
     uint64_t refused = 0;
     double refused_told = -kRefusedPeriod;
+  };
+  /// The state of a model one tick ago.
+  struct ModelNote : RefusedNote {
+    std::array<double, link::kMaxProbes> touched = never();  ///< [s] time when each probe was last inside
+    uint32_t level = 0;
+    ShapeFault fault = ShapeFault::kNone;
+    bool leaving = false;
   };
   struct ArmNote : RefusedNote {  // its own counts are for the leader of the hand, `pushes` for the pushing programs
     Fault fault = Fault::kNone;

@@ -24,7 +24,7 @@ void copyAll(T& to, const T& from) noexcept HSP_RT {
 
 }  // namespace
 
-Flight::Flight(std::unique_ptr<record::FlightRing> ring, const std::vector<std::unique_ptr<Arm>>& arms, size_t places)
+Flight::Flight(std::unique_ptr<record::FlightRing> ring, const Arms& arms, size_t places)
     : ring_(std::move(ring)), faults_before_(arms.size()), events_(places, arms.size()) {
   const record::RowLayout& layout = ring_->specs()[kTicks].layout;
   const auto offsetOf = [&](const std::string& name) {
@@ -76,7 +76,7 @@ void Flight::push(FlightStream stream, const Row& row) noexcept HSP_RT {
   ring_->commit(stream);
 }
 
-void Flight::begin(Nanoseconds now, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+void Flight::begin(Nanoseconds now, const Arms& arms) noexcept HSP_RT {
   now_ = now;
   // The memory of this tick's rows was last used seconds ago. Prefetching it while the tick works makes writing fast.
   constexpr uint32_t kCacheLine = 64;
@@ -103,7 +103,7 @@ void Flight::order(const Order& order) noexcept HSP_RT {
 }
 
 void Flight::tick(double t, double dt, Nanoseconds late, Nanoseconds spent, const Core& core,
-                  const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+                  const Arms& arms) noexcept HSP_RT {
   TickRow row;
   row.tick = tick_;
   row.time_ns = now_;
@@ -162,7 +162,7 @@ void Flight::tickArm(const ArmColumns& columns, const Arm& arm, const Core& core
   std::memcpy(row + columns.client, &client, sizeof client);
 }
 
-void Flight::links(double t, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+void Flight::links(double t, const Arms& arms) noexcept HSP_RT {
   constexpr double kPeriod = 1.0 / 60;  // [s] screens draw this often
   if (t < links_due_) return;
   links_due_ = t + kPeriod;
@@ -172,7 +172,7 @@ void Flight::links(double t, const std::vector<std::unique_ptr<Arm>>& arms) noex
       push(kLinks, LinkRow{tick_, arm, link, ends[link]});
 }
 
-void Flight::motors(double t, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+void Flight::motors(double t, const Arms& arms) noexcept HSP_RT {
   constexpr double kPeriod = 0.1;  // [s] temperatures change slowly
   if (t < motors_due_) return;
   motors_due_ = t + kPeriod;
@@ -190,7 +190,7 @@ void Flight::pushes(uint32_t index, const Arm& arm) noexcept HSP_RT {
       push(kPushes, PushRow{tick_, index, place, client.push});
 }
 
-void Flight::events(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+void Flight::events(double t, const Core& core, const Arms& arms) noexcept HSP_RT {
   events_.tick(t, core, arms);
   for (hapticd_event event : events_.found()) {
     event.tick = tick_;

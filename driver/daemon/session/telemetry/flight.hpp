@@ -108,24 +108,24 @@ struct ClientColumns {
 
 /// [main] Returns the streams of a run. @param rate [Hz] @param seconds length of the black box [s] @param moving
 /// number of models that can move
-std::vector<record::StreamSpec> flightStreams(const scene::Scene& scene, const std::vector<std::unique_ptr<Arm>>& arms,
-                                              double rate, double seconds, size_t moving);
+std::vector<record::StreamSpec> flightStreams(const scene::Scene& scene, const Arms& arms, double rate, double seconds,
+                                              size_t moving);
 
 class Flight {
  public:
   /// [main] @param ring ring with the streams that flightStreams() gave for these arms
   /// @param places most models that the run can have
-  Flight(std::unique_ptr<record::FlightRing> ring, const std::vector<std::unique_ptr<Arm>>& arms, size_t places);
+  Flight(std::unique_ptr<record::FlightRing> ring, const Arms& arms, size_t places);
 
   /// [rt] Called before a tick: notes the time of the tick, and the faults that are latched already.
-  void begin(Nanoseconds now, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+  void begin(Nanoseconds now, const Arms& arms) noexcept HSP_RT;
 
   /// [rt] Called for each order that this tick obeys.
   void order(const Order& order) noexcept HSP_RT;
 
   /// [rt] Called after a tick: writes its rows.
   void tick(double t, double dt, Nanoseconds late, Nanoseconds spent, const Core& core,
-            const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+            const Arms& arms) noexcept HSP_RT;
 
   record::FlightRing& ring() { return *ring_; }
   const record::FlightRing& ring() const { return *ring_; }
@@ -154,9 +154,9 @@ class Flight {
   void poses(const Core& core) noexcept HSP_RT;
   void lead(Order::Led led, uint32_t target, const hapticd_target* taken) noexcept HSP_RT;
   void pushes(uint32_t index, const Arm& arm) noexcept HSP_RT;
-  void motors(double t, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
-  void links(double t, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
-  void events(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+  void motors(double t, const Arms& arms) noexcept HSP_RT;
+  void links(double t, const Arms& arms) noexcept HSP_RT;
+  void events(double t, const Core& core, const Arms& arms) noexcept HSP_RT;
   void activations(const Core& core) noexcept HSP_RT;
   template <class Row>
   void push(FlightStream stream, const Row& row) noexcept HSP_RT;

@@ -232,8 +232,8 @@ void addArm(RowLayout& layout, const std::string& arm, const hdv_info& info, boo
 
 }  // namespace
 
-std::vector<StreamSpec> flightStreams(const scene::Scene& scene, const std::vector<std::unique_ptr<Arm>>& arms,
-                                      double rate, double seconds, size_t moving) {
+std::vector<StreamSpec> flightStreams(const scene::Scene& scene, const Arms& arms, double rate, double seconds,
+                                      size_t moving) {
   // One row more than is kept, for the row that is being written. If more than four models are in contact at a time,
   // the kept contacts cover a shorter time.
   constexpr uint64_t kModelsAtOnce = 4, kFewest = 1024, kRecords = 16384, kNone = 2;

@@ -18,8 +18,8 @@ status::Name named(const std::string& name, const std::string& kind) {
 
 }  // namespace
 
-StatusWriter::StatusWriter(std::unique_ptr<status::PageFile> file, const scene::Scene& scene,
-                           const std::vector<std::unique_ptr<Arm>>& arms, double rate)
+StatusWriter::StatusWriter(std::unique_ptr<status::PageFile> file, const scene::Scene& scene, const Arms& arms,
+                           double rate)
     : file_(std::move(file)) {
   status::Page& page = file_->page();
   page.arms = static_cast<uint32_t>(std::min<size_t>(arms.size(), status::kMaxArms));
@@ -42,8 +42,7 @@ void StatusWriter::name(uint32_t place, const std::string& name, const std::stri
 }
 
 void StatusWriter::tick(const status::TickStatus& now, Nanoseconds late, Nanoseconds spent, const Core& core,
-                        const std::vector<std::unique_ptr<Arm>>& arms,
-                        std::span<const record::ContactStatistics> books) noexcept HSP_RT {
+                        const Arms& arms, std::span<const record::ContactStatistics> books) noexcept HSP_RT {
   status::Page& page = file_->page();
   page.now.write(now);
   page.lateness_us.add(static_cast<double>(late) * 1e-3);

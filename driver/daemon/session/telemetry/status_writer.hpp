@@ -15,8 +15,7 @@ namespace hapticd::servo {
 class StatusWriter {
  public:
   /// [main] Writes all names, then makes the page valid for readers.
-  StatusWriter(std::unique_ptr<status::PageFile> file, const scene::Scene& scene,
-               const std::vector<std::unique_ptr<Arm>>& arms, double rate);
+  StatusWriter(std::unique_ptr<status::PageFile> file, const scene::Scene& scene, const Arms& arms, double rate);
 
   /// [main] Called when a model takes a place, or leaves it (an empty name).
   void name(uint32_t place, const std::string& name, const std::string& plugin);
@@ -26,8 +25,7 @@ class StatusWriter {
 
   /// [rt] Called after a tick. Copies only models that changed, so models far away cost nothing.
   /// @param books statistics by the place of a model
-  void tick(const status::TickStatus& now, Nanoseconds late, Nanoseconds spent, const Core& core,
-            const std::vector<std::unique_ptr<Arm>>& arms,
+  void tick(const status::TickStatus& now, Nanoseconds late, Nanoseconds spent, const Core& core, const Arms& arms,
             std::span<const record::ContactStatistics> books) noexcept HSP_RT;
 
   const status::Page& page() const { return file_->page(); }

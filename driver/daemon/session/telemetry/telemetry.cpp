@@ -69,7 +69,7 @@ void Telemetry::name(uint32_t place, const std::string& name, const std::string&
 }
 
 void Telemetry::tick(double t, double dt, Nanoseconds late, const TickDuration& spent, const Core& core,
-                     const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+                     const Arms& arms) noexcept HSP_RT {
   BlackBoxRow row;
   row.t = t;
   simulated_seconds_ = t + 1 / rate_;
@@ -106,13 +106,12 @@ void Telemetry::keep(const BlackBoxRow& row) noexcept HSP_RT {
 
 /// True at the planned end of a run, in a hold, and in a fault of every arm. No force acts then, so the depth of the
 /// hand and the force that the model asks for are not counted: nobody feels them.
-bool Telemetry::withoutForce(const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+bool Telemetry::withoutForce(const Arms& arms) noexcept HSP_RT {
   const auto is = [](const auto& arm) { return arm->limiter().fault() != Fault::kNone; };
   return !arms.empty() && std::all_of(arms.begin(), arms.end(), is);
 }
 
-void Telemetry::recordArms(uint32_t index, double dt, const Core& core,
-                           const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+void Telemetry::recordArms(uint32_t index, double dt, const Core& core, const Arms& arms) noexcept HSP_RT {
   for (uint32_t arm = 0; arm < devices_.size() && arm < core.probeCount(); ++arm) {
     if (arm < arms.size() && arms[arm]->limiter().fault() != Fault::kNone) continue;
     const Contact& contact = core.contact(index, arm);
@@ -122,8 +121,7 @@ void Telemetry::recordArms(uint32_t index, double dt, const Core& core,
   }
 }
 
-void Telemetry::recordWork(uint32_t index, const Core& core,
-                           const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+void Telemetry::recordWork(uint32_t index, const Core& core, const Arms& arms) noexcept HSP_RT {
   for (uint32_t arm = 0; arm < stops_.size() && arm < core.probeCount() && arm < arms.size(); ++arm) {
     if (!arms[arm]->probe().valid) continue;
     const Contact& contact = core.contact(index, arm);
@@ -138,8 +136,7 @@ double Telemetry::pullOf(const Contact& contact, const Arm& arm) noexcept HSP_RT
   return pulls ? Eigen::Map<const Vector3d>(contact.world.force).norm() : 0;
 }
 
-void Telemetry::recordModels(double dt, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms,
-                             BlackBoxRow& row) noexcept HSP_RT {
+void Telemetry::recordModels(double dt, const Core& core, const Arms& arms, BlackBoxRow& row) noexcept HSP_RT {
   const bool pushed = !withoutForce(arms);
   for (const uint32_t index : core.live()) {
     const ModelState& model = core.models()[index];
@@ -167,7 +164,7 @@ void Telemetry::recordModels(double dt, const Core& core, const std::vector<std:
     if (depth > -HUGE_VAL && model.status >= HSP_OK) models_[index].addFoot(held, model.status == HSP_DEGRADED);
     // The force with which a model in trouble fades out is not its answer, so it is not counted.
     const bool any = odd.untraced + odd.depthless + odd.outside + odd.pull > 0;
-    if (any && pushed && model.status >= HSP_OK && !model.guard.quarantined()) recordImproper(index, odd);
+    if (any && pushed && model.status >= HSP_OK && !model.guard.silenced()) recordImproper(index, odd);
     recordArms(index, dt, core, arms);
     if (pushed) recordWork(index, core, arms);
     if (depth > -HUGE_VAL && (row.model == UINT32_MAX || depth > row.depth_m)) {

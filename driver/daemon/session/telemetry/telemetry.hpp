@@ -98,20 +98,18 @@ class Telemetry final : public TickLog {
   std::vector<BlackBoxRow> fromFlight() const;
   void keep(const BlackBoxRow& row) noexcept HSP_RT;
   std::vector<record::ArmContact> armsOf(size_t place) const;
-  static bool withoutForce(const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
-  void recordArms(uint32_t index, double dt, const Core& core,
-                  const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+  static bool withoutForce(const Arms& arms) noexcept HSP_RT;
+  void recordArms(uint32_t index, double dt, const Core& core, const Arms& arms) noexcept HSP_RT;
   /// [N] Largest force of a model on any probe in a tick, in cases without a proper contact: nothing traced, no depth,
   /// or outside the surface; and its largest pull.
   struct ImproperForce {
     double untraced = 0, depthless = 0, outside = 0, pull = 0;
   };
   void recordImproper(uint32_t index, const ImproperForce& odd) noexcept HSP_RT;
-  void recordWork(uint32_t index, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+  void recordWork(uint32_t index, const Core& core, const Arms& arms) noexcept HSP_RT;
   record::ModelReport reportOf(size_t place) const;
   static double pullOf(const Contact& contact, const Arm& arm) noexcept HSP_RT;
-  void recordModels(double dt, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms,
-                    BlackBoxRow& row) noexcept HSP_RT;
+  void recordModels(double dt, const Core& core, const Arms& arms, BlackBoxRow& row) noexcept HSP_RT;
 
   std::vector<std::string> names_, plugins_, libraries_;
   std::vector<record::ModelReport> left_;  ///< reports of models that have left

@@ -16,7 +16,7 @@ namespace {
 
 bool lacksNeeded(const scene::Model& model, const host::ClassInfo& info) {
   return std::any_of(info.params.begin(), info.params.end(), [&model](const host::ParamInfo& param) {
-    return (param.flags & HSP_P_REQUIRED) != 0 && givenIn(model.parameters, param.id.c_str()) == nullptr;
+    return (param.flags & HSP_P_REQUIRED) != 0 && givenIn(model.parameters, param.id) == nullptr;
   });
 }
 
@@ -106,7 +106,7 @@ bool DraftModels::isRead(const document::Problem& one) const {
 
 bool DraftModels::isUnread(size_t model, const std::string& id) const {
   return unread_[model].ids.contains(id) ||
-         (unread_[model].any && givenIn(draft_.models[model].parameters, id.c_str()) == nullptr);
+         (unread_[model].any && givenIn(draft_.models[model].parameters, id) == nullptr);
 }
 
 double DraftModels::claimOf(size_t model, double claimed) const {
@@ -134,15 +134,15 @@ bool DraftModels::dependsOnUnread(const document::Problem& one) const {
 
 bool DraftModels::objectsToStandIn(const document::Problem& one, size_t model) const {
   const std::string id = idIn(one.key);
-  const scene::Value* value = givenIn(draft_.models[model].parameters, id.c_str());
+  const scene::Value* value = givenIn(draft_.models[model].parameters, id);
   return value != nullptr && value->kind == HSP_REAL && unread_[model].ids.contains(id);
 }
 
 bool DraftModels::concernsGiven(const document::Problem& one, size_t model) const {
-  bool concerns = givenIn(draft_.models[model].parameters, idIn(one.key).c_str()) != nullptr;
+  bool concerns = givenIn(draft_.models[model].parameters, idIn(one.key)) != nullptr;
   for (const host::ParamInfo& param : plugins_[model]->params) {
     if (!hasWord(one.what, param.id)) continue;
-    const bool given = givenIn(draft_.models[model].parameters, param.id.c_str()) != nullptr;
+    const bool given = givenIn(draft_.models[model].parameters, param.id) != nullptr;
     if (!given && (param.flags & HSP_P_REQUIRED) != 0) return false;
     concerns = concerns || given;
   }

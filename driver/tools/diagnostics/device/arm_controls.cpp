@@ -66,12 +66,8 @@ void addTimes(const host::DeviceInstance& device, bool opened, const std::option
 /// Adds the controls that detect a wrong or old report.
 void addReports(const std::optional<codec::Wire>& wire, std::vector<Control>& to) {
   if (!wire) return;
-  const auto has = [&wire](codec::Role role) {
-    return std::any_of(wire->input.fields.begin(), wire->input.fields.end(),
-                       [role](const codec::Field& field) { return field.role == role; });
-  };
-  const bool sum = has(codec::Role::kChecksum), whole = codec::outsideChecksum(wire->input).empty(),
-             counter = has(codec::Role::kSequence);
+  const bool sum = wire->input.has(codec::Role::kChecksum), whole = codec::outsideChecksum(wire->input).empty(),
+             counter = wire->input.has(codec::Role::kSequence);
   to.push_back({"H1", "a misread report is noticed", onIf(sum && whole),
                 sum && !whole ? "its checksum leaves out positions: see from and to of the checksum"
                 : sum ? "by its checksum"
@@ -172,14 +168,11 @@ std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog
   found.arm = loaded.device->name;
   found.opened = static_cast<bool>(opened);
   if (!opened) found.why = opened.error();
-  for (const scene::Value& value : loaded.device->parameters)
-    if (value.id == "usb.id") found.usb_id = value.text;
+  if (const scene::Value* id = givenIn(loaded.device->parameters, "usb.id")) found.usb_id = id->text;
   found.controls = controlsOf(*loaded.device, **device, found.opened);
   const uint32_t capabilities = found.opened ? (*device)->info().capabilities : 0;
   const auto wire = wireOf(*loaded.device, (*device)->kinematics().joint_count);
-  found.repeats_pass = wire && !wire->clockTells() &&
-                       std::none_of(wire->input.fields.begin(), wire->input.fields.end(),
-                                    [](const codec::Field& field) { return field.role == codec::Role::kSequence; });
+  found.repeats_pass = wire && !wire->clockTells() && !wire->input.has(codec::Role::kSequence);
   found.slow = slownessOf(*loaded.device, kFastServo);
   found.simulated = (capabilities & HDV_C_SIMULATED) != 0;
   found.watchdog = (capabilities & HDV_C_WATCHDOG) != 0 || (!found.opened && wire && wire->cutsSoon());

@@ -33,19 +33,13 @@ struct ArmUnderCheck {
   }
 };
 
-double claimed(const scene::Device& device, const char* id) {
-  for (const scene::Value& value : device.parameters)
-    if (value.id == id) return value.number;
-  return 0;
-}
-
 hdv_info infoOf(const scene::Device& device, host::DeviceInstance* arm) {
   hdv_info info{};
   if (device.module == "simulated" && arm != nullptr && arm->open()) return arm->info();
-  info.max_force = claimed(device, "device.max_force");
-  info.continuous_force = claimed(device, "device.continuous_force");
-  info.max_stiffness = claimed(device, "device.max_stiffness");
-  info.mass_kg = claimed(device, "device.mass");
+  info.max_force = numberIn(device.parameters, "device.max_force");
+  info.continuous_force = numberIn(device.parameters, "device.continuous_force");
+  info.max_stiffness = numberIn(device.parameters, "device.max_stiffness");
+  info.mass_kg = numberIn(device.parameters, "device.mass");
   return info;
 }
 

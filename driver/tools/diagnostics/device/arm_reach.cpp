@@ -65,18 +65,17 @@ std::optional<Eigen::AlignedBox3d> boxOfReach(const host::DeviceInstance& arm) {
 
 double reachOf(const scene::Device& device, const host::DeviceInstance& arm, const Vector3d& tip_device) {
   constexpr int kPoses = 4000;
-  std::vector<double> limits;
-  for (const scene::Value& value : device.parameters)
-    if (value.id == "arm.limits") limits = value.numbers;
+  const scene::Value* limits = givenIn(device.parameters, "arm.limits");
   const uint32_t joints = arm.kinematics().joint_count;
-  const bool given = limits.size() == 2 * joints;
+  const bool given = limits != nullptr && limits->numbers.size() == 2 * joints;
   std::mt19937_64 random(1);  // the same poses in every run
   double farthest = 0;
   for (int pose = 0; pose < kPoses; ++pose) {
     std::array<double, HDV_MAX_JOINTS> q{};
     for (size_t i = 0; i < joints; ++i) {
       const double part = static_cast<double>(random() >> 11) * 0x1p-53;
-      q[i] = given ? limits[2 * i] + part * (limits[2 * i + 1] - limits[2 * i]) : M_PI * (2 * part - 1);
+      const double* range = given ? limits->numbers.data() + 2 * i : nullptr;
+      q[i] = given ? range[0] + part * (range[1] - range[0]) : M_PI * (2 * part - 1);
     }
     Vector3d tip = Vector3d::Zero();
     std::array<double, 4> turn{};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "diagnostics/device/decimal_commas.hpp"
 
-#include <algorithm>
 #include <vector>
 
 #include "diagnostics/device/device_trial.hpp"
@@ -36,9 +35,8 @@ std::vector<double> withPoints(const std::vector<double>& numbers) {
 
 std::string adviceOnCommas(const scene::Device& device, const std::string& id, const document::Node& list) {
   const std::string advice = document::suggestDecimals(list, 1);
-  const auto given = std::find_if(device.parameters.begin(), device.parameters.end(),
-                                  [&id](const scene::Value& value) { return value.id == id; });
-  if (advice.empty() || given == device.parameters.end() || given->numbers.size() > kLongest) return "";
+  const scene::Value* given = givenIn(device.parameters, id);
+  if (advice.empty() || given == nullptr || given->numbers.size() > kLongest) return "";
   const std::vector<double> meant = withPoints(given->numbers);
   if (takes(device, id, meant)) return advice;
   for (size_t count = 1; count < given->numbers.size(); ++count) {

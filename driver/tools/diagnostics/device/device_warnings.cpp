@@ -83,9 +83,7 @@ void massesAtTheEnds(const Node& root, const std::string& file, document::Proble
 /// Warns if the calibration pose lies beyond the stops of the arm, because nobody can hold the arm there.
 void poseBeyondStops(const Node& root, const scene::Device& device, document::Problems& warnings) {
   const Node* pose = find(root, {"parameters", "calibration", "pose"});
-  const scene::Value* limits = nullptr;
-  for (const scene::Value& value : device.parameters)
-    if (value.id == "arm.limits") limits = &value;
+  const scene::Value* limits = givenIn(device.parameters, "arm.limits");
   // Limits in degrees say nothing about a pose; they are told themselves.
   if (largest(numbersIn(find(root, {"parameters", "arm", "limits"}))) > 2 * M_PI) return;
   if (pose == nullptr || limits == nullptr || 2 * pose->items.size() != limits->numbers.size()) return;

@@ -22,11 +22,7 @@ struct Bounds {
   double force;  ///< [N]
   document::Problems& warnings;
 
-  double number(const char* id, double fallback) const {
-    for (const scene::Value& value : device.parameters)
-      if (value.id == id) return value.number;
-    return fallback;
-  }
+  double number(const char* id, double otherwise) const { return numberIn(device.parameters, id, otherwise); }
   bool knows(const std::string& key) const {
     return std::any_of(warnings.begin(), warnings.end(), [&](const auto& one) { return one.key == key; });
   }
@@ -121,11 +117,7 @@ void checkCarried(const Bounds& of) {
 /// Warns of admittance control on an arm whose wire format has no measured torques or no references for joints.
 void checkCompliance(const Bounds& of, const codec::Wire& wire) {
   if (!of.device.admittance) return;
-  const auto has = [](const codec::Report& report, codec::Role role) {
-    return std::any_of(report.fields.begin(), report.fields.end(),
-                       [role](const auto& one) { return one.role == role; });
-  };
-  const bool measures = has(wire.input, codec::Role::kTorque), follows = has(wire.output, codec::Role::kReference);
+  const bool measures = wire.input.has(codec::Role::kTorque), follows = wire.output.has(codec::Role::kReference);
   if (!measures || !follows)
     of.warn({"admittance"},
             fmt::format(
@@ -168,13 +160,11 @@ struct Joint {
   const Bounds& of;
   const Eigen::Matrix3Xd& lever;  ///< [m] that the tip moves for each rad
 
-  double number(const char* id, Eigen::Index joint, double fallback) const {
-    for (const scene::Value& value : of.device.parameters)
-      if (value.id == id) {
-        if (value.numbers.empty()) return value.number;
-        return value.numbers[value.numbers.size() == 1 ? 0 : std::min<size_t>(joint, value.numbers.size() - 1)];
-      }
-    return fallback;
+  double number(const char* id, Eigen::Index joint, double otherwise) const {
+    const scene::Value* value = givenIn(of.device.parameters, id);
+    if (value == nullptr) return otherwise;
+    if (value->numbers.empty()) return value->number;
+    return value->numbers[std::min<size_t>(joint, value->numbers.size() - 1)];
   }
   void judge(Eigen::Index joint) const {
     constexpr double kHand = 0.1, kHeavy = 20;  // [m/s]; [kg]
@@ -254,9 +244,8 @@ void checkRates(const Bounds& of) {
 void warnOfImplausibleLimits(const Node& root, const scene::Device& device, const host::DeviceInstance* arm,
                              document::Problems& warnings) {
   double force = device.limits.force;
-  for (const scene::Value& value : device.parameters)
-    if (value.id == "device.max_force" && value.number > 0)
-      force = force > 0 ? std::min(force, value.number) : value.number;
+  if (const double own = numberIn(device.parameters, "device.max_force"); own > 0)
+    force = force > 0 ? std::min(force, own) : own;
   if (!(force > 0)) force = 5;  // [N] a usual force of such arms, if no key gives one
   const Bounds bounds{root, device, force, warnings};
   checkGrowth(bounds);

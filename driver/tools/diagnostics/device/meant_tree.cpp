@@ -91,9 +91,8 @@ Node withMeantParameters(Node root, const scene::Device& draft) {
 }
 
 Node withMeantWire(Node root, const scene::Device& draft) {
-  const auto wire = std::find_if(draft.parameters.begin(), draft.parameters.end(),
-                                 [](const scene::Value& value) { return value.id == "wire"; });
-  if (wire == draft.parameters.end()) return root;
+  const scene::Value* wire = givenIn(draft.parameters, "wire");
+  if (wire == nullptr) return root;
   std::vector<codec::ReadInstead> moves;
   try {
     moves = codec::misplacedInWire(wire->text, 0);

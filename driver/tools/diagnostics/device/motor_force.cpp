@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "diagnostics/device/motor_reach.hpp"
-#include "diagnostics/reading/given_values.hpp"
 
 namespace hapticd::diagnostics {
 

@@ -30,11 +30,7 @@ struct File {
   void warn(const Node& at, const std::string& key, const std::string& what) const {
     document::report(warnings, device.file.string(), at.line, at.column, key, what);
   }
-  double number(const char* id) const {
-    for (const scene::Value& value : device.parameters)
-      if (value.id == id) return value.number;
-    return 0;
-  }
+  double number(const char* id) const { return numberIn(device.parameters, id); }
 };
 
 void noForceLimit(const File& file, const host::DeviceInstance& arm) {
@@ -52,10 +48,8 @@ void noForceLimit(const File& file, const host::DeviceInstance& arm) {
 void noTorqueLimit(const File& file, const codec::Wire& wire, const host::DeviceInstance& arm) {
   constexpr double kHandle = 0.1;  // [m] lever arm at which a hand holds the handle
   const scene::Limits& limits = file.device.limits;
-  const bool turns = arm.kinematics().joint_count > 3 &&
-                     std::any_of(wire.output.fields.begin(), wire.output.fields.end(), [](const Field& field) {
-                       return field.role == Role::kTorque || field.role == Role::kReference;
-                     });
+  const bool turns =
+      arm.kinematics().joint_count > 3 && (wire.output.has(Role::kTorque) || wire.output.has(Role::kReference));
   if (!turns || limits.torque > 0) return;
   const Node* given = file.root.find("limits");
   const double force = limits.force > 0 ? limits.force : file.number("device.max_force");
@@ -127,9 +121,7 @@ void soonStale(const File& file, const codec::Wire& wire) {
 void noCalibration(const File& file, const codec::Wire& wire) {
   const bool wraps = std::any_of(wire.input.fields.begin(), wire.input.fields.end(),
                                  [](const Field& field) { return field.role == Role::kPosition && field.wraps; });
-  const bool says = std::any_of(wire.input.fields.begin(), wire.input.fields.end(),
-                                [](const Field& field) { return field.role == Role::kCalibrated; });
-  if (!wraps || says || file.number("calibration.method") > 0) return;
+  if (!wraps || wire.input.has(Role::kCalibrated) || file.number("calibration.method") > 0) return;
   const Node *given = find(file.root, {"parameters", "calibration"}), *parameters = file.root.find("parameters");
   file.warn(given != nullptr ? *given : *parameters, "parameters.calibration.method",
             "is none, but the encoders wrap, so their zero is wherever the arm was switched on; set method: pose (or "

@@ -12,12 +12,6 @@
 namespace hapticd::diagnostics {
 namespace {
 
-double number(const scene::Device& device, const char* id) {
-  for (const scene::Value& value : device.parameters)
-    if (value.id == id) return value.number;
-  return 0;
-}
-
 /// [N] Returns the largest force as the limiter uses it: the smaller of limits.force and the arm's own force, as far as
 /// they are known.
 double forceOf(const scene::Device& device, double own) {
@@ -39,7 +33,7 @@ void reportSlow(const scene::Scene& scene, const scene::Device& device, const st
 }  // namespace
 
 double namedRate(const scene::Device& device) {
-  if (const double given = number(device, "rate"); given > 0) return given;
+  if (const double given = numberIn(device.parameters, "rate"); given > 0) return given;
   const auto arm = host::DeviceInstance::create(device, [](int, const std::string&, const std::string&) {});
   if (!arm) return 0;
   const auto wire = wireOf(device, (*arm)->kinematics().joint_count);
@@ -48,7 +42,8 @@ double namedRate(const scene::Device& device) {
 
 std::string slownessOf(const scene::Device& device, double servo_rate) {
   if (device.module == "simulated") return "";
-  const double own = std::max(number(device, "device.max_force"), number(device, "max_force"));
+  const double own =
+      std::max(numberIn(device.parameters, "device.max_force"), numberIn(device.parameters, "max_force"));
   return servo::describeSlow(servo_rate, namedRate(device), own, forceOf(device, own));
 }
 

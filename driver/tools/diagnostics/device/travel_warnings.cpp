@@ -49,9 +49,8 @@ std::string wrapsTooOften(const Field& field, const PositionRange& stops) {
 }
 
 std::vector<double> limitsOf(const scene::Device& device) {
-  for (const scene::Value& value : device.parameters)
-    if (value.id == "arm.limits") return value.numbers;
-  return {};
+  const scene::Value* limits = givenIn(device.parameters, "arm.limits");
+  return limits != nullptr ? limits->numbers : std::vector<double>();
 }
 
 /// Returns true if a joint can have these stops. Others have a warning of their own, and are no measure of a field.
@@ -61,8 +60,7 @@ bool areStops(const PositionRange& stops) {
 
 /// Returns true if the zero is where the arm was held during calibration, so that only the length of a range is known.
 bool zeroedByPose(const scene::Device& device) {
-  return std::any_of(device.parameters.begin(), device.parameters.end(),
-                     [](const scene::Value& value) { return value.id == "calibration.method" && value.number > 1; });
+  return numberIn(device.parameters, "calibration.method") > 1;
 }
 
 /// Returns a text if a field would express the whole range between the stops with the other sign of its offset.

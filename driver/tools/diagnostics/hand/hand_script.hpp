@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "description/scene.hpp"
-#include "diagnostics/reading/given_values.hpp"
 #include "document/problem.hpp"
 
 namespace hapticd::diagnostics {

@@ -237,8 +237,9 @@ std::string tryTips(const scene::Scene& scene, bool may_walk, const std::vector<
 document::Place placeOfHand(const scene::Device& device) {
   for (const bool in_scene : {true, false})
     for (const char* id : {"hand.path", "hand.center", "hand.radius", "hand.script", "hand.normal", "hand.axis"})
-      for (const scene::Value& value : device.parameters)
-        if (value.id == id && in_scene == (value.place.file != device.file.string())) return value.place;
+      if (const scene::Value* value = givenIn(device.parameters, id);
+          value != nullptr && in_scene == (value->place.file != device.file.string()))
+        return value->place;
   return device.place;
 }
 
@@ -263,9 +264,8 @@ void reportRefused(const scene::Scene& scene, const scene::Device& device, const
     const size_t end = std::min(told.find_first_of(": ", begin), told.size());
     const std::string key = told.substr(begin, end - begin);
     const std::string what = told.substr(std::min(told.find_first_not_of(": ", end), told.size()));
-    for (const scene::Value& value : device.parameters)
-      if (value.id == key)
-        return document::report(problems, value.place, key.starts_with("hand.") ? key : "parameters." + key, what);
+    if (const scene::Value* value = givenIn(device.parameters, key))
+      return document::report(problems, value->place, key.starts_with("hand.") ? key : "parameters." + key, what);
     for (const std::string& one : {"device." + key, fmt::format("devices[{}].{}", &device - scene.devices.data(), key)})
       if (const auto place = placeOfKey(scene.file, one)) return document::report(problems, *place, one, what);
     for (const auto& file : {device.file, scene.file})

@@ -112,7 +112,7 @@ class WalkLog final : public servo::TickLog {
     report.size_m = state.shape->report().size_m;
     const bool slow = state.guard.fault() == servo::ShapeFault::kOverrun;
     const std::string fault = slow ? "" : servo::silenceReason(state);
-    walk_.silenced.push_back(state.guard.quarantined());
+    walk_.silenced.push_back(state.guard.silenced());
     walk_.judged.push_back(record::contactWarnings(report));
     if (!fault.empty()) walk_.judged.back().push_back(fault);
   }

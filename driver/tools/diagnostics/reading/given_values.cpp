@@ -39,10 +39,4 @@ double largest(const std::vector<double>& numbers) {
   return most;
 }
 
-const scene::Value* givenIn(const std::vector<scene::Value>& values, const char* id) {
-  const auto found =
-      std::find_if(values.begin(), values.end(), [id](const scene::Value& value) { return value.id == id; });
-  return found == values.end() ? nullptr : &*found;
-}
-
 }  // namespace hapticd::diagnostics

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// Finds values in files: nodes of a document by their keys, the numbers of a list, and parameters by their ids.
+/// Finds values in the nodes of a document: a node by its keys, and the numbers of a list.
 #pragma once
 #include <cstddef>
 #include <initializer_list>
 #include <vector>
 
-#include "description/scene.hpp"
 #include "document/node.hpp"
 
 namespace hapticd::diagnostics {
@@ -21,8 +20,5 @@ std::vector<double> numbersOf(const document::Node* list, size_t count);
 
 /// [any] Returns the greatest magnitude of some numbers; 0 if there are none.
 double largest(const std::vector<double>& numbers);
-
-/// [any] Returns the value that the files give for a parameter, or nullptr if they give none.
-const scene::Value* givenIn(const std::vector<scene::Value>& values, const char* id);
 
 }  // namespace hapticd::diagnostics

@@ -16,12 +16,10 @@ namespace {
 hdv_info infoOf(const scene::Device& device) {
   hdv_info info{};
   info.capabilities = HDV_C_PACING;  // unknown: with this flag there is no warning that the arm cannot drive the loop
-  for (const scene::Value& value : device.parameters) {
-    if (value.id == "device.max_stiffness") info.max_stiffness = value.number;
-    if (value.id == "device.mass") info.mass_kg = value.number;
-    if (value.id == "device.max_force") info.max_force = value.number;
-    if (value.id == "device.continuous_force") info.continuous_force = value.number;
-  }
+  info.max_stiffness = numberIn(device.parameters, "device.max_stiffness");
+  info.mass_kg = numberIn(device.parameters, "device.mass");
+  info.max_force = numberIn(device.parameters, "device.max_force");
+  info.continuous_force = numberIn(device.parameters, "device.continuous_force");
   return info;
 }
 
@@ -39,9 +37,7 @@ document::Problems unstableContacts(const scene::Scene& scene, const std::vector
     document::append(warnings, tune::unstableSettings(scene, device, info, stiffness));
     document::append(warnings, stiffTogether(scene, device, info, stiffness));
     document::append(warnings, lightAdmittance(scene, device, info));
-    const bool described = std::any_of(device.parameters.begin(), device.parameters.end(),
-                                       [](const scene::Value& value) { return value.id == "wire"; });
-    if (described && info.max_stiffness <= 0 &&
+    if (givenIn(device.parameters, "wire") != nullptr && info.max_stiffness <= 0 &&
         std::any_of(stiffness.begin(), stiffness.end(), [](double k) { return k > 0; }))
       document::report(
           warnings, device.place.file.empty() ? document::Place{device.file.string()} : device.place,

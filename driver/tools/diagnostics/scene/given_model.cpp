@@ -10,14 +10,8 @@ Eigen::Vector3d GivenModel::gravity() const {
   return model().pose.orientation.conjugate() * scene_.servo.gravity;
 }
 
-const scene::Value* GivenModel::given(std::string_view id) const {
-  for (const scene::Value& value : model().parameters)
-    if (value.id == id) return &value;
-  return nullptr;
-}
-
 const scene::Value* GivenModel::find(std::string_view id) const {
-  const scene::Value* value = given(id);
+  const scene::Value* value = givenIn(model().parameters, id);
   unsure_ = unsure_ || unread_.ids.contains(id) || (value == nullptr && unread_.any);
   return value;
 }
@@ -55,7 +49,7 @@ void GivenModel::warn(std::initializer_list<std::string_view> ids, const std::st
   const std::string key = "models[" + std::to_string(index_) + "].parameters.";
   const scene::Value* at = nullptr;
   for (const std::string_view id : ids)
-    if (at == nullptr) at = given(id);
+    if (at == nullptr) at = givenIn(model().parameters, id);
   const std::string told = key + (at != nullptr ? at->id : std::string(*ids.begin()));
   for (size_t i = first_; i < warnings_.size(); ++i)
     if (warnings_[i].key == told && !also) return;

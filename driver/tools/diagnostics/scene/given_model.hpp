@@ -55,8 +55,6 @@ class GivenModel {
   void warn(std::initializer_list<std::string_view> ids, const std::string& what, bool also = false) const;
 
  private:
-  const scene::Value* given(std::string_view id) const;
-
   const scene::Scene& scene_;
   size_t index_;
   const std::optional<Eigen::AlignedBox3d>& box_;

@@ -67,8 +67,7 @@ Eigen::AlignedBox3d boxOf(const scene::Model& model, const host::ShapeInstance& 
 Solid solidOf(const scene::Model& model, const host::ShapeInstance& shape) {
   Solid solid;
   constexpr double kBack = 1, kBoth = 2;  // values of `sides`: a cavity, and a shell, are not filled
-  for (const scene::Value& value : model.parameters)
-    if (value.id == "sides" && (value.number == kBack || value.number == kBoth)) return solid;
+  if (const double sides = numberIn(model.parameters, "sides"); sides == kBack || sides == kBoth) return solid;
   const bool rigid = (shape.description().flags & HSP_C_DEFORMS) == 0 && (shape.report().flags & HSP_R_MOVES) == 0;
   hsp_mesh mesh{};
   if (!rigid || shape.geometry() == nullptr || shape.tessellate(kChord, mesh) < 0) return solid;
@@ -116,9 +115,8 @@ double depthIn(const Solid& inner, const Solid& outer, size_t& tests) {
 
 /// Returns what equal shapes have in common: the plugin and its file.
 std::string shapeNameOf(const scene::Model& model) {
-  for (const scene::Value& value : model.parameters)
-    if (value.id == "geometry") return model.plugin + " " + value.text;
-  return model.plugin;
+  const scene::Value* geometry = givenIn(model.parameters, "geometry");
+  return geometry != nullptr ? model.plugin + " " + geometry->text : model.plugin;
 }
 
 /// Returns true for two models of a row of equal shapes, which often run into one another on purpose.

@@ -36,12 +36,12 @@ document::Problems softModels(const scene::Scene& scene, host::Catalog& catalog)
     const auto plugin = catalog.shape(scene.models[i].plugin);
     // A plugin may have a stiffness of another kind, such as one of turns in N m/rad.
     if (!plugin || (*plugin)->unitOf("stiffness") != "N/m") continue;
-    for (const scene::Value& value : scene.models[i].parameters)
-      if (value.id == "stiffness" && value.kind == HSP_REAL && value.number < kUnfelt)
-        document::report(warnings, value.place, "models[" + std::to_string(i) + "].parameters.stiffness",
-                         document::numberText(value.number) + " N/m cannot be felt: 1 mm gives " +
-                             document::numberText(value.number * 1e-3) +
-                             " N; the value must be in N/m (1 N/mm is 1000 N/m)");
+    const scene::Value* value = givenIn(scene.models[i].parameters, "stiffness");
+    if (value != nullptr && value->kind == HSP_REAL && value->number < kUnfelt)
+      document::report(warnings, value->place, "models[" + std::to_string(i) + "].parameters.stiffness",
+                       document::numberText(value->number) + " N/m cannot be felt: 1 mm gives " +
+                           document::numberText(value->number * 1e-3) +
+                           " N; the value must be in N/m (1 N/mm is 1000 N/m)");
   }
   return warnings;
 }

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <string>
 
-#include "diagnostics/reading/given_values.hpp"
 #include "diagnostics/reading/key_place.hpp"
 #include "servo/arm/velocity_use.hpp"
 #include "servo/velocity/estimator_delay.hpp"

@@ -19,6 +19,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/counted.hpp"
 #include "cad_import/closed_shells.hpp"
 #include "cad_import/progress.hpp"
 #include "cad_import/shape_fixes.hpp"
@@ -177,8 +178,7 @@ std::vector<TopoDS_Shape> solidsOf(const std::vector<TopoDS_Shape>& shapes, cons
     steps.push_back(body + ": a closed shell, taken as a solid");
   else if (solids > 0)
     steps.push_back(body + ": " + std::to_string(solids + cavities) + " closed shells, taken as " +
-                    std::to_string(solids) + (solids == 1 ? " solid" : " solids") + " with " +
-                    std::to_string(cavities) + (cavities == 1 ? " cavity" : " cavities"));
+                    counted(solids, "solid") + " with " + counted(cavities, "cavity", "cavities"));
   if (doubtful > 0)
     steps.push_back(
         body + ": closed shells whose faces bound no single volume, felt from both sides: " + std::to_string(doubtful));

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "base/counted.hpp"
 #include "kernels/brep/model/model.hpp"
 #include "kernels/brep/model/open_borders.hpp"
 #include "kernels/brep/search/tight_bounds.hpp"
@@ -10,15 +11,11 @@
 namespace hapticd::cad {
 namespace {
 
-std::string counted(std::size_t count, const char* one, const char* many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
 std::string lineOf(const std::string& name, const std::vector<brep::OpenBorder>& borders) {
   std::size_t edges = 0;
   for (const brep::OpenBorder& border : borders) edges += border.edges;
   return "'" + name + "': open, so it is felt from both sides: " + counted(borders.size(), "border of", "borders of") +
-         " " + counted(edges, "free edge", "free edges") + ", " + brep::placesOf(borders);
+         " " + counted(edges, "free edge") + ", " + brep::placesOf(borders);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/counted.hpp"
+
 namespace hapticd::cad {
 namespace {
 
@@ -30,10 +32,6 @@ Counts countsOf(const Part& part) {
   for (const brep::Face& face : part.faces)
     ++counts.kinds[kSurfaceNames[static_cast<std::size_t>(part.surfaces[face.surface].kind)]];
   return counts;
-}
-
-std::string plural(std::size_t count, const char* what, const char* many) {
-  return std::to_string(count) + " " + (count == 1 ? what : many);
 }
 
 std::string metresText(double length) {
@@ -87,7 +85,7 @@ std::string oddSizeOf(const Part& part, const Report& report, const std::string&
 std::vector<std::string> stepsOf(const Report& report) {
   std::vector<std::string> lines;
   if (report.recognised > 0)
-    lines.push_back(plural(report.recognised, "spline face is", "spline faces are") +
+    lines.push_back(counted(report.recognised, "spline face is", "spline faces are") +
                     " really a plane, cylinder, cone or sphere, and stored as such");
   lines.insert(lines.end(), report.steps.begin(), report.steps.end());
   return lines;
@@ -96,10 +94,9 @@ std::vector<std::string> stepsOf(const Report& report) {
 std::string textOf(const Part& part, const Report& report, const std::string& out) {
   constexpr std::size_t kMostLines = 40;
   const Counts counts = countsOf(part);
-  std::string text = out + ": " + plural(part.faces.size(), "face", "faces") + " in " +
-                     plural(part.bodies.size(), "body", "bodies") + ", " +
-                     plural(counts.placed, "instance", "instances") + " with " + plural(counts.faces, "face", "faces") +
-                     ", " + sizeText(report) + unitText(part.source) + "\n ";
+  std::string text = out + ": " + counted(part.faces.size(), "face") + " in " +
+                     counted(part.bodies.size(), "body", "bodies") + ", " + counted(counts.placed, "instance") +
+                     " with " + counted(counts.faces, "face") + ", " + sizeText(report) + unitText(part.source) + "\n ";
   for (const auto& [kind, count] : counts.kinds)
     text += (text.back() == ' ' ? " " : ", ") + std::to_string(count) + " " + kind;
   text += "\n";

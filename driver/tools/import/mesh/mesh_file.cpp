@@ -1,23 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "mesh_import/mesh_file.hpp"
 
-#include <cctype>
+#include "base/file_ending.hpp"
 
 namespace hapticd::importing {
-namespace {
-
-std::string endingOf(const std::string& name) {
-  const std::size_t dot = name.rfind('.');
-  std::string ending = dot == std::string::npos ? "" : name.substr(dot + 1);
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending;
-}
-
-}  // namespace
 
 bool isMeshFile(const std::string& name) {
   const std::string ending = endingOf(name);
-  return ending == "obj" || ending == "stl" || ending == "ply";
+  return ending == ".obj" || ending == ".stl" || ending == ".ply";
 }
 
 Result<MeshFile> parseMesh(std::string_view bytes, const std::string& name) {
@@ -27,8 +17,8 @@ Result<MeshFile> parseMesh(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff"))
     return Error{name + ": is text in UTF-16, expected UTF-8 or ASCII: save it again with that encoding"};
   if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);  // the mark that some editors put before UTF-8
-  if (ending == "obj") return parseObjMesh(bytes, name);
-  if (ending == "ply") return parsePlyMesh(bytes, name);
+  if (ending == ".obj") return parseObjMesh(bytes, name);
+  if (ending == ".ply") return parsePlyMesh(bytes, name);
   return parseStlMesh(bytes, name);
 }
 

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 
+#include "base/counted.hpp"
 #include "mesh_import/mesh_part.hpp"
 
 namespace hapticd::importing {
 namespace {
 
 using Eigen::Vector3d;
-
-std::string counted(std::size_t count, const char* one, const char* many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
-}
 
 /// Returns a point as text, such as "(10, 0, 20) mm".
 std::string where(const Vector3d& p) {

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstring>
 
+#include "base/counted.hpp"
 #include "mesh_import/mesh_file.hpp"
 #include "mesh_import/mesh_words.hpp"
 #include "mesh_import/polygons.hpp"
@@ -60,7 +61,7 @@ class TextStl {
                    ": the file has no triangles; expected a text STL (solid, facet, vertex x y z) or a whole binary "
                    "one"};
     if (polygons_ > 0)
-      mesh_.remarks.push_back(std::to_string(polygons_) + (polygons_ == 1 ? " facet has" : " facets have") +
+      mesh_.remarks.push_back(counted(polygons_, "facet has", "facets have") +
                               " more than three corners and became triangles");
     if (!ended_) mesh_.remarks.emplace_back("the file does not end with endsolid, so it may be cut off");
     return std::move(mesh_);
@@ -117,8 +118,7 @@ class TextStl {
     if (loop_.empty()) return;
     ++loops_;
     if (loop_.size() < 3)
-      wrong_lines_.add(begun_, at(begun_) + "the facet has " + std::to_string(loop_.size()) +
-                                   (loop_.size() == 1 ? " corner" : " corners") +
+      wrong_lines_.add(begun_, at(begun_) + "the facet has " + counted(loop_.size(), "corner") +
                                    "; expected three lines vertex x y z");
     else if (loop_.size() == 3)
       mesh_.corners.push_back({loop_[0], loop_[1], loop_[2]});
@@ -163,8 +163,7 @@ Result<MeshFile> parseStlMesh(std::string_view bytes, const std::string& name) {
     return Error{name + ": has " + std::to_string(bytes.size()) +
                  " bytes, but a binary STL has at least 84; the file is damaged, or not an STL"};
   if (bytes.size() == whole) return Error{name + ": the file has no triangles; it is an empty binary STL"};
-  return Error{name + ": a binary STL of " + std::to_string(count) +
-               (count == 1 ? " triangle has " : " triangles has ") + std::to_string(whole) +
+  return Error{name + ": a binary STL of " + counted(count, "triangle") + " has " + std::to_string(whole) +
                " bytes, but this file has " + std::to_string(bytes.size()) + "; it is damaged, or not an STL"};
 }
 

@@ -25,7 +25,7 @@ class EventWords : public testing::Test {
     event.value = value;
     return log_.messageOf(event);
   }
-  std::vector<std::unique_ptr<Arm>> arms_;
+  Arms arms_;
   EventLog log_;
 };
 

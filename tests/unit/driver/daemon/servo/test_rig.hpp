@@ -75,7 +75,7 @@ struct Rig {
   }
   scene::Scene scene;
   std::unique_ptr<World> world;
-  std::vector<std::unique_ptr<Arm>> arms;
+  Arms arms;
   LateClock clock;
   std::unique_ptr<Telemetry> telemetry;
   LoopSettings settings;

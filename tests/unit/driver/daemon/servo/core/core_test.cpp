@@ -240,8 +240,8 @@ TEST_P(NoNumber, SilencesOnlyTheShapeThatAnsweredIt) {
     }
     last = force.y();
   }
-  EXPECT_TRUE(world->core().models()[0].guard.quarantined());
-  EXPECT_FALSE(world->core().models()[1].guard.quarantined());
+  EXPECT_TRUE(world->core().models()[0].guard.silenced());
+  EXPECT_FALSE(world->core().models()[1].guard.silenced());
 }
 
 TEST(Core, UnknownStatusQuarantinesAndDegradedDoesNot) {
@@ -250,7 +250,7 @@ TEST(Core, UnknownStatusQuarantinesAndDegradedDoesNot) {
     scene.models.push_back(testModel("misbehaving", {number(0, HSP_ENUM, how)}));
     auto world = testWorld(scene);
     for (int i = 0; i < 100; ++i) tickOnce(*world, i, probeAt({0, 0, 0}));
-    EXPECT_EQ(world->core().models()[0].guard.quarantined(), how == 1);
+    EXPECT_EQ(world->core().models()[0].guard.silenced(), how == 1);
     EXPECT_DOUBLE_EQ(world->core().force(0).y(), how == 1 ? 0.0 : 1.0);
   }
 }

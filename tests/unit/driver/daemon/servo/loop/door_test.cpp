@@ -99,7 +99,7 @@ TEST(Door, WakesACrowdOverSeveralTicks) {
       ++woken;
     });
   while (asleep < static_cast<int>(crowd.size())) std::this_thread::yield();
-  const auto nothing = std::vector<std::unique_ptr<Arm>>();
+  const auto nothing = Arms();
   for (uint64_t tick = 0; woken < static_cast<int>(crowd.size()); ++tick) {
     ASSERT_LT(tick, 100'000u);
     door.publish({tick, 0, 0, 0}, nothing);

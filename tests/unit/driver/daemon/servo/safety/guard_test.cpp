@@ -23,12 +23,12 @@ TEST(Guard, JudgesWhatAStepAnswers) {
 TEST(Guard, KeepsTheGravestAndForgivesALostSurface) {
   Guard guard;
   EXPECT_EQ(guard.fault(), ShapeFault::kNone);
-  EXPECT_FALSE(guard.quarantined());
+  EXPECT_FALSE(guard.silenced());
   guard.check(HSP_E_NUMERIC, true);
   EXPECT_EQ(guard.fault(), ShapeFault::kLost);
-  EXPECT_FALSE(guard.quarantined());
+  EXPECT_FALSE(guard.silenced());
   EXPECT_EQ(guard.enter(ShapeFault::kPulls), ShapeFault::kPulls);
-  EXPECT_TRUE(guard.quarantined());
+  EXPECT_TRUE(guard.silenced());
   guard.check(HSP_OK, false);
   guard.check(HSP_E_NUMERIC, true);
   EXPECT_EQ(guard.fault(), ShapeFault::kPulls) << "the first that is never forgiven";
@@ -78,7 +78,7 @@ TEST(Guard, TakesAFailedShapeAwayAtOnceAndAnUnwantedOneSlowly) {
 
 TEST(Guard, LetsAShapeInSlowlyAgain) {
   Guard guard;
-  guard.silence();
+  guard.startAtZero();
   EXPECT_EQ(guard.gain(), 0);
   for (int i = 1; i <= 60; ++i)
     EXPECT_NEAR(guard.gain(true, true, 1e-3), std::min(1.0, i * 1e-3 / Guard::kFadeIn), 1e-12);

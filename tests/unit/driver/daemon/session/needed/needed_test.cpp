@@ -72,7 +72,7 @@ struct Running {
 
   scene::Scene scene;
   std::unique_ptr<World> world;
-  std::vector<std::unique_ptr<Arm>> arms;
+  Arms arms;
   std::unique_ptr<Lockstep> lockstep;
   int count = 0;
 };

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+/// An answer of the daemon, as the requests of `hapticd ctl` take it.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "base/result.hpp"
+
+namespace hapticd::cli {
+
+/// [main] Returns the answer as JSON if the daemon carried out the request. The error is that of `line`, or the reason
+/// why the daemon refused. @param line the answer as it came
+Result<nlohmann::ordered_json> acceptedAnswer(const Result<std::string>& line);
+
+/// [main] Prints the note of an answer, if it has one, where it is not taken for output.
+void printNote(const nlohmann::ordered_json& answer);
+
+}  // namespace hapticd::cli
