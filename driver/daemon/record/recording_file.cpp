@@ -19,11 +19,28 @@ namespace hapticd::record {
 
 namespace {
 
+bool isSame(const struct stat& a, const struct stat& b) {
+  return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
 /// True if a name is that of an open file.
 bool isNameOf(const std::string& file, int fd) {
   struct stat named{}, opened{};
-  return stat(file.c_str(), &named) == 0 && fstat(fd, &opened) == 0 && named.st_dev == opened.st_dev &&
-         named.st_ino == opened.st_ino;
+  return stat(file.c_str(), &named) == 0 && fstat(fd, &opened) == 0 && isSame(named, opened);
+}
+
+/// True if messages of this process go into the file: they would overwrite its first rows.
+bool takesMessages(const struct stat& file) {
+  struct stat output{};
+  const auto goes = [&](int fd) { return fstat(fd, &output) == 0 && isSame(file, output); };
+  return S_ISREG(file.st_mode) && (goes(STDOUT_FILENO) || goes(STDERR_FILENO));
+}
+
+/// True if an open file begins as recordings do.
+bool isRecording(int fd) {
+  FileHeader header;
+  return pread(fd, &header, sizeof header, kHeaderAt) == static_cast<ssize_t>(sizeof header) &&
+         std::strncmp(header.magic, kRecordingFormat, sizeof header.magic) == 0;
 }
 
 /// Locks a file while it is open, because two writers would make it unreadable. Returns false if another one has it.
@@ -44,6 +61,10 @@ Result<std::unique_ptr<RecordingFile>> RecordingFile::create(const std::string& 
     return Error{file +
                  ": another run records into it, or a program that reads it keeps it open; expected the name of "
                  "another file"};
+  struct stat there{};
+  const bool known = fstat(fd, &there) == 0;
+  if (known && takesMessages(there))
+    return Error{file + ": the messages of this run go into it, too; expected the name of another file"};
   std::vector<uint32_t> chunk_rows;
   for (const StreamSpec& stream : streams) {
     const uint32_t bytes = stream.layout.rowBytes();
@@ -52,8 +73,7 @@ Result<std::unique_ptr<RecordingFile>> RecordingFile::create(const std::string& 
     recording->streams_.push_back({bytes, rows, hdf5::ChunkIndex(rows, uint64_t{rows} * bytes)});
   }
   recording->skeleton_ = makeSkeleton(streams, chunk_rows, about, false);
-  struct stat there{};
-  const bool former = fstat(fd, &there) == 0 && S_ISREG(there.st_mode) && there.st_size > 0;
+  const bool former = known && S_ISREG(there.st_mode) && there.st_size > 0;
   if (former && there.st_nlink == 1) recording->writeBeside();
   if (!former || !recording->part_.empty()) recording->begin();
   if (recording->error_ == 0) return recording;
@@ -70,7 +90,8 @@ void RecordingFile::writeBeside() {
   const int fd = open(part.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (fd < 0) return;
   struct stat there{}, former{};
-  const bool usable = fstat(fd, &there) == 0 && S_ISREG(there.st_mode) && there.st_nlink == 1;
+  const bool usable = fstat(fd, &there) == 0 && S_ISREG(there.st_mode) && there.st_nlink == 1 &&
+                      (there.st_size == 0 || isRecording(fd));  // else it is somebody's
   if (!usable || !lockFile(part, fd)) {
     ::close(fd);
     return;
@@ -208,10 +229,8 @@ Result<void> RecordingFile::isThere() const {
   if (!isNameOf(file_, fd_))
     return Error{file_ + ": this recording is not there any more: it was moved, replaced or removed during the run" +
                  (there.st_nlink > 0 ? "; where it was moved, it is complete" : "; its rows are lost")};
-  FileHeader header;  // written once: later rows do not bring it back
-  const bool begins = pread(fd_, &header, sizeof header, kHeaderAt) == static_cast<ssize_t>(sizeof header) &&
-                      std::strncmp(header.magic, kRecordingFormat, sizeof header.magic) == 0;
-  if (begins && static_cast<uint64_t>(there.st_size) >= end_) return {};
+  // its header is written once: later rows do not bring it back
+  if (isRecording(fd_) && static_cast<uint64_t>(there.st_size) >= end_) return {};
   return Error{file_ + ": another program cut this recording during the run; its first rows are lost"};
 }
 

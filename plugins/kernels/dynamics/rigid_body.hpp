@@ -112,6 +112,9 @@ class RigidBody {
   template <class Acts>
   Vector6d linearChange(const Matrix6d& own, const Vector6d& own_impulse, std::span<const PredictedContact> presses,
                         double dt, const Acts& acts) const noexcept;
+  Vector6d contactChange(const Matrix6d& own, const Vector6d& own_impulse, std::span<const PredictedContact> presses,
+                         double dt) const noexcept;
+  bool pushesAfter(const PredictedContact& press, const Vector6d& change) const noexcept;
   Matrix6d ownResistance(double dt) const noexcept;
   Vector6d ownImpulse(double dt) const noexcept;
   void drift(const Vector6d& change, double dt) noexcept;

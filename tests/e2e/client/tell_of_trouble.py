@@ -123,6 +123,14 @@ def pushed_again(daemon):
         with contextlib.redirect_stderr(None):
             failed = h.push(ARM, lambda state: 1 / 0)
             failed._thread.join(30)
+        for answer in (b"abc", "abc", {"x": 1, "y": 2, "z": 3}, 5):
+            with contextlib.redirect_stderr(None):
+                push = h.push(ARM, lambda state, answer=answer: answer)
+                push._thread.join(10)
+                push._stop.set()
+            check(f"{answer!r} is no force", "expected 3 numbers" in str(push.error), push.error)
+            with contextlib.suppress(Exception):
+                push.end()
         again = h.push(ARM, lambda state: [0, 0, 1])
         check("an arm can be pushed on again after a callback failed", until(lambda: again.answers > 0))
         check("a program learns the largest force that it gets", again._lead.max_force == 3, again._lead.max_force)

@@ -2,6 +2,7 @@
 /// A body that a plugin moves by itself: one that comes against the hand pushes ever more, until the host silences it.
 #include "scenario.hpp"
 #include "session/messages/silence_reason.hpp"
+#include "shipped.hpp"
 
 namespace hapticd::servo {
 namespace {
@@ -43,6 +44,22 @@ TEST(ABodyThatGivesWay, IsFeltHoweverFastAHandStrikesIt) {
     EXPECT_EQ(scenario.trouble(), ShapeFault::kNone) << speed;
     // spring and wall in series
     EXPECT_NEAR(sent.back().force.norm(), 0.005 / (1 / 500.0 + 1 / 50.0), 0.02) << speed;
+  }
+}
+
+TEST(AWheel, ThatTurnsPastAHandIsFeltAtEverySpeed) {
+  for (const char* rate : {"100", "500", "2000"}) {  // [rad/s] the last is 100 m/s at the rim
+    Scenario scenario({.models = shipped(std::string("  - name: wheel\n    plugin: nurbs_rigid\n    motion: dynamic\n"
+                                                     "    parameters: {geometry: HERE/models/sphere.yaml, stiffness: "
+                                                     "800, gravity: false, joint: hinge, axis: [0, 0, 1], spin: [0, "
+                                                     "0, ") +
+                                         rate + "]}\n")});
+    const std::vector<Sent> sent = scenario.run(1, [&scenario](double t) {
+      scenario.moveTo(Vector3d(0, std::max(0.045, 0.06 - 0.1 * t), 0));
+      return Nanoseconds{0};
+    });
+    EXPECT_EQ(scenario.trouble(), ShapeFault::kNone) << rate;
+    EXPECT_NEAR(sent.back().force.y(), 800 * 0.005, 0.1) << rate;
   }
 }
 

@@ -179,6 +179,7 @@ class Core {
   ShapeFault holdToTime(ModelState& model) noexcept HSP_RT;
   ShapeFault takePose(ModelState& model, hsp_pose pose) noexcept HSP_RT;
   Vector3d touchedPlace(uint32_t index, uint32_t probe) const noexcept HSP_RT;
+  Vector3d pushDirection(uint32_t index, uint32_t probe) const noexcept HSP_RT;
   bool runsAway(const ModelState& model, uint32_t index, double dt) const noexcept HSP_RT;
   void recordMotion(const ModelState& model, uint32_t index) noexcept HSP_RT;
   void recordContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT;

@@ -174,15 +174,23 @@ Vector3d Core::touchedPlace(uint32_t index, uint32_t probe) const noexcept HSP_R
   return held.traced ? Vector3d(ConstMap(held.world.point)) : last_position_[probe];
 }
 
-/// Returns true if a place that pushes moves faster than the fastest tip. A body that comes against the hand, since its
-/// force has the wrong sign or its spring is too stiff for its integrator, becomes ever faster, and would push with all
-/// that the arm may.
+/// Returns the direction in which the last force of a model pushes the probe: that of the surface, without friction.
+Vector3d Core::pushDirection(uint32_t index, uint32_t probe) const noexcept HSP_RT {
+  const Contact& held = contacts_[size_t{index} * probe_count_ + probe];
+  const ConstMap force(held.world.force), normal(held.world.normal);
+  if (!held.traced) return force.normalized();
+  return force.dot(normal) < 0 ? -normal : Vector3d(normal);
+}
+
+/// Returns true if a place that pushes comes against the probe faster than the fastest tip. A body whose force has the
+/// wrong sign, or whose spring is too stiff for its integrator, becomes ever faster, and would push with all that the
+/// arm may. A body that goes away, or turns past the probe as a wheel does, is no danger at any speed.
 bool Core::runsAway(const ModelState& model, uint32_t index, double dt) const noexcept HSP_RT {
   if (!(dt > 0)) return false;
   for (uint32_t i = 0; i < probe_count_; ++i) {
     if (ConstMap(contacts_[size_t{index} * probe_count_ + i].world.force).isZero(0)) continue;
     const Vector3d from = touchedPlace(index, i);
-    if ((carried(model, from) - from).norm() > settings_.max_probe_speed * dt) return true;
+    if ((carried(model, from) - from).dot(pushDirection(index, i)) > settings_.max_probe_speed * dt) return true;
   }
   return false;
 }

@@ -84,9 +84,10 @@ std::string silenceReason(const std::string& model, const std::string& file, Sha
              check;
     case ShapeFault::kRunsAway:
       return who +
-             "moved its body at more than 20 m/s while it was touched: it runs away, by a wrong sign of what moves it "
-             "(the force on the body is the opposite of the force on the probe) or by a spring that is too stiff for "
-             "its integrator; it was silenced; test it with: " +
+             "moved its body at more than 20 m/s against the hand: it runs away, by a wrong sign of what moves it (the "
+             "force on the body is the opposite of the force on the probe), by a spring that is too stiff for its "
+             "integrator, or because the scene gives it too little mass or drag for its spring; it was silenced; test "
+             "it with: " +
              check;
     case ShapeFault::kNotUnit:
       return who + "gave a pose whose quaternion does not have length 1; it was silenced; find the step with: " + check;

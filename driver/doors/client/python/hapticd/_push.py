@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _TOO_OLD = 20_000_000  # ns: the daemon ignores an answer that comes later than this after its tick
 _FEW = 0.001  # share of late answers that is no fault of the callback: the machine was busy
 _STOPPED = 8  # number of the fault of an arm that is held, or whose run ends
+_NO_FORCES = (str, bytes, bytearray, dict, set)  # b"abc" would be 170 N
 _PATIENCE = 0.1  # s: time between two checks whether the daemon still runs
 
 Force = Sequence[float]
@@ -125,7 +126,7 @@ class ForceThread(Ending):
             if force is None:
                 self.unanswered += 1
                 continue
-            if not hasattr(force, "__len__"):
+            if isinstance(force, _NO_FORCES) or not hasattr(force, "__len__"):
                 raise ValueError(f"the callback returned {force!r}, expected 3 numbers ([x, y, z], the force in N) or 6 (and the torque in N m)")
             if len(force) not in (3, 6):
                 raise ValueError(f"the callback returned {len(force)} numbers, expected 3 (the force in N) or 6 (and the torque in N m)")

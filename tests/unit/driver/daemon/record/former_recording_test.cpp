@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// A recording whose name is in use: by a former recording, or by other programs while it is written.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -7,6 +8,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "record/recording.hpp"
@@ -105,6 +107,27 @@ TEST_F(FormerRecording, SurvivesADiskThatIsFullBeforeTheFirstRows) {
   file.reset();
   EXPECT_EQ(rows(), 50);
   EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(FormerRecording, TakesNoFileOfSomebodyElse) {
+  record(50);
+  std::ofstream(name_ + ".part") << "half of a download";
+  record(20);
+  EXPECT_EQ(rows(), 20);
+  std::string text;
+  std::getline(std::ifstream(name_ + ".part"), text);
+  EXPECT_EQ(text, "half of a download");
+}
+
+TEST_F(FormerRecording, IsNoFileIntoWhichMessagesGo) {
+  const int stdout_before = dup(STDOUT_FILENO), file = open(name_.c_str(), O_WRONLY | O_CREAT, 0644);
+  dup2(file, STDOUT_FILENO);
+  const auto refused = RecordingFile::create(name_, streams_, {});
+  dup2(stdout_before, STDOUT_FILENO);
+  close(file);
+  close(stdout_before);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().find("messages of this run go into it"), std::string::npos) << refused.error();
 }
 
 TEST_F(FormerRecording, IsReplacedThroughALink) {
