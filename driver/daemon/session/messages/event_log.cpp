@@ -27,7 +27,9 @@ void EventLog::logNewEvents(const Flight& flight) {
   for (;;) {
     const std::vector<hapticd_event> events = flight.events(next_, kAtOnce);
     for (const hapticd_event& event : events) {
-      const Message message = messageOf(event);
+      Message message = messageOf(event);
+      if (MarkRow mark; event.kind == HAPTICD_MARK && flight.mark(event.code, mark))
+        message = {HSP_LOG_INFO, "", fmt::format("mark at {:.4f} s: {}", event.t, mark.text)};
       note(event);
       if (!message.text.empty()) log::write(message.level, message.who, message.text);
     }

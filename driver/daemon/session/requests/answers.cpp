@@ -339,6 +339,8 @@ std::string eventText(const Session& session, const hapticd_event& event) {
   json["code"] = event.code;
   json["value"] = event.value;
   if (*directionOfClick(event) != 0) json["snapped"] = directionOfClick(event);
+  if (MarkRow mark; event.kind == HAPTICD_MARK && session.runner.telemetry().flight()->mark(event.code, mark))
+    json["text"] = mark.text;
   if (event.kind == HAPTICD_FAULT) json["why"] = describe(static_cast<Fault>(event.code));
   if (event.probe < 0 || arm < session.runner.arms().size()) addProgram(session, event, json);
   if (event.kind == HAPTICD_REFUSED && *whyRefused(event) != 0) json["why"] = whyRefused(event);

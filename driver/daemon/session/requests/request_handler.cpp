@@ -134,6 +134,8 @@ Result<std::string> RequestHandler::execute(const control::Peer& peer, const Req
       return hold(request.device, code_);
     case Request::Kind::kClear:
       return plain(clear(peer, request.device));
+    case Request::Kind::kMark:
+      return mark(request.text);
     case Request::Kind::kDump: {
       auto file = dump("asked for");
       if (!file) return Error{file.error()};

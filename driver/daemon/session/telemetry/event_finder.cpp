@@ -155,7 +155,7 @@ const char* directionOfClick(const hapticd_event& event) {
 const char* nameOfEvent(uint32_t kind) {
   static constexpr const char* kNames[] = {"",         "click",    "touch",    "fault",       "cleared",
                                            "silenced", "degraded", "restored", "came",        "left",
-                                           "joined",   "lost",     "refused",  "quarantined", "stalled"};
+                                           "joined",   "lost",     "refused",  "quarantined", "stalled", "mark"};
   static_assert(std::size(kNames) == HAPTICD_EVENT_KINDS);
   return kind < std::size(kNames) ? kNames[kind] : "";
 }

@@ -30,6 +30,8 @@ class EventFinder {
 
   /// [rt] Called for each order that this tick obeys.
   void order(const Order& order) noexcept HSP_RT;
+  /// [rt] Called for each mark of this tick. @param number number of its row in the stream `marks`
+  void mark(uint32_t number) noexcept HSP_RT { add(HAPTICD_MARK, -1, -1, number, 0); }
   /// [rt] Called after a tick at t [s]: finds its events.
   void tick(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
 
