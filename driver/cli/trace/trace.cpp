@@ -134,7 +134,7 @@ int trace(const TraceArguments& options) {
   const TickWatch watched;
   const SetupErrors once;
   const servo::SetupWatch waiting(logToTerminal);
-  auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
+  auto world = servo::World::build(*scene, {.rate = scene->servo.rate, .keep_disabled = true}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   auto writer = TraceWriter::open(options.out, *scene, *models);
   if (!writer) return fail(kBadInput, writer.error());

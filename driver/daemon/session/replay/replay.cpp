@@ -332,6 +332,7 @@ Result<std::unique_ptr<Replay>> Replay::prepare(const record::Recording& recordi
   options.probe_count = static_cast<uint32_t>(scene.devices.size());
   options.max_force = maxForceOf(scene, replay->run_.devices);
   options.former_claims = replay->run_.facts.former_claims;
+  options.keep_disabled = true;
   std::optional<SetupWatch> waiting(std::in_place, log);
   auto world = World::build(scene, options, log);
   waiting.reset();

@@ -182,7 +182,7 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
     order.target = place;
     order.model = prepared_.back().get();
     const auto given = post(order);
-    places_[place] = {models[i], true, true};
+    places_[place] = {models[i], true, models[i].enabled};
     // The shape is kept even if the servo did not obey in time, because the servo may obey later.
     runner_.world().store(place, std::move(shapes[i]), models[i]);
     if (!given) return given;

@@ -61,7 +61,10 @@ RequestHandler::RequestHandler(Runner& runner, LoadScene load, host::Services::L
       places_(runner.world().places()),
       leads_([this](const Order& order) { return post(order); }, runner.scene().clients.exclusive,
              [this](uint32_t arm, const Leads::Pusher& who, Leads::PushEvent news) { reportPusher(arm, who, news); }) {
-  for (size_t i = 0; i < runner.scene().models.size(); ++i) places_[i] = {runner.scene().models[i], true, true};
+  for (size_t i = 0; i < runner.scene().models.size(); ++i) {
+    const scene::Model& model = runner.scene().models[i];
+    places_[i] = {model, true, model.enabled};
+  }
 }
 
 control::Reply RequestHandler::answer(const control::Peer& peer, const std::string& line,
@@ -227,11 +230,14 @@ Result<std::string> RequestHandler::enable(const std::string& model) {
   // [s] Time in which the servo has surely stepped the model once. This can be short because a disabled model is still
   // traced; only its force is off.
   constexpr double kMet = 0.02;
-  if (auto done = setEnabled(model, true); !done) return Error{done.error()};
-  nlohmann::ordered_json json = {{"ok", true}};
+  constexpr double kFound = 0.25;  // [s] the same for a model that has started disabled: first the search finds it
   const auto place = placeOf(model);
   if (!place) return Error{place.error()};
-  if (auto waiting = waitingOf({places_[*place].model}, kMet); !waiting.empty()) json["waiting"] = std::move(waiting);
+  const bool woken = runner_.world().wake(*place, places_[*place].model);
+  if (auto done = setEnabled(model, true); !done) return Error{done.error()};
+  nlohmann::ordered_json json = {{"ok", true}};
+  if (auto waiting = waitingOf({places_[*place].model}, woken ? kFound : kMet); !waiting.empty())
+    json["waiting"] = std::move(waiting);
   return lineOf(json);
 }
 
