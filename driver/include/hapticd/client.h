@@ -111,11 +111,14 @@ enum {
                       code: as HAPTICD_JOINED, plus for a target 16 times the reason (1 a number is not finite, 2 the
                       time is wrong, 3 the position is too far away, 4 the orientation is not a unit quaternion) */
   HAPTICD_QUARANTINED, /* models of a plugin were left out, because it ended an earlier run */
-  HAPTICD_STALLED, /* the servo ran no tick for some time: the process was stopped, or got no CPU; value: time in s */
-  HAPTICD_MARK, /* a program marked this tick with a text; code: number of the row in the stream `marks` */
+  HAPTICD_STALLED,  /* the servo ran no tick for some time: the process was stopped, or got no CPU; value: time in s */
+  HAPTICD_MARK,     /* a program marked this tick with a text; code: number of the row in the stream `marks` */
+  HAPTICD_END_STOP, /* the joint of a model came to the end of its range, after 50 ms or more elsewhere; model, code:
+                       HAPTICD_LOWEST or HAPTICD_HIGHEST */
   HAPTICD_EVENT_KINDS /* one more than the last kind */
 };
 enum { HAPTICD_WENT_IN = 1, HAPTICD_CAME_OUT }; /* hapticd_event.code of HAPTICD_CLICK */
+enum { HAPTICD_LOWEST = 1, HAPTICD_HIGHEST };   /* hapticd_event.code of HAPTICD_END_STOP */
 typedef struct hapticd_event {
   uint64_t tick;
   double t;             /* s since the first tick */

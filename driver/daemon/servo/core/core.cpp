@@ -233,7 +233,9 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   const bool wanted = model.enabled && (!model.until_free || !good || enters(model, probes, pace));
   const double gain = model.guard.gain(good, wanted, pace);
   const double fade = gain_before > 0 ? gain / gain_before : 0;
+  model.at_end = 0;
   for (uint32_t i = 0; i < probe_count_; ++i) {
+    model.at_end |= outputs_[i].flags & (HSP_OUT_AT_LOWEST | HSP_OUT_AT_HIGHEST);
     if (good) {
       takeContact(model, index, i, gain);
     } else {

@@ -57,6 +57,7 @@ struct ModelState {
   uint32_t active_surfaces = 0;  ///< traced surfaces, all probes together
   bool always = false;  ///< true: it is stepped in every tick, because its plugin finds the foot points or moves it
   bool moves = false;   ///< true if its pose may change
+  uint32_t at_end = 0;  ///< HSP_OUT_AT_LOWEST or HSP_OUT_AT_HIGHEST if a joint stands there; else 0
   hsp_status status = HSP_OK;
   hsp_status failed_status = HSP_OK;  ///< the first status that step() returned and that the ABI does not allow
   Pull pull;  ///< the pull for which it was silenced; if there is none, the largest jump of its force

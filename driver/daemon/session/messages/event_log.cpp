@@ -127,6 +127,8 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
                     "limits.ramp_in)\n  fix: move "
                     "the model, the arm (mount) or the hand (hand), so that the tip starts outside"};
       return {HSP_LOG_DEBUG, who, fmt::format("{} touches it at {:.4f} s", device(event).name, event.t)};
+    case HAPTICD_END_STOP:
+      return {HSP_LOG_DEBUG, who, fmt::format("its joint came to its {} end at {:.4f} s", endOf(event), event.t)};
     case HAPTICD_SILENCED:
       return {HSP_LOG_ERROR, "", silenceReason(event, who, file)};
     case HAPTICD_DEGRADED:

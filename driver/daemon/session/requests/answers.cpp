@@ -113,6 +113,11 @@ status::ModelStatus nowOf(const Session& session, uint32_t place) {
                                     : status::ModelStatus{};
 }
 
+/// Returns at which end of its range a joint stands, or null.
+Json endJson(uint32_t at_end) {
+  return at_end == 0 ? Json() : Json(at_end == HAPTICD_LOWEST ? "lowest" : "highest");
+}
+
 Json modelJson(const Session& session, uint32_t place) {
   const ModelPlace& taken = session.places[place];
   const auto leader = session.leads.leader(Order::Led::kModel, place);
@@ -127,7 +132,8 @@ Json modelJson(const Session& session, uint32_t place) {
           {"pose", poseJson(session, place)},
           {"silenced", why.empty() ? Json() : Json(why)},
           {"deforms", deforms},
-          {"waits", waitsForTip(session, place)}};
+          {"waits", waitsForTip(session, place)},
+          {"end", endJson(nowOf(session, place).at_end)}};
 }
 
 Json silencedJson(const Session& session) {
@@ -339,6 +345,7 @@ std::string eventText(const Session& session, const hapticd_event& event) {
   json["code"] = event.code;
   json["value"] = event.value;
   if (*directionOfClick(event) != 0) json["snapped"] = directionOfClick(event);
+  if (*endOf(event) != 0) json["end"] = endOf(event);
   if (MarkRow mark; event.kind == HAPTICD_MARK && session.runner.telemetry().flight()->mark(event.code, mark))
     json["text"] = mark.text;
   if (event.kind == HAPTICD_FAULT) json["why"] = describe(static_cast<Fault>(event.code));

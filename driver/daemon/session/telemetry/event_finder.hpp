@@ -43,9 +43,10 @@ class EventFinder {
   /// The state of a model one tick ago.
   struct ModelNote {
     std::array<double, link::kMaxProbes> touched = never();  ///< [s] time when each probe was last inside
+    double at_end = never()[0];  ///< [s] time when its joint was last at an end of its range
     uint32_t level = 0;
     ShapeFault trouble = ShapeFault::kNone;
-    bool leaving = false;
+    bool leaving = false, seen = false;  ///< seen: it was stepped
     uint64_t refused = 0;
     double refused_told = -kRefusedPeriod;
   };
@@ -66,6 +67,7 @@ class EventFinder {
   void add(uint32_t kind, int32_t model, int32_t probe, uint32_t code, double value) noexcept HSP_RT;
   void check(double t, uint32_t index, const Core& core) noexcept HSP_RT;
   void check(double t, uint32_t index, const Arm& arm) noexcept HSP_RT;
+  void findEnd(double t, int32_t number, const ModelState& model, ModelNote& note) noexcept HSP_RT;
   void findLeft(const Core& core) noexcept HSP_RT;
   template <class Note>
   bool refused(double t, uint64_t now, Note& note) noexcept HSP_RT;
@@ -82,6 +84,9 @@ const char* whyRefused(const hapticd_event& event);
 
 /// [main] Returns "in" or "out" for an event HAPTICD_CLICK whose direction is known; "" for other events.
 const char* directionOfClick(const hapticd_event& event);
+
+/// [main] Returns "lowest" or "highest" for an event HAPTICD_END_STOP; "" for other events.
+const char* endOf(const hapticd_event& event);
 
 /// [main] Returns the name of an event in JSON, such as "click"; "" if there is no such event.
 const char* nameOfEvent(uint32_t kind);

@@ -9,9 +9,9 @@ namespace hapticd::servo {
 
 namespace {
 
-/// The direction of a click is in the row of its event. Rows of contacts do not have these flags, so that recordings
-/// from before these flags replay to the same bits.
-constexpr uint32_t kOnlyInEvents = HSP_OUT_WENT_IN | HSP_OUT_CAME_OUT;
+/// The direction of a click and the end of a joint are in the rows of their events. Rows of contacts do not have these
+/// flags, so that recordings from before these flags replay to the same bits.
+constexpr uint32_t kOnlyInEvents = HSP_OUT_WENT_IN | HSP_OUT_CAME_OUT | HSP_OUT_AT_LOWEST | HSP_OUT_AT_HIGHEST;
 
 void copy3(double* to, const Eigen::Vector3d& from) noexcept HSP_RT {
   for (int i = 0; i < 3; ++i) to[i] = from[i];
