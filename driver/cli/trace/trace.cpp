@@ -45,7 +45,7 @@ Result<std::vector<uint32_t>> chosenModels(const scene::Scene& scene, const std:
       std::vector<std::string> names;
       for (const scene::Model& model : scene.models) names.push_back(model.name);
       return Error{"--models: the scene has no model \"" + name + "\"; expected one of " +
-                   document::listed(names, kMostListed) + document::suggestionOfName(name, names)};
+                   document::listedFor(name, names, kMostListed) + document::suggestionOfName(name, names)};
     }
     chosen.push_back(static_cast<uint32_t>(it - scene.models.begin()));
   }

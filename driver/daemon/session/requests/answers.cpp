@@ -260,7 +260,7 @@ std::string noSuchParameter(const hsp_class& plugin, const std::string& paramete
                     other = meant.empty() ? document::suggestionOfName(word, others) : "";
   return "parameter \"" + word + "\" of " + plugin.name + ": there is no " +
          ((flags & HSP_P_LIVE) != 0 ? "live " : "") + "parameter of that name, expected one of " +
-         document::listed(names) + meant + other +
+         document::listedFor(word, names) + meant + other +
          (other.empty() ? "" : "\n  fix: parameters that are not live change in the scene, then: hapticd ctl reload");
 }
 
@@ -268,7 +268,7 @@ std::string noSuchDevice(const scene::Scene& scene, const std::string& device) {
   std::vector<std::string> names;
   for (const scene::Device& one : scene.devices) names.push_back(one.name);
   const std::string wanted = device.substr(0, 100);
-  return "there is no device \"" + wanted + "\", expected one of: " + document::listed(names) +
+  return "there is no device \"" + wanted + "\", expected one of: " + document::listedFor(wanted, names) +
          document::suggestionOfName(wanted, names);
 }
 

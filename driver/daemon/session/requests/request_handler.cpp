@@ -193,9 +193,10 @@ Result<uint32_t> RequestHandler::placeOf(const std::string& model) const {
     if (places_[i].taken && places_[i].model.name == model) return i;
     if (places_[i].taken) names.push_back(places_[i].model.name);
   }
-  return refuse("unknown", "there is no model \"" + model.substr(0, 100) + "\", " +
-                               (names.empty() ? "nor any other" : "expected one of " + document::listed(names)) +
-                               document::suggestionOfName(model.substr(0, 100), names));
+  return refuse("unknown",
+                "there is no model \"" + model.substr(0, 100) + "\", " +
+                    (names.empty() ? "nor any other" : "expected one of " + document::listedFor(model, names)) +
+                    document::suggestionOfName(model.substr(0, 100), names));
 }
 
 Result<void> RequestHandler::post(const Order& order) {
